@@ -1,0 +1,68 @@
+//! Squared error and detection rates of one scene (thesis section 4.2).
+
+use crate::maps::RangeAngleMap;
+
+/// Target cells are those where the whole array's Lambda exceeds this.
+pub const TARGET_ETA: f32 = 0.9;
+
+/// The thesis' three figures for one scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Metrics {
+    /// SE: sum of squared differences over every cell.
+    pub squared_error: f64,
+    /// P_D: part of the target cells where the output exceeds eta; `None` where the target has no such cell (an empty scene).
+    pub detection: Option<f64>,
+    /// P_FA: part of the other cells where the output exceeds eta.
+    pub false_alarm: f64,
+}
+
+impl Metrics {
+    /// Compares `output`, thresholded at `eta`, with the whole array's map. Both `[range bins, columns]`.
+    pub fn of(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
+        let (detection, false_alarm) = detection_rates(target, output, eta);
+        Metrics { squared_error: squared_error(target, output), detection, false_alarm }
+    }
+}
+
+/// Sum of squared differences over every cell.
+pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
+    target.lambda.iter().zip(&output.lambda).map(|(t, o)| f64::from(t - o).powi(2)).sum()
+}
+
+/// (P_D, P_FA) of `output > eta` against `target > 0.9`; P_D is `None` without target cells.
+pub fn detection_rates(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> (Option<f64>, f64) {
+    let (mut hits, mut targets, mut alarms, mut others) = (0u64, 0u64, 0u64, 0u64);
+    for (t, o) in target.lambda.iter().zip(&output.lambda) {
+        let detected = u64::from(*o > eta);
+        if *t > TARGET_ETA {
+            targets += 1;
+            hits += detected;
+        } else {
+            others += 1;
+            alarms += detected;
+        }
+    }
+    let part = |a: u64, b: u64| a as f64 / b as f64;
+    ((targets > 0).then(|| part(hits, targets)), if others > 0 { part(alarms, others) } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn hand_counted() {
+        let target = RangeAngleMap { lambda: array![[0.95, 0.2], [1.0, 0.0]] };
+        let output = RangeAngleMap { lambda: array![[0.95, 0.8], [0.5, 0.0]] };
+        let m = Metrics::of(&target, &output, 0.7);
+        assert_eq!((m.detection, m.false_alarm), (Some(0.5), 0.5));
+        assert!((m.squared_error - (0.36 + 0.25)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn no_target_cells_give_no_detection_rate() {
+        let flat = RangeAngleMap { lambda: ndarray::Array2::zeros((2, 2)) };
+        assert_eq!(detection_rates(&flat, &flat, 0.5), (None, 0.0));
+    }
+}

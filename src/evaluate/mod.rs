@@ -1,0 +1,8 @@
+//! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables.
+
+mod metrics;
+mod roc;
+pub mod tables;
+
+pub use metrics::{Metrics, TARGET_ETA, detection_rates, squared_error};
+pub use roc::{Roc, RocPoint};

@@ -1,0 +1,108 @@
+//! Receiver operating characteristic: P_D against P_FA over every threshold.
+
+use super::TARGET_ETA;
+use crate::maps::RangeAngleMap;
+
+/// Thresholds at which a [`Roc`] is sampled: eta = i / `STEPS`.
+const STEPS: usize = 4096;
+
+/// P_D and P_FA at one threshold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RocPoint {
+    /// The threshold.
+    pub eta: f32,
+    /// P_D.
+    pub detection: f64,
+    /// P_FA.
+    pub false_alarm: f64,
+}
+
+/// Rates over 4097 thresholds from 0 to 1, of one scene or averaged over scenes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Roc {
+    detection: Vec<f64>,
+    false_alarm: Vec<f64>,
+    scenes: usize,
+}
+
+impl Default for Roc {
+    fn default() -> Self {
+        Roc { detection: vec![0.0; STEPS + 1], false_alarm: vec![0.0; STEPS + 1], scenes: 0 }
+    }
+}
+
+impl Roc {
+    /// The characteristic of one scene.
+    pub fn of(target: &RangeAngleMap, output: &RangeAngleMap) -> Roc {
+        let mut roc = Roc::default();
+        roc.add(target, output);
+        roc
+    }
+
+    /// Adds a scene to the average. A scene without target cells has no P_D and is left out.
+    pub fn add(&mut self, target: &RangeAngleMap, output: &RangeAngleMap) {
+        // Cell with output o exceeds eta_i = i/STEPS for i < o * STEPS: count it in the last such i, then sum from the top.
+        let (mut hits, mut alarms) = (vec![0u64; STEPS + 2], vec![0u64; STEPS + 2]);
+        for (t, o) in target.lambda.iter().zip(&output.lambda) {
+            let slot = (o.clamp(0.0, 1.0) * STEPS as f32).ceil() as usize;
+            if *t > TARGET_ETA { hits[slot] += 1 } else { alarms[slot] += 1 }
+        }
+        let (targets, others) = (hits.iter().sum::<u64>(), alarms.iter().sum::<u64>());
+        if targets == 0 || others == 0 {
+            return;
+        }
+        let (mut hit, mut alarm) = (0, 0);
+        for i in (0..=STEPS).rev() {
+            hit += hits[i + 1];
+            alarm += alarms[i + 1];
+            self.detection[i] += hit as f64 / targets as f64;
+            self.false_alarm[i] += alarm as f64 / others as f64;
+        }
+        self.scenes += 1;
+    }
+
+    /// Number of scenes averaged.
+    pub fn scenes(&self) -> usize {
+        self.scenes
+    }
+
+    /// The curve from eta = 0 to eta = 1; empty without scenes.
+    pub fn points(&self) -> impl Iterator<Item = RocPoint> + '_ {
+        let scenes = self.scenes as f64;
+        (0..=STEPS).filter(move |_| scenes > 0.0).map(move |i| RocPoint {
+            eta: i as f32 / STEPS as f32,
+            detection: self.detection[i] / scenes,
+            false_alarm: self.false_alarm[i] / scenes,
+        })
+    }
+
+    /// The largest P_D reached with P_FA at most `false_alarm`, or `None` without scenes.
+    pub fn at_false_alarm(&self, false_alarm: f64) -> Option<RocPoint> {
+        self.points().find(|p| p.false_alarm <= false_alarm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluate::detection_rates;
+    use ndarray::Array2;
+
+    #[test]
+    fn agrees_with_counting_at_each_threshold() {
+        let target =
+            RangeAngleMap { lambda: Array2::from_shape_fn((40, 50), |(i, j)| ((i * 7 + j) % 97) as f32 / 96.0) };
+        let output =
+            RangeAngleMap { lambda: Array2::from_shape_fn((40, 50), |(i, j)| ((i * 5 + j) % 89) as f32 / 88.0) };
+        for point in Roc::of(&target, &output).points().step_by(311) {
+            let (pd, pfa) = detection_rates(&target, &output, point.eta);
+            assert_eq!((pd, pfa), (Some(point.detection), point.false_alarm), "eta {}", point.eta);
+        }
+    }
+
+    #[test]
+    fn a_perfect_output_detects_all_without_false_alarm() {
+        let target = RangeAngleMap { lambda: Array2::from_shape_fn((10, 10), |(i, _)| i as f32 / 9.0) };
+        assert_eq!(Roc::of(&target, &target).at_false_alarm(0.0).unwrap().detection, 1.0);
+    }
+}

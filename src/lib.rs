@@ -1,0 +1,11 @@
+//! See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
+#![warn(missing_docs)]
+
+pub mod commands;
+pub mod evaluate;
+pub mod maps;
+pub mod methods;
+pub mod radar;
+pub mod reconstruct;
+pub mod scene;
+pub mod signal;

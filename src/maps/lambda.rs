@@ -1,0 +1,112 @@
+//! Lambda, the normalised log-magnitude, and what is made of it: thresholds and masks.
+
+use crate::radar::Decibels;
+use ndarray::Array2;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// How decades become Lambda in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Normalisation {
+    /// 0 at the map's smallest cell, 1 at its largest (the thesis). The smallest cell is rounding or noise: it makes the floor part of the picture.
+    #[default]
+    MinMax,
+    /// 1 at the largest cell, 0 this far below it and under. Stable: does not depend on the floor.
+    DynamicRange(Decibels),
+}
+
+/// A normalisation's name that could not be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown normalisation \"{0}\"; expected min-max or db=RANGE with RANGE between 1 and 400")]
+pub struct NormalisationError(String);
+
+impl FromStr for Normalisation {
+    type Err = NormalisationError;
+
+    fn from_str(s: &str) -> Result<Self, NormalisationError> {
+        if s == "min-max" {
+            return Ok(Normalisation::MinMax);
+        }
+        s.strip_prefix("db=")
+            .and_then(|db| db.parse::<f64>().ok())
+            .filter(|db| (1.0..=400.0).contains(db))
+            .map(|db| Normalisation::DynamicRange(Decibels(db)))
+            .ok_or_else(|| NormalisationError(s.to_owned()))
+    }
+}
+
+impl fmt::Display for Normalisation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Normalisation::MinMax => f.write_str("min-max"),
+            Normalisation::DynamicRange(db) => write!(f, "db={}", db.0),
+        }
+    }
+}
+
+/// The straight line from decades to Lambda.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LambdaScale {
+    /// Decades where Lambda is 0.
+    pub floor: f64,
+    /// Decades where Lambda is 1.
+    pub peak: f64,
+}
+
+impl LambdaScale {
+    /// The scale for a map whose cells lie between `min` and `max` decades.
+    pub fn new(min: f64, max: f64, normalisation: Normalisation) -> Self {
+        let floor = match normalisation {
+            Normalisation::MinMax => min,
+            Normalisation::DynamicRange(db) => max - db.amplitude_decades(),
+        };
+        LambdaScale { floor, peak: max }
+    }
+
+    /// Lambda in [0, 1]. A map that is flat (an empty scene) has Lambda 0 everywhere.
+    #[inline]
+    pub fn lambda(&self, decades: f64) -> f64 {
+        let range = self.peak - self.floor;
+        if range > 0.0 { ((decades - self.floor) / range).clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// Lambda over range and angle, `[range bins, columns]`, every cell in [0, 1].
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangeAngleMap {
+    /// The cells.
+    pub lambda: Array2<f32>,
+}
+
+/// Cells above a threshold, `[range bins, columns]`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mask {
+    /// True where the map exceeds the threshold.
+    pub cells: Array2<bool>,
+}
+
+impl RangeAngleMap {
+    /// Stretches arbitrary finite values to [0, 1]; equal or non-finite values become 0.
+    pub fn stretched(values: Array2<f32>) -> Self {
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        let (min, max) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let range = max - min;
+        let lambda =
+            values.mapv(|v| if range > 0.0 && v.is_finite() { ((v - min) / range).clamp(0.0, 1.0) } else { 0.0 });
+        RangeAngleMap { lambda }
+    }
+
+    /// Cells where Lambda > `eta`.
+    pub fn above(&self, eta: f32) -> Mask {
+        Mask { cells: self.lambda.mapv(|v| v > eta) }
+    }
+}
+
+impl Mask {
+    /// Number of cells above the threshold.
+    pub fn count(&self) -> usize {
+        self.cells.iter().filter(|&&c| c).count()
+    }
+}

@@ -1,0 +1,63 @@
+//! Log-magnitude maps, before normalisation.
+
+use super::lambda::{LambdaScale, Normalisation, RangeAngleMap};
+use ndarray::Array2;
+
+/// Added to every magnitude before its logarithm, as in the thesis' program: an exact zero becomes -20.
+pub const LOG_GUARD: f64 = 1e-20;
+
+/// `L = log10(|Y| + 1e-20)`, `[range bins, columns]`: decades of amplitude, not normalised.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogMap {
+    decades: Array2<f64>,
+    min: f64,
+    max: f64,
+}
+
+impl LogMap {
+    /// Takes decades of amplitude; cells that are not finite count as an exact zero (-20).
+    pub fn new(mut decades: Array2<f64>) -> Self {
+        let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
+        for v in &mut decades {
+            if !v.is_finite() {
+                *v = LOG_GUARD.log10();
+            }
+            min = min.min(*v);
+            max = max.max(*v);
+        }
+        LogMap { decades, min, max }
+    }
+
+    /// The cells, `[range bins, columns]`.
+    pub fn decades(&self) -> &Array2<f64> {
+        &self.decades
+    }
+
+    /// Smallest cell.
+    pub fn min(&self) -> f64 {
+        self.min
+    }
+
+    /// Largest cell.
+    pub fn max(&self) -> f64 {
+        self.max
+    }
+
+    /// Median cell: the level of the floor when reflectors are few.
+    pub fn median(&self) -> f64 {
+        let mut cells: Vec<f64> = self.decades.iter().copied().collect();
+        let middle = cells.len() / 2;
+        *cells.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// How this map's decades become Lambda.
+    pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
+        LambdaScale::new(self.min, self.max, normalisation)
+    }
+
+    /// Lambda of every cell.
+    pub fn normalise(&self, normalisation: Normalisation) -> RangeAngleMap {
+        let scale = self.scale(normalisation);
+        RangeAngleMap { lambda: self.decades.mapv(|v| scale.lambda(v) as f32) }
+    }
+}

@@ -1,0 +1,41 @@
+//! From the beat signal to pictures: range profiles, complex range-angle map, log-magnitude, Lambda, threshold, Cartesian view.
+//!
+//! Every map is `[range bin, column]`, row `k1` at `k1 * c / 2B`, column `k2` at cos(theta) = `(k2 - N_a/2) / (N_a/2)`
+//! (half-wavelength spacing). Transforms are orthonormal: `1/sqrt(N_r)` over range, `1/sqrt(N_a)` over the elements.
+
+pub mod cartesian;
+mod lambda;
+mod log_map;
+pub mod network_input;
+mod transform;
+
+pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};
+pub use log_map::{LOG_GUARD, LogMap};
+pub use transform::{Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, range_transform};
+
+use crate::radar::{End, Radar};
+use crate::signal::BeatSignal;
+
+/// Log-magnitude maps of both ends and of the whole array.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogMaps {
+    /// Map of the first end ("input 0").
+    pub first: LogMap,
+    /// Map of the last end ("input 1").
+    pub last: LogMap,
+    /// Map of the whole array ("target").
+    pub full: LogMap,
+}
+
+impl LogMaps {
+    /// All three maps of a beat signal.
+    pub fn of_signal(radar: &Radar, signal: &BeatSignal) -> LogMaps {
+        let profiles = range_transform(radar, signal);
+        let map = |aperture| angle_transform(radar, &profiles, aperture).log_magnitude();
+        LogMaps {
+            first: map(Aperture::End(End::First)),
+            last: map(Aperture::End(End::Last)),
+            full: map(Aperture::Full),
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The windowed two-dimensional transform (thesis section 3.1).
+
+use super::log_map::{LOG_GUARD, LogMap};
+use crate::radar::{End, Radar, hann};
+use crate::signal::BeatSignal;
+use ndarray::{Array2, ArrayView2, s};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use rustfft::FftPlanner;
+
+/// Which elements a map is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Aperture {
+    /// Every element.
+    Full,
+    /// The elements of one end.
+    End(End),
+}
+
+/// Windowed range transform of every channel: complex, `[channels, range bins]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangeProfiles {
+    /// The profiles, one row a channel.
+    pub profiles: Array2<Complex64>,
+}
+
+/// Complex range-angle map, `[range bins, columns]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComplexMap {
+    /// The cells.
+    pub cells: Array2<Complex64>,
+}
+
+/// Range profiles of the whole array, `[elements, range bins]`.
+pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
+    channels_range_transform(radar, signal.samples.view())
+}
+
+fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> RangeProfiles {
+    let fft = FftPlanner::new().plan_fft_forward(radar.samples);
+    let scale = (radar.samples as f64).sqrt().recip();
+    let window: Vec<f64> = hann(radar.samples).into_iter().map(|w| w * scale).collect();
+    let mut profiles = samples.as_standard_layout().into_owned();
+    profiles.outer_iter_mut().into_par_iter().for_each_init(
+        || vec![Complex64::default(); fft.get_inplace_scratch_len()],
+        |scratch, mut row| {
+            row.iter_mut().zip(&window).for_each(|(v, w)| *v *= w);
+            if let Some(row) = row.as_slice_mut() {
+                fft.process_with_scratch(row, scratch);
+            }
+        },
+    );
+    RangeProfiles { profiles }
+}
+
+/// Range-angle map of the whole array's `profiles` seen through `aperture`.
+pub fn angle_transform(radar: &Radar, profiles: &RangeProfiles, aperture: Aperture) -> ComplexMap {
+    let channels = match aperture {
+        Aperture::Full => 0..radar.elements,
+        Aperture::End(end) => radar.end_range(end),
+    };
+    angle_transform_of(radar, profiles.profiles.slice(s![channels, ..]))
+}
+
+/// Range-angle map of the raw samples of a few neighbouring channels, `[channels, samples]`.
+///
+/// This is what a reconstruction does with one end: it has no other elements.
+pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> ComplexMap {
+    angle_transform_of(radar, channels_range_transform(radar, samples).profiles.view())
+}
+
+/// Windows the channels, pads them with zeros to N_a, transforms, and rolls by N_a / 2 so that cos(theta) rises with the column.
+fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> ComplexMap {
+    let columns = radar.elements;
+    let fft = FftPlanner::new().plan_fft_forward(columns);
+    let scale = (columns as f64).sqrt().recip();
+    let window: Vec<f64> = hann(profiles.nrows()).into_iter().map(|w| w * scale).collect();
+    let mut cells = Array2::zeros((profiles.ncols(), columns));
+    cells.outer_iter_mut().into_par_iter().enumerate().for_each_init(
+        || vec![Complex64::default(); fft.get_inplace_scratch_len()],
+        |scratch, (bin, mut row)| {
+            for ((v, w), p) in row.iter_mut().zip(&window).zip(profiles.column(bin)) {
+                *v = p * w;
+            }
+            if let Some(row) = row.as_slice_mut() {
+                fft.process_with_scratch(row, scratch);
+                row.rotate_right(columns / 2);
+            }
+        },
+    );
+    ComplexMap { cells }
+}
+
+impl ComplexMap {
+    /// `log10(|Y| + 1e-20)` of every cell.
+    pub fn log_magnitude(&self) -> LogMap {
+        LogMap::new(self.cells.mapv(|v| (v.norm() + LOG_GUARD).log10()))
+    }
+}

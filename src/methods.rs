@@ -1,0 +1,30 @@
+//! Every reconstruction method by name: the one list behind the command line, the tables and the app.
+
+use crate::reconstruct::{Baseline, Reconstructor};
+use std::sync::Arc;
+
+/// Every method this build knows, in the order they are shown.
+pub fn all() -> Vec<Arc<dyn Reconstructor>> {
+    vec![Arc::new(Baseline)]
+}
+
+/// A method's name that is not known.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown method \"{name}\"; known: {known}")]
+pub struct UnknownMethod {
+    name: String,
+    known: String,
+}
+
+/// The method called `name`.
+///
+/// # Errors
+/// [`UnknownMethod`] lists the known names.
+pub fn by_name(name: &str) -> Result<Arc<dyn Reconstructor>, UnknownMethod> {
+    let all = all();
+    let known = || all.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ");
+    all.iter()
+        .find(|m| m.name() == name)
+        .cloned()
+        .ok_or_else(|| UnknownMethod { name: name.to_owned(), known: known() })
+}

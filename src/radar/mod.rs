@@ -1,0 +1,280 @@
+//! The radar: every constant of the thesis' table 3.1 as one validated value.
+//!
+//! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
+
+mod units;
+mod window;
+
+pub use units::Decibels;
+pub use window::hann;
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Speed of light in vacuum, metres per second.
+pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
+
+/// How the carrier's phase depends on the distance to a reflector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Carrier {
+    /// `exp(-j 2 pi R / lambda)`: the usual half-wavelength virtual array, unambiguous over all of cos(theta).
+    /// It is the reading that reproduces the thesis' tables.
+    #[default]
+    OneWay,
+    /// `exp(+j 4 pi R / lambda)`, as equation 3.1 is printed. With half-wavelength spacing every column then stands for two
+    /// directions: cos(theta) folds twice.
+    TwoWay,
+}
+
+impl Carrier {
+    /// Carrier turns for each wavelength of distance, signed: the `s q` of equation 3.1 (-1 or +2).
+    pub fn turns_per_wavelength(self) -> f64 {
+        match self {
+            Carrier::OneWay => -1.0,
+            Carrier::TwoWay => 2.0,
+        }
+    }
+}
+
+/// One of the two ends of the array that a sparse sensor keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum End {
+    /// The first elements, at the most negative x ("input 0").
+    First,
+    /// The last elements, at the most positive x ("input 1").
+    Last,
+}
+
+impl End {
+    /// Both ends, in the order of the thesis' inputs.
+    pub const BOTH: [End; 2] = [End::First, End::Last];
+}
+
+/// A frequency-modulated continuous-wave radar with a uniform line array on the x axis, centred on x = 0 (thesis table 3.1).
+///
+/// The fields are public and unchecked; call [`Radar::validate`] on a value that came from outside.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Radar {
+    /// Transmit power P_out in watts; a reflector's amplitude is `power * reflectivity / R^2`.
+    pub transmit_power_watts: f64,
+    /// Swept bandwidth B in hertz.
+    pub bandwidth_hz: f64,
+    /// Carrier frequency f in hertz.
+    pub carrier_hz: f64,
+    /// Distance between neighbouring elements in metres.
+    pub element_spacing_metres: f64,
+    /// Elements of the whole array, N_a; also the number of angle columns of every map.
+    pub elements: usize,
+    /// Elements of each of the two ends.
+    pub end_elements: usize,
+    /// Samples of one chirp, N_r; also the number of range bins of every map.
+    pub samples: usize,
+    /// Which way the carrier's phase is read.
+    pub carrier: Carrier,
+}
+
+impl Default for Radar {
+    fn default() -> Self {
+        let carrier_hz = 77e9;
+        Radar {
+            transmit_power_watts: 100.0,
+            bandwidth_hz: 2e9,
+            carrier_hz,
+            element_spacing_metres: SPEED_OF_LIGHT / carrier_hz / 2.0,
+            elements: 1024,
+            end_elements: 12,
+            samples: 512,
+            carrier: Carrier::OneWay,
+        }
+    }
+}
+
+/// What is wrong with a [`Radar`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RadarError {
+    /// A quantity that must be finite and positive is not.
+    #[error("radar.{field} is {value}; it must be a finite number above 0")]
+    NotPositive {
+        /// Name of the field.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// A count is outside what the maps can hold.
+    #[error("radar.{field} is {value}; it must be between {min} and {max}")]
+    Count {
+        /// Name of the field.
+        field: &'static str,
+        /// The value found.
+        value: usize,
+        /// Smallest allowed value.
+        min: usize,
+        /// Largest allowed value.
+        max: usize,
+    },
+}
+
+impl Radar {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
+    /// (4 to 65536 samples and elements; each end between 3 elements and half the array).
+    pub fn validate(&self) -> Result<(), RadarError> {
+        for (field, value) in [
+            ("transmit_power_watts", self.transmit_power_watts),
+            ("bandwidth_hz", self.bandwidth_hz),
+            ("carrier_hz", self.carrier_hz),
+            ("element_spacing_metres", self.element_spacing_metres),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(RadarError::NotPositive { field, value });
+            }
+        }
+        for (field, value, min, max) in [
+            ("samples", self.samples, 4, 65536),
+            ("elements", self.elements, 6, 65536),
+            ("end_elements", self.end_elements, 3, self.elements / 2),
+        ] {
+            if !(min..=max).contains(&value) {
+                return Err(RadarError::Count { field, value, min, max });
+            }
+        }
+        Ok(())
+    }
+
+    /// Carrier wavelength lambda = c / f in metres.
+    pub fn wavelength_metres(&self) -> f64 {
+        SPEED_OF_LIGHT / self.carrier_hz
+    }
+
+    /// Range resolution c / 2B in metres: the distance between neighbouring range bins.
+    pub fn range_resolution_metres(&self) -> f64 {
+        SPEED_OF_LIGHT / (2.0 * self.bandwidth_hz)
+    }
+
+    /// Range at which the range bins wrap around, in metres (38.4 m for table 3.1).
+    pub fn max_range_metres(&self) -> f64 {
+        self.samples as f64 * self.range_resolution_metres()
+    }
+
+    /// Position of element `n` on the x axis in metres, the array being centred on x = 0.
+    pub fn element_x_metres(&self, n: usize) -> f64 {
+        (n as f64 - (self.elements as f64 - 1.0) / 2.0) * self.element_spacing_metres
+    }
+
+    /// Distance between the first and the last element in metres.
+    pub fn aperture_metres(&self) -> f64 {
+        (self.elements as f64 - 1.0) * self.element_spacing_metres
+    }
+
+    /// Indices of the elements that belong to one end.
+    pub fn end_range(&self, end: End) -> Range<usize> {
+        match end {
+            End::First => 0..self.end_elements,
+            End::Last => self.elements - self.end_elements..self.elements,
+        }
+    }
+
+    /// Centre of one end on the x axis, in metres.
+    pub fn end_centre_metres(&self, end: End) -> f64 {
+        let r = self.end_range(end);
+        (self.element_x_metres(r.start) + self.element_x_metres(r.end - 1)) / 2.0
+    }
+
+    /// Range of bin `k1`, in metres.
+    pub fn range_of_bin_metres(&self, k1: f64) -> f64 {
+        k1 * self.range_resolution_metres()
+    }
+
+    /// Range bin (fractional, not wrapped) of a range in metres.
+    pub fn bin_of_range(&self, range_metres: f64) -> f64 {
+        range_metres / self.range_resolution_metres()
+    }
+
+    /// Change of cos(theta) from one column to the next: `lambda / (N_a d)` over the carrier's turns per wavelength.
+    fn cos_per_column(&self) -> f64 {
+        self.wavelength_metres()
+            / (self.elements as f64 * self.element_spacing_metres)
+            / -self.carrier.turns_per_wavelength()
+    }
+
+    /// cos(theta) at column `k2` of a map: `(k2 - N_a/2) / (N_a/2)` for half-wavelength spacing and the one-way carrier.
+    ///
+    /// For the two-way carrier this is one of the directions the column stands for.
+    pub fn cos_of_column(&self, k2: f64) -> f64 {
+        (k2 - (self.elements / 2) as f64) * self.cos_per_column()
+    }
+
+    /// Column (fractional, wrapped into `0..N_a`) where a far reflector at cos(theta) appears.
+    pub fn column_of_cos(&self, cos_theta: f64) -> f64 {
+        (cos_theta / self.cos_per_column() + (self.elements / 2) as f64).rem_euclid(self.elements as f64)
+    }
+
+    /// Range from the array's centre in metres and cos(theta) of a point of the scene.
+    pub fn polar_of(&self, x_metres: f64, y_metres: f64) -> Polar {
+        let range_metres = x_metres.hypot(y_metres);
+        let cos_theta = if range_metres > 0.0 { x_metres / range_metres } else { 0.0 };
+        Polar { range_metres, cos_theta }
+    }
+
+    /// Distance 2 D^2 / lambda beyond which the aperture's far field begins, in metres (2 km for table 3.1).
+    pub fn far_field_metres(&self) -> f64 {
+        2.0 * self.aperture_metres().powi(2) / self.wavelength_metres()
+    }
+
+    /// Half the angle, in radians from broadside, that one end sees without ambiguity.
+    pub fn end_field_of_view_radians(&self) -> f64 {
+        (self.wavelength_metres() / (2.0 * self.element_spacing_metres)).min(1.0).asin().min(PI / 2.0)
+    }
+}
+
+/// A point of the scene as the array's centre sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Polar {
+    /// Distance from the centre of the array, metres.
+    pub range_metres: f64,
+    /// Cosine of the angle between the array's axis (+x) and the point.
+    pub cos_theta: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_3_1() {
+        let r = Radar::default();
+        assert!((r.wavelength_metres() - 3.893e-3).abs() < 1e-6);
+        assert!((r.range_resolution_metres() - 0.0749).abs() < 1e-4);
+        assert!((r.max_range_metres() - 38.37).abs() < 0.01);
+        assert!((r.aperture_metres() - 1.99).abs() < 0.01);
+        assert!((r.far_field_metres() - 2037.0).abs() < 5.0);
+        assert_eq!(r.end_range(End::Last), 1012..1024);
+        assert_eq!(r.element_x_metres(0), -r.element_x_metres(1023));
+        r.validate().unwrap();
+    }
+
+    #[test]
+    fn columns_and_cosines_are_inverse() {
+        let r = Radar::default();
+        for k in [0.0, 1.0, 511.5, 512.0, 1023.0] {
+            assert!((r.column_of_cos(r.cos_of_column(k)) - k).abs() < 1e-9);
+        }
+        assert!((r.cos_of_column(768.0) - 0.5).abs() < 1e-12);
+        let two_way = Radar { carrier: Carrier::TwoWay, ..r };
+        let gap = two_way.column_of_cos(0.25) - two_way.column_of_cos(-0.75);
+        assert!(gap.abs() < 1e-9, "two directions share a column");
+    }
+
+    #[test]
+    fn bad_fields_are_named() {
+        let bad = Radar { bandwidth_hz: f64::NAN, ..Radar::default() };
+        assert!(bad.validate().unwrap_err().to_string().contains("bandwidth_hz"));
+        let bad = Radar { end_elements: 600, ..Radar::default() };
+        assert!(bad.validate().unwrap_err().to_string().contains("end_elements"));
+    }
+}

@@ -1,0 +1,152 @@
+//! From the samples of the two ends to an estimate of the whole array's map.
+//!
+//! Everything that reconstructs, the baseline, model-based methods and networks alike, is a [`Reconstructor`].
+
+mod baseline;
+
+pub use baseline::Baseline;
+
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use crate::signal::{Floor, TwoEnds};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+/// What a reconstruction is told beside the samples.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The floor that lies beneath the samples.
+    pub floor: Floor,
+    /// How the map it is compared with is normalised.
+    pub normalisation: Normalisation,
+    /// Progress to report to, and the flag to stop at.
+    pub task: Task,
+}
+
+impl Default for Request {
+    /// The thesis' conventions.
+    fn default() -> Self {
+        Request { floor: Floor::Thesis, normalisation: Normalisation::MinMax, task: Task::default() }
+    }
+}
+
+/// Handle shared between long work and whoever waits for it.
+#[derive(Debug, Clone, Default)]
+pub struct Task {
+    cancelled: Arc<AtomicBool>,
+    progress: Arc<AtomicU32>,
+}
+
+impl Task {
+    /// Asks the work to stop soon.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the work was asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Reports the part that is done, 0 to 1.
+    pub fn set_progress(&self, part: f32) {
+        self.progress.store(part.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
+    }
+
+    /// The part that is done, 0 to 1.
+    pub fn progress(&self) -> f32 {
+        f32::from_bits(self.progress.load(Ordering::Relaxed))
+    }
+
+    /// Stops a computation with `?` when it was cancelled.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`] after [`Task::cancel`].
+    pub fn check(&self) -> Result<(), ReconstructError> {
+        if self.is_cancelled() { Err(ReconstructError::Cancelled) } else { Ok(()) }
+    }
+}
+
+/// What a reconstruction found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reconstruction {
+    /// Estimate of the whole array's Lambda, `[range bins, columns]`.
+    pub lambda: RangeAngleMap,
+    /// The reflectors it believes in, where the method finds any.
+    pub reflectors: Vec<Reflector>,
+}
+
+/// Why a reconstruction gave nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReconstructError {
+    /// Somebody asked it to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// The samples have another shape than the radar's ends.
+    #[error("{what} has shape {found:?}; expected {expected:?}")]
+    Shape {
+        /// Which input.
+        what: &'static str,
+        /// Its shape.
+        found: Vec<usize>,
+        /// The shape it must have.
+        expected: Vec<usize>,
+    },
+    /// A sample is NaN or infinite.
+    #[error("sample {sample} of element {element} of the {end} end is not finite")]
+    NotFinite {
+        /// "first" or "last".
+        end: &'static str,
+        /// Element within the end.
+        element: usize,
+        /// Sample within the chirp.
+        sample: usize,
+    },
+    /// The method can't work on this radar or on these samples.
+    #[error("{method}: {reason}")]
+    Unusable {
+        /// Name of the method.
+        method: &'static str,
+        /// Why, and what would help.
+        reason: String,
+    },
+}
+
+/// Anything that turns the samples of the two ends into a map of the whole array.
+pub trait Reconstructor: Send + Sync {
+    /// Short name for the command line and tables.
+    fn name(&self) -> &'static str;
+
+    /// One sentence for tooltips and help.
+    fn description(&self) -> &'static str;
+
+    /// Threshold at which its output is turned into detections. Chosen on validation scenes, never on test scenes.
+    fn eta(&self) -> f32;
+
+    /// Estimates the whole array's map from `ends`.
+    ///
+    /// # Errors
+    /// [`ReconstructError`], on samples of the wrong shape or not finite, when cancelled, or as the method says.
+    fn reconstruct(&self, radar: &Radar, ends: &TwoEnds, request: &Request)
+    -> Result<Reconstruction, ReconstructError>;
+}
+
+/// Checks that both ends have the radar's shape and hold finite samples only.
+///
+/// # Errors
+/// [`ReconstructError::Shape`] or [`ReconstructError::NotFinite`].
+pub fn check_ends(radar: &Radar, ends: &TwoEnds) -> Result<(), ReconstructError> {
+    for (end, what, samples) in [("first", "first end", &ends.first), ("last", "last end", &ends.last)] {
+        let expected = [radar.end_elements, radar.samples];
+        if samples.shape() != expected {
+            return Err(ReconstructError::Shape { what, found: samples.shape().to_vec(), expected: expected.to_vec() });
+        }
+        if let Some(((element, sample), _)) =
+            samples.indexed_iter().find(|(_, v)| !(v.re.is_finite() && v.im.is_finite()))
+        {
+            return Err(ReconstructError::NotFinite { end, element, sample });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,225 @@
+//! Seeded random scenes: the thesis' test sets and the training scenes of its two experiments (sections 3.2, 4.1, 5.1).
+//!
+//! Every scene comes from its own random stream, named by purpose, kind and number: training, validation and test scenes can't
+//! meet, and scene 7 is the same whether or not scenes 0 to 6 were made.
+
+use super::{Line, Object, Point, Scene};
+use crate::radar::Radar;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Which description of the scenes is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reading {
+    /// What the author's published program does; reproduces the printed tables.
+    #[default]
+    Program,
+    /// What the thesis' text says.
+    Text,
+}
+
+/// What scenes are for. Scenes of different purposes come from disjoint random streams.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Purpose {
+    /// Fitting weights.
+    Training,
+    /// Choosing thresholds, checkpoints and settings.
+    Validation,
+    /// Reported figures only.
+    Test,
+}
+
+/// A kind of random scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// One point.
+    Set1,
+    /// 3 to 6 points.
+    Set2,
+    /// 3 to 6 objects: always a line and a point near its range, the others points or lines.
+    Set3,
+    /// Experiment 1: this many points (1 to 4).
+    Points(u8),
+    /// Experiment 2: this many objects (1 to 4), each a point or a line with equal chance.
+    Mixed(u8),
+}
+
+impl Kind {
+    /// The three test sets, in order.
+    pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
+
+    fn stream(self) -> u64 {
+        match self {
+            Kind::Set1 => 1,
+            Kind::Set2 => 2,
+            Kind::Set3 => 3,
+            Kind::Points(n) => 0x100 + u64::from(n),
+            Kind::Mixed(n) => 0x200 + u64::from(n),
+        }
+    }
+}
+
+/// Makes random scenes for one radar.
+#[derive(Debug, Clone)]
+pub struct Generator {
+    max_range: f64,
+    bin: f64,
+    reading: Reading,
+    purpose: Purpose,
+    seed: u64,
+}
+
+/// Points in each of the tables' lines.
+const LINE_POINTS: usize = 75;
+
+impl Generator {
+    /// Scenes for `radar`; the same arguments give the same scenes on every machine.
+    pub fn new(radar: &Radar, reading: Reading, purpose: Purpose, seed: u64) -> Self {
+        Generator { max_range: radar.max_range_metres(), bin: radar.range_resolution_metres(), reading, purpose, seed }
+    }
+
+    /// Random stream of one scene. Purposes get different keys, kinds and numbers different streams of that key.
+    fn rng(&self, kind: Kind, number: u32) -> ChaCha8Rng {
+        let mut key = [0u8; 32];
+        key[..8].copy_from_slice(&self.seed.to_le_bytes());
+        key[8] = match self.purpose {
+            Purpose::Training => 1,
+            Purpose::Validation => 2,
+            Purpose::Test => 3,
+        };
+        let mut rng = ChaCha8Rng::from_seed(key);
+        rng.set_stream(kind.stream() << 32 | u64::from(number));
+        rng
+    }
+
+    /// Scene `number` of a kind.
+    pub fn scene(&self, kind: Kind, number: u32) -> Scene {
+        let rng = &mut self.rng(kind, number);
+        let objects = match kind {
+            Kind::Set1 => vec![self.point(rng)],
+            Kind::Set2 => (0..rng.random_range(3..=6)).map(|_| self.point(rng)).collect(),
+            Kind::Set3 => {
+                let count = rng.random_range(3..=6);
+                let mut objects = self.line_and_neighbour(rng);
+                objects.extend((2..count).map(|_| self.point_or_line(rng)));
+                objects
+            }
+            Kind::Points(count) => (0..count).map(|_| self.point(rng)).collect(),
+            Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
+        };
+        Scene { name: format!("{kind:?} {number}, seed {}", self.seed), notes: String::new(), objects }
+    }
+
+    /// A random point: normal range and normal angle, both clipped as the author's program clips them.
+    fn point(&self, rng: &mut ChaCha8Rng) -> Object {
+        let normal: f64 = StandardNormal.sample(rng);
+        let range = self.max_range / 2.0 + 0.3 * self.max_range * normal;
+        let far = 0.8 * self.max_range;
+        let range = if range < 0.2 * self.max_range { far } else { range.min(far) };
+        let angle: f64 = StandardNormal.sample(rng);
+        let angle = angle.clamp(-0.8 * PI, 0.8 * PI);
+        Object::Point(Point::new(range * angle.cos(), range * angle.sin()))
+    }
+
+    /// Where a line is asked to start: (x, y) before clipping.
+    fn line_start(&self, rng: &mut ChaCha8Rng) -> (f64, f64) {
+        let y_part = match self.reading {
+            Reading::Program => 1.0,
+            Reading::Text => 0.8,
+        };
+        (rng.random_range(-1.0..1.0) * self.max_range, rng.random_range(0.0..1.0) * y_part * self.max_range)
+    }
+
+    fn line(&self, (x, y): (f64, f64)) -> Object {
+        let (spacing_metres, y_start_metres) = match self.reading {
+            Reading::Program => {
+                let spacing = 1.5 * self.bin;
+                (spacing, y.min(0.9 * self.max_range - LINE_POINTS as f64 * spacing))
+            }
+            Reading::Text => (self.bin, y),
+        };
+        let edge = 0.8 * self.max_range;
+        Object::Line(Line {
+            x_metres: x.clamp(-edge, edge),
+            y_start_metres,
+            spacing_metres,
+            count: LINE_POINTS,
+            reflectivity: 1.0,
+        })
+    }
+
+    /// Set 3's first two objects: a line, and a point up to 50 bins behind the range of the line's start.
+    fn line_and_neighbour(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
+        let start = self.line_start(rng);
+        let range = start.0.hypot(start.1) + rng.random_range(0.0..1.0) * 50.0 * self.bin;
+        let angle = rng.random_range(-0.5..0.5) * PI;
+        vec![self.line(start), Object::Point(Point::new(range * angle.cos(), range * angle.sin()))]
+    }
+
+    fn point_or_line(&self, rng: &mut ChaCha8Rng) -> Object {
+        if rng.random::<f64>() < 0.5 {
+            self.point(rng)
+        } else {
+            let start = self.line_start(rng);
+            self.line(start)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn generator(purpose: Purpose) -> Generator {
+        Generator::new(&Radar::default(), Reading::Program, purpose, 5)
+    }
+
+    #[test]
+    fn scenes_repeat_and_purposes_differ() {
+        let test = generator(Purpose::Test);
+        assert_eq!(test.scene(Kind::Set2, 9), test.scene(Kind::Set2, 9));
+        assert_ne!(test.scene(Kind::Set2, 9).objects, test.scene(Kind::Set2, 10).objects);
+        assert_ne!(
+            test.scene(Kind::Set1, 0).objects,
+            generator(Purpose::Training).scene(Kind::Set1, 0).objects,
+            "purposes must not share scenes"
+        );
+    }
+
+    #[test]
+    fn sets_hold_what_the_thesis_says() {
+        let g = generator(Purpose::Test);
+        for number in 0..200 {
+            assert_eq!(g.scene(Kind::Set1, number).objects.len(), 1);
+            assert!((3..=6).contains(&g.scene(Kind::Set2, number).objects.len()));
+            let set3 = g.scene(Kind::Set3, number).objects;
+            assert!((3..=6).contains(&set3.len()));
+            assert!(matches!((&set3[0], &set3[1]), (Object::Line(_), Object::Point(_))));
+        }
+    }
+
+    #[test]
+    fn points_keep_to_their_ranges() {
+        let g = generator(Purpose::Test);
+        let max = Radar::default().max_range_metres();
+        for number in 0..500 {
+            let r = g.scene(Kind::Set1, number).reflectors()[0];
+            let range = r.x_metres.hypot(r.y_metres);
+            assert!((0.2 * max - 1e-9..=0.8 * max + 1e-9).contains(&range), "{range}");
+        }
+    }
+
+    #[test]
+    fn the_text_reading_spaces_lines_by_one_bin() {
+        let radar = Radar::default();
+        let g = Generator::new(&radar, Reading::Text, Purpose::Test, 1);
+        let Object::Line(line) = &g.scene(Kind::Set3, 0).objects[0] else { panic!("set 3 starts with a line") };
+        assert_eq!((line.count, line.spacing_metres), (75, radar.range_resolution_metres()));
+    }
+}

@@ -1,0 +1,170 @@
+//! What stands before the radar: points, lines and clusters, and where such scenes come from.
+//!
+//! An [`Object`] is what a person drags; a [`Reflector`] is what the radar sees. [`Scene::reflectors`] turns the first into the second.
+
+pub mod file;
+pub mod generate;
+mod object;
+pub mod presets;
+
+pub use object::{GaussianCluster, Line, Object, Point};
+
+use crate::radar::Radar;
+use serde::{Deserialize, Serialize};
+
+/// One ideal point reflector.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reflector {
+    /// Position along the array's axis, metres.
+    pub x_metres: f64,
+    /// Position ahead of the array, metres. A line array cannot tell y from -y.
+    pub y_metres: f64,
+    /// Reflectivity sigma; the thesis uses 1.
+    pub reflectivity: f64,
+}
+
+/// Objects before the radar, in the order they were added.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// What the scene is called, if it has a name.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// What the scene is meant to show.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub notes: String,
+    /// The objects.
+    #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
+    pub objects: Vec<Object>,
+}
+
+/// Nearest a reflector may come to an element, metres. Closer than this the 1/R^2 law means nothing and its amplitude knows no bound.
+pub const MIN_ELEMENT_DISTANCE_METRES: f64 = 1e-6;
+
+/// Most reflectors a scene may hold.
+pub const MAX_REFLECTORS: usize = 200_000;
+
+/// Why a scene can't be simulated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// A number of an object is not usable.
+    #[error("object {object} ({kind}): {field} is {value}; expected {expected}")]
+    Value {
+        /// Index of the object in the scene.
+        object: usize,
+        /// What kind of object it is.
+        kind: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// What was expected instead.
+        expected: &'static str,
+    },
+    /// A reflector sits on an element of the array, where its echo would be infinite.
+    #[error(
+        "object {object} ({kind}): its reflector at x = {x_metres} m, y = {y_metres} m lies on element {element} of the array; move it at least {MIN_ELEMENT_DISTANCE_METRES} m away"
+    )]
+    OnElement {
+        /// Index of the object in the scene.
+        object: usize,
+        /// What kind of object it is.
+        kind: &'static str,
+        /// Position of the reflector, metres.
+        x_metres: f64,
+        /// Position of the reflector, metres.
+        y_metres: f64,
+        /// The element it lies on.
+        element: usize,
+    },
+    /// More reflectors than can be simulated.
+    #[error("the scene has {count} reflectors; at most {MAX_REFLECTORS} can be simulated")]
+    TooMany {
+        /// Reflectors in the scene.
+        count: usize,
+    },
+}
+
+impl Scene {
+    /// A scene of points of reflectivity 1.
+    pub fn of_points(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let objects =
+            points.into_iter().map(|(x_metres, y_metres)| Object::Point(Point::new(x_metres, y_metres))).collect();
+        Scene { objects, ..Scene::default() }
+    }
+
+    /// Every reflector of every object, in order.
+    pub fn reflectors(&self) -> Vec<Reflector> {
+        self.objects.iter().flat_map(Object::reflectors).collect()
+    }
+
+    /// Number of reflectors, without making them.
+    pub fn reflector_count(&self) -> usize {
+        self.objects.iter().fold(0, |n, o| n.saturating_add(o.reflector_count()))
+    }
+
+    /// Checks that `radar` can see this scene: every number finite and in range, no reflector on an element.
+    ///
+    /// Reflectors behind the array (y < 0), beyond the maximum range (they wrap) and very far away are all allowed.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the object, the field and what was expected.
+    pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {
+        let count = self.reflector_count();
+        if count > MAX_REFLECTORS {
+            return Err(SceneError::TooMany { count });
+        }
+        for (index, object) in self.objects.iter().enumerate() {
+            object.validate(index)?;
+            for r in object.reflectors() {
+                if let Some(element) = touched_element(radar, &r) {
+                    return Err(SceneError::OnElement {
+                        object: index,
+                        kind: object.kind(),
+                        x_metres: r.x_metres,
+                        y_metres: r.y_metres,
+                        element,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The element that a reflector comes too close to, if any.
+fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
+    if r.y_metres.abs() >= MIN_ELEMENT_DISTANCE_METRES {
+        return None;
+    }
+    let middle = (radar.elements as f64 - 1.0) / 2.0;
+    let nearest = (r.x_metres / radar.element_spacing_metres + middle).round();
+    let nearest = nearest.clamp(0.0, radar.elements as f64 - 1.0) as usize;
+    let distance = (r.x_metres - radar.element_x_metres(nearest)).hypot(r.y_metres);
+    (distance < MIN_ELEMENT_DISTANCE_METRES).then_some(nearest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reflector_on_an_element_is_named() {
+        let radar = Radar::default();
+        let on = Scene::of_points([(0.0, 5.0), (radar.element_x_metres(7), 0.0)]);
+        let message = on.validate(&radar).unwrap_err().to_string();
+        assert!(message.contains("object 1") && message.contains("element 7"), "{message}");
+        assert!(Scene::of_points([(0.0, 0.0)]).validate(&radar).is_ok(), "x = 0 lies between two elements");
+    }
+
+    #[test]
+    fn nan_is_named() {
+        let message = Scene::of_points([(f64::NAN, 5.0)]).validate(&Radar::default()).unwrap_err().to_string();
+        assert!(message.contains("object 0 (point)") && message.contains("x_metres"), "{message}");
+    }
+
+    #[test]
+    fn far_behind_and_wrapping_reflectors_are_allowed() {
+        Scene::of_points([(0.0, 1e9), (3.0, -4.0), (0.0, 60.0)]).validate(&Radar::default()).unwrap();
+    }
+}

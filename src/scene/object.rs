@@ -1,0 +1,226 @@
+//! The objects a person places: a point, a vertical line of points, a Gaussian cluster of points.
+
+use super::{Reflector, SceneError};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+
+/// Something that can be placed, dragged and deleted as one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Object {
+    /// One reflector.
+    Point(Point),
+    /// Reflectors one behind the other, parallel to the y axis.
+    Line(Line),
+    /// Reflectors scattered around a centre (thesis figure 5-5).
+    Gaussian(GaussianCluster),
+}
+
+/// One reflector.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Position along the array's axis, metres.
+    pub x_metres: f64,
+    /// Position ahead of the array, metres.
+    pub y_metres: f64,
+    /// Reflectivity sigma.
+    #[serde(default = "one")]
+    pub reflectivity: f64,
+}
+
+/// Reflectors at equal spacing along y: the thesis' vertical line (section 3.2).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// Position along the array's axis, metres.
+    pub x_metres: f64,
+    /// y of the first (nearest) reflector, metres.
+    pub y_start_metres: f64,
+    /// Distance between neighbouring reflectors, metres.
+    pub spacing_metres: f64,
+    /// Number of reflectors.
+    pub count: usize,
+    /// Reflectivity sigma of each reflector.
+    #[serde(default = "one")]
+    pub reflectivity: f64,
+}
+
+/// Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GaussianCluster {
+    /// Centre along the array's axis, metres.
+    pub x_metres: f64,
+    /// Centre ahead of the array, metres.
+    pub y_metres: f64,
+    /// Standard deviation along x, metres.
+    pub x_std_metres: f64,
+    /// Standard deviation along y, metres.
+    pub y_std_metres: f64,
+    /// Number of reflectors.
+    pub count: usize,
+    /// Seed of the offsets from the centre.
+    #[serde(default)]
+    pub seed: u64,
+    /// Reflectivity sigma of each reflector.
+    #[serde(default = "one")]
+    pub reflectivity: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Point {
+    /// A point of reflectivity 1.
+    pub fn new(x_metres: f64, y_metres: f64) -> Self {
+        Point { x_metres, y_metres, reflectivity: 1.0 }
+    }
+}
+
+impl Object {
+    /// The word used for this kind in files and messages.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Object::Point(_) => "point",
+            Object::Line(_) => "line",
+            Object::Gaussian(_) => "gaussian",
+        }
+    }
+
+    /// Number of reflectors.
+    pub fn reflector_count(&self) -> usize {
+        match self {
+            Object::Point(_) => 1,
+            Object::Line(l) => l.count,
+            Object::Gaussian(g) => g.count,
+        }
+    }
+
+    /// The reflectors this object stands for, in a fixed order.
+    pub fn reflectors(&self) -> Vec<Reflector> {
+        match self {
+            Object::Point(p) => {
+                vec![Reflector { x_metres: p.x_metres, y_metres: p.y_metres, reflectivity: p.reflectivity }]
+            }
+            Object::Line(l) => (0..l.count)
+                .map(|i| Reflector {
+                    x_metres: l.x_metres,
+                    y_metres: i as f64 * l.spacing_metres + l.y_start_metres,
+                    reflectivity: l.reflectivity,
+                })
+                .collect(),
+            Object::Gaussian(g) => {
+                let mut rng = ChaCha8Rng::seed_from_u64(g.seed);
+                let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+                (0..g.count)
+                    .map(|_| Reflector {
+                        x_metres: g.x_metres + g.x_std_metres * normal(),
+                        y_metres: g.y_metres + g.y_std_metres * normal(),
+                        reflectivity: g.reflectivity,
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// Moves the whole object.
+    pub fn translate(&mut self, dx_metres: f64, dy_metres: f64) {
+        let (x, y) = match self {
+            Object::Point(p) => (&mut p.x_metres, &mut p.y_metres),
+            Object::Line(l) => (&mut l.x_metres, &mut l.y_start_metres),
+            Object::Gaussian(g) => (&mut g.x_metres, &mut g.y_metres),
+        };
+        *x += dx_metres;
+        *y += dy_metres;
+    }
+
+    /// The place a person would grab: the point, the middle of the line, the centre of the cluster. (x, y) in metres.
+    pub fn centre_metres(&self) -> [f64; 2] {
+        match self {
+            Object::Point(p) => [p.x_metres, p.y_metres],
+            Object::Line(l) => {
+                [l.x_metres, l.y_start_metres + l.spacing_metres * l.count.saturating_sub(1) as f64 / 2.0]
+            }
+            Object::Gaussian(g) => [g.x_metres, g.y_metres],
+        }
+    }
+
+    /// Checks every number; `index` is used in the message only.
+    pub(super) fn validate(&self, index: usize) -> Result<(), SceneError> {
+        const FINITE: &str = "a finite number";
+        let fields: Vec<(&'static str, f64)> = match self {
+            Object::Point(p) => {
+                vec![("x_metres", p.x_metres), ("y_metres", p.y_metres), ("reflectivity", p.reflectivity)]
+            }
+            Object::Line(l) => vec![
+                ("x_metres", l.x_metres),
+                ("y_start_metres", l.y_start_metres),
+                ("spacing_metres", l.spacing_metres),
+                ("reflectivity", l.reflectivity),
+            ],
+            Object::Gaussian(g) => vec![
+                ("x_metres", g.x_metres),
+                ("y_metres", g.y_metres),
+                ("x_std_metres", g.x_std_metres),
+                ("y_std_metres", g.y_std_metres),
+                ("reflectivity", g.reflectivity),
+            ],
+        };
+        let error =
+            |field, value, expected| SceneError::Value { object: index, kind: self.kind(), field, value, expected };
+        for (field, value) in fields {
+            if !value.is_finite() {
+                return Err(error(field, value, FINITE));
+            }
+            let distance = matches!(field, "x_metres" | "y_metres" | "y_start_metres");
+            if distance && value.abs() > 1e12 {
+                return Err(error(field, value, "a distance of at most 1e12 m"));
+            }
+            if field.ends_with("std_metres") && value < 0.0 {
+                return Err(error(field, value, "0 or more"));
+            }
+            if field == "reflectivity" && value.abs() > 1e100 {
+                return Err(error(field, value, "a magnitude of at most 1e100"));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_starts_at_its_start() {
+        let line =
+            Object::Line(Line { x_metres: 2.0, y_start_metres: 5.0, spacing_metres: 0.1, count: 3, reflectivity: 0.5 });
+        let r = line.reflectors();
+        assert_eq!(r.len(), 3);
+        assert_eq!((r[2].x_metres, r[2].y_metres, r[2].reflectivity), (2.0, 5.2, 0.5));
+        assert_eq!(line.centre_metres(), [2.0, 5.1]);
+    }
+
+    #[test]
+    fn a_cluster_is_the_same_every_time_and_moves_as_one() {
+        let mut g = Object::Gaussian(GaussianCluster {
+            x_metres: 0.0,
+            y_metres: 10.0,
+            x_std_metres: 1.0,
+            y_std_metres: 2.0,
+            count: 5,
+            seed: 3,
+            reflectivity: 1.0,
+        });
+        let before = g.reflectors();
+        assert_eq!(before, g.reflectors());
+        g.translate(1.0, -1.0);
+        for (a, b) in before.iter().zip(g.reflectors()) {
+            assert!((b.x_metres - a.x_metres - 1.0).abs() < 1e-12 && (b.y_metres - a.y_metres + 1.0).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Scenes the thesis talks about.

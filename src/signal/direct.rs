@@ -1,0 +1,37 @@
+//! Equation 3.3 word for word in f64: the phase in radians, unreduced, as the thesis' program evaluates it.
+//!
+//! Phases reach 6e4 rad, so every sample carries a rounding error of about 1e-11 of its amplitude. Normalised by its minimum, a
+//! map shows that error as its floor: it is part of what the thesis' tables measure.
+
+use super::BeatSignal;
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Beat signal of `reflectors`, `[elements, samples]`.
+///
+/// The reflectors must have passed [`crate::scene::Scene::validate`]; otherwise samples may be infinite.
+pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
+    let mut signal = BeatSignal::silence(radar);
+    let wavelength = radar.wavelength_metres();
+    let bins_per_metre = 1.0 / radar.range_resolution_metres();
+    let carrier = radar.carrier.turns_per_wavelength();
+    let samples = radar.samples as f64;
+    signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
+        let element_x = radar.element_x_metres(n);
+        for r in reflectors {
+            let dx = element_x - r.x_metres;
+            let distance = (dx * dx + r.y_metres * r.y_metres).sqrt();
+            let amplitude = radar.transmit_power_watts * r.reflectivity / (distance * distance);
+            let carrier_phase = carrier * 2.0 * PI * distance / wavelength;
+            let bins = distance * bins_per_metre;
+            for (n1, sample) in row.iter_mut().enumerate() {
+                let phase = (2.0 * PI * n1 as f64 / samples) * bins + carrier_phase;
+                *sample += Complex64::from_polar(amplitude, phase);
+            }
+        }
+    });
+    signal
+}
