@@ -1,12 +1,28 @@
 //! The command line: one subcommand a file.
+//!
+//! A subcommand is a file with `pub struct Args` (clap) and `Args::run(self) -> Result<(), CommandError>`, a variant of
+//! [`Command`] and a line in [`Command::run`]. Its own errors travel as [`CommandError::Failed`] unless they need a name here.
+
+mod error;
+mod open;
+mod output;
+
+pub use error::CommandError;
+pub use output::print;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
 /// See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
+///
+/// Without a command the app opens, on SCENE where one is given. Where there is no display, the scene's panels are drawn to
+/// apertura.png instead.
 #[derive(Debug, Parser)]
-#[command(version, about)]
+#[command(version, about, args_conflicts_with_subcommands = true)]
 struct Cli {
+    #[command(flatten)]
+    open: open::Args,
+
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -15,10 +31,32 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {}
 
+impl Command {
+    fn run(self) -> Result<(), CommandError> {
+        match self {}
+    }
+}
+
 /// Runs the program; errors go to standard error and make the exit status non-zero.
 pub fn main() -> ExitCode {
-    match Cli::parse().command {
-        Some(command) => match command {},
-        None => ExitCode::SUCCESS,
+    log_to_stderr();
+    let cli = Cli::parse();
+    let result = match cli.command {
+        Some(command) => command.run(),
+        None => cli.open.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
     }
+}
+
+/// Shows warnings on standard error; `APERTURA_LOG=debug` (or any `tracing` filter) shows more.
+fn log_to_stderr() {
+    let filter =
+        tracing_subscriber::EnvFilter::try_from_env("APERTURA_LOG").unwrap_or_else(|_| "apertura=warn,off".into());
+    let _already_set = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).try_init();
 }
