@@ -1,0 +1,94 @@
+//! The live engine: what changed, what is looked at, and nothing else computed.
+//!
+//! [`Engine::update`] takes a scene and what is [`Wanted`] and gives a [`Frame`]. Results that did not change are the same
+//! [`Arc`](std::sync::Arc) as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
+
+mod incremental;
+mod report;
+
+pub use incremental::Engine;
+pub use report::{Outcome, Report, Stage, StageReport};
+
+use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};
+use crate::signal::{Floor, TwoEnds};
+use std::sync::Arc;
+
+/// What somebody looks at. Whatever is not wanted is not computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted {
+    /// The floor beneath the reflectors.
+    pub floor: Floor,
+    /// Picks the noise of the floor.
+    pub seed: u64,
+    /// How the maps are normalised.
+    pub normalisation: Normalisation,
+    /// Whether the map of the first end is looked at.
+    pub first: bool,
+    /// Whether the map of the last end is looked at.
+    pub last: bool,
+    /// Whether the map of the whole array is looked at.
+    pub full: bool,
+    /// Whether the samples of the two ends are needed, for a reconstruction.
+    pub ends: bool,
+}
+
+impl Default for Wanted {
+    /// All three maps and the samples of the ends, in the thesis' conventions.
+    fn default() -> Self {
+        Wanted {
+            floor: Floor::Thesis,
+            seed: 0,
+            normalisation: Normalisation::MinMax,
+            first: true,
+            last: true,
+            full: true,
+            ends: true,
+        }
+    }
+}
+
+/// One map, ready to be drawn.
+#[derive(Debug, Clone)]
+pub struct LiveMap {
+    /// Lambda, `[range bins, columns]`.
+    pub lambda: Arc<RangeAngleMap>,
+    /// The straight line between decades of amplitude and Lambda.
+    pub scale: LambdaScale,
+}
+
+impl LiveMap {
+    /// Decades of amplitude of a cell; cells below the floor of the scale read as the floor.
+    ///
+    /// `None` outside the map.
+    pub fn decades(&self, bin: usize, column: usize) -> Option<f64> {
+        let lambda = f64::from(*self.lambda.lambda.get((bin, column))?);
+        Some(self.scale.floor + lambda * (self.scale.peak - self.scale.floor))
+    }
+}
+
+/// Everything that was wanted of one scene.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// Map of the first end, if wanted.
+    pub first: Option<LiveMap>,
+    /// Map of the last end, if wanted.
+    pub last: Option<LiveMap>,
+    /// Map of the whole array, if wanted.
+    pub full: Option<LiveMap>,
+    /// Samples of both ends, if wanted.
+    pub ends: Option<Arc<TwoEnds>>,
+    /// What each stage cost, and what was skipped and why.
+    pub report: Report,
+}
+
+impl Frame {
+    /// The map of one aperture, if it was wanted.
+    pub fn map(&self, aperture: Aperture) -> Option<&LiveMap> {
+        use crate::radar::End;
+        match aperture {
+            Aperture::Full => self.full.as_ref(),
+            Aperture::End(End::First) => self.first.as_ref(),
+            Aperture::End(End::Last) => self.last.as_ref(),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! What each stage of an update cost, and what was skipped and why.
+
+use std::fmt;
+use std::time::Duration;
+
+/// A stage of an update, in the order they run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Reflectors to range profiles.
+    Signal,
+    /// The floor beneath them.
+    Noise,
+    /// The samples of the two ends.
+    Ends,
+    /// Range profiles to the first end's log-magnitude.
+    FirstMap,
+    /// Range profiles to the last end's log-magnitude.
+    LastMap,
+    /// Range profiles to the whole array's log-magnitude.
+    FullMap,
+    /// Log-magnitudes to Lambda.
+    Normalise,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Stage::Signal => "signal",
+            Stage::Noise => "floor",
+            Stage::Ends => "samples of the ends",
+            Stage::FirstMap => "map of input 0",
+            Stage::LastMap => "map of input 1",
+            Stage::FullMap => "map of the target",
+            Stage::Normalise => "normalise",
+        })
+    }
+}
+
+/// What became of a stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outcome {
+    /// It ran; the text says what it did.
+    Computed(String),
+    /// It did not run; the text says why.
+    Skipped(&'static str),
+}
+
+/// One stage of an update.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StageReport {
+    /// Which.
+    pub stage: Stage,
+    /// How long it took; zero when skipped.
+    pub took: Duration,
+    /// What it did or why it was skipped.
+    pub outcome: Outcome,
+}
+
+/// All stages of an update.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Report {
+    /// The stages, in order.
+    pub stages: Vec<StageReport>,
+    /// From the call to the finished frame.
+    pub total: Duration,
+}
+
+impl Report {
+    pub(super) fn computed(&mut self, stage: Stage, took: Duration, what: impl Into<String>) {
+        self.stages.push(StageReport { stage, took, outcome: Outcome::Computed(what.into()) });
+    }
+
+    pub(super) fn skipped(&mut self, stage: Stage, why: &'static str) {
+        self.stages.push(StageReport { stage, took: Duration::ZERO, outcome: Outcome::Skipped(why) });
+    }
+
+    /// Whether a stage ran.
+    pub fn ran(&self, stage: Stage) -> bool {
+        self.stages.iter().any(|s| s.stage == stage && matches!(s.outcome, Outcome::Computed(_)))
+    }
+}
