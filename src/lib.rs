@@ -3,6 +3,7 @@
 
 pub mod commands;
 pub mod evaluate;
+pub mod interact;
 pub mod live;
 pub mod maps;
 pub mod methods;

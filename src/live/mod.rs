@@ -5,6 +5,7 @@
 
 mod incremental;
 mod report;
+pub mod worker;
 
 pub use incremental::Engine;
 pub use report::{Outcome, Report, Stage, StageReport};

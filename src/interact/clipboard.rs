@@ -1,0 +1,75 @@
+//! Objects as text: the same TOML as a scene file, so that what is copied can be pasted into one.
+
+use crate::radar::Radar;
+use crate::scene::{Object, Scene, SceneError};
+
+/// Why text can't be pasted.
+#[derive(Debug, thiserror::Error)]
+pub enum PasteError {
+    /// The text is not a scene.
+    #[error(
+        "the clipboard holds no objects: {0}; expected TOML such as [[object]] kind = \"point\" x_metres = 0.0 y_metres = 10.0"
+    )]
+    Toml(String),
+    /// The text is a scene without objects.
+    #[error("the clipboard holds a scene without objects")]
+    Empty,
+    /// A number can't be used.
+    #[error("the clipboard's {0}")]
+    Scene(#[from] SceneError),
+}
+
+/// Text of `objects`.
+pub fn to_text(objects: Vec<Object>) -> String {
+    toml::to_string(&Scene { objects, ..Scene::default() }).unwrap_or_default()
+}
+
+/// The objects in `text`.
+///
+/// # Errors
+/// [`PasteError`] says what is wrong with the text.
+pub fn from_text(text: &str, radar: &Radar) -> Result<Vec<Object>, PasteError> {
+    let scene: Scene = toml::from_str(text).map_err(|e| PasteError::Toml(e.message().to_owned()))?;
+    if scene.objects.is_empty() {
+        return Err(PasteError::Empty);
+    }
+    scene.validate(radar)?;
+    Ok(scene.objects)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{GaussianCluster, Line, Point};
+
+    #[test]
+    fn every_kind_round_trips() {
+        let objects = vec![
+            Object::Point(Point { x_metres: 0.1, y_metres: 1.0 / 3.0, reflectivity: 2.0 }),
+            Object::Line(Line { x_metres: 2.0, y_start_metres: 5.0, spacing_metres: 0.1, count: 3, reflectivity: 0.5 }),
+            Object::Gaussian(GaussianCluster {
+                x_metres: 0.0,
+                y_metres: 10.0,
+                x_std_metres: 1.0,
+                y_std_metres: 2.0,
+                count: 5,
+                seed: 3,
+                reflectivity: 1.0,
+            }),
+        ];
+        assert_eq!(from_text(&to_text(objects.clone()), &Radar::default()).unwrap(), objects);
+    }
+
+    #[test]
+    fn bad_text_is_told() {
+        let radar = Radar::default();
+        for (text, part) in [
+            ("hello", "holds no objects"),
+            ("", "without objects"),
+            ("[[object]]\nkind = \"point\"\nx_metres = nan\ny_metres = 1.0", "x_metres"),
+        ] {
+            let message = from_text(text, &radar).unwrap_err().to_string();
+            assert!(message.contains(part), "{text}: {message}");
+        }
+    }
+}

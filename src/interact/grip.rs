@@ -1,0 +1,183 @@
+//! The parts of an object that can be grabbed, and what dragging each of them means.
+//!
+//! ```text
+//!     o  far end: more or fewer reflectors, spacing kept
+//!     :
+//!     :◇ spacing: reflectors move apart, their number kept            ┌───────┐
+//!     ●  body: moves the whole line                                   │   ●   ◇ spread in x
+//!     :                                                               └───◇───┘
+//!     o  near end: more or fewer reflectors, the far end stays          spread in y
+//! ```
+
+use super::Place;
+use crate::scene::{Object, Scene};
+
+/// Most reflectors a line can be stretched to by hand.
+pub const MAX_LINE_COUNT: usize = 2000;
+
+/// How far beside its line the spacing's grip lies, in points of the view.
+const SPACING_GRIP_OFFSET_POINTS: f64 = 16.0;
+
+/// Part of an object that can be grabbed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Grip {
+    /// The object as a whole.
+    Body,
+    /// The end of a line that is nearest to the array.
+    NearEnd,
+    /// The other end.
+    FarEnd,
+    /// The spacing of a line.
+    Spacing,
+    /// The standard deviation of a cluster along x.
+    SpreadX,
+    /// The standard deviation of a cluster along y.
+    SpreadY,
+}
+
+impl Grip {
+    /// What dragging it does, for tooltips and screen readers.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Grip::Body => "move",
+            Grip::NearEnd => "move the near end: more or fewer reflectors",
+            Grip::FarEnd => "move the far end: more or fewer reflectors",
+            Grip::Spacing => "spread the reflectors",
+            Grip::SpreadX => "widen the cluster",
+            Grip::SpreadY => "deepen the cluster",
+        }
+    }
+}
+
+/// A grip and where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GripPlace {
+    /// What is grabbed.
+    pub grip: Grip,
+    /// Where.
+    pub place: Place,
+}
+
+/// The grips of `object`, [`Grip::Body`] last, in a view where one point covers `metres_per_point`.
+pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
+    let at = |grip, x, y| GripPlace { grip, place: Place::new(x, y) };
+    let body = GripPlace { grip: Grip::Body, place: object.centre_metres().into() };
+    match object {
+        Object::Point(_) => vec![body],
+        Object::Line(l) => {
+            let length = l.spacing_metres * l.count.saturating_sub(1) as f64;
+            let beside = l.x_metres + SPACING_GRIP_OFFSET_POINTS * metres_per_point;
+            vec![
+                at(Grip::NearEnd, l.x_metres, l.y_start_metres),
+                at(Grip::FarEnd, l.x_metres, l.y_start_metres + length),
+                at(Grip::Spacing, beside, l.y_start_metres + 0.75 * length),
+                body,
+            ]
+        }
+        Object::Gaussian(g) => vec![
+            at(Grip::SpreadX, g.x_metres + g.x_std_metres, g.y_metres),
+            at(Grip::SpreadY, g.x_metres, g.y_metres + g.y_std_metres),
+            body,
+        ],
+    }
+}
+
+/// `before` with `grip` moved from where it was to `to`.
+pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
+    let mut after = before.clone();
+    match (&mut after, grip) {
+        (_, Grip::Body) => {
+            let centre = Place::from(before.centre_metres());
+            after.translate(to.x_metres - centre.x_metres, to.y_metres - centre.y_metres);
+        }
+        (Object::Line(l), Grip::NearEnd) => {
+            let far = l.y_start_metres + l.spacing_metres * l.count.saturating_sub(1) as f64;
+            l.count = count_over(far - to.y_metres, l.spacing_metres).unwrap_or(l.count);
+            l.y_start_metres = far - l.spacing_metres * (l.count - 1) as f64;
+        }
+        (Object::Line(l), Grip::FarEnd) => {
+            l.count = count_over(to.y_metres - l.y_start_metres, l.spacing_metres).unwrap_or(l.count);
+        }
+        (Object::Line(l), Grip::Spacing) => {
+            let steps = 0.75 * l.count.saturating_sub(1).max(1) as f64;
+            l.spacing_metres = ((to.y_metres - l.y_start_metres) / steps).max(1e-3);
+        }
+        (Object::Gaussian(g), Grip::SpreadX) => g.x_std_metres = (to.x_metres - g.x_metres).abs(),
+        (Object::Gaussian(g), Grip::SpreadY) => g.y_std_metres = (to.y_metres - g.y_metres).abs(),
+        _ => {}
+    }
+    after
+}
+
+/// How many reflectors fit a length; `None` where the spacing says nothing.
+fn count_over(length: f64, spacing: f64) -> Option<usize> {
+    let steps = (length / spacing).round();
+    (spacing.abs() > 0.0 && steps.is_finite()).then(|| (steps.max(0.0) as usize + 1).min(MAX_LINE_COUNT))
+}
+
+/// Smallest rectangle around all reflectors' anchors: (low corner, high corner), or `None` for an empty scene.
+pub(super) fn bounds(scene: &Scene) -> Option<(Place, Place)> {
+    let corners = scene.objects.iter().flat_map(|o| {
+        grips(o, 0.0).into_iter().map(|g| g.place).filter(|p| p.x_metres.is_finite() && p.y_metres.is_finite())
+    });
+    corners.fold(None, |bounds, p| {
+        let (a, b) = bounds.unwrap_or((p, p));
+        Some((
+            Place::new(a.x_metres.min(p.x_metres), a.y_metres.min(p.y_metres)),
+            Place::new(b.x_metres.max(p.x_metres), b.y_metres.max(p.y_metres)),
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{GaussianCluster, Line};
+
+    fn line() -> Object {
+        Object::Line(Line { x_metres: 1.0, y_start_metres: 10.0, spacing_metres: 0.5, count: 11, reflectivity: 1.0 })
+    }
+
+    #[test]
+    fn ends_change_the_count_and_the_other_end_stays() {
+        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(9.0, 20.1)) else { panic!() };
+        assert_eq!((l.count, l.y_start_metres, l.x_metres), (21, 10.0, 1.0));
+        let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(1.0, 12.6)) else { panic!() };
+        assert_eq!((l.count, l.y_start_metres), (6, 12.5));
+        let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(1.0, 99.0)) else { panic!() };
+        assert_eq!((l.count, l.y_start_metres), (1, 15.0), "a line keeps one reflector");
+        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(1.0, 1e9)) else { panic!() };
+        assert_eq!(l.count, MAX_LINE_COUNT);
+    }
+
+    #[test]
+    fn spacing_follows_its_grip() {
+        let after = move_grip(&line(), Grip::Spacing, Place::new(1.0, 17.5));
+        let Object::Line(l) = &after else { panic!() };
+        assert_eq!((l.count, l.spacing_metres), (11, 1.0));
+        let grip = grips(&after, 0.0).into_iter().find(|g| g.grip == Grip::Spacing).unwrap();
+        assert_eq!(grip.place.y_metres, 17.5);
+    }
+
+    #[test]
+    fn a_body_moves_whole() {
+        let after = move_grip(&line(), Grip::Body, Place::new(0.0, 20.0));
+        assert_eq!(after.centre_metres(), [0.0, 20.0]);
+        assert_eq!(after.reflector_count(), 11);
+    }
+
+    #[test]
+    fn spreads_are_never_negative() {
+        let cluster = Object::Gaussian(GaussianCluster {
+            x_metres: 0.0,
+            y_metres: 10.0,
+            x_std_metres: 1.0,
+            y_std_metres: 1.0,
+            count: 5,
+            seed: 1,
+            reflectivity: 1.0,
+        });
+        let Object::Gaussian(g) = move_grip(&cluster, Grip::SpreadX, Place::new(-2.0, 0.0)) else { panic!() };
+        assert_eq!(g.x_std_metres, 2.0);
+    }
+}

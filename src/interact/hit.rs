@@ -1,0 +1,113 @@
+//! What lies under the pointer, or inside a box.
+
+use super::grip::{Grip, grips};
+use super::{Place, Selection};
+use crate::scene::{Object, Scene};
+
+/// Smallest radius of a target, in points of the view.
+pub const TARGET_RADIUS_POINTS: f64 = 9.0;
+
+/// What was hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Index of the object.
+    pub object: usize,
+    /// Which part of it.
+    pub grip: Grip,
+    /// Where that part is: a drag keeps the distance between pointer and grip.
+    pub place: Place,
+}
+
+/// The grip under `at` in a view where one point covers `metres_per_point`.
+///
+/// Grips other than the body belong to selected objects only (that is when they are drawn). Among several, the nearest wins, and
+/// of equally near ones the object drawn last. Anywhere on a line or in a cluster counts as its body.
+pub fn test(scene: &Scene, selection: &Selection, at: Place, metres_per_point: f64) -> Option<Hit> {
+    let reach = TARGET_RADIUS_POINTS * metres_per_point;
+    let mut best: Option<(f64, Hit)> = None;
+    for (object, o) in scene.objects.iter().enumerate() {
+        for g in grips(o, metres_per_point) {
+            let distance = match g.grip {
+                Grip::Body => body_distance(o, at),
+                _ if !selection.contains(object) => continue,
+                // A small grip wins over the body it lies on.
+                _ => g.place.distance_metres(at) - 0.5 * reach,
+            };
+            if distance <= reach && best.is_none_or(|(d, _)| distance <= d) {
+                best = Some((distance, Hit { object, grip: g.grip, place: g.place }));
+            }
+        }
+    }
+    best.map(|(_, hit)| hit)
+}
+
+/// Distance from `at` to the nearest part of the object, metres.
+fn body_distance(object: &Object, at: Place) -> f64 {
+    let centre = Place::from(object.centre_metres());
+    match object {
+        Object::Point(_) => centre.distance_metres(at),
+        Object::Line(l) => {
+            let half = (l.spacing_metres * l.count.saturating_sub(1) as f64 / 2.0).abs();
+            let beyond = ((at.y_metres - centre.y_metres).abs() - half).max(0.0);
+            (at.x_metres - centre.x_metres).hypot(beyond)
+        }
+        Object::Gaussian(g) => {
+            let out_x = ((at.x_metres - g.x_metres).abs() - g.x_std_metres).max(0.0);
+            let out_y = ((at.y_metres - g.y_metres).abs() - g.y_std_metres).max(0.0);
+            // Inside the cluster its centre still counts as nearer than its rim, so that a point within can be grabbed.
+            let inside = centre.distance_metres(at) / (g.x_std_metres + g.y_std_metres).max(1e-9);
+            out_x.hypot(out_y) + 1e-3 * inside
+        }
+    }
+}
+
+/// Objects whose centre lies in the box spanned by two corners.
+pub fn in_box(scene: &Scene, a: Place, b: Place) -> Vec<usize> {
+    let between = |v: f64, p: f64, q: f64| v >= p.min(q) && v <= p.max(q);
+    let inside = |o: &Object| {
+        let [x, y] = o.centre_metres();
+        between(x, a.x_metres, b.x_metres) && between(y, a.y_metres, b.y_metres)
+    };
+    (0..scene.objects.len()).filter(|&i| inside(&scene.objects[i])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Line;
+
+    fn scene() -> Scene {
+        let mut scene = Scene::of_points([(0.0, 10.0), (3.0, 10.0)]);
+        scene.objects.push(Object::Line(Line {
+            x_metres: -5.0,
+            y_start_metres: 5.0,
+            spacing_metres: 0.5,
+            count: 21,
+            reflectivity: 1.0,
+        }));
+        scene
+    }
+
+    #[test]
+    fn targets_reach_at_least_eight_points() {
+        let hit = |x: f64| test(&scene(), &Selection::default(), Place::new(x, 10.0), 0.1).map(|h| h.object);
+        assert_eq!(hit(-0.8), Some(0), "8 points away is a hit");
+        assert_eq!(hit(1.2), None);
+        assert_eq!(hit(2.9), Some(1));
+    }
+
+    #[test]
+    fn anywhere_on_a_line_is_its_body_and_its_ends_show_when_selected() {
+        let end = Place::new(-5.0, 15.0);
+        let body = test(&scene(), &Selection::default(), end, 0.05).unwrap();
+        assert_eq!((body.object, body.grip, body.place), (2, Grip::Body, Place::new(-5.0, 10.0)));
+        let grip = test(&scene(), &Selection::of([2]), end, 0.05).unwrap();
+        assert_eq!((grip.object, grip.grip), (2, Grip::FarEnd));
+    }
+
+    #[test]
+    fn boxes_take_centres() {
+        assert_eq!(in_box(&scene(), Place::new(4.0, 11.0), Place::new(-1.0, 9.0)), [0, 1]);
+        assert!(in_box(&scene(), Place::new(20.0, 20.0), Place::new(21.0, 21.0)).is_empty());
+    }
+}

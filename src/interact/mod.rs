@@ -1,0 +1,50 @@
+//! Editing a scene by hand, without any GUI crate: what is hit, how it moves, where it snaps, what is selected, what can be undone.
+//!
+//! Everything here is in metres of the scene. A view tells how many metres one of its points covers, and the rest follows:
+//!
+//! ```text
+//!  pointer ──► hit::test ──► Editor::begin_drag ──► drag_to ──► drag_to ──► end_drag     (one step of the history)
+//!                               │
+//!  key, menu ──────────────► Editor::{add, delete_selected, nudge, paste, ..}            (one step each)
+//! ```
+
+pub mod clipboard;
+mod editor;
+mod grip;
+mod history;
+pub mod hit;
+mod selection;
+mod snap;
+
+pub use editor::Editor;
+pub use grip::{Grip, GripPlace, MAX_LINE_COUNT, grips, move_grip};
+pub use history::History;
+pub use selection::{Selection, SelectionMode};
+pub use snap::Snap;
+
+/// A place of the scene in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Along the array's axis.
+    pub x_metres: f64,
+    /// Ahead of the array.
+    pub y_metres: f64,
+}
+
+impl Place {
+    /// The place at (x, y) metres.
+    pub fn new(x_metres: f64, y_metres: f64) -> Self {
+        Place { x_metres, y_metres }
+    }
+
+    /// Distance to another place, metres.
+    pub fn distance_metres(self, other: Place) -> f64 {
+        (self.x_metres - other.x_metres).hypot(self.y_metres - other.y_metres)
+    }
+}
+
+impl From<[f64; 2]> for Place {
+    fn from([x_metres, y_metres]: [f64; 2]) -> Self {
+        Place { x_metres, y_metres }
+    }
+}

@@ -1,0 +1,258 @@
+//! One thread that always works on the latest request.
+//!
+//! ```text
+//!   request(c) ──► slot [b]  b is never started: c takes its place
+//!                    │
+//!                    ▼
+//!                  thread: work(a) ──► reply(a) ──► wake()          a's result stays on screen until c's is there
+//! ```
+//!
+//! A panic in the work becomes [`Reply::Panicked`] and the worker starts afresh with new state.
+
+use crate::reconstruct::Task;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Number of a request: rises by one with each.
+pub type Generation = u64;
+
+/// What came of a request.
+#[derive(Debug)]
+pub enum Reply<T> {
+    /// It is done.
+    Done {
+        /// Which request.
+        generation: Generation,
+        /// Its result.
+        result: T,
+        /// How long the work took.
+        elapsed: Duration,
+    },
+    /// It panicked; the worker was started afresh and waits for the next request.
+    Panicked {
+        /// Which request.
+        generation: Generation,
+        /// What the panic said.
+        message: String,
+    },
+}
+
+struct Slot<Q, T> {
+    pending: Option<(Generation, Q, Task)>,
+    running: Option<Task>,
+    replies: Vec<Reply<T>>,
+    generation: Generation,
+    stop: bool,
+}
+
+struct Shared<Q, T> {
+    slot: Mutex<Slot<Q, T>>,
+    ready: Condvar,
+}
+
+impl<Q, T> Shared<Q, T> {
+    fn lock(&self) -> MutexGuard<'_, Slot<Q, T>> {
+        self.slot.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A thread that turns requests `Q` into results `T`, latest request first. Dropping it stops the thread.
+pub struct Worker<Q, T> {
+    shared: Arc<Shared<Q, T>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
+    /// Starts a thread called `name`. `start` makes the state that `work` keeps from request to request; `wake` is called from the
+    /// thread after each reply.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn spawn<S: 'static>(
+        name: &str,
+        start: impl Fn() -> S + Send + 'static,
+        mut work: impl FnMut(&mut S, Q, &Task) -> T + Send + 'static,
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let slot = Slot { pending: None, running: None, replies: Vec::new(), generation: 0, stop: false };
+        let shared = Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new() });
+        let theirs = shared.clone();
+        let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || {
+            let mut state = None;
+            while let Some((generation, request, task)) = theirs.next() {
+                let began = Instant::now();
+                let outcome = catch_unwind(AssertUnwindSafe(|| work(state.get_or_insert_with(&start), request, &task)));
+                let reply = match outcome {
+                    Ok(result) => Reply::Done { generation, result, elapsed: began.elapsed() },
+                    Err(panic) => {
+                        state = None;
+                        Reply::Panicked { generation, message: panic_message(panic.as_ref()) }
+                    }
+                };
+                let mut slot = theirs.lock();
+                slot.running = None;
+                slot.replies.push(reply);
+                drop(slot);
+                wake();
+            }
+        })?;
+        Ok(Worker { shared, thread: Some(thread) })
+    }
+
+    /// Asks for `request` next; one that waits is replaced, one that runs goes on.
+    pub fn request(&self, request: Q) -> Generation {
+        let mut slot = self.shared.lock();
+        slot.generation += 1;
+        let generation = slot.generation;
+        slot.pending = Some((generation, request, Task::default()));
+        self.shared.ready.notify_one();
+        generation
+    }
+
+    /// Cancels what runs and forgets what waits. The cancelled work still replies.
+    pub fn cancel(&self) {
+        let mut slot = self.shared.lock();
+        slot.pending = None;
+        if let Some(task) = &slot.running {
+            task.cancel();
+        }
+    }
+
+    /// Whether a request waits or runs.
+    pub fn is_busy(&self) -> bool {
+        let slot = self.shared.lock();
+        slot.pending.is_some() || slot.running.is_some()
+    }
+
+    /// Progress of what runs, 0 to 1; `None` when idle.
+    pub fn progress(&self) -> Option<f32> {
+        self.shared.lock().running.as_ref().map(Task::progress)
+    }
+
+    /// The replies since the last call, oldest first.
+    pub fn replies(&self) -> Vec<Reply<T>> {
+        std::mem::take(&mut self.shared.lock().replies)
+    }
+}
+
+impl<Q, T> Shared<Q, T> {
+    /// Waits for a request; `None` when told to stop.
+    fn next(&self) -> Option<(Generation, Q, Task)> {
+        let mut slot = self.lock();
+        loop {
+            if slot.stop {
+                return None;
+            }
+            if let Some(next) = slot.pending.take() {
+                slot.running = Some(next.2.clone());
+                return Some(next);
+            }
+            slot = self.ready.wait(slot).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl<Q, T> Drop for Worker<Q, T> {
+    fn drop(&mut self) {
+        let mut slot = self.shared.lock();
+        slot.stop = true;
+        if let Some(task) = &slot.running {
+            task.cancel();
+        }
+        drop(slot);
+        self.shared.ready.notify_all();
+        // Work that doesn't look at its task would make closing the window wait: leave it to the end of the process.
+        self.thread.take();
+    }
+}
+
+fn panic_message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+
+    /// Waits for the next replies.
+    fn wait<Q: Send + 'static, T: Send + 'static>(worker: &Worker<Q, T>, woken: &mpsc::Receiver<()>) -> Vec<Reply<T>> {
+        woken.recv_timeout(Duration::from_secs(20)).unwrap();
+        worker.replies()
+    }
+
+    #[test]
+    fn the_latest_request_wins_and_nothing_between_is_started() {
+        let (gate, entered) = (mpsc::channel::<()>(), mpsc::channel::<()>());
+        let (wake, woken) = mpsc::channel();
+        let worker = Worker::spawn(
+            "test",
+            || (),
+            move |_, n: u32, _| {
+                entered.0.send(()).unwrap();
+                gate.1.recv().unwrap();
+                n
+            },
+            move || wake.send(()).unwrap(),
+        )
+        .unwrap();
+        worker.request(1);
+        entered.1.recv().unwrap();
+        for n in 2..=9 {
+            worker.request(n);
+        }
+        assert!(worker.is_busy());
+        gate.0.send(()).unwrap();
+        gate.0.send(()).unwrap();
+        let mut seen = Vec::new();
+        while seen.len() < 2 {
+            seen.extend(wait(&worker, &woken).into_iter().map(|r| match r {
+                Reply::Done { generation, result, .. } => (generation, result),
+                Reply::Panicked { message, .. } => panic!("{message}"),
+            }));
+        }
+        assert_eq!(seen, [(1, 1), (9, 9)]);
+    }
+
+    #[test]
+    fn a_panic_is_a_message_and_the_worker_starts_afresh() {
+        let (wake, woken) = mpsc::channel();
+        let work = |count: &mut u32, n: u32, _: &Task| {
+            *count += 1;
+            assert!(n != 13, "unlucky {n}");
+            *count
+        };
+        let worker = Worker::spawn("test", || 0, work, move || wake.send(()).unwrap()).unwrap();
+        let ask = |n| {
+            worker.request(n);
+            wait(&worker, &woken).remove(0)
+        };
+        assert!(matches!(ask(1), Reply::Done { result: 1, .. }));
+        assert!(matches!(ask(2), Reply::Done { result: 2, .. }));
+        assert!(matches!(ask(13), Reply::Panicked { generation: 3, message } if message == "unlucky 13"));
+        assert!(matches!(ask(3), Reply::Done { result: 1, .. }), "fresh state");
+    }
+
+    #[test]
+    fn cancel_reaches_what_runs() {
+        let (wake, woken) = mpsc::channel();
+        let (enter, entered) = mpsc::channel();
+        let work = move |_: &mut (), (), task: &Task| {
+            enter.send(()).unwrap();
+            while !task.is_cancelled() {
+                std::thread::yield_now();
+            }
+        };
+        let worker = Worker::spawn("test", || (), work, move || wake.send(()).unwrap()).unwrap();
+        worker.request(());
+        entered.recv().unwrap();
+        assert_eq!(worker.progress(), Some(0.0));
+        worker.cancel();
+        assert_eq!(wait(&worker, &woken).len(), 1);
+        assert!(!worker.is_busy());
+    }
+}
