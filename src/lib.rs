@@ -1,6 +1,7 @@
 //! See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
 #![warn(missing_docs)]
 
+pub mod bounds;
 pub mod commands;
 pub mod evaluate;
 pub mod interact;

@@ -2,9 +2,11 @@
 //!
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
+mod layout;
 mod units;
 mod window;
 
+pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use units::Decibels;
 pub use window::hann;
 

@@ -1,0 +1,5 @@
+//! What no estimator can beat: bounds on position errors, and how alike two places look to an array.
+
+mod cramer_rao;
+
+pub use cramer_rao::{BoundsError, PositionBound, cramer_rao, noise_variance};

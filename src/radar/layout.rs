@@ -1,0 +1,182 @@
+//! Where the elements of a line array stand: the whole array, its two ends, random places, or the virtual elements of a MIMO radar.
+
+use super::{End, Radar};
+use rand::SeedableRng;
+use rand::seq::index;
+use rand_chacha::ChaCha8Rng;
+
+/// Positions of an array's elements on the x axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Position of each element, metres, in rising order.
+    pub x_metres: Vec<f64>,
+}
+
+/// A count of elements that a layout can't have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("a random layout of {asked} elements was asked for; the aperture has room for 1 to {places}")]
+pub struct LayoutError {
+    asked: usize,
+    places: usize,
+}
+
+impl Layout {
+    /// Every element of `radar` (thesis figure 1-1).
+    pub fn uniform(radar: &Radar) -> Self {
+        Layout::of_elements(radar, 0..radar.elements)
+    }
+
+    /// One end of `radar` alone.
+    pub fn one_end(radar: &Radar, end: End) -> Self {
+        Layout::of_elements(radar, radar.end_range(end))
+    }
+
+    /// Both ends of `radar`: what the sparse sensor keeps.
+    pub fn two_ends(radar: &Radar) -> Self {
+        Layout::of_elements(radar, radar.end_range(End::First).chain(radar.end_range(End::Last)))
+    }
+
+    /// `count` elements at random places of the half-wavelength grid, the outermost two always among them so that the aperture
+    /// stays whole. The same seed gives the same places.
+    ///
+    /// Places are kept on the grid, as multi-coset sampling keeps them (thesis figures 1-2 and 1-3): what is lost is then
+    /// elements, not the array's unambiguous field of view.
+    ///
+    /// # Errors
+    /// [`LayoutError`] for no element or for more than `radar` has.
+    pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
+        let places = radar.elements;
+        if count == 0 || count > places {
+            return Err(LayoutError { asked: count, places });
+        }
+        let last = places - 1;
+        let outermost = [0, last];
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let inner = index::sample(&mut rng, last - 1, count.saturating_sub(2));
+        let mut chosen: Vec<usize> =
+            outermost.into_iter().take(count).chain(inner.into_iter().map(|i| i + 1)).collect();
+        chosen.sort_unstable();
+        Ok(Layout::of_elements(radar, chosen))
+    }
+
+    fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
+        Layout { x_metres: elements.into_iter().map(|n| radar.element_x_metres(n)).collect() }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.x_metres.len()
+    }
+
+    /// Whether there is no element.
+    pub fn is_empty(&self) -> bool {
+        self.x_metres.is_empty()
+    }
+}
+
+/// Transmitters and receivers of a MIMO radar: every pair of them acts as one virtual element (thesis figure 1-4).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mimo {
+    /// Position of each transmitter, metres.
+    pub transmitter_x_metres: Vec<f64>,
+    /// Position of each receiver, metres.
+    pub receiver_x_metres: Vec<f64>,
+}
+
+/// One virtual element and the pair it stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VirtualElement {
+    /// Index of the transmitter.
+    pub transmitter: usize,
+    /// Index of the receiver.
+    pub receiver: usize,
+    /// Where the virtual element stands, metres.
+    pub x_metres: f64,
+}
+
+impl Mimo {
+    /// Receivers at the radar's spacing and transmitters a whole receiver array apart, so that the virtual elements form one
+    /// gapless line centred on x = 0: 3 transmitters and 4 receivers give the 12 elements of one end.
+    pub fn filled(radar: &Radar, transmitters: usize, receivers: usize) -> Self {
+        let line = |count: usize, spacing: f64| -> Vec<f64> {
+            (0..count).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * spacing).collect()
+        };
+        let spacing = radar.element_spacing_metres;
+        Mimo {
+            transmitter_x_metres: line(transmitters, receivers as f64 * spacing),
+            receiver_x_metres: line(receivers, spacing),
+        }
+    }
+
+    /// The virtual element of every pair, in rising order of position.
+    ///
+    /// A far reflector delays the way out by `x_t cos(theta)` and the way back by `x_r cos(theta)`: the pair measures what one
+    /// element at `x_t + x_r` would.
+    pub fn virtual_elements(&self) -> Vec<VirtualElement> {
+        let mut pairs: Vec<VirtualElement> = self
+            .transmitter_x_metres
+            .iter()
+            .enumerate()
+            .flat_map(|(transmitter, t)| {
+                self.receiver_x_metres.iter().enumerate().map(move |(receiver, r)| VirtualElement {
+                    transmitter,
+                    receiver,
+                    x_metres: t + r,
+                })
+            })
+            .collect();
+        pairs.sort_by(|a, b| a.x_metres.total_cmp(&b.x_metres));
+        pairs
+    }
+
+    /// The virtual elements as a layout.
+    pub fn layout(&self) -> Layout {
+        Layout { x_metres: self.virtual_elements().into_iter().map(|v| v.x_metres).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_ends_are_the_first_and_the_last_elements() {
+        let radar = Radar::default();
+        let ends = Layout::two_ends(&radar);
+        assert_eq!(ends.len(), 24);
+        assert_eq!(ends.x_metres[11], radar.element_x_metres(11));
+        assert_eq!(ends.x_metres[12], radar.element_x_metres(1012));
+        assert_eq!(Layout::uniform(&radar).len(), 1024);
+    }
+
+    #[test]
+    fn random_layouts_repeat_span_the_aperture_and_hold_no_element_twice() {
+        let radar = Radar::default();
+        for count in [2, 3, 24, 1023, 1024] {
+            let layout = Layout::random(&radar, count, 7).unwrap();
+            assert_eq!(layout.len(), count);
+            assert_eq!(layout, Layout::random(&radar, count, 7).unwrap());
+            assert!(layout.x_metres.windows(2).all(|w| w[1] - w[0] > 0.9 * radar.element_spacing_metres));
+            assert_eq!(layout.x_metres[count - 1] - layout.x_metres[0], radar.aperture_metres());
+        }
+        assert_ne!(Layout::random(&radar, 24, 7).unwrap(), Layout::random(&radar, 24, 8).unwrap());
+        assert_eq!(Layout::random(&radar, 1, 7).unwrap().len(), 1);
+        assert!(Layout::random(&radar, 0, 7).unwrap_err().to_string().contains("1 to 1024"));
+        assert!(Layout::random(&radar, 1025, 7).is_err());
+    }
+
+    #[test]
+    fn three_by_four_gives_the_twelve_elements_of_an_end() {
+        let radar = Radar::default();
+        let mimo = Mimo::filled(&radar, 3, 4);
+        let layout = mimo.layout();
+        let end = Layout::one_end(&radar, End::First);
+        let centre = radar.end_centre_metres(End::First);
+        assert_eq!(layout.len(), 12);
+        for (v, e) in layout.x_metres.iter().zip(&end.x_metres) {
+            assert!((v - (e - centre)).abs() < 1e-12);
+        }
+        let pairs = mimo.virtual_elements();
+        assert_eq!((pairs[5].transmitter, pairs[5].receiver), (1, 1));
+    }
+}
