@@ -4,6 +4,7 @@
 pub mod bounds;
 pub mod commands;
 pub mod evaluate;
+pub mod files;
 pub mod interact;
 pub mod live;
 pub mod maps;

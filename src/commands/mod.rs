@@ -3,9 +3,12 @@
 //! A subcommand is a file with `pub struct Args` (clap) and `Args::run(self) -> Result<(), CommandError>`, a variant of
 //! [`Command`] and a line in [`Command::run`]. Its own errors travel as [`CommandError::Failed`] unless they need a name here.
 
+mod arguments;
 mod error;
+mod maps;
 mod open;
 mod output;
+mod scenes;
 
 pub use error::CommandError;
 pub use output::print;
@@ -29,11 +32,17 @@ struct Cli {
 
 /// What the program can do beside opening its window.
 #[derive(Debug, Subcommand)]
-enum Command {}
+enum Command {
+    Maps(maps::Args),
+    Scenes(scenes::Args),
+}
 
 impl Command {
     fn run(self) -> Result<(), CommandError> {
-        match self {}
+        match self {
+            Command::Maps(args) => args.run(),
+            Command::Scenes(args) => args.run(),
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 
 pub mod file;
 pub mod generate;
+pub mod npz;
 mod object;
 pub mod presets;
 

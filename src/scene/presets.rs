@@ -1,1 +1,97 @@
-//! Scenes the thesis talks about.
+//! Scenes the thesis talks about, ready to open: each has a name, and notes that say what to look for.
+//!
+//! They are the files of `assets/scenes`, embedded in the program.
+
+use super::file::{SceneFile, SceneTextError, from_toml};
+
+/// A scene that comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Preset {
+    /// Name of its file in `assets/scenes`, without `.toml`.
+    pub id: &'static str,
+    /// The file's text.
+    pub toml: &'static str,
+}
+
+macro_rules! presets {
+    ($($id:literal),* $(,)?) => {
+        &[$(Preset { id: $id, toml: include_str!(concat!("../../assets/scenes/", $id, ".toml")) }),*]
+    };
+}
+
+/// Every preset, in the order they are listed. The first is the [`default_scene`].
+pub const ALL: &[Preset] = presets![
+    "street",
+    "four-reflectors",
+    "one-at-20-m",
+    "one-at-20-m-a-tenth-of-a-radian-off",
+    "two-close-in-range",
+    "points-by-a-line",
+    "gaussian-clusters",
+    "point-behind-a-line",
+    "test-set-1",
+    "test-set-2",
+    "test-set-3",
+    "empty",
+];
+
+impl Preset {
+    /// The scene.
+    ///
+    /// # Errors
+    /// None for the presets of [`ALL`]: a test reads each of them.
+    pub fn load(&self) -> Result<SceneFile, SceneTextError> {
+        from_toml(self.toml)
+    }
+
+    /// The preset called `id`.
+    pub fn by_id(id: &str) -> Option<&'static Preset> {
+        ALL.iter().find(|p| p.id == id)
+    }
+}
+
+/// What the program shows when it is given no scene.
+pub fn default_scene() -> SceneFile {
+    ALL[0].load().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Object;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_preset_loads_and_teaches() {
+        let mut names = HashSet::new();
+        for preset in ALL {
+            let file = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.id));
+            assert!(
+                names.insert(file.scene.name.clone()) && !file.scene.name.is_empty(),
+                "{}: its own name",
+                preset.id
+            );
+            assert!(file.scene.notes.len() > 80, "{}: notes say what to look for", preset.id);
+            assert_eq!(file.scene.objects.is_empty(), preset.id == "empty", "{}", preset.id);
+        }
+        assert!(!default_scene().scene.objects.is_empty());
+    }
+
+    #[test]
+    fn every_file_is_listed() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes");
+        let files = std::fs::read_dir(folder).unwrap().count();
+        assert_eq!(files, ALL.len(), "files in {folder}");
+    }
+
+    #[test]
+    fn the_tenth_of_a_radian_is_one() {
+        let of = |id| match Preset::by_id(id).unwrap().load().unwrap().scene.objects.as_slice() {
+            [Object::Point(p)] => (p.x_metres.hypot(p.y_metres), p.x_metres.atan2(p.y_metres)),
+            other => panic!("{other:?}"),
+        };
+        let (ahead, off) = (of("one-at-20-m"), of("one-at-20-m-a-tenth-of-a-radian-off"));
+        assert!((ahead.0 - 20.0).abs() < 1e-12 && (off.0 - 20.0).abs() < 1e-12);
+        assert!((off.1 - ahead.1 - 0.1).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,87 @@
+//! `apertura maps`: the maps of one scene, as numbers or as a picture.
+
+use super::arguments::{self, FloorArgs};
+use super::{CommandError, print};
+use crate::files::npz::write_npz;
+use crate::maps::{self, Aperture, network_input};
+use crate::radar::{Carrier, End, Radar};
+use crate::scene::{Scene, file, npz};
+use crate::signal::{self, BeatSignal};
+use ndarray::Axis;
+use std::path::{Path, PathBuf};
+
+/// Compute the maps of a scene, to an .npz archive or a .png picture
+///
+/// The archive holds all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
+/// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
+/// (f64 [4, 512, 1024], the network's input): the keys of the thesis author's program.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene to look at (.toml or .npz)
+    scene: PathBuf,
+
+    /// File to write (.npz or .png)
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    floor: FloorArgs,
+
+    /// How the carrier's phase is read; overrides the scene's radar
+    #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way")]
+    carrier: Option<Carrier>,
+
+    /// Seed of the thermal noise of --floor snr=DB
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+}
+
+impl Args {
+    /// Simulates the scene and writes its maps.
+    pub fn run(self) -> Result<(), CommandError> {
+        let output = Output::of_path(&self.output)?;
+        let file::SceneFile { scene, mut radar } = file::load(&self.scene).map_err(CommandError::failed)?;
+        if let Some(carrier) = self.carrier {
+            radar.carrier = carrier;
+        }
+        let signal =
+            signal::simulate(&radar, &scene, self.floor.floor, self.seed).map_err(CommandError::on(&self.scene))?;
+        match output {
+            Output::Archive => write_archive(&self.output, &radar, &scene, &signal)?,
+        }
+        print(&format!("wrote {}", self.output.display()))
+    }
+}
+
+enum Output {
+    Archive,
+}
+
+impl Output {
+    fn of_path(path: &Path) -> Result<Output, CommandError> {
+        match path.extension().map(|e| e.to_ascii_lowercase()).as_deref().and_then(|e| e.to_str()) {
+            Some("npz") => Ok(Output::Archive),
+            _ => Err(CommandError::Usage(format!(
+                "{}: can't tell what to write from this name; expected one ending in .npz or .png",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Writes the archive; arrays are in NumPy's usual (C) order.
+fn write_archive(path: &Path, radar: &Radar, scene: &Scene, signal: &BeatSignal) -> Result<(), CommandError> {
+    let profiles = maps::range_transform(radar, signal);
+    let map = |aperture| maps::angle_transform(radar, &profiles, aperture);
+    let [first, last] = End::BOTH.map(|end| map(Aperture::End(end)));
+    let full = map(Aperture::Full).log_magnitude();
+    write_npz(path, |out| {
+        npz::add_positions(out, scene)?;
+        for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
+            out.add(key, &signal.end(radar, end).t().as_standard_layout())?;
+        }
+        out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
+        out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))
+    })
+    .map_err(CommandError::on(path))
+}

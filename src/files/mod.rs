@@ -1,0 +1,110 @@
+//! Files that are either whole or not there, and NumPy archives with errors that name the key.
+
+pub mod npz;
+
+use std::fs::Permissions;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. Whoever looks sees the
+/// old file or the new one, never a part; on any error the old one stays as it was.
+///
+/// # Errors
+/// What `write` returns, or what the system says: the folder is missing, `path` is a folder, a device or a pipe, the disk is full.
+pub fn write_atomically<E: From<io::Error>>(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<NamedTempFile>) -> Result<(), E>,
+) -> Result<(), E> {
+    let path = destination(path)?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let message = format!("there is no folder \"{}\" to write into", folder.display());
+        return Err(io::Error::new(io::ErrorKind::NotFound, message).into());
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".apertura-").suffix(".tmp");
+    if let Some(permissions) = new_file_permissions(&path) {
+        builder.permissions(permissions);
+    }
+    let mut out = BufWriter::new(builder.tempfile_in(folder)?);
+    write(&mut out)?;
+    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    file.as_file().sync_all()?;
+    file.persist(&path).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// [`write_atomically`] for text or bytes that are ready.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_atomically(path, |out| out.write_all(bytes))
+}
+
+/// Follows a link, so that it stays a link, and refuses what replacing would destroy.
+fn destination(path: &Path) -> io::Result<PathBuf> {
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_file() => std::fs::canonicalize(path),
+        Ok(found) => {
+            let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
+            Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected the name of a file")))
+        }
+        Err(_) => Ok(path.to_owned()),
+    }
+}
+
+/// Temporary files are private; a file a user asked for has the permissions of the one it replaces, or those the umask leaves.
+#[cfg(unix)]
+fn new_file_permissions(path: &Path) -> Option<Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(std::fs::metadata(path).map_or_else(|_| Permissions::from_mode(0o666), |m| m.permissions()))
+}
+
+#[cfg(not(unix))]
+fn new_file_permissions(_: &Path) -> Option<Permissions> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_bytes(&path, b"old").unwrap();
+        let result: io::Result<()> = write_atomically(&path, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::other("power cut"))
+        });
+        assert_eq!(result.unwrap_err().to_string(), "power cut");
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays behind");
+    }
+
+    #[test]
+    fn folders_and_missing_folders_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(write_bytes(folder.path(), b"").unwrap_err().to_string().contains("folder"));
+        let message = write_bytes(&folder.path().join("no/where.txt"), b"").unwrap_err().to_string();
+        assert!(message.contains("there is no folder"), "{message}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_permissions_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        std::fs::write(&file, "old").unwrap();
+        std::fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
+        symlink(&file, &link).unwrap();
+        write_bytes(&link, b"new").unwrap();
+        assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert_eq!(std::fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+    }
+}

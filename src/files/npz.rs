@@ -1,0 +1,275 @@
+//! NumPy archives (`.npz`): reading by key with errors that name key, shape and type, and writing in one step.
+
+use super::write_atomically;
+use ndarray::{Array, ArrayRef, Dimension};
+use ndarray_npy::{NpzReader, NpzWriter, ReadNpyError, ReadNpzError, ReadableElement, WritableElement, WriteNpzError};
+use num_complex::{Complex32, Complex64};
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter};
+use std::path::Path;
+use tempfile::NamedTempFile;
+
+/// Why an archive could not be read or written. Messages don't name the file: whoever opened it does.
+#[derive(Debug, thiserror::Error)]
+pub enum NpzError {
+    /// The system could not read or write.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// Not a zip archive, or one that was cut off.
+    #[error("not a whole .npz archive ({0}); expected one written by numpy.savez")]
+    Archive(String),
+    /// The archive lacks a key.
+    #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
+    Missing {
+        /// The key asked for.
+        key: String,
+        /// The keys the archive has.
+        found: String,
+    },
+    /// An array has other numbers in it than expected.
+    #[error("array \"{key}\" holds {found}; expected {expected}")]
+    Type {
+        /// The key.
+        key: String,
+        /// NumPy's name of the type found.
+        found: String,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// An array has another shape than expected.
+    #[error("array \"{key}\" has shape {found}; expected {expected}")]
+    Shape {
+        /// The key.
+        key: String,
+        /// The shape found.
+        found: String,
+        /// The shape expected.
+        expected: String,
+    },
+    /// A number is NaN or infinite.
+    #[error("array \"{key}\" holds {value} at index {index:?}; expected finite numbers only")]
+    NotFinite {
+        /// The key.
+        key: String,
+        /// Where.
+        index: Vec<usize>,
+        /// The value.
+        value: String,
+    },
+    /// An array is damaged.
+    #[error("array \"{key}\" can't be read: {reason}")]
+    Damaged {
+        /// The key.
+        key: String,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// An open archive.
+pub struct Npz {
+    reader: NpzReader<BufReader<File>>,
+    keys: Vec<String>,
+}
+
+/// A number that is either finite or not.
+trait Finite: Copy + std::fmt::Display {
+    fn is_finite(self) -> bool;
+}
+
+impl Finite for f64 {
+    fn is_finite(self) -> bool {
+        f64::is_finite(self)
+    }
+}
+
+impl Finite for Complex64 {
+    fn is_finite(self) -> bool {
+        self.re.is_finite() && self.im.is_finite()
+    }
+}
+
+impl Npz {
+    /// Opens an archive and reads its list of keys.
+    ///
+    /// # Errors
+    /// [`NpzError::Io`] or [`NpzError::Archive`].
+    pub fn open(path: &Path) -> Result<Npz, NpzError> {
+        let file = File::open(path)?;
+        if file.metadata()?.is_dir() {
+            return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder; expected an .npz file").into());
+        }
+        let archive = |error: ReadNpzError| match error {
+            ReadNpzError::Zip(error) => NpzError::Archive(error.to_string()),
+            ReadNpzError::Npy(error) => NpzError::Archive(error.to_string()),
+        };
+        let mut reader = NpzReader::new(BufReader::new(file)).map_err(archive)?;
+        let keys = reader.names().map_err(archive)?;
+        Ok(Npz { reader, keys })
+    }
+
+    /// The keys of the archive.
+    pub fn keys(&self) -> &[String] {
+        &self.keys
+    }
+
+    /// Whether the archive has an array under `key`.
+    pub fn has(&self, key: &str) -> bool {
+        self.keys.iter().any(|k| k == key)
+    }
+
+    /// Real numbers under `key`, from f64, f32, i64 or i32 arrays; all finite.
+    ///
+    /// # Errors
+    /// [`NpzError`] names the key and what was expected of it.
+    pub fn reals<D: Dimension>(&mut self, key: &str) -> Result<Array<f64, D>, NpzError> {
+        let values = match self.read::<f64, D>(key)? {
+            Ok(values) => values,
+            Err(_) => match self.read::<f32, D>(key)? {
+                Ok(values) => values.mapv(f64::from),
+                Err(_) => match self.read::<i64, D>(key)? {
+                    Ok(values) => values.mapv(|v| v as f64),
+                    Err(_) => match self.read::<i32, D>(key)? {
+                        Ok(values) => values.mapv(f64::from),
+                        Err(found) => return Err(type_error(key, found, "real numbers (float64)")),
+                    },
+                },
+            },
+        };
+        all_finite(key, values)
+    }
+
+    /// Complex numbers under `key`, from complex128 or complex64 arrays; all finite.
+    ///
+    /// # Errors
+    /// [`NpzError`] names the key and what was expected of it.
+    pub fn complexes<D: Dimension>(&mut self, key: &str) -> Result<Array<Complex64, D>, NpzError> {
+        let values = match self.read::<Complex64, D>(key)? {
+            Ok(values) => values,
+            Err(_) => match self.read::<Complex32, D>(key)? {
+                Ok(values) => values.mapv(|v| Complex64::new(v.re.into(), v.im.into())),
+                Err(found) => return Err(type_error(key, found, "complex numbers (complex128)")),
+            },
+        };
+        all_finite(key, values)
+    }
+
+    /// Reads an array of exactly this type; the inner error is the name of another type that was found.
+    fn read<T: ReadableElement, D: Dimension>(&mut self, key: &str) -> Result<Result<Array<T, D>, String>, NpzError> {
+        if !self.has(key) {
+            let found = if self.keys.is_empty() { "nothing".to_owned() } else { self.keys.join(", ") };
+            return Err(NpzError::Missing { key: key.to_owned(), found });
+        }
+        let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
+        match self.reader.by_name(key) {
+            Ok(values) => Ok(Ok(values)),
+            Err(ReadNpzError::Npy(ReadNpyError::WrongDescriptor(found))) => Ok(Err(found.to_string())),
+            Err(ReadNpzError::Npy(ReadNpyError::WrongNdim(expected, found))) => Err(NpzError::Shape {
+                key: key.to_owned(),
+                found: format!("with {found} dimensions"),
+                expected: format!("{} dimensions", expected.unwrap_or_default()),
+            }),
+            Err(ReadNpzError::Npy(error)) => Err(damaged(error.to_string())),
+            Err(ReadNpzError::Zip(error)) => Err(damaged(error.to_string())),
+        }
+    }
+}
+
+fn type_error(key: &str, found: String, expected: &'static str) -> NpzError {
+    NpzError::Type { key: key.to_owned(), found, expected }
+}
+
+fn all_finite<T: Finite, D: Dimension>(key: &str, values: Array<T, D>) -> Result<Array<T, D>, NpzError> {
+    match values.view().into_dyn().indexed_iter().find(|(_, v)| !v.is_finite()) {
+        Some((index, value)) => Err(NpzError::NotFinite {
+            key: key.to_owned(),
+            index: ndarray::Dimension::slice(&index).to_vec(),
+            value: value.to_string(),
+        }),
+        None => Ok(values),
+    }
+}
+
+/// An archive being written.
+pub struct NpzOutput<'a> {
+    writer: NpzWriter<&'a mut BufWriter<NamedTempFile>>,
+}
+
+impl NpzOutput<'_> {
+    /// Adds an array under `key`.
+    ///
+    /// # Errors
+    /// [`NpzError::Io`] when the disk is full.
+    pub fn add<T: WritableElement, D: Dimension>(&mut self, key: &str, array: &ArrayRef<T, D>) -> Result<(), NpzError> {
+        self.writer.add_array(key, array).map_err(write_error)
+    }
+}
+
+fn write_error(error: WriteNpzError) -> NpzError {
+    NpzError::Io(io::Error::other(error))
+}
+
+/// Writes an archive in one step, uncompressed as `numpy.savez` does: `fill` adds the arrays.
+///
+/// # Errors
+/// What `fill` returns, or [`NpzError::Io`].
+pub fn write_npz(path: &Path, fill: impl FnOnce(&mut NpzOutput) -> Result<(), NpzError>) -> Result<(), NpzError> {
+    write_atomically(path, |out| {
+        let mut output = NpzOutput { writer: NpzWriter::new(out) };
+        fill(&mut output)?;
+        output.writer.finish().map_err(write_error)?;
+        Ok(())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Ix1, Ix2, array};
+
+    fn archive() -> (tempfile::TempDir, std::path::PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.npz");
+        write_npz(&path, |out| {
+            out.add("f32", &array![1.5f32, -2.0])?;
+            out.add("ints", &array![3i64, 4])?;
+            out.add("nan", &array![0.0, f64::NAN])?;
+            out.add("complex", &array![[Complex64::new(1.0, -2.0)]])
+        })
+        .unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn numbers_of_every_width_are_read() {
+        let (_folder, path) = archive();
+        let mut npz = Npz::open(&path).unwrap();
+        assert_eq!(npz.reals::<Ix1>("f32").unwrap(), array![1.5, -2.0]);
+        assert_eq!(npz.reals::<Ix1>("ints").unwrap(), array![3.0, 4.0]);
+        assert_eq!(npz.complexes::<Ix2>("complex").unwrap(), array![[Complex64::new(1.0, -2.0)]]);
+    }
+
+    #[test]
+    fn every_fault_names_its_key() {
+        let (_folder, path) = archive();
+        let mut npz = Npz::open(&path).unwrap();
+        for (message, parts) in [
+            (npz.reals::<Ix1>("sub0").unwrap_err().to_string(), ["\"sub0\"", "f32, ints, nan, complex"]),
+            (npz.reals::<Ix1>("nan").unwrap_err().to_string(), ["\"nan\"", "[1]"]),
+            (npz.reals::<Ix2>("f32").unwrap_err().to_string(), ["1 dimensions", "2 dimensions"]),
+            (npz.reals::<Ix2>("complex").unwrap_err().to_string(), ["<c16", "float64"]),
+        ] {
+            assert!(parts.iter().all(|p| message.contains(p)), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_truncated_archive_is_no_archive() {
+        let (_folder, path) = archive();
+        let whole = std::fs::read(&path).unwrap();
+        for length in [0, 10, whole.len() / 2, whole.len() - 1] {
+            std::fs::write(&path, &whole[..length]).unwrap();
+            assert!(matches!(Npz::open(&path), Err(NpzError::Archive(_))), "{length} bytes");
+        }
+    }
+}
