@@ -1,11 +1,12 @@
 //! Every reconstruction method by name: the one list behind the command line, the tables and the app.
 
+use crate::reconstruct::nomp::Nomp;
 use crate::reconstruct::{Baseline, Reconstructor};
 use std::sync::Arc;
 
 /// Every method this build knows, in the order they are shown.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
-    vec![Arc::new(Baseline)]
+    vec![Arc::new(Baseline), Arc::new(Nomp::default())]
 }
 
 /// A method's name that is not known.

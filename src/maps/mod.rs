@@ -11,7 +11,9 @@ mod transform;
 
 pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};
 pub use log_map::{LOG_GUARD, LogMap};
-pub use transform::{Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, range_transform};
+pub use transform::{
+    Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, channels_range_transform, range_transform,
+};
 
 use crate::radar::{End, Radar};
 use crate::signal::BeatSignal;

@@ -36,7 +36,8 @@ pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
     channels_range_transform(radar, signal.samples.view())
 }
 
-fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> RangeProfiles {
+/// Range profiles of any channels, `[channels, samples]` to `[channels, range bins]`.
+pub fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> RangeProfiles {
     let fft = FftPlanner::new().plan_fft_forward(radar.samples);
     let scale = (radar.samples as f64).sqrt().recip();
     let window: Vec<f64> = hann(radar.samples).into_iter().map(|w| w * scale).collect();

@@ -3,6 +3,7 @@
 //! Everything that reconstructs, the baseline, model-based methods and networks alike, is a [`Reconstructor`].
 
 mod baseline;
+pub mod nomp;
 
 pub use baseline::Baseline;
 

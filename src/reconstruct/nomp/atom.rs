@@ -1,0 +1,81 @@
+//! The dictionary: what a scene is taken apart into.
+
+use crate::scene::{Line, Object, Point};
+
+/// One object without its gain. Distances in metres; y and -y look alike to a line array, y is kept at 0 or above.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Atom {
+    /// One reflector.
+    Point {
+        /// Position along the array.
+        x: f64,
+        /// Position ahead of the array.
+        y: f64,
+    },
+    /// Reflectors of equal strength at equal spacing along y.
+    Line {
+        /// Position along the array.
+        x: f64,
+        /// y of the first reflector.
+        start: f64,
+        /// Distance between neighbours.
+        spacing: f64,
+        /// Number of reflectors.
+        count: usize,
+    },
+}
+
+impl Atom {
+    /// Number of continuous parameters: (x, y) or (x, start, spacing).
+    pub fn parameters(&self) -> usize {
+        match self {
+            Atom::Point { .. } => 2,
+            Atom::Line { .. } => 3,
+        }
+    }
+
+    /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameters`].
+    pub fn moved(&self, step: &[f64]) -> Atom {
+        match *self {
+            Atom::Point { x, y } => Atom::Point { x: x + step[0], y: (y + step[1]).abs() },
+            Atom::Line { x, start, spacing, count } => {
+                Atom::Line { x: x + step[0], start: start + step[1], spacing: spacing + step[2], count }
+            }
+        }
+    }
+
+    /// Number of reflectors.
+    pub fn reflectors(&self) -> usize {
+        match self {
+            Atom::Point { .. } => 1,
+            Atom::Line { count, .. } => *count,
+        }
+    }
+
+    /// Position (x, y) of reflector `i`.
+    pub fn position(&self, i: usize) -> [f64; 2] {
+        match *self {
+            Atom::Point { x, y } => [x, y],
+            Atom::Line { x, start, spacing, .. } => [x, start + i as f64 * spacing],
+        }
+    }
+
+    /// How reflector `i`'s (x, y) follow the parameters: for each parameter, its share of a step in x and in y.
+    pub fn share(&self, i: usize, parameter: usize) -> [f64; 2] {
+        match parameter {
+            0 => [1.0, 0.0],
+            1 => [0.0, 1.0],
+            _ => [0.0, i as f64],
+        }
+    }
+
+    /// The object of a scene that this atom stands for.
+    pub fn object(&self, reflectivity: f64) -> Object {
+        match *self {
+            Atom::Point { x, y } => Object::Point(Point { x_metres: x, y_metres: y, reflectivity }),
+            Atom::Line { x, start, spacing, count } => {
+                Object::Line(Line { x_metres: x, y_start_metres: start, spacing_metres: spacing, count, reflectivity })
+            }
+        }
+    }
+}

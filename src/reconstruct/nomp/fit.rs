@@ -1,0 +1,254 @@
+//! Least-squares fit of a set of atoms to the samples: Levenberg-Marquardt on positions, gains solved exactly at every step.
+//!
+//! The samples are linear in the gains, so the gains are projected out (variable projection, Golub and Pereyra 1973, in Kaufman's
+//! approximation): only positions are searched. Normal equations are good enough for the *step*; the residual itself is always
+//! formed from samples, so accuracy is that of f64 and not of its square root.
+
+use super::atom::Atom;
+use super::sensor::Sensor;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, MatRef, Side};
+use num_complex::Complex64;
+
+/// Which samples share one gain for each atom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tie {
+    /// Each end has its own gain: the position follows from ranges and from the phases inside each end. No ambiguity.
+    PerEnd,
+    /// Both ends share the gain: the carrier's phase between the ends counts. Twenty times finer, and ambiguous by whole columns.
+    Both,
+}
+
+/// Samples, their weights and what they are to be explained with.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    /// Geometry of the samples.
+    pub sensor: &'a Sensor,
+    /// The samples to explain, already times `window`.
+    pub samples: &'a [Complex64],
+    /// Weight of each sample of a chirp.
+    pub window: &'a [f64],
+}
+
+/// Atoms with their gains, and what they leave unexplained.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The atoms.
+    pub atoms: Vec<Atom>,
+    /// Gain of each atom at the first and at the last end.
+    pub gains: Vec<[Complex64; 2]>,
+    /// Samples minus atoms.
+    pub residual: Vec<Complex64>,
+    /// Energy of the residual.
+    pub cost: f64,
+}
+
+/// Everything known about one set of atoms.
+struct State {
+    fit: Fit,
+    /// Gram matrix of values and derivatives for each block of samples that shares gains.
+    grams: Vec<Mat<Complex64>>,
+    /// Products of values and derivatives with the residual, for each block.
+    slopes: Vec<Vec<Complex64>>,
+    /// Column of each atom's value; its derivatives follow.
+    first_column: Vec<usize>,
+}
+
+impl Problem<'_> {
+    /// Rows of the blocks that have their own gains, and the ends that each block holds.
+    fn blocks(&self, tie: Tie) -> Vec<(std::ops::Range<usize>, std::ops::Range<usize>)> {
+        let end = self.sensor.end_len();
+        match tie {
+            Tie::PerEnd => vec![(0..end, 0..1), (end..2 * end, 1..2)],
+            Tie::Both => vec![(0..2 * end, 0..2)],
+        }
+    }
+
+    /// Gains and residual for `atoms` where they are.
+    pub fn solve(&self, atoms: &[Atom], tie: Tie) -> Fit {
+        self.state(atoms.to_vec(), tie, &vec![false; atoms.len()]).fit
+    }
+
+    /// Columns of every atom, and of its derivatives where `moving`; gains, residual and products.
+    fn state(&self, atoms: Vec<Atom>, tie: Tie, moving: &[bool]) -> State {
+        let rows = self.sensor.sample_count();
+        let mut first_column = Vec::with_capacity(atoms.len());
+        let mut columns = 0;
+        for (atom, moving) in atoms.iter().zip(moving) {
+            first_column.push(columns);
+            columns += 1 + if *moving { atom.parameters() } else { 0 };
+        }
+        let mut flat = vec![Complex64::default(); rows * columns];
+        let mut rest = flat.chunks_exact_mut(rows);
+        for (atom, moving) in atoms.iter().zip(moving) {
+            let wanted = 1 + if *moving { atom.parameters() } else { 0 };
+            let mut own: Vec<&mut [Complex64]> = rest.by_ref().take(wanted).collect();
+            self.sensor.add_atom(atom, self.window, &mut own);
+        }
+        let all = MatRef::from_column_major_slice(&flat, rows, columns);
+
+        let mut gains = vec![[Complex64::default(); 2]; atoms.len()];
+        let mut residual = self.samples.to_vec();
+        let (mut grams, mut slopes) = (Vec::new(), Vec::new());
+        for (block, ends) in self.blocks(tie) {
+            let part = all.subrows(block.start, block.len());
+            let gram = part.adjoint() * part;
+            let values = Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(first_column[i], first_column[j])]);
+            let solver = Ridge::new(&values);
+            // The second pass removes what the squared condition number of the normal equations left.
+            for _ in 0..2 {
+                let rhs = Mat::from_fn(atoms.len(), 1, |i, _| {
+                    dot(&flat[first_column[i] * rows..][block.clone()], &residual[block.clone()])
+                });
+                let step = solver.solve(&rhs);
+                for (i, gain) in gains.iter_mut().enumerate() {
+                    let column = &flat[first_column[i] * rows..][block.clone()];
+                    for (r, v) in residual[block.clone()].iter_mut().zip(column) {
+                        *r -= v * step[(i, 0)];
+                    }
+                    ends.clone().for_each(|e| gain[e] += step[(i, 0)]);
+                }
+            }
+            slopes
+                .push((0..columns).map(|j| dot(&flat[j * rows..][block.clone()], &residual[block.clone()])).collect());
+            grams.push(gram);
+        }
+        let cost = energy(&residual);
+        State { fit: Fit { atoms, gains, residual, cost }, grams, slopes, first_column }
+    }
+
+    /// Moves the atoms marked in `moving` to a local minimum of the residual's energy. Stops early when the energy falls below `enough`.
+    pub fn refine(&self, atoms: Vec<Atom>, tie: Tie, moving: &[bool], limits: Limits) -> Fit {
+        let mut state = self.state(atoms, tie, moving);
+        let mut damping = 1e-3;
+        for _ in 0..limits.iterations {
+            if state.fit.cost <= limits.enough || !moving.contains(&true) {
+                break;
+            }
+            let (hessian, gradient) = self.normal_equations(&state, tie, moving);
+            let mut accepted = None;
+            for _ in 0..6 {
+                let Some(step) = damped_step(&hessian, &gradient, damping) else {
+                    damping *= 10.0;
+                    continue;
+                };
+                let mut at = 0;
+                let atoms = state.fit.atoms.iter().zip(moving).map(|(atom, moving)| {
+                    if !*moving {
+                        return *atom;
+                    }
+                    let own = &step[at..at + atom.parameters()];
+                    at += atom.parameters();
+                    atom.moved(own)
+                });
+                let trial = self.state(atoms.collect(), tie, moving);
+                if trial.fit.cost < state.fit.cost {
+                    accepted = Some(trial);
+                    damping = (damping * 0.1).max(1e-12);
+                    break;
+                }
+                damping *= 10.0;
+            }
+            let Some(trial) = accepted else { break };
+            let gained = 1.0 - trial.fit.cost / state.fit.cost;
+            state = trial;
+            if gained < limits.least_gain {
+                break;
+            }
+        }
+        state.fit
+    }
+
+    /// Gauss-Newton matrix and gradient for the parameters of the moving atoms, gains projected out.
+    fn normal_equations(&self, state: &State, tie: Tie, moving: &[bool]) -> (Mat<f64>, Vec<f64>) {
+        let atoms = &state.fit.atoms;
+        // (atom, column) of every parameter.
+        let parameters: Vec<(usize, usize)> = (0..atoms.len())
+            .filter(|&i| moving[i])
+            .flat_map(|i| (0..atoms[i].parameters()).map(move |k| (i, k)))
+            .map(|(i, k)| (i, state.first_column[i] + 1 + k))
+            .collect();
+        let size = parameters.len();
+        let mut hessian = Mat::<f64>::zeros(size, size);
+        let mut gradient = vec![0.0; size];
+        for (b, (_, ends)) in self.blocks(tie).into_iter().enumerate() {
+            let gram = &state.grams[b];
+            let gain = |atom: usize| state.fit.gains[atom][ends.start];
+            let values =
+                Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(state.first_column[i], state.first_column[j])]);
+            let cross = Mat::from_fn(atoms.len(), size, |i, j| {
+                gram[(state.first_column[i], parameters[j].1)] * gain(parameters[j].0)
+            });
+            let projected = Ridge::new(&values).solve(&cross);
+            let explained = cross.adjoint() * &projected;
+            for (j, &(aj, cj)) in parameters.iter().enumerate() {
+                gradient[j] += (gain(aj).conj() * state.slopes[b][cj]).re;
+                for (k, &(ak, ck)) in parameters.iter().enumerate() {
+                    let product = gain(aj).conj() * gain(ak) * gram[(cj, ck)];
+                    hessian[(j, k)] += product.re - explained[(j, k)].re;
+                }
+            }
+        }
+        (hessian, gradient)
+    }
+}
+
+/// When a refinement ends.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Most steps.
+    pub iterations: usize,
+    /// Residual energy that is good enough.
+    pub enough: f64,
+    /// A step that lowers the energy by a smaller part than this is the last.
+    pub least_gain: f64,
+}
+
+/// Solver of a positive semi-definite system, scaled to unit diagonal, with a ridge of rounding size.
+struct Ridge {
+    factor: Option<faer::linalg::solvers::Llt<Complex64>>,
+    scale: Vec<f64>,
+}
+
+impl Ridge {
+    fn new(matrix: &Mat<Complex64>) -> Self {
+        let n = matrix.nrows();
+        let scale: Vec<f64> =
+            (0..n).map(|i| if matrix[(i, i)].re > 0.0 { matrix[(i, i)].re.sqrt().recip() } else { 0.0 }).collect();
+        let factor = [1e-14, 1e-11, 1e-8, 1e-4].iter().find_map(|ridge| {
+            let scaled =
+                Mat::from_fn(n, n, |i, j| matrix[(i, j)] * (scale[i] * scale[j]) + if i == j { *ridge } else { 0.0 });
+            scaled.llt(Side::Lower).ok()
+        });
+        Ridge { factor, scale }
+    }
+
+    /// The solution, or zeros for a system that has none.
+    fn solve(&self, rhs: &Mat<Complex64>) -> Mat<Complex64> {
+        let Some(factor) = &self.factor else { return Mat::zeros(rhs.nrows(), rhs.ncols()) };
+        let scaled = Mat::from_fn(rhs.nrows(), rhs.ncols(), |i, j| rhs[(i, j)] * self.scale[i]);
+        let x = factor.solve(&scaled);
+        Mat::from_fn(rhs.nrows(), rhs.ncols(), |i, j| x[(i, j)] * self.scale[i])
+    }
+}
+
+/// Solution of `(H + damping diag H) step = gradient`, or `None` where H is not positive definite.
+fn damped_step(hessian: &Mat<f64>, gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let n = gradient.len();
+    let scale: Vec<f64> = (0..n).map(|i| hessian[(i, i)].abs().max(f64::MIN_POSITIVE).sqrt().recip()).collect();
+    let scaled =
+        Mat::from_fn(n, n, |i, j| hessian[(i, j)] * scale[i] * scale[j] + if i == j { damping + 1e-14 } else { 0.0 });
+    let rhs = Mat::from_fn(n, 1, |i, _| gradient[i] * scale[i]);
+    let step = scaled.llt(Side::Lower).ok()?.solve(&rhs);
+    let step: Vec<f64> = (0..n).map(|i| step[(i, 0)] * scale[i]).collect();
+    step.iter().all(|s| s.is_finite() && s.abs() < 1e3).then_some(step)
+}
+
+fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {
+    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+}
+
+/// Sum of squared magnitudes.
+pub fn energy(v: &[Complex64]) -> f64 {
+    v.iter().map(Complex64::norm_sqr).sum()
+}

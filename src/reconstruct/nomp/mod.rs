@@ -1,0 +1,95 @@
+//! Newtonized orthogonal matching pursuit in (x, y), with the exact near-field model of all samples of both ends.
+//!
+//! After Mamandipoor, Ramasamy and Madhow, "Newtonized Orthogonal Matching Pursuit: Frequency Estimation Over the Continuum" (2016):
+//! detect the strongest cell of the residual, move it to its best place by Newton steps, then move everything found so far together,
+//! and repeat. The exact simulator draws the map of what was found.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `atom` | the dictionary: one reflector, or a line of them |
+//! | `sensor` | what an atom leaves in the samples, and its derivatives |
+//! | `detect` | strongest cells of a residual, both ends registered |
+//! | `fit` | Levenberg-Marquardt on positions, gains projected out |
+//! | `search` | the greedy loop and its second thoughts |
+//! | `draw` | expected map of the objects found |
+
+mod atom;
+mod detect;
+mod draw;
+mod fit;
+mod search;
+mod sensor;
+#[cfg(test)]
+mod tests;
+
+pub use atom::Atom;
+pub use search::{Found, Settings, find};
+
+use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
+use crate::maps::RangeAngleMap;
+use crate::radar::Radar;
+use crate::signal::{Floor, TwoEnds};
+use draw::{Noise, Weighted, expected_lambda};
+use ndarray::Array2;
+
+/// Detect, refine, draw: objects from the raw samples, and the exact map of them.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Nomp {
+    settings: Settings,
+}
+
+impl Nomp {
+    /// With other limits than the default ones.
+    pub fn with_settings(settings: Settings) -> Self {
+        Nomp { settings }
+    }
+}
+
+impl Reconstructor for Nomp {
+    fn name(&self) -> &'static str {
+        "nomp"
+    }
+
+    fn description(&self) -> &'static str {
+        "finds reflectors and lines by Newton steps on the raw samples, then draws their exact map"
+    }
+
+    fn eta(&self) -> f32 {
+        0.89
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        check_ends(radar, ends)?;
+        let found = find(radar, ends, request, &self.settings)?;
+        Ok(found.reconstruction(radar, request))
+    }
+}
+
+impl Found {
+    /// The map of what was found, over the floor that `request` names.
+    pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
+        if self.atoms.is_empty() {
+            let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
+            return Reconstruction { lambda, reflectors: Vec::new() };
+        }
+        let objects: Vec<Weighted> = self
+            .atoms
+            .iter()
+            .zip(&self.reflectivities)
+            .map(|(&atom, &reflectivity)| Weighted { atom, reflectivity })
+            .collect();
+        let noise = match request.floor {
+            Floor::Thesis => Noise::Rounding,
+            Floor::Exact => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
+            Floor::Snr(_) => Noise::Variance(self.residual_variance),
+        };
+        let lambda = expected_lambda(radar, &objects, noise, request.normalisation);
+        let reflectors = objects.iter().flat_map(|o| o.atom.object(o.reflectivity / self.scale).reflectors()).collect();
+        Reconstruction { lambda, reflectors }
+    }
+}

@@ -1,0 +1,93 @@
+//! Whole reconstructions of known scenes.
+
+use super::*;
+use crate::evaluate::{detection_rates, squared_error};
+use crate::maps::{LogMaps, Normalisation};
+use crate::reconstruct::Task;
+use crate::scene::Scene;
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::simulate;
+use num_complex::Complex64;
+
+fn ends_of(radar: &Radar, scene: &Scene) -> TwoEnds {
+    simulate(radar, scene, Floor::Thesis, 0).unwrap().two_ends(radar)
+}
+
+/// Largest distance from a reflector of `scene` to the nearest one found, y and -y being the same.
+fn worst_error_metres(scene: &Scene, found: &Reconstruction) -> f64 {
+    let nearest = |r: &crate::scene::Reflector| {
+        let distances = found.reflectors.iter().map(|f| (f.x_metres - r.x_metres).hypot(f.y_metres - r.y_metres.abs()));
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    scene.reflectors().iter().map(nearest).fold(0.0, f64::max)
+}
+
+#[test]
+fn points_are_found_to_rounding_and_drawn_to_the_floor() {
+    let radar = Radar::default();
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 7);
+    for kind in [Kind::Set1, Kind::Set2] {
+        let scene = generator.scene(kind, 1);
+        let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
+        let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax);
+        let found = Nomp::default().reconstruct(&radar, &signal.two_ends(&radar), &Request::default()).unwrap();
+        assert_eq!(found.reflectors.len(), scene.reflector_count(), "{kind:?}");
+        assert!(worst_error_metres(&scene, &found) < 1e-8, "{kind:?}: {:e}", worst_error_metres(&scene, &found));
+        let error = squared_error(&target, &found.lambda);
+        assert!(error < 800.0, "{kind:?}: SE {error}");
+        let (detection, alarms) = detection_rates(&target, &found.lambda, Nomp::default().eta());
+        assert!(detection.unwrap() > 0.97 && alarms < 5e-4, "{kind:?}: {detection:?} {alarms}");
+    }
+}
+
+#[test]
+fn silence_is_an_empty_scene() {
+    let radar = Radar::default();
+    let ends = ends_of(&radar, &Scene::default());
+    let found = Nomp::default().reconstruct(&radar, &ends, &Request::default()).unwrap();
+    assert!(found.reflectors.is_empty() && found.lambda.lambda.iter().all(|v| *v == 0.0));
+}
+
+#[test]
+fn gain_changes_neither_positions_nor_map() {
+    let radar = Radar::default();
+    let scene = Scene::of_points([(4.0, 9.0), (-12.0, 15.0)]);
+    let ends = ends_of(&radar, &scene);
+    let plain = Nomp::default().reconstruct(&radar, &ends, &Request::default()).unwrap();
+    for gain in [Complex64::from(1e-20), Complex64::new(0.0, 1e20)] {
+        let scaled = TwoEnds { first: ends.first.mapv(|v| v * gain), last: ends.last.mapv(|v| v * gain) };
+        let found = Nomp::default().reconstruct(&radar, &scaled, &Request::default()).unwrap();
+        assert!(worst_error_metres(&scene, &found) < 1e-8);
+        for (a, b) in found.reflectors.iter().zip(&plain.reflectors) {
+            assert!((a.reflectivity / gain.norm() / b.reflectivity - 1.0).abs() < 1e-9);
+        }
+        let worst =
+            found.lambda.lambda.iter().zip(&plain.lambda.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst < 1e-3, "{worst}");
+    }
+}
+
+#[test]
+fn noise_alone_and_one_sample_give_a_bounded_answer() {
+    let radar = Radar::default();
+    let mut noise = crate::signal::BeatSignal::silence(&radar);
+    crate::signal::floor::add_noise(&mut noise, &vec![1.0; radar.elements], 3);
+    let found = Nomp::default().reconstruct(&radar, &noise.two_ends(&radar), &Request::default()).unwrap();
+    assert!(found.reflectors.len() <= 1, "noise is not a scene: {:?}", found.reflectors);
+
+    let mut one = ends_of(&radar, &Scene::default());
+    one.first[[3, 100]] = Complex64::from(1.0);
+    let found = Nomp::default().reconstruct(&radar, &one, &Request::default()).unwrap();
+    assert!(found.lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)));
+    assert!(found.reflectors.iter().all(|r| r.x_metres.is_finite() && r.reflectivity.is_finite()));
+}
+
+#[test]
+fn a_cancelled_request_ends_with_an_error() {
+    let radar = Radar::default();
+    let task = Task::default();
+    task.cancel();
+    let request = Request { task, ..Request::default() };
+    let ends = ends_of(&radar, &Scene::of_points([(4.0, 9.0)]));
+    assert_eq!(Nomp::default().reconstruct(&radar, &ends, &request), Err(ReconstructError::Cancelled));
+}
