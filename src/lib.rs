@@ -9,6 +9,7 @@ pub mod interact;
 pub mod live;
 pub mod maps;
 pub mod methods;
+pub mod picture;
 pub mod radar;
 pub mod reconstruct;
 pub mod scene;

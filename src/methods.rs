@@ -9,6 +9,11 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
     vec![Arc::new(Baseline), Arc::new(Nomp::default())]
 }
 
+/// The method whose output is shown where nobody chose one.
+pub fn preferred() -> Arc<dyn Reconstructor> {
+    by_name("live").unwrap_or_else(|_| Arc::new(Baseline))
+}
+
 /// A method's name that is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown method \"{name}\"; known: {known}")]

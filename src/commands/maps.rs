@@ -1,9 +1,12 @@
 //! `apertura maps`: the maps of one scene, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
-use super::{CommandError, print};
+use super::{CommandError, picture, print};
 use crate::files::npz::write_npz;
-use crate::maps::{self, Aperture, network_input};
+use crate::files::write_bytes;
+use crate::maps::{self, Aperture, Normalisation, network_input};
+use crate::methods;
+use crate::picture::ColourMap;
 use crate::radar::{Carrier, End, Radar};
 use crate::scene::{Scene, file, npz};
 use crate::signal::{self, BeatSignal};
@@ -31,6 +34,18 @@ pub struct Args {
     #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way")]
     carrier: Option<Carrier>,
 
+    /// Picture: how decades become Lambda, min-max (the thesis) or db=RANGE (below the peak)
+    #[arg(long, value_name = "min-max|db=RANGE", default_value_t = Normalisation::MinMax)]
+    normalisation: Normalisation,
+
+    /// Picture: reconstruction to show as the output [default: the best at hand]
+    #[arg(long, value_name = "NAME")]
+    method: Option<String>,
+
+    /// Picture: colours of the maps
+    #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
+    colours: ColourMap,
+
     /// Seed of the thermal noise of --floor snr=DB
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
@@ -48,6 +63,20 @@ impl Args {
             signal::simulate(&radar, &scene, self.floor.floor, self.seed).map_err(CommandError::on(&self.scene))?;
         match output {
             Output::Archive => write_archive(&self.output, &radar, &scene, &signal)?,
+            Output::Picture => {
+                let method = match &self.method {
+                    Some(name) => methods::by_name(name).map_err(CommandError::failed)?,
+                    None => methods::preferred(),
+                };
+                let style = picture::Style {
+                    floor: self.floor.floor,
+                    normalisation: self.normalisation,
+                    colours: self.colours,
+                };
+                let bytes = picture::draw(&radar, &scene, &signal, method.as_ref(), &style)?;
+                write_bytes(&self.output, &bytes)
+                    .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
+            }
         }
         print(&format!("wrote {}", self.output.display()))
     }
@@ -55,12 +84,14 @@ impl Args {
 
 enum Output {
     Archive,
+    Picture,
 }
 
 impl Output {
     fn of_path(path: &Path) -> Result<Output, CommandError> {
         match path.extension().map(|e| e.to_ascii_lowercase()).as_deref().and_then(|e| e.to_str()) {
             Some("npz") => Ok(Output::Archive),
+            Some("png") => Ok(Output::Picture),
             _ => Err(CommandError::Usage(format!(
                 "{}: can't tell what to write from this name; expected one ending in .npz or .png",
                 path.display()

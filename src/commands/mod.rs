@@ -5,9 +5,11 @@
 
 mod arguments;
 mod error;
+mod evaluate;
 mod maps;
 mod open;
 mod output;
+mod picture;
 mod scenes;
 
 pub use error::CommandError;
@@ -33,6 +35,7 @@ struct Cli {
 /// What the program can do beside opening its window.
 #[derive(Debug, Subcommand)]
 enum Command {
+    Evaluate(evaluate::Args),
     Maps(maps::Args),
     Scenes(scenes::Args),
 }
@@ -40,6 +43,7 @@ enum Command {
 impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
+            Command::Evaluate(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Scenes(args) => args.run(),
         }

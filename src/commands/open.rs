@@ -1,7 +1,13 @@
 //! No subcommand: the app, or a picture where there is no display.
 
-use super::CommandError;
-use std::path::PathBuf;
+use super::{CommandError, picture, print};
+use crate::files::write_bytes;
+use crate::methods;
+use crate::picture::is_our_png;
+use crate::scene::file::{self, SceneFile};
+use crate::scene::presets;
+use crate::signal;
+use std::path::{Path, PathBuf};
 
 /// What to open.
 #[derive(Debug, clap::Args)]
@@ -14,9 +20,59 @@ pub struct Args {
     pub frame_log: Option<PathBuf>,
 }
 
+/// Name of the picture drawn where there is no display.
+const PICTURE: &str = "apertura.png";
+
 impl Args {
-    /// Opens the app.
+    /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
     pub fn run(self) -> Result<(), CommandError> {
-        super::print("the app is not part of this build; try: apertura --help")
+        let file = match &self.scene {
+            Some(path) => file::load(path).map_err(CommandError::failed)?,
+            None => presets::default_scene(),
+        };
+        eprintln!("apertura: {}; drawing the scene's panels to a picture instead", no_window());
+        draw_instead(&file)
+    }
+}
+
+/// Why there is no window.
+fn no_window() -> &'static str {
+    "this build has no app"
+}
+
+fn draw_instead(file: &SceneFile) -> Result<(), CommandError> {
+    let SceneFile { scene, radar } = file;
+    let style = picture::Style::default();
+    let signal = signal::simulate(radar, scene, style.floor, 0).map_err(CommandError::failed)?;
+    let bytes = picture::draw(radar, scene, &signal, methods::preferred().as_ref(), &style)?;
+    let path = free_name(Path::new("."));
+    write_bytes(&path, &bytes).map_err(|source| CommandError::File { path: path.clone(), source })?;
+    print(&format!("wrote {}", path.display()))
+}
+
+/// `apertura.png`, or `apertura-2.png` and so on where that name is taken by a file that this program did not draw.
+fn free_name(folder: &Path) -> PathBuf {
+    let ours = |path: &Path| std::fs::read(path).is_ok_and(|bytes| is_our_png(&bytes));
+    let name = |number: u32| if number == 1 { PICTURE.to_owned() } else { format!("apertura-{number}.png") };
+    let mut number = 1;
+    loop {
+        let path = if folder == Path::new(".") { name(number).into() } else { folder.join(name(number)) };
+        if std::fs::symlink_metadata(&path).is_err() || ours(&path) {
+            return path;
+        }
+        number += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_of_somebody_else_keeps_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(free_name(folder.path()), folder.path().join("apertura.png"));
+        std::fs::write(folder.path().join("apertura.png"), "my holiday").unwrap();
+        assert_eq!(free_name(folder.path()), folder.path().join("apertura-2.png"));
     }
 }

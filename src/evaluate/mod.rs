@@ -1,5 +1,6 @@
 //! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables.
 
+pub mod campaign;
 mod metrics;
 mod roc;
 pub mod tables;

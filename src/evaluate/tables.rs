@@ -32,6 +32,24 @@ pub struct Printed {
     pub false_alarm: f64,
 }
 
+impl Printed {
+    /// How far the printed rates are rounded: half of the last printed digit, as fractions (P_D, P_FA).
+    ///
+    /// All are printed with two decimals of a percent, but for the baseline's on set 1 (12.4 % and 0.2 %).
+    pub fn rate_rounding(&self) -> f64 {
+        if *self == PRINTED_BASELINE[0] { 0.05e-2 } else { 0.005e-2 }
+    }
+}
+
+impl Estimate {
+    /// Standard errors from this estimate to the nearest value that is printed as `printed`, signed; rounding apart it is
+    /// `(mean - printed) / standard_error`.
+    pub fn deviation_from(&self, printed: f64, rounding: f64) -> f64 {
+        let off = self.mean - printed;
+        off.signum() * (off.abs() - rounding).max(0.0) / self.standard_error
+    }
+}
+
 /// The thesis' baseline column, by set.
 pub const PRINTED_BASELINE: [Printed; 3] = [
     Printed { squared_error: 20565.30, detection: 0.124, false_alarm: 0.002 },
@@ -109,6 +127,14 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn deviations_allow_for_the_printed_digits() {
+        let e = Estimate { mean: 0.0021, standard_error: 0.0001 };
+        assert!((e.deviation_from(0.002, 0.0) - 1.0).abs() < 1e-9);
+        assert_eq!(e.deviation_from(0.002, PRINTED_BASELINE[0].rate_rounding()), 0.0);
+        assert!((e.deviation_from(0.003, 0.0005) + 4.0).abs() < 1e-9);
+    }
 
     #[test]
     fn standard_error_of_known_values() {

@@ -1,0 +1,251 @@
+//! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values.
+
+use super::arguments::{self, FloorArgs, TestSet};
+use super::{CommandError, print};
+use crate::evaluate::campaign::Campaign;
+use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
+use crate::methods;
+use crate::radar::{Carrier, Radar};
+use crate::reconstruct::{Reconstructor, Task};
+use crate::scene::generate::Reading;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
+///
+/// With --json one object is printed: count, seed, floor, carrier, and sets, each with its number, what the thesis prints
+/// (baseline, experiment_1, experiment_2) and methods, each with name, eta, squared_error, detection and false_alarm (mean and
+/// standard_error), detection_at_printed_false_alarm (false_alarm, detection, eta; the printed rate is experiment 2's) and
+/// median_milliseconds. Rates are fractions, not percent.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Methods, separated by commas
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
+    method: Vec<String>,
+
+    /// Test sets, separated by commas
+    #[arg(long, value_name = "1,2,3", value_delimiter = ',', default_value = "1,2,3")]
+    set: Vec<TestSet>,
+
+    /// Scenes of each set
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    count: u32,
+
+    /// Seed of the scenes
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+
+    #[command(flatten)]
+    floor: FloorArgs,
+
+    /// How the carrier's phase is read
+    #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way", default_value = "one-way")]
+    carrier: Carrier,
+
+    /// Make scenes as the thesis' text describes them, not as its author's program does
+    #[arg(long)]
+    thesis_text: bool,
+
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
+}
+
+/// What the command found; its JSON is documented in the command's help.
+#[derive(Debug, Serialize)]
+struct Report {
+    count: u32,
+    seed: u64,
+    floor: String,
+    carrier: Carrier,
+    sets: Vec<SetReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct SetReport {
+    set: usize,
+    printed: PrintedColumns,
+    methods: Vec<MethodReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct PrintedColumns {
+    baseline: Printed,
+    experiment_1: Printed,
+    experiment_2: Printed,
+}
+
+#[derive(Debug, Serialize)]
+struct MethodReport {
+    name: &'static str,
+    eta: f32,
+    squared_error: Estimate,
+    detection: Estimate,
+    false_alarm: Estimate,
+    detection_at_printed_false_alarm: Option<OperatingPoint>,
+    median_milliseconds: f64,
+}
+
+/// A point of the ROC.
+#[derive(Debug, Serialize)]
+struct OperatingPoint {
+    /// The false-alarm rate that may not be exceeded.
+    false_alarm: f64,
+    detection: f64,
+    eta: f32,
+}
+
+impl Args {
+    /// Runs every method over every set and prints the tables.
+    pub fn run(self) -> Result<(), CommandError> {
+        let methods = self
+            .method
+            .iter()
+            .map(|name| methods::by_name(name.trim()))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(CommandError::failed)?;
+        let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
+        let campaign = Campaign {
+            radar: Radar { carrier: self.carrier, ..Radar::default() },
+            reading: if self.thesis_text { Reading::Text } else { Reading::Program },
+            seed: self.seed,
+            count: self.count,
+            floor: self.floor.floor,
+            ..Campaign::default()
+        };
+        let maps = u64::from(self.count) * (self.set.len() * methods.len()) as u64;
+        // Drawn on a terminal only: indicatif hides itself where standard error is a file or a pipe.
+        let bar = ProgressBar::new(maps).with_style(bar_style());
+        let mut sets = Vec::new();
+        for set in &self.set {
+            bar.set_message(format!("set {}", set.number()));
+            let tallies =
+                campaign.run(set.kind(), &methods, &Task::default(), || bar.inc(1)).map_err(CommandError::failed)?;
+            let reports = methods.iter().zip(&tallies).map(|(m, t)| MethodReport::of(*m, t, set.number())).collect();
+            sets.push(SetReport { set: set.number(), printed: PrintedColumns::of_set(set.number()), methods: reports });
+        }
+        bar.finish_and_clear();
+        let report = Report {
+            count: self.count,
+            seed: self.seed,
+            floor: self.floor.floor.to_string(),
+            carrier: self.carrier,
+            sets,
+        };
+        if self.json {
+            print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?)
+        } else {
+            print(&report.to_text())
+        }
+    }
+}
+
+fn bar_style() -> ProgressStyle {
+    ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} maps, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+impl PrintedColumns {
+    fn of_set(set: usize) -> Self {
+        PrintedColumns {
+            baseline: PRINTED_BASELINE[set - 1],
+            experiment_1: PRINTED_EXPERIMENT_1[set - 1],
+            experiment_2: PRINTED_EXPERIMENT_2[set - 1],
+        }
+    }
+}
+
+impl MethodReport {
+    fn of(method: &dyn Reconstructor, tally: &Tally, set: usize) -> Self {
+        let false_alarm = PRINTED_EXPERIMENT_2[set - 1].false_alarm;
+        let operating_point = tally.roc().at_false_alarm(false_alarm).map(|point| OperatingPoint {
+            false_alarm,
+            detection: point.detection,
+            eta: point.eta,
+        });
+        MethodReport {
+            name: method.name(),
+            eta: method.eta(),
+            squared_error: tally.squared_error(),
+            detection: tally.detection(),
+            false_alarm: tally.false_alarm(),
+            detection_at_printed_false_alarm: operating_point,
+            median_milliseconds: tally.median_milliseconds(),
+        }
+    }
+}
+
+impl Report {
+    fn to_text(&self) -> String {
+        let carrier = match self.carrier {
+            Carrier::OneWay => "one-way",
+            Carrier::TwoWay => "two-way",
+        };
+        let mut text = format!(
+            "{} scenes a set, seed {}, floor {}, carrier {carrier}; mean \u{b1} standard error\n",
+            self.count, self.seed, self.floor
+        );
+        for set in &self.sets {
+            set.write(&mut text);
+        }
+        text.truncate(text.trim_end().len());
+        text
+    }
+}
+
+impl SetReport {
+    /// Writes table 4.`set`. Writing to a string can't fail.
+    fn write(&self, text: &mut String) {
+        let what = ["one point", "3 to 6 points", "3 to 6 points and lines"][self.set - 1];
+        let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.printed.experiment_2.false_alarm);
+        let _ = writeln!(text, "\nTable 4.{}: test set {}, {what}", self.set, self.set);
+        let _ =
+            writeln!(text, "{:<26} {:>20} {:>16} {:>16} {:>22} {:>9}", "", "SE", "P_D %", "P_FA %", rate, "ms a map");
+        for (name, printed) in [
+            ("printed: baseline", &self.printed.baseline),
+            ("printed: experiment 1", &self.printed.experiment_1),
+            ("printed: experiment 2", &self.printed.experiment_2),
+        ] {
+            let _ = writeln!(
+                text,
+                "{name:<26} {:>20.2} {:>16.2} {:>16.2}",
+                printed.squared_error,
+                100.0 * printed.detection,
+                100.0 * printed.false_alarm
+            );
+        }
+        for method in &self.methods {
+            let percent = |e: Estimate| format!("{:.2} \u{b1} {:.3}", 100.0 * e.mean, 100.0 * e.standard_error);
+            let at = method
+                .detection_at_printed_false_alarm
+                .as_ref()
+                .map_or_else(|| "-".to_owned(), |p| format!("{:.2} (eta {:.3})", 100.0 * p.detection, p.eta));
+            let _ = writeln!(
+                text,
+                "{:<26} {:>20} {:>16} {:>16} {at:>22} {:>9.1}",
+                format!("{} (eta {})", method.name, method.eta),
+                format!("{:.1} \u{b1} {:.1}", method.squared_error.mean, method.squared_error.standard_error),
+                percent(method.detection),
+                percent(method.false_alarm),
+                method.median_milliseconds
+            );
+            if method.name == "baseline" {
+                let printed = &self.printed.baseline;
+                let off = |e: Estimate, printed: f64, rounding: f64| match e.standard_error {
+                    0.0 => "-".to_owned(),
+                    _ => format!("{:+.2} s.e.", e.deviation_from(printed, rounding)),
+                };
+                let rounding = printed.rate_rounding();
+                let _ = writeln!(
+                    text,
+                    "{:<26} {:>20} {:>16} {:>16}",
+                    "  off the printed by",
+                    off(method.squared_error, printed.squared_error, 0.005),
+                    off(method.detection, printed.detection, rounding),
+                    off(method.false_alarm, printed.false_alarm, rounding)
+                );
+            }
+        }
+    }
+}

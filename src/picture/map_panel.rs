@@ -1,0 +1,159 @@
+//! One range-angle map with title, axes and colour bar.
+
+use super::text::{self, Weight};
+use super::{Area, ColourMap, FAINT_INK, HAIRLINE, INK, PictureError, colour::Rgb};
+use crate::evaluate::TARGET_ETA;
+use crate::maps::RangeAngleMap;
+use crate::radar::Radar;
+use plotters::prelude::*;
+
+/// What a panel paints.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Cells<'a> {
+    /// Lambda in colours, with a colour bar.
+    Lambda(&'a RangeAngleMap, ColourMap),
+    /// The cells above a threshold.
+    Above(&'a RangeAngleMap, f32),
+    /// The output above its threshold, told apart by whether the target has that cell.
+    Detections { target: &'a RangeAngleMap, output: &'a RangeAngleMap, eta: f32 },
+}
+
+/// A map and its title.
+#[derive(Debug, Clone)]
+pub(super) struct MapPanel<'a> {
+    pub title: String,
+    pub cells: Cells<'a>,
+}
+
+const NOTHING: Rgb = [22, 26, 34];
+const HIT: Rgb = [245, 245, 240];
+const FALSE_ALARM: Rgb = [232, 112, 38];
+const MISS: Rgb = [64, 138, 214];
+
+const TITLE_HEIGHT: i32 = 40;
+const BAR_SPACE: i32 = 62;
+
+impl MapPanel<'_> {
+    pub(super) fn draw(&self, area: &Area, radar: &Radar) -> Result<(), PictureError> {
+        let (width, height) = area.dim_in_pixel();
+        let (width, height) = (width as i32, height as i32);
+        text::line(area, (62, 8), &self.title, 21, Weight::Bold, &INK)?;
+
+        let chart_area = area.clone().shrink((0, TITLE_HEIGHT), (width - BAR_SPACE, height - TITLE_HEIGHT));
+        let (left, right) = (radar.cos_of_column(0.0), radar.cos_of_column(radar.elements as f64));
+        let mut chart = ChartBuilder::on(&chart_area)
+            .x_label_area_size(52)
+            .y_label_area_size(62)
+            .margin_right(2)
+            .build_cartesian_2d(left.min(right)..left.max(right), 0.0..radar.max_range_metres())
+            .map_err(PictureError::new)?;
+        let (x, y) = chart.plotting_area().get_pixel_range();
+        let size = ((x.end - x.start) as u32, (y.end - y.start) as u32);
+        let pixels = self.cells.paint(size.0 as usize, size.1 as usize, right < left);
+        let top_left = (left.min(right), radar.max_range_metres());
+        let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer(top_left, size, pixels)
+            .ok_or_else(|| PictureError("a map has no room".to_owned()))?;
+        chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .x_labels(5)
+            .y_labels(8)
+            .x_label_formatter(&|v| format!("{:.1}", if v.abs() < 1e-9 { 0.0 } else { *v }))
+            .y_label_formatter(&|v| format!("{v:.0}"))
+            .x_desc("cos \u{3b8}")
+            .y_desc("range (m)")
+            .label_style(text::style(16, Weight::Normal, &FAINT_INK))
+            .axis_desc_style(text::style(17, Weight::Normal, &INK))
+            .axis_style(HAIRLINE)
+            .draw()
+            .map_err(PictureError::new)?;
+
+        let (chart_x, chart_y) = area.get_pixel_range();
+        let (bar_left, bar_top, bar_height) = (x.end - chart_x.start + 12, y.start - chart_y.start, size.1 as i32);
+        match self.cells {
+            Cells::Lambda(_, colours) => colour_bar(area, (bar_left, bar_top), bar_height, colours),
+            Cells::Above(..) => Ok(()),
+            Cells::Detections { .. } => legend(area),
+        }
+    }
+}
+
+impl Cells<'_> {
+    fn dim(&self) -> (usize, usize) {
+        match self {
+            Cells::Lambda(map, _) | Cells::Above(map, _) | Cells::Detections { output: map, .. } => map.lambda.dim(),
+        }
+    }
+
+    /// RGB pixels, top row first. Where several cells fall on a pixel the most telling one wins: the brightest, a hit, a false alarm.
+    fn paint(&self, width: usize, height: usize, mirrored: bool) -> Vec<u8> {
+        let (bins, columns) = self.dim();
+        // The cells under pixel i of n, at least one.
+        let under = |i: usize, n: usize, cells: usize| {
+            let start = i * cells / n;
+            start..((i + 1) * cells / n).max(start + 1)
+        };
+        let mut pixels = Vec::with_capacity(width * height * 3);
+        for row in (0..height).rev() {
+            for column in 0..width {
+                let column = if mirrored { width - 1 - column } else { column };
+                let cells = under(row, height, bins)
+                    .flat_map(|bin| under(column, width, columns).map(move |column| [bin, column]));
+                pixels.extend(self.colour(cells));
+            }
+        }
+        pixels
+    }
+
+    fn colour(&self, cells: impl Iterator<Item = [usize; 2]>) -> Rgb {
+        match self {
+            Cells::Lambda(map, colours) => colours.colour(cells.map(|c| map.lambda[c]).fold(0.0, f32::max)),
+            Cells::Above(map, eta) => {
+                let mut cells = cells;
+                if cells.any(|c| map.lambda[c] > *eta) { HIT } else { NOTHING }
+            }
+            Cells::Detections { target, output, eta } => {
+                let rank = |c: [usize; 2]| match (target.lambda[c] > TARGET_ETA, output.lambda[c] > *eta) {
+                    (true, true) => 3,
+                    (false, true) => 2,
+                    (true, false) => 1,
+                    (false, false) => 0,
+                };
+                [NOTHING, MISS, FALSE_ALARM, HIT][cells.map(rank).max().unwrap_or(0)]
+            }
+        }
+    }
+}
+
+fn colour_bar(area: &Area, (x, y): (i32, i32), height: i32, colours: ColourMap) -> Result<(), PictureError> {
+    const WIDTH: i32 = 14;
+    for row in 0..height {
+        let [r, g, b] = colours.colour(1.0 - row as f32 / (height - 1).max(1) as f32);
+        let strip = Rectangle::new([(x, y + row), (x + WIDTH, y + row + 1)], RGBColor(r, g, b).filled());
+        area.draw(&strip).map_err(PictureError::new)?;
+    }
+    for (value, part) in [("1", 0.0), ("0.5", 0.5), ("0", 1.0)] {
+        let at = y + (f64::from(height) * part) as i32 - 8;
+        text::line(area, (x + WIDTH + 6, at), value, 15, Weight::Normal, &FAINT_INK)?;
+    }
+    text::line(area, (x, y - 24), "\u{39b}", 17, Weight::Normal, &INK)
+}
+
+/// What the colours of a detection panel mean, at the right of its title.
+fn legend(area: &Area) -> Result<(), PictureError> {
+    let (width, _) = area.dim_in_pixel();
+    let mut x = width as i32 - BAR_SPACE;
+    for (name, [r, g, b]) in [("miss", MISS), ("false alarm", FALSE_ALARM), ("hit", HIT)] {
+        let style = text::style(15, Weight::Normal, &FAINT_INK);
+        let (name_width, _) = area.estimate_text_size(name, &style).map_err(PictureError::new)?;
+        x -= name_width as i32;
+        area.draw(&Text::new(name, (x, 13), style)).map_err(PictureError::new)?;
+        x -= 19;
+        let square = [(x, 14), (x + 13, 27)];
+        area.draw(&Rectangle::new(square, RGBColor(r, g, b).filled())).map_err(PictureError::new)?;
+        area.draw(&Rectangle::new(square, FAINT_INK)).map_err(PictureError::new)?;
+        x -= 14;
+    }
+    Ok(())
+}

@@ -1,0 +1,88 @@
+//! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
+
+use super::{Area, PictureError};
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+use std::sync::OnceLock;
+
+/// Weight of a line of text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Weight {
+    Normal,
+    Bold,
+}
+
+/// The family all text is set in.
+pub(super) const FAMILY: &str = "sans-serif";
+
+/// Makes the embedded fonts known to plotters; does nothing the second time.
+pub(super) fn register_fonts() -> Result<(), PictureError> {
+    static DONE: OnceLock<Result<(), PictureError>> = OnceLock::new();
+    DONE.get_or_init(|| {
+        let broken = |_| PictureError("the embedded font is broken".to_owned());
+        register_font(FAMILY, FontStyle::Normal, include_bytes!("../../assets/fonts/DejaVuSans.ttf"))
+            .map_err(broken)?;
+        register_font(FAMILY, FontStyle::Bold, include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")).map_err(broken)
+    })
+    .clone()
+}
+
+/// A style of this size in pixels.
+pub(super) fn style(size: i32, weight: Weight, colour: &RGBColor) -> TextStyle<'static> {
+    let style = match weight {
+        Weight::Normal => FontStyle::Normal,
+        Weight::Bold => FontStyle::Bold,
+    };
+    FontDesc::new(FontFamily::Name(FAMILY), f64::from(size), style).color(colour)
+}
+
+/// One line of text, its top left corner at `at`.
+pub(super) fn line(
+    area: &Area,
+    at: (i32, i32),
+    text: &str,
+    size: i32,
+    weight: Weight,
+    colour: &RGBColor,
+) -> Result<(), PictureError> {
+    area.draw(&Text::new(text.to_owned(), at, style(size, weight, colour))).map_err(PictureError::new)
+}
+
+/// Lines broken at spaces to the area's width; what does not fit its height is left out, with an ellipsis.
+pub(super) fn paragraphs(
+    area: &Area,
+    at: (i32, i32),
+    text: &str,
+    size: i32,
+    colour: &RGBColor,
+) -> Result<(), PictureError> {
+    let (width, height) = area.dim_in_pixel();
+    let style = style(size, Weight::Normal, colour);
+    let step = size * 4 / 3;
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut current = String::new();
+        for word in paragraph.split_whitespace() {
+            let longer = if current.is_empty() { word.to_owned() } else { format!("{current} {word}") };
+            let (needed, _) = area.estimate_text_size(&longer, &style).map_err(PictureError::new)?;
+            if needed + at.0 as u32 > width && !current.is_empty() {
+                lines.push(std::mem::replace(&mut current, word.to_owned()));
+            } else {
+                current = longer;
+            }
+        }
+        lines.push(current);
+    }
+    let room = ((height as i32 - at.1) / step).max(1) as usize;
+    if lines.len() > room {
+        lines.truncate(room);
+        if let Some(last) = lines.last_mut() {
+            last.push_str(" \u{2026}");
+        }
+    }
+    for (number, text) in lines.iter().enumerate() {
+        let place = (at.0, at.1 + number as i32 * step);
+        area.draw(&Text::new(text.as_str(), place, style.clone())).map_err(PictureError::new)?;
+    }
+    Ok(())
+}
