@@ -1,0 +1,235 @@
+//! The command line from outside: good input, bad input, and nothing half-written.
+
+use apertura::files::npz::{Npz, write_npz};
+use apertura::scene::{file, npz, presets};
+use assert_cmd::Command;
+use ndarray::{Ix1, Ix2, Ix3, array, s};
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// The program in an empty folder, without a display.
+fn apertura(folder: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.current_dir(folder).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+    command
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+const TWO_POINTS: &str = "
+[[object]]
+kind = \"point\"
+x_metres = 3.0
+y_metres = 12.0
+[[object]]
+kind = \"point\"
+x_metres = -4.0
+y_metres = 20.0
+";
+
+#[test]
+fn maps_have_the_keys_and_shapes_of_the_authors_program() {
+    let folder = folder();
+    std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
+    apertura(&folder).args(["maps", "scene.toml", "-o", "maps.npz"]).assert().success().stdout(contains("maps.npz"));
+    let mut found = Npz::open(&folder.path().join("maps.npz")).unwrap();
+    assert_eq!(found.reals::<Ix1>("all_point_x").unwrap(), array![3.0, -4.0]);
+    assert_eq!(found.reals::<Ix1>("all_point_y").unwrap(), array![12.0, 20.0]);
+    for key in ["sub0", "sub1"] {
+        assert_eq!(found.complexes::<Ix2>(key).unwrap().dim(), (512, 12), "{key}");
+    }
+    let full = found.reals::<Ix3>("polar_full").unwrap();
+    assert_eq!(full.dim(), (1, 512, 1024));
+    assert!(full.iter().any(|v| *v < -10.0) && full.iter().any(|v| *v > 0.0), "decades, not normalised");
+    let input = found.reals::<Ix3>("polar_partial_mag_phase").unwrap();
+    assert_eq!(input.dim(), (4, 512, 1024));
+    let magnitude = input.slice(s![0, .., ..]).mapv(|v| v * v) + input.slice(s![1, .., ..]).mapv(|v| v * v);
+    let (min, max) = magnitude.iter().fold((f64::MAX, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
+    assert!(min < 1e-12 && (max - 1.0).abs() < 1e-9, "Lambda runs from 0 to 1, found {min} to {max}");
+    // What was written is a scene again.
+    apertura(&folder).args(["maps", "maps.npz", "-o", "again.npz"]).assert().success();
+    let again = Npz::open(&folder.path().join("again.npz")).unwrap().reals::<Ix3>("polar_full").unwrap();
+    assert_eq!(again, full);
+}
+
+#[test]
+fn the_samples_of_the_ends_are_the_first_and_last_elements() {
+    let folder = folder();
+    std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
+    apertura(&folder).args(["maps", "scene.toml", "-o", "m.npz", "--floor", "exact"]).assert().success();
+    let mut found = Npz::open(&folder.path().join("m.npz")).unwrap();
+    let scene = file::load(&folder.path().join("scene.toml")).unwrap();
+    let signal = apertura::signal::exact::beat_signal(&scene.radar, &scene.scene.reflectors());
+    let (sub0, sub1) = (found.complexes::<Ix2>("sub0").unwrap(), found.complexes::<Ix2>("sub1").unwrap());
+    for n in 0..12 {
+        for n1 in [0, 1, 255, 511] {
+            assert!((sub0[[n1, n]] - signal.samples[[n, n1]]).norm() < 1e-12 * signal.peak());
+            assert!((sub1[[n1, n]] - signal.samples[[1012 + n, n1]]).norm() < 1e-12 * signal.peak());
+        }
+    }
+}
+
+#[test]
+fn a_start_without_display_draws_the_default_scene() {
+    let folder = folder();
+    apertura(&folder).assert().success().stderr(contains("picture")).stdout(contains("apertura.png"));
+    let picture = folder.path().join("apertura.png");
+    assert!(image::open(&picture).unwrap().width() > 1000);
+    std::fs::write(&picture, "somebody's own file").unwrap();
+    apertura(&folder).assert().success().stdout(contains("apertura-2.png"));
+    assert_eq!(std::fs::read(&picture).unwrap(), b"somebody's own file");
+    assert_eq!(names(folder.path()), ["apertura-2.png", "apertura.png"]);
+}
+
+#[test]
+fn a_start_without_display_draws_the_scene_that_was_asked_for() {
+    let folder = folder();
+    apertura(&folder).arg("missing.toml").assert().failure().stderr(contains("error: missing.toml"));
+    std::fs::write(folder.path().join("s.toml"), TWO_POINTS).unwrap();
+    apertura(&folder).arg("s.toml").assert().success();
+    assert_eq!(names(folder.path()), ["apertura.png", "s.toml"]);
+}
+
+#[test]
+fn scenes_are_the_same_for_the_same_seed_in_both_formats() {
+    let folder = folder();
+    for (dir, format) in [("a", "toml"), ("b", "toml"), ("c", "npz")] {
+        apertura(&folder)
+            .args(["scenes", "--set", "3", "--count", "2", "--seed", "5", "-o", dir, "--format", format])
+            .assert()
+            .success();
+    }
+    let path = |dir: &str, name: &str| folder.path().join(dir).join(name);
+    assert_eq!(names(&folder.path().join("a")), ["set3-seed5-0000.toml", "set3-seed5-0001.toml"]);
+    let (a, b) = (path("a", "set3-seed5-0001.toml"), path("b", "set3-seed5-0001.toml"));
+    assert_eq!(std::fs::read(&a).unwrap(), std::fs::read(b).unwrap());
+    let positions: Vec<_> =
+        file::load(&a).unwrap().scene.reflectors().iter().map(|r| (r.x_metres, r.y_metres)).collect();
+    let archive = npz::read(&path("c", "set3-seed5-0001.npz")).unwrap().reflectors();
+    assert_eq!(archive.iter().map(|r| (r.x_metres, r.y_metres)).collect::<Vec<_>>(), positions);
+}
+
+#[test]
+fn evaluate_prints_the_documented_object() {
+    let folder = folder();
+    let run = || {
+        let out = apertura(&folder)
+            .args(["evaluate", "--method", "baseline", "--set", "1", "--count", "2", "--seed", "3", "--json"])
+            .assert()
+            .success();
+        serde_json::from_slice::<serde_json::Value>(&out.get_output().stdout).unwrap()
+    };
+    let (first, second) = (run(), run());
+    assert_eq!((&first["count"], &first["seed"], &first["floor"]), (&2.into(), &3.into(), &"thesis".into()));
+    let set = &first["sets"][0];
+    assert_eq!((&set["set"], &set["printed"]["baseline"]["squared_error"]), (&1.into(), &20565.3.into()));
+    let method = &set["methods"][0];
+    assert_eq!(method["name"], "baseline");
+    for key in ["squared_error", "detection", "false_alarm"] {
+        assert!(method[key]["mean"].is_f64() && method[key]["standard_error"].is_f64(), "{key}");
+        assert_eq!(method[key], second["sets"][0]["methods"][0][key], "{key} repeats");
+    }
+    assert_eq!(method["detection_at_printed_false_alarm"]["false_alarm"], 0.0037);
+    assert!(method["median_milliseconds"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn evaluate_shows_ours_beside_the_printed() {
+    let folder = folder();
+    apertura(&folder)
+        .args(["evaluate", "--set", "2", "--count", "2"])
+        .assert()
+        .success()
+        .stdout(contains("Table 4.2").and(contains("11334.99")).and(contains("1341.22")).and(contains("baseline")))
+        .stderr("");
+}
+
+#[test]
+fn bad_input_is_named_and_leaves_nothing() {
+    let folder = folder();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("good.toml", TWO_POINTS);
+    write("syntax.toml", "[[object]\n");
+    write("key.toml", "[[object]]\nkind = \"point\"\nx_metres = 1\nz_metres = 2\n");
+    write("nan.toml", "[[object]]\nkind = \"point\"\nx_metres = 1\ny_metres = nan\n");
+    write(
+        "element.toml",
+        "[radar]\nelements = 7\nend_elements = 3\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 0\n",
+    );
+    write("text.npz", "not an archive");
+    write("scene.yaml", TWO_POINTS);
+    let archive = |name: &str, keys: &[(&str, ndarray::ArrayD<f64>)]| {
+        write_npz(&folder.path().join(name), |out| keys.iter().try_for_each(|(k, v)| out.add(k, v))).unwrap();
+    };
+    archive("half.npz", &[("all_point_x", array![1.0].into_dyn())]);
+    archive("shape.npz", &[("all_point_x", array![[1.0]].into_dyn()), ("all_point_y", array![[1.0]].into_dyn())]);
+    archive("inf.npz", &[("all_point_x", array![1.0].into_dyn()), ("all_point_y", array![f64::INFINITY].into_dyn())]);
+    let whole = std::fs::read(folder.path().join("inf.npz")).unwrap();
+    std::fs::write(folder.path().join("cut.npz"), &whole[..whole.len() - 30]).unwrap();
+    let before = names(folder.path());
+
+    for (scene, parts) in [
+        ("missing.toml", ["missing.toml", "No such file"]),
+        ("syntax.toml", ["syntax.toml: line 1", "expected"]),
+        ("key.toml", ["key.toml: line 4", "z_metres"]),
+        ("nan.toml", ["nan.toml: line 4", "finite"]),
+        ("element.toml", ["element.toml: line 4", "element 3"]),
+        ("text.npz", ["text.npz", "numpy.savez"]),
+        ("half.npz", ["half.npz", "all_point_y"]),
+        ("shape.npz", ["shape.npz", "dimensions"]),
+        ("inf.npz", ["inf.npz", "finite"]),
+        ("cut.npz", ["cut.npz", "archive"]),
+        ("scene.yaml", ["scene.yaml", ".toml or .npz"]),
+    ] {
+        apertura(&folder)
+            .args(["maps", scene, "-o", "out.npz"])
+            .assert()
+            .failure()
+            .stdout("")
+            .stderr(contains("error: ").and(contains(parts[0])).and(contains(parts[1])));
+    }
+    for (arguments, part) in [
+        ("maps good.toml -o out.gif", ".npz or .png"),
+        ("maps good.toml -o nowhere/out.npz", "nowhere"),
+        ("maps good.toml -o out.npz --floor loud", "snr=DB"),
+        ("maps good.toml -o out.npz --carrier sideways", "one-way"),
+        ("maps good.toml -o out.png --method magic", "baseline"),
+        ("scenes --set 4 --count 1 -o d", "1, 2 or 3"),
+        ("scenes --set 1 --count 1 -o good.toml", "good.toml"),
+        ("evaluate --method magic", "baseline"),
+        ("evaluate --set 1,9", "1, 2 or 3"),
+        ("evaluate --count 0", "1..=1000000"),
+    ] {
+        apertura(&folder).args(arguments.split(' ')).assert().failure().stdout("").stderr(contains(part));
+    }
+    assert_eq!(names(folder.path()), before, "nothing was written");
+}
+
+#[test]
+fn a_failed_write_keeps_the_old_file() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bad.toml"), "name = 1").unwrap();
+    std::fs::write(folder.path().join("out.npz"), "precious").unwrap();
+    apertura(&folder).args(["maps", "bad.toml", "-o", "out.npz"]).assert().failure();
+    assert_eq!(std::fs::read(folder.path().join("out.npz")).unwrap(), b"precious");
+}
+
+#[test]
+fn a_picture_of_the_empty_scene_is_drawn() {
+    let folder = folder();
+    let empty = presets::Preset::by_id("empty").unwrap();
+    std::fs::write(folder.path().join("empty.toml"), empty.toml).unwrap();
+    apertura(&folder).args(["maps", "empty.toml", "-o", "empty.png"]).assert().success();
+    assert_eq!(names(folder.path()), ["empty.png", "empty.toml"]);
+}

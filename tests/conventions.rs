@@ -1,0 +1,189 @@
+//! Which way is up: where a reflector appears, what mirrors, what folds, and what strange scenes give.
+
+use apertura::evaluate::Metrics;
+use apertura::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap};
+use apertura::radar::{Carrier, Decibels, End, Radar};
+use apertura::reconstruct::{Baseline, Reconstructor, Request};
+use apertura::scene::{Object, Point, Scene, SceneError};
+use apertura::signal::{Floor, exact, simulate};
+use proptest::prelude::*;
+
+fn maps_of(radar: &Radar, scene: &Scene) -> LogMaps {
+    LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())
+}
+
+/// [range bin, column] of the largest cell.
+fn peak(map: &LogMap) -> [usize; 2] {
+    let (index, _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+    [index.0, index.1]
+}
+
+/// How far two columns are apart around the circle of columns.
+fn columns_apart(radar: &Radar, a: f64, b: f64) -> f64 {
+    let n = radar.elements as f64;
+    let d = (a - b).rem_euclid(n);
+    d.min(n - d)
+}
+
+/// How much further from the middle a reflector's column lies than cos(theta) says.
+///
+/// Halfway through the chirp the beat has added half a turn a range bin of distance to the carrier's turns: -2.6 % for the one-way
+/// carrier of table 3.1, +1.3 % for the two-way.
+fn squint(radar: &Radar) -> f64 {
+    let middle = 0.5 * (radar.samples as f64 - 1.0) / radar.samples as f64;
+    let turns_per_metre = middle / radar.range_resolution_metres();
+    1.0 + turns_per_metre * radar.wavelength_metres() / radar.carrier.turns_per_wavelength()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    /// An end is short enough to see a point as one direction: its peak is at the range and cos(theta) from the end's centre.
+    #[test]
+    fn an_end_sees_a_reflector_at_its_range_and_angle(range in 4.0f64..36.0, cos in -0.97f64..0.97) {
+        let radar = Radar::default();
+        let (x, y) = (range * cos, range * (1.0 - cos * cos).sqrt());
+        let maps = maps_of(&radar, &Scene::of_points([(x, y)]));
+        for (end, map) in [(End::First, &maps.first), (End::Last, &maps.last)] {
+            let polar = radar.polar_of(x - radar.end_centre_metres(end), y);
+            let [bin, column] = peak(map);
+            let expected = radar.bin_of_range(polar.range_metres);
+            prop_assert!((bin as f64 - expected).abs() <= 1.0, "{end:?}: bin {bin} for {expected}");
+            let expected = radar.column_of_cos(polar.cos_theta * squint(&radar));
+            prop_assert!(columns_apart(&radar, column as f64, expected) <= 2.5, "{end:?}: column {column} for {expected}");
+        }
+    }
+
+    /// The whole array sees it curved: spread over up to 13 bins and a few dozen columns around its place, on its own side.
+    #[test]
+    fn the_array_sees_a_reflector_around_its_place(range in 8.0f64..36.0, cos in -0.95f64..0.95) {
+        let radar = Radar::default();
+        let (x, y) = (range * cos, range * (1.0 - cos * cos).sqrt());
+        let [bin, column] = peak(&maps_of(&radar, &Scene::of_points([(x, y)])).full);
+        prop_assert!((bin as f64 - radar.bin_of_range(range)).abs() <= 13.0, "bin {bin}");
+        prop_assert!(columns_apart(&radar, column as f64, radar.column_of_cos(cos)) <= 80.0, "column {column}");
+        if cos.abs() > 0.2 {
+            prop_assert_eq!(column > 512, x > 0.0, "x > 0 is the right half");
+        }
+    }
+
+    /// x -> -x reverses the elements, so it swaps the ends and mirrors every map about cos(theta) = 0.
+    #[test]
+    fn mirroring_swaps_the_ends(
+        points in prop::collection::vec((-30.0f64..30.0, 2.0f64..30.0), 1..4),
+    ) {
+        let radar = Radar { samples: 64, elements: 128, ..Radar::default() };
+        let scene = Scene::of_points(points.iter().copied());
+        let mirrored = Scene::of_points(points.iter().map(|(x, y)| (-x, *y)));
+        let (signal, mirror) = (
+            simulate(&radar, &scene, Floor::Exact, 0).unwrap(),
+            simulate(&radar, &mirrored, Floor::Exact, 0).unwrap(),
+        );
+        let peak = signal.peak();
+        for n in 0..radar.elements {
+            for (a, b) in signal.samples.row(n).iter().zip(mirror.samples.row(radar.elements - 1 - n)) {
+                prop_assert!((a - b).norm() < 1e-11 * peak);
+            }
+        }
+        let (maps, mirror) = (LogMaps::of_signal(&radar, &signal), LogMaps::of_signal(&radar, &mirror));
+        let lambda = |map: &LogMap| map.normalise(Normalisation::DynamicRange(Decibels(100.0))).lambda;
+        for (a, b) in [(&maps.first, &mirror.last), (&maps.last, &mirror.first), (&maps.full, &mirror.full)] {
+            let (a, b) = (lambda(a), lambda(b));
+            for ((bin, column), v) in a.indexed_iter() {
+                let other = b[[bin, (radar.elements - column) % radar.elements]];
+                prop_assert!((v - other).abs() < 1e-4, "[{bin}, {column}]: {v} and {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_reflector_straight_ahead_is_in_the_middle_column() {
+    let radar = Radar::default();
+    let range = 200.0 * radar.range_resolution_metres();
+    let [bin, column] = peak(&maps_of(&radar, &Scene::of_points([(0.0, range)])).full);
+    assert!(bin.abs_diff(200) <= 1 && column.abs_diff(512) <= 20, "[{bin}, {column}]");
+}
+
+/// Two directions a whole unit of cos(theta) apart (at mid-chirp): one column for the two-way carrier, two for the one-way.
+#[test]
+fn the_two_way_carrier_folds_the_scene() {
+    for (carrier, together) in [(Carrier::TwoWay, true), (Carrier::OneWay, false)] {
+        let radar = Radar { carrier, ..Radar::default() };
+        let centre = radar.end_centre_metres(End::First);
+        let column = |cos: f64| {
+            let point = (centre + 20.0 * cos, 20.0 * (1.0 - cos * cos).sqrt());
+            peak(&maps_of(&radar, &Scene::of_points([point])).first)[1] as f64
+        };
+        let two_way = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+        let apart = columns_apart(&radar, column(0.3), column(0.3 - 1.0 / squint(&two_way)));
+        assert_eq!(apart <= 2.0, together, "{carrier:?}: {apart} columns apart");
+    }
+}
+
+#[test]
+fn an_empty_scene_is_flat_and_dark() {
+    let radar = Radar::default();
+    let signal = simulate(&radar, &Scene::default(), Floor::Thesis, 0).unwrap();
+    let maps = LogMaps::of_signal(&radar, &signal);
+    let target = maps.full.normalise(Normalisation::MinMax);
+    assert_eq!((maps.full.min(), maps.full.max()), (-20.0, -20.0));
+    assert!(target.lambda.iter().all(|v| *v == 0.0));
+    let found = Baseline.reconstruct(&radar, &signal.two_ends(&radar), &Request::default()).unwrap();
+    let metrics = Metrics::of(&target, &found.lambda, 0.9);
+    assert_eq!(metrics, Metrics { squared_error: 0.0, detection: None, false_alarm: 0.0 });
+    let noisy = simulate(&radar, &Scene::default(), Floor::Snr(Decibels(20.0)), 0).unwrap();
+    assert_eq!(noisy.peak(), 0.0, "there is no signal to be noisy against");
+}
+
+#[test]
+fn a_reflector_on_an_element_is_refused() {
+    let radar = Radar::default();
+    let scene = Scene::of_points([(radar.element_x_metres(3), 0.0)]);
+    let error = simulate(&radar, &scene, Floor::Exact, 0).unwrap_err();
+    assert!(matches!(error, SceneError::OnElement { object: 0, element: 3, .. }), "{error}");
+}
+
+#[test]
+fn nan_is_refused() {
+    let scene = Scene { objects: vec![Object::Point(Point::new(1.0, f64::NAN))], ..Scene::default() };
+    let error = simulate(&Radar::default(), &scene, Floor::Thesis, 0).unwrap_err();
+    assert!(matches!(error, SceneError::Value { field: "y_metres", .. }), "{error}");
+}
+
+#[test]
+fn behind_the_array_looks_like_ahead_of_it() {
+    let radar = Radar { samples: 64, elements: 128, ..Radar::default() };
+    let of = |y: f64| simulate(&radar, &Scene::of_points([(3.0, y)]), Floor::Thesis, 0).unwrap();
+    assert_eq!(of(4.0), of(-4.0));
+}
+
+#[test]
+fn beyond_the_maximum_range_wraps() {
+    let radar = Radar::default();
+    let range = radar.max_range_metres() + radar.range_of_bin_metres(100.0);
+    let maps = maps_of(&radar, &Scene::of_points([(0.0, range)]));
+    assert!(peak(&maps.full)[0].abs_diff(100) <= 1);
+}
+
+#[test]
+fn a_reflector_a_million_kilometres_away_is_faint_but_there() {
+    let radar = Radar::default();
+    let maps = maps_of(&radar, &Scene::of_points([(0.0, 1e9)]));
+    let finite = |m: &RangeAngleMap| m.lambda.iter().all(|v| v.is_finite() && (0.0..=1.0).contains(v));
+    assert!([&maps.first, &maps.last, &maps.full].iter().all(|m| finite(&m.normalise(Normalisation::MinMax))));
+    // Amplitude 100 / R^2, times the windows' means and the orthonormal scale: 1e-16 * 512 * 1024 / 4 / sqrt(512 * 1024).
+    let expected = (1e-16 * (512.0f64 * 1024.0).sqrt() / 4.0).log10();
+    assert!((maps.full.max() - expected).abs() < 0.1, "{} for {expected}", maps.full.max());
+}
+
+#[test]
+fn ten_thousand_reflectors_add_up() {
+    let radar = Radar { samples: 32, elements: 64, ..Radar::default() };
+    let point = |reflectivity| Object::Point(Point { x_metres: 1.0, y_metres: 2.0, reflectivity });
+    let many = Scene { objects: vec![point(1e-4); 10_000], ..Scene::default() };
+    let signal = simulate(&radar, &many, Floor::Exact, 0).unwrap();
+    let one = exact::beat_signal(&radar, &Scene { objects: vec![point(1.0)], ..Scene::default() }.reflectors());
+    let worst = signal.samples.iter().zip(&one.samples).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(worst < 1e-11 * one.peak(), "{:e}", worst / one.peak());
+}
