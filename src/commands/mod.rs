@@ -1,7 +1,7 @@
 //! The command line: one subcommand a file.
 //!
 //! A subcommand is a file with `pub struct Args` (clap) and `Args::run(self) -> Result<(), CommandError>`, a variant of
-//! [`Command`] and a line in [`Command::run`]. Its own errors travel as [`CommandError::Failed`] unless they need a name here.
+//! `Command` and a line in `Command::run`. Its own errors travel as [`CommandError::Failed`] unless they need a name here.
 
 mod arguments;
 mod error;

@@ -1,7 +1,7 @@
 //! The live engine: what changed, what is looked at, and nothing else computed.
 //!
 //! [`Engine::update`] takes a scene and what is [`Wanted`] and gives a [`Frame`]. Results that did not change are the same
-//! [`Arc`](std::sync::Arc) as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
+//! [`Arc`] as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
 
 mod incremental;
 mod report;

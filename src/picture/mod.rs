@@ -113,7 +113,9 @@ impl Panels<'_> {
 
     fn header(&self, root: &Area) -> Result<(), PictureError> {
         let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
-        text::line(root, (MARGIN + 8, 16), name, 34, text::Weight::Bold, &INK)?;
+        let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
+        let name = text::fitted(root, &name, 34, text::Weight::Bold, (LEFT - MARGIN) as u32)?;
+        text::line(root, (MARGIN + 8, 16), &name, 34, text::Weight::Bold, &INK)?;
         let carrier = match self.radar.carrier {
             Carrier::OneWay => "one-way carrier",
             Carrier::TwoWay => "two-way carrier",

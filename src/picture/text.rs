@@ -48,6 +48,18 @@ pub(super) fn line(
     area.draw(&Text::new(text.to_owned(), at, style(size, weight, colour))).map_err(PictureError::new)
 }
 
+/// Shortens `text` until it fits `width` pixels; an ellipsis stands for what is left out.
+pub(super) fn fitted(area: &Area, text: &str, size: i32, weight: Weight, width: u32) -> Result<String, PictureError> {
+    let style = style(size, weight, &RGBColor(0, 0, 0));
+    let mut shown = text.to_owned();
+    let mut kept = text.chars().count();
+    while area.estimate_text_size(&shown, &style).map_err(PictureError::new)?.0 > width && kept > 0 {
+        kept -= 1;
+        shown = text.chars().take(kept).chain(['\u{2026}']).collect();
+    }
+    Ok(shown)
+}
+
 /// Lines broken at spaces to the area's width; what does not fit its height is left out, with an ellipsis.
 pub(super) fn paragraphs(
     area: &Area,
