@@ -75,10 +75,11 @@ pub(super) fn paragraphs(
     for paragraph in text.lines() {
         let mut current = String::new();
         for word in paragraph.split_whitespace() {
-            let longer = if current.is_empty() { word.to_owned() } else { format!("{current} {word}") };
+            let word = fitted(area, word, size, Weight::Normal, width.saturating_sub(at.0 as u32))?;
+            let longer = if current.is_empty() { word.clone() } else { format!("{current} {word}") };
             let (needed, _) = area.estimate_text_size(&longer, &style).map_err(PictureError::new)?;
             if needed + at.0 as u32 > width && !current.is_empty() {
-                lines.push(std::mem::replace(&mut current, word.to_owned()));
+                lines.push(std::mem::replace(&mut current, word));
             } else {
                 current = longer;
             }
