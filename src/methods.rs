@@ -1,12 +1,26 @@
 //! Every reconstruction method by name: the one list behind the command line, the tables and the app.
 
 use crate::reconstruct::nomp::Nomp;
-use crate::reconstruct::{Baseline, Reconstructor};
+use crate::reconstruct::{
+    Bartlett, Baseline, Capon, Fista, LinearPrediction, MatchedFilter, Music, Omp, Reconstructor, RootMusic,
+};
 use std::sync::Arc;
 
 /// Every method this build knows, in the order they are shown.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
-    vec![Arc::new(Baseline), Arc::new(Nomp::default())]
+    vec![
+        Arc::new(Baseline),
+        Arc::new(Bartlett),
+        Arc::new(MatchedFilter::Coherent),
+        Arc::new(MatchedFilter::Incoherent),
+        Arc::new(Capon),
+        Arc::new(Music),
+        Arc::new(RootMusic),
+        Arc::new(LinearPrediction),
+        Arc::new(Fista::default()),
+        Arc::new(Omp::default()),
+        Arc::new(Nomp::default()),
+    ]
 }
 
 /// The method whose output is shown where nobody chose one.

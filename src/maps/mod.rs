@@ -7,10 +7,12 @@ pub mod cartesian;
 mod lambda;
 mod log_map;
 pub mod network_input;
+mod spectra;
 mod transform;
 
 pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};
 pub use log_map::{LOG_GUARD, LogMap};
+pub use spectra::{Spectrum, centred_spectrum};
 pub use transform::{
     Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, channels_range_transform, range_transform,
 };

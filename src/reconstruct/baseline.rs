@@ -1,5 +1,7 @@
 //! The thesis' baseline: one end's own map, thresholded.
 
+use super::conditioning::unit_gain;
+use super::rendering::silence;
 use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
 use crate::maps::channels_map;
 use crate::radar::Radar;
@@ -29,6 +31,7 @@ impl Reconstructor for Baseline {
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
         check_ends(radar, ends)?;
+        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
         let log = channels_map(radar, ends.first.view()).log_magnitude();
         Ok(Reconstruction { lambda: log.normalise(request.normalisation), reflectors: Vec::new() })
     }

@@ -2,10 +2,34 @@
 //!
 //! Everything that reconstructs, the baseline, model-based methods and networks alike, is a [`Reconstructor`].
 
+mod bartlett;
 mod baseline;
+mod beams;
+mod capon;
+mod conditioning;
+mod covariance;
+mod drawing;
+mod fista;
+mod linear_prediction;
+mod matched_filter;
+mod music;
 pub mod nomp;
+mod omp;
+mod registered;
+mod rendering;
+mod root_music;
+mod rows;
+mod steering;
 
+pub use bartlett::Bartlett;
 pub use baseline::Baseline;
+pub use capon::Capon;
+pub use fista::Fista;
+pub use linear_prediction::LinearPrediction;
+pub use matched_filter::MatchedFilter;
+pub use music::Music;
+pub use omp::Omp;
+pub use root_music::RootMusic;
 
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;

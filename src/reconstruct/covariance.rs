@@ -1,0 +1,117 @@
+//! Covariance of one range row from very few snapshots, by spatial smoothing.
+
+use faer::linalg::solvers::SelfAdjointEigen;
+use faer::{Mat, Side};
+use num_complex::Complex64;
+
+use crate::maps::Spectrum;
+
+/// Elements of the sub-arrays over which a line of `elements` is smoothed: two thirds leave enough of both, aperture and averages.
+pub(super) fn subarray_len(elements: usize) -> usize {
+    (2 * elements / 3).max(2)
+}
+
+/// Covariance over sub-arrays of `subarray` neighbouring elements, forward and backward, averaged over all their places and over
+/// `snapshots`, `[subarray, subarray]`.
+///
+/// Echoes of one chirp are coherent, so that a single snapshot has rank 1; smoothing restores a rank for each of them
+/// (T.-J. Shan, M. Wax and T. Kailath, "On spatial smoothing for direction-of-arrival estimation of coherent signals", 1985;
+/// S. U. Pillai and B. H. Kwon, "Forward/backward spatial smoothing techniques for coherent signal identification", 1989).
+pub(super) fn smoothed(snapshots: &[&[Complex64]], subarray: usize) -> Mat<Complex64> {
+    let mut sum = Mat::<Complex64>::zeros(subarray, subarray);
+    let mut count = 0.0;
+    for snapshot in snapshots {
+        for part in snapshot.windows(subarray) {
+            for j in 0..subarray {
+                for i in 0..subarray {
+                    let forward = part[i] * part[j].conj();
+                    let backward = part[subarray - 1 - i].conj() * part[subarray - 1 - j];
+                    sum[(i, j)] += forward + backward;
+                }
+            }
+            count += 2.0;
+        }
+    }
+    Mat::from_fn(subarray, subarray, |i, j| sum[(i, j)] / f64::max(count, 1.0))
+}
+
+/// Projector onto the noise subspace, `[n, n]`, and the number of signals it leaves out.
+pub(super) struct NoiseSubspace {
+    /// `E_n E_n^H`.
+    pub projector: Mat<Complex64>,
+    /// Eigenvectors left out, from 1 to n - 1.
+    pub signals: usize,
+}
+
+/// Smallest eigenvalue of a signal, as a part of the largest. Below it lie the curvature of the wave front and the change of
+/// range over the end, which no plane wave describes.
+const SIGNAL_PART: f64 = 1e-4;
+
+/// Splits `covariance` by its eigenvalues; `None` where the decomposition fails.
+pub(super) fn noise_subspace(covariance: &Mat<Complex64>, noise_variance: f64) -> Option<NoiseSubspace> {
+    let n = covariance.nrows();
+    let eigen = SelfAdjointEigen::new(covariance.as_ref(), Side::Lower).ok()?;
+    let values: Vec<f64> = eigen.S().column_vector().iter().map(|v| v.re).collect();
+    let vectors = eigen.U();
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let threshold = (largest * SIGNAL_PART).max(10.0 * noise_variance);
+    let signals = values.iter().filter(|v| **v > threshold).count().clamp(1, n - 1);
+    // Eigenvalues rise, so that the noise subspace comes first.
+    let noise = vectors.subcols(0, n - signals);
+    Some(NoiseSubspace { projector: noise * noise.adjoint(), signals })
+}
+
+/// Coefficients `c[m]`, m = 0..n, of `a^H Q a = c[0] + 2 Re sum_m c[m] exp(j w m)` for a plane wave a and Hermitian Q: the sums
+/// of Q's diagonals.
+pub(super) fn diagonal_sums(q: &Mat<Complex64>) -> Vec<Complex64> {
+    let n = q.nrows();
+    (0..n).map(|m| (0..n - m).map(|i| q[(i, i + m)]).sum()).collect()
+}
+
+/// `a^H Q a` for the plane wave of every column, in the order of the transform; never negative.
+pub(super) fn quadratic_form(q: &Mat<Complex64>, spectrum: &Spectrum) -> Vec<f64> {
+    let sums = diagonal_sums(q);
+    let constant = sums[0].re;
+    spectrum.of(sums.iter().map(Complex64::conj)).into_iter().map(|v| (2.0 * v.re - constant).max(0.0)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn wave(n: usize, turns: f64) -> Vec<Complex64> {
+        (0..n).map(|i| Complex64::cis(TAU * turns * i as f64)).collect()
+    }
+
+    #[test]
+    fn the_quadratic_form_is_what_its_definition_says() {
+        let q = Mat::from_fn(5, 5, |i, j| {
+            let (a, b) = (i.min(j) as f64, i.max(j) as f64);
+            Complex64::new(1.0 + a * b, if i < j { b - a } else { a - b })
+        });
+        let spectrum = Spectrum::new(16);
+        for (k, fast) in quadratic_form(&q, &spectrum).into_iter().enumerate() {
+            let a = wave(5, k as f64 / 16.0);
+            let slow: Complex64 =
+                (0..5).flat_map(|i| (0..5).map(move |j| (i, j))).map(|(i, j)| a[i].conj() * q[(i, j)] * a[j]).sum();
+            assert!((slow.re.max(0.0) - fast).abs() < 1e-9 && slow.im.abs() < 1e-9, "{k}: {slow} {fast}");
+        }
+    }
+
+    #[test]
+    fn smoothing_restores_the_rank_of_coherent_waves() {
+        let snapshot: Vec<Complex64> =
+            wave(12, 0.1).into_iter().zip(wave(12, 0.16)).map(|(a, b)| a + 0.5 * b).collect();
+        let subspace = noise_subspace(&smoothed(&[&snapshot], 8), 1e-12).unwrap();
+        assert_eq!(subspace.signals, 2);
+        for turns in [0.1, 0.16] {
+            let a = wave(8, turns);
+            let left: Complex64 = (0..8)
+                .flat_map(|i| (0..8).map(move |j| (i, j)))
+                .map(|(i, j)| a[i].conj() * subspace.projector[(i, j)] * a[j])
+                .sum();
+            assert!(left.norm() < 1e-9, "{turns} is orthogonal to the noise subspace: {left}");
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! Sparse reconstruction with an l1 penalty, by FISTA.
+
+use super::beams::{Backprojector, RangeWindow};
+use super::conditioning::{Conditioned, condition};
+use super::drawing::{Gained, draw};
+use super::rendering::silence;
+use super::steering::{Atom, flatten};
+use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::radar::Radar;
+use crate::signal::TwoEnds;
+use ndarray::Zip;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Equation 1.1 of the thesis: the fewest reflectors that explain the samples, relaxed to
+/// `min 1/2 ||A x - y||^2 + penalty ||x||_1`.
+///
+/// A. Beck and M. Teboulle, "A fast iterative shrinkage-thresholding algorithm for linear inverse problems", SIAM J. Imaging
+/// Sci. 2, 2009, in its monotone form. A holds exact near-field echoes of cells of the whole array's polar grid: only of those from
+/// which both ends together heard most, since the others' gains would be zero.
+#[derive(Debug, Clone, Copy)]
+pub struct Fista {
+    /// Penalty, as a part of the one that would leave no reflector at all.
+    pub penalty: f64,
+    /// Cells that are candidates.
+    pub candidates: usize,
+    /// Iterations.
+    pub iterations: usize,
+}
+
+impl Default for Fista {
+    fn default() -> Self {
+        Fista { penalty: 0.02, candidates: 1024, iterations: 150 }
+    }
+}
+
+/// Most reflectors that are drawn; the strongest of what the penalty left.
+const MOST_DRAWN: usize = 200;
+
+/// The problem in the coordinates that iterations need: Gram matrix and correlations.
+#[derive(Clone)]
+struct Problem {
+    atoms: Vec<Atom>,
+    /// `A^H A`, row after row.
+    gram: Vec<Complex64>,
+    /// `A^H y`.
+    heard: Vec<Complex64>,
+    penalty: f64,
+}
+
+impl Problem {
+    fn new(
+        radar: &Radar,
+        conditioned: &Conditioned,
+        settings: &Fista,
+        request: &Request,
+    ) -> Result<Self, ReconstructError> {
+        let [first, last] = Backprojector::new(radar, RangeWindow::None).amplitudes(&conditioned.ends);
+        request.task.check()?;
+        // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
+        let power = Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
+        let mut cells: Vec<(usize, f64)> =
+            power.iter().copied().enumerate().filter(|(i, _)| *i >= radar.elements).collect();
+        let count = settings.candidates.min(cells.len());
+        if count == 0 {
+            return Ok(Problem { atoms: Vec::new(), gram: Vec::new(), heard: Vec::new(), penalty: 0.0 });
+        }
+        // Equal powers keep their order of place, so that the choice is the same on every run.
+        cells.select_nth_unstable_by(count - 1, |a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        cells.truncate(count);
+        cells.sort_unstable_by_key(|(i, _)| *i);
+        let atoms: Vec<Atom> = cells
+            .into_par_iter()
+            .map(|(i, _)| {
+                let (bin, column) = (i / radar.elements, i % radar.elements);
+                Atom::at(radar, radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64))
+            })
+            .collect();
+        request.task.check()?;
+        request.task.set_progress(0.1);
+        let samples = flatten(&conditioned.ends);
+        let heard: Vec<Complex64> = atoms.par_iter().map(|a| a.correlate(&samples)).collect();
+        let mut gram = vec![Complex64::default(); count * count];
+        gram.par_chunks_mut(count).enumerate().for_each(|(i, row)| {
+            for (j, cell) in row.iter_mut().enumerate() {
+                *cell = atoms[i].inner(&atoms[j]);
+            }
+        });
+        request.task.check()?;
+        let largest = heard.iter().fold(0.0, |m: f64, h| m.max(h.norm()));
+        Ok(Problem { atoms, gram, heard, penalty: settings.penalty * largest })
+    }
+
+    fn gram_times(&self, x: &[Complex64]) -> Vec<Complex64> {
+        let n = self.atoms.len();
+        // Most gains are zero: skip their columns.
+        let support: Vec<(usize, Complex64)> =
+            x.iter().copied().enumerate().filter(|(_, v)| v.norm_sqr() > 0.0).collect();
+        self.gram.par_chunks(n.max(1)).map(|row| support.iter().map(|(j, v)| row[*j] * v).sum()).collect()
+    }
+
+    /// The objective less the constant `1/2 ||y||^2`.
+    fn objective(&self, x: &[Complex64], gram_x: &[Complex64]) -> f64 {
+        x.iter()
+            .zip(gram_x)
+            .zip(&self.heard)
+            .map(|((x, g), h)| 0.5 * (x.conj() * g).re - (x.conj() * h).re + self.penalty * x.norm())
+            .sum()
+    }
+
+    /// Largest eigenvalue of the Gram matrix, from above: power iteration with some room.
+    fn lipschitz(&self) -> f64 {
+        let mut v = self.heard.clone();
+        let mut largest = 1.0;
+        for _ in 0..12 {
+            let length = v.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+            if length == 0.0 {
+                break;
+            }
+            v.iter_mut().for_each(|v| *v /= length);
+            v = self.gram_times(&v);
+            largest = v.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        }
+        1.05 * largest
+    }
+
+    /// Monotone FISTA; `watch` sees the objective after every iteration.
+    fn solve(
+        &self,
+        iterations: usize,
+        request: &Request,
+        mut watch: impl FnMut(f64),
+    ) -> Result<Vec<Complex64>, ReconstructError> {
+        let n = self.atoms.len();
+        let step = 1.0 / self.lipschitz();
+        let (mut x, mut gram_x) = (vec![Complex64::default(); n], vec![Complex64::default(); n]);
+        let (mut ahead, mut gram_ahead) = (x.clone(), gram_x.clone());
+        let mut best = 0.0;
+        let mut momentum = 1.0f64;
+        for iteration in 0..iterations {
+            request.task.check()?;
+            request.task.set_progress(0.2 + 0.7 * iteration as f32 / iterations as f32);
+            let next: Vec<Complex64> = ahead
+                .iter()
+                .zip(&gram_ahead)
+                .zip(&self.heard)
+                .map(|((a, g), h)| shrink(a - (g - h) * step, self.penalty * step))
+                .collect();
+            let gram_next = self.gram_times(&next);
+            let objective = self.objective(&next, &gram_next);
+            let next_momentum = (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) / 2.0;
+            // Monotone: a step that went up moves the point looked from, not the answer.
+            let better = objective <= best;
+            let forward = (momentum - 1.0) / next_momentum;
+            let pull = momentum / next_momentum;
+            let (weight_next, weight_old) = if better { (1.0 + forward, -forward) } else { (pull, 1.0 - pull) };
+            let mix = |a: &[Complex64], b: &[Complex64]| -> Vec<Complex64> {
+                a.iter().zip(b).map(|(a, b)| a * weight_next + b * weight_old).collect()
+            };
+            (ahead, gram_ahead) = (mix(&next, &x), mix(&gram_next, &gram_x));
+            if better {
+                (x, gram_x, best) = (next, gram_next, objective);
+            }
+            momentum = next_momentum;
+            watch(best);
+        }
+        Ok(x)
+    }
+}
+
+/// The proximal step of the l1 norm: magnitudes less `by`, phases kept.
+fn shrink(v: Complex64, by: f64) -> Complex64 {
+    let norm = v.norm();
+    if norm > by { v * ((norm - by) / norm) } else { Complex64::default() }
+}
+
+impl Reconstructor for Fista {
+    fn name(&self) -> &'static str {
+        "fista"
+    }
+
+    fn description(&self) -> &'static str {
+        "sparse fit with an l1 penalty on the near-field polar grid, and its exact map"
+    }
+
+    fn eta(&self) -> f32 {
+        0.897 // by tests/choose_eta.rs
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        let Some(conditioned) = condition(radar, ends)? else { return Ok(silence(radar)) };
+        let problem = Problem::new(radar, &conditioned, self, request)?;
+        let x = problem.solve(self.iterations, request, |_| {})?;
+        let mut found: Vec<Gained> = problem
+            .atoms
+            .iter()
+            .zip(&x)
+            .filter(|(_, x)| x.norm_sqr() > 0.0)
+            .map(|(atom, x)| Gained { reflector: atom.reflector, gain: x / atom.norm() })
+            .collect();
+        found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
+        found.truncate(MOST_DRAWN);
+        Ok(draw(radar, &found, conditioned.gain, conditioned.noise_variance, request))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn shrinking_keeps_the_phase() {
+        assert_eq!(shrink(Complex64::new(3.0, 4.0), 2.5), Complex64::new(1.5, 2.0));
+        assert_eq!(shrink(Complex64::new(0.3, 0.4), 2.5), Complex64::default());
+    }
+
+    #[test]
+    fn the_objective_only_falls_and_the_answer_is_sparse() {
+        let radar = Radar::default();
+        let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let conditioned = condition(&radar, &ends).unwrap().unwrap();
+        let settings = Fista { candidates: 300, ..Fista::default() };
+        let request = Request::default();
+        let problem = Problem::new(&radar, &conditioned, &settings, &request).unwrap();
+        let mut objectives = vec![0.0];
+        let x = problem.solve(150, &request, |o| objectives.push(o)).unwrap();
+        assert!(objectives.windows(2).all(|w| w[1] <= w[0]), "{objectives:?}");
+        assert!(objectives[150] < objectives[1]);
+        let used = |x: &[Complex64]| x.iter().filter(|x| x.norm_sqr() > 0.0).count();
+        let strict = Problem { penalty: 20.0 * problem.penalty, ..problem.clone() };
+        let fewer = used(&strict.solve(150, &request, |_| {}).unwrap());
+        assert!(fewer >= 2 && 2 * fewer < used(&x), "a higher price buys fewer reflectors: {fewer}, {}", used(&x));
+        // What is optimal for an l1 penalty: no correlation of the residual above it.
+        let gram_x = problem.gram_times(&x);
+        let worst = gram_x.iter().zip(&problem.heard).map(|(g, h)| (h - g).norm()).fold(0.0, f64::max);
+        assert!(worst < 1.5 * problem.penalty, "{worst} {}", problem.penalty);
+    }
+}

@@ -1,0 +1,102 @@
+//! Linear prediction: each element as a combination of its neighbours.
+
+use super::rows::{Row, reconstruct_rows};
+use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::radar::Radar;
+use crate::signal::TwoEnds;
+use faer::Mat;
+use num_complex::Complex64;
+
+/// The prediction error's nulls over angle, for each end and range row: forward and backward prediction of two thirds of the
+/// end's length, solved by a truncated singular value decomposition.
+///
+/// D. W. Tufts and R. Kumaresan, "Estimation of frequencies of multiple sinusoids: making linear prediction perform like maximum
+/// likelihood", Proc. IEEE 70, 1982.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LinearPrediction;
+
+/// Singular values below this part of the largest are no signals; amplitudes, so the root of MUSIC's part.
+const SIGNAL_PART: f64 = 1e-2;
+
+/// Coefficients `a` of `x[n] = sum_k a[k] x[n - 1 - k]`, and backward with their conjugates.
+fn predictor(samples: &[Complex64], noise_variance: f64) -> Option<Vec<Complex64>> {
+    let order = 2 * samples.len() / 3;
+    let equations = samples.len() - order;
+    let matrix = Mat::from_fn(2 * equations, order, |row, k| {
+        if row < equations { samples[row + order - 1 - k] } else { samples[row - equations + 1 + k].conj() }
+    });
+    let predicted = |row: usize| {
+        if row < equations { samples[row + order] } else { samples[row - equations].conj() }
+    };
+    let svd = matrix.thin_svd().ok()?;
+    let values: Vec<f64> = svd.S().column_vector().iter().map(|v| v.re).collect();
+    let largest = values.first().copied().unwrap_or(0.0);
+    let noise = (10.0 * noise_variance * (2 * equations) as f64).sqrt();
+    let mut solution = vec![Complex64::default(); order];
+    for (i, value) in values.iter().enumerate() {
+        if *value <= (largest * SIGNAL_PART).max(noise) {
+            break;
+        }
+        let part: Complex64 =
+            (0..2 * equations).map(|r| svd.U()[(r, i)].conj() * predicted(r)).sum::<Complex64>() / value;
+        for (k, s) in solution.iter_mut().enumerate() {
+            *s += svd.V()[(k, i)] * part;
+        }
+    }
+    Some(solution)
+}
+
+/// The linear-prediction spectrum for one row, as power.
+fn spectrum(row: &Row) -> Option<Vec<f64>> {
+    let predictor = predictor(row.own(), row.noise_variance)?;
+    let error_filter = std::iter::once(Complex64::from(1.0)).chain(predictor.into_iter().map(|a| -a));
+    let nulls: Vec<f64> = row.spectrum.of(error_filter).into_iter().map(|v| v.norm_sqr()).collect();
+    Some(row.power_of_nulls(&nulls))
+}
+
+impl Reconstructor for LinearPrediction {
+    fn name(&self) -> &'static str {
+        "linear-prediction"
+    }
+
+    fn description(&self) -> &'static str {
+        "nulls of the prediction error over angle, for each end and range row"
+    }
+
+    fn eta(&self) -> f32 {
+        0.863 // by tests/choose_eta.rs
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        reconstruct_rows(radar, ends, request, spectrum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Spectrum;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn waves_are_predicted_and_stand_out() {
+        let wave = |column: f64, n: usize| Complex64::cis(TAU * column * n as f64 / 1024.0);
+        let own: Vec<Complex64> = (0..12).map(|n| wave(300.0, n) + wave(340.0, n)).collect();
+        let a = predictor(&own, 1e-20).unwrap();
+        let predicted: Complex64 = a.iter().enumerate().map(|(k, a)| a * own[10 - k]).sum();
+        assert!((predicted - own[11]).norm() < 1e-9);
+
+        let plan = Spectrum::new(1024);
+        let row = Row { snapshots: [&own, &own, &own], noise_variance: 1e-20, spectrum: &plan };
+        let power = spectrum(&row).unwrap();
+        let largest = power.iter().copied().fold(0.0, f64::max);
+        for column in [300, 340] {
+            assert!(power[column] > 0.01 * largest && power[column] > 1e3 * power[320], "{column}");
+        }
+    }
+}

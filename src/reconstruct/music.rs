@@ -1,0 +1,86 @@
+//! MUSIC: directions orthogonal to the noise subspace.
+
+use super::covariance::{noise_subspace, quadratic_form, smoothed, subarray_len};
+use super::rows::{Row, reconstruct_rows};
+use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::radar::Radar;
+use crate::signal::TwoEnds;
+
+/// The pseudo-spectrum of each end and range row, with spatial smoothing.
+///
+/// R. O. Schmidt, "Multiple emitter location and signal parameter estimation", IEEE Trans. Antennas Propag. 34, 1986.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Music;
+
+/// MUSIC's pseudo-spectrum for one row, as power.
+fn spectrum(row: &Row) -> Option<Vec<f64>> {
+    let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
+    let noise = noise_subspace(&covariance, row.noise_variance)?;
+    Some(row.power_of_nulls(&quadratic_form(&noise.projector, row.spectrum)))
+}
+
+impl Reconstructor for Music {
+    fn name(&self) -> &'static str {
+        "music"
+    }
+
+    fn description(&self) -> &'static str {
+        "subspace pseudo-spectrum of each end and range row, with spatial smoothing"
+    }
+
+    fn eta(&self) -> f32 {
+        0.842 // by tests/choose_eta.rs
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        reconstruct_rows(radar, ends, request, spectrum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Spectrum;
+    use num_complex::Complex64;
+    use std::f64::consts::TAU;
+
+    /// Peaks of `power` above a hundredth of its largest, as columns.
+    fn peaks(power: &[f64]) -> Vec<usize> {
+        let largest = power.iter().copied().fold(0.0, f64::max);
+        let n = power.len();
+        (0..n)
+            .filter(|&k| {
+                power[k] > 0.3 * largest && power[k] > power[(k + n - 1) % n] && power[k] >= power[(k + 1) % n]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn resolves_two_reflectors_within_a_beamwidth_that_plain_beams_merge() {
+        // Twelve elements have a beam of 1024/12 = 85 columns; these two are 30 apart.
+        let wave = |column: f64, n: usize| Complex64::cis(TAU * column * n as f64 / 1024.0);
+        let own: Vec<Complex64> = (0..12).map(|n| wave(100.0, n) + wave(130.0, n)).collect();
+        let silent = vec![Complex64::default(); 12];
+        let plan = Spectrum::new(1024);
+        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, spectrum: &plan };
+        assert_eq!(peaks(&row.bartlett()).len(), 1, "plain beams see one");
+        assert_eq!(peaks(&spectrum(&row).unwrap()), [100, 130]);
+    }
+
+    #[test]
+    fn a_plain_beam_is_as_wide_as_twelve_elements_make_it() {
+        let own: Vec<Complex64> = (0..12).map(|n| Complex64::cis(TAU * 0.25 * n as f64)).collect();
+        let plan = Spectrum::new(1024);
+        let row = Row { snapshots: [&own, &own, &own], noise_variance: 0.0, spectrum: &plan };
+        let power = row.bartlett();
+        assert!((power[256] - 1.0).abs() < 1e-12, "amplitude 1 at its column");
+        // Half-power width of a uniform line: 0.886 / (N d / lambda) in cos, here 0.886 * 1024 / 12 columns.
+        let width = power.iter().filter(|p| **p > 0.5).count();
+        assert!(width.abs_diff(76) <= 1, "{width}");
+    }
+}

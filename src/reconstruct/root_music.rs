@@ -1,0 +1,131 @@
+//! root-MUSIC: the directions as roots of a polynomial, then the array continued from them.
+
+use super::covariance::{diagonal_sums, noise_subspace, smoothed, subarray_len};
+use super::rows::{Row, reconstruct_rows};
+use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::radar::{Radar, hann};
+use crate::signal::TwoEnds;
+use faer::Mat;
+use faer::linalg::solvers::SolveLstsq;
+use num_complex::Complex64;
+
+/// Directions of each end and range row from the roots of MUSIC's null polynomial; amplitudes by least squares; the row drawn
+/// as the whole array would see those waves.
+///
+/// A. J. Barabell, "Improving the resolution performance of eigenstructure-based direction-finding algorithms", ICASSP 1983.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RootMusic;
+
+/// Turns an element of each wave: the roots inside the unit circle that are nearest to it.
+fn directions(row: &Row) -> Option<Vec<f64>> {
+    let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
+    let noise = noise_subspace(&covariance, row.noise_variance)?;
+    let sums = diagonal_sums(&noise.projector);
+    // z^(n-1) a^H Q a as a polynomial in z = exp(j w), lowest power first.
+    let coefficients: Vec<Complex64> =
+        sums.iter().skip(1).rev().map(Complex64::conj).chain(sums.iter().copied()).collect();
+    let mut inside: Vec<Complex64> = roots(&coefficients)?.into_iter().filter(|z| z.norm() <= 1.0).collect();
+    inside.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+    Some(inside.iter().take(noise.signals).map(|z| z.arg() / std::f64::consts::TAU).collect())
+}
+
+/// Roots of a polynomial, lowest power first: the eigenvalues of its companion matrix.
+fn roots(coefficients: &[Complex64]) -> Option<Vec<Complex64>> {
+    let degree = coefficients.len() - 1;
+    let leading = coefficients[degree];
+    let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.norm()));
+    // Without this the companion matrix would be full of rounding error.
+    if leading.norm() <= largest * 1e-14 {
+        return None;
+    }
+    let companion = Mat::from_fn(degree, degree, |i, j| {
+        if j == degree - 1 { -coefficients[i] / leading } else { Complex64::from(if i == j + 1 { 1.0 } else { 0.0 }) }
+    });
+    companion.eigenvalues().ok()
+}
+
+/// Power over angle of the whole array continued from one end's waves, in the order of the transform.
+fn continued(row: &Row) -> Option<Vec<f64>> {
+    let turns = directions(row)?;
+    let own = row.own();
+    if turns.is_empty() {
+        return None;
+    }
+    let wave = |turns: f64, n: f64| Complex64::cis(std::f64::consts::TAU * turns * n);
+    let waves = Mat::from_fn(own.len(), turns.len(), |n, i| wave(turns[i], n as f64));
+    let samples = Mat::from_fn(own.len(), 1, |n, _| own[n]);
+    let amplitudes = waves.qr().solve_lstsq(samples);
+
+    let columns = row.spectrum.len();
+    let window = hann(columns);
+    let mut array = vec![Complex64::default(); columns];
+    for (i, turns) in turns.iter().enumerate() {
+        let step = wave(*turns, 1.0);
+        let mut phasor = amplitudes[(i, 0)];
+        for value in &mut array {
+            *value += phasor;
+            phasor *= step;
+        }
+    }
+    let total: f64 = window.iter().sum();
+    let windowed = array.into_iter().zip(&window).map(|(v, w)| v * w / total);
+    Some(row.spectrum.of(windowed).into_iter().map(|v| v.norm_sqr()).collect())
+}
+
+impl Reconstructor for RootMusic {
+    fn name(&self) -> &'static str {
+        "root-music"
+    }
+
+    fn description(&self) -> &'static str {
+        "directions of each end and range row as polynomial roots, and the array continued from them"
+    }
+
+    fn eta(&self) -> f32 {
+        0.665 // by tests/choose_eta.rs
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        reconstruct_rows(radar, ends, request, continued)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Spectrum;
+
+    #[test]
+    fn roots_of_a_known_polynomial() {
+        // (z - 1)(z - 2j) = z^2 - (1 + 2j) z + 2j
+        let c = [Complex64::new(0.0, 2.0), Complex64::new(-1.0, -2.0), Complex64::new(1.0, 0.0)];
+        let mut found = roots(&c).unwrap();
+        found.sort_by(|a, b| a.im.total_cmp(&b.im));
+        assert!((found[0] - Complex64::new(1.0, 0.0)).norm() < 1e-12);
+        assert!((found[1] - Complex64::new(0.0, 2.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn directions_need_no_grid() {
+        let turns = [0.12345, 0.15]; // a third of a beamwidth apart
+        let wave = |t: f64, n: usize| Complex64::cis(std::f64::consts::TAU * t * n as f64);
+        let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
+        let silent = vec![Complex64::default(); 12];
+        let plan = Spectrum::new(1024);
+        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, spectrum: &plan };
+        let mut found = directions(&row).unwrap();
+        found.sort_by(f64::total_cmp);
+        assert_eq!(found.len(), 2);
+        for (f, t) in found.iter().zip(turns) {
+            assert!((f - t).abs() < 1e-6, "{found:?}");
+        }
+        let power = continued(&row).unwrap();
+        let strongest = (0..1024).max_by(|a, b| power[*a].total_cmp(&power[*b])).unwrap();
+        assert_eq!(strongest, (turns[0] * 1024.0f64).round() as usize);
+    }
+}

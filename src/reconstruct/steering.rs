@@ -1,0 +1,183 @@
+//! The exact near-field echo of a place in the samples of both ends: the atoms of the sparse methods.
+
+use crate::radar::{End, Radar};
+use crate::scene::Reflector;
+use crate::signal::TwoEnds;
+use crate::signal::phase::EchoModel;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Samples after which a running phasor is taken afresh, so that its rounding error stays at a few parts in 1e16.
+const RESTART: usize = 32;
+
+/// Adds `gain` times the echo of a unit reflector to `samples` of the element at `element_x` metres.
+pub(super) fn add_echo(
+    model: &EchoModel,
+    element_x: f64,
+    reflector: &Reflector,
+    gain: Complex64,
+    samples: &mut [Complex64],
+) {
+    let echo = model.echo(element_x, reflector);
+    let step = Complex64::cis(TAU * echo.turns_at(1) - TAU * echo.turns_at(0));
+    for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
+        let mut phasor = gain * Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(block * RESTART));
+        for sample in samples {
+            *sample += phasor;
+            phasor *= step;
+        }
+    }
+}
+
+/// Samples of both ends as one vector, element after element.
+pub(super) fn flatten(ends: &TwoEnds) -> Vec<Complex64> {
+    ends.first.iter().chain(&ends.last).copied().collect()
+}
+
+/// The inverse of [`flatten`].
+pub(super) fn unflatten(radar: &Radar, samples: &[Complex64]) -> TwoEnds {
+    let size = radar.end_elements * radar.samples;
+    let end = |part: &[Complex64]| {
+        ndarray::Array2::from_shape_fn((radar.end_elements, radar.samples), |(n, n1)| part[n * radar.samples + n1])
+    };
+    TwoEnds { first: end(&samples[..size]), last: end(&samples[size..]) }
+}
+
+/// Echo of one reflector at one element, as the geometric series it is: `start * step^n1`.
+#[derive(Debug, Clone, Copy)]
+struct Series {
+    start: Complex64,
+    step: Complex64,
+    /// `step^samples`.
+    last: Complex64,
+}
+
+/// Echo of one reflector in the samples of both ends.
+#[derive(Debug, Clone)]
+pub(super) struct Atom {
+    pub reflector: Reflector,
+    series: Vec<Series>,
+    samples: usize,
+    norm: f64,
+}
+
+/// Positions of the elements of both ends, metres.
+fn element_xs(radar: &Radar) -> impl Iterator<Item = f64> + '_ {
+    End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).map(|n| radar.element_x_metres(n))
+}
+
+impl Atom {
+    /// The atom of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`).
+    pub fn at(radar: &Radar, range_metres: f64, cos_theta: f64) -> Self {
+        let cos = cos_theta.clamp(-1.0, 1.0);
+        let reflector = Reflector {
+            x_metres: range_metres * cos,
+            y_metres: range_metres * (1.0 - cos * cos).sqrt(),
+            reflectivity: 1.0,
+        };
+        let model = EchoModel::new(radar);
+        let series: Vec<Series> = element_xs(radar)
+            .map(|x| {
+                let echo = model.echo(x, &reflector);
+                Series {
+                    start: Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(0)),
+                    step: Complex64::cis(TAU * (echo.turns_at(1) - echo.turns_at(0))),
+                    last: Complex64::cis(TAU * (echo.turns_at(radar.samples) - echo.turns_at(0))),
+                }
+            })
+            .collect();
+        let power: f64 = series.iter().map(|s| s.start.norm_sqr()).sum();
+        Atom { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
+    }
+
+    /// Root of the sum of squares of its samples.
+    pub fn norm(&self) -> f64 {
+        self.norm
+    }
+
+    /// Its samples scaled to norm 1, element after element.
+    pub fn unit_samples(&self) -> Vec<Complex64> {
+        let mut out = Vec::with_capacity(self.series.len() * self.samples);
+        for s in &self.series {
+            let mut phasor = s.start / self.norm;
+            for _ in 0..self.samples {
+                out.push(phasor);
+                phasor *= s.step;
+            }
+        }
+        out
+    }
+
+    /// Inner product of its unit samples with `y`: `sum conj(atom) y`.
+    pub fn correlate(&self, y: &[Complex64]) -> Complex64 {
+        let sum: Complex64 = self
+            .series
+            .iter()
+            .zip(y.chunks_exact(self.samples))
+            .map(|(s, y)| {
+                // Horner from the last sample: sum y[n] conj(step)^n.
+                let step = s.step.conj();
+                s.start.conj() * y.iter().rev().fold(Complex64::default(), |sum, v| sum * step + v)
+            })
+            .sum();
+        sum / self.norm
+    }
+
+    /// Inner product of the unit samples of two atoms, `sum conj(self) other`: a geometric series for each element.
+    pub fn inner(&self, other: &Atom) -> Complex64 {
+        let sum: Complex64 = self
+            .series
+            .iter()
+            .zip(&other.series)
+            .map(|(a, b)| {
+                let ratio = a.step.conj() * b.step;
+                let off = Complex64::from(1.0) - ratio;
+                let series = if off.norm_sqr() < 1e-16 {
+                    Complex64::from(self.samples as f64)
+                } else {
+                    (Complex64::from(1.0) - a.last.conj() * b.last) / off
+                };
+                a.start.conj() * b.start * series
+            })
+            .sum();
+        sum / (self.norm * other.norm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn an_atom_is_the_exact_signal() {
+        let radar = Radar::default();
+        let atom = Atom::at(&radar, 17.3, -0.4);
+        let scene = Scene::of_points([(atom.reflector.x_metres, atom.reflector.y_metres)]);
+        let exact = flatten(&simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar));
+        let unit = atom.unit_samples();
+        for (e, u) in exact.iter().zip(&unit) {
+            assert!((e / atom.norm() - u).norm() < 1e-13);
+        }
+        assert!((atom.correlate(&exact) / atom.norm() - 1.0).norm() < 1e-12);
+        let mut added = vec![Complex64::default(); 512];
+        let model = EchoModel::new(&radar);
+        add_echo(&model, radar.element_x_metres(0), &atom.reflector, Complex64::from(1.0), &mut added);
+        for (a, e) in added.iter().zip(&exact) {
+            assert!((a - e).norm() < 1e-13 * atom.norm());
+        }
+    }
+
+    #[test]
+    fn inner_products_are_those_of_the_samples() {
+        let radar = Radar::default();
+        let atoms = [(17.3, -0.4), (17.3, -0.402), (17.35, -0.4), (30.0, 0.9)].map(|(r, c)| Atom::at(&radar, r, c));
+        for a in &atoms {
+            for b in &atoms {
+                let slow: Complex64 = a.unit_samples().iter().zip(b.unit_samples()).map(|(a, b)| a.conj() * b).sum();
+                assert!((a.inner(b) - slow).norm() < 1e-8, "{} {slow}", a.inner(b));
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! What every reconstruction method promises, whatever it is made of: shape, range, determinism, independence of gain, an answer
+//! to degenerate samples, and an end when asked to stop. New methods are held to it by being in the list.
+
+use apertura::methods;
+use apertura::radar::{Decibels, Radar};
+use apertura::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::scene::Scene;
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::signal::{BeatSignal, Floor, TwoEnds, simulate};
+use num_complex::Complex64;
+use std::time::{Duration, Instant};
+
+/// Longest any method may take for one map, even on a busy machine in an unoptimised build.
+const LONGEST: Duration = Duration::from_secs(120);
+
+fn radar() -> Radar {
+    Radar::default()
+}
+
+fn ends_of(scene: &Scene, floor: Floor) -> TwoEnds {
+    simulate(&radar(), scene, floor, 1).unwrap().two_ends(&radar())
+}
+
+fn two_points() -> Scene {
+    Scene::of_points([(3.0, 14.0), (-8.0, 16.0)])
+}
+
+fn times(ends: &TwoEnds, gain: f64) -> TwoEnds {
+    TwoEnds { first: ends.first.mapv(|v| v * gain), last: ends.last.mapv(|v| v * gain) }
+}
+
+/// Runs `method` and holds its answer to shape, finiteness, range and time.
+fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction {
+    let start = Instant::now();
+    let name = method.name();
+    let answer = method
+        .reconstruct(&radar(), ends, &Request::default())
+        .unwrap_or_else(|error| panic!("{name} on {what}: {error}"));
+    assert!(start.elapsed() < LONGEST, "{name} on {what} took {:?}", start.elapsed());
+    assert_eq!(answer.lambda.lambda.dim(), (512, 1024), "{name} on {what}");
+    for ((row, column), v) in answer.lambda.lambda.indexed_iter() {
+        assert!((0.0..=1.0).contains(v), "{name} on {what}: {v} at row {row}, column {column}");
+    }
+    for r in &answer.reflectors {
+        assert!(
+            r.x_metres.is_finite() && r.y_metres.is_finite() && r.reflectivity.is_finite(),
+            "{name} on {what}: {r:?}"
+        );
+    }
+    answer
+}
+
+fn largest_difference(a: &Reconstruction, b: &Reconstruction) -> f32 {
+    a.lambda.lambda.iter().zip(&b.lambda.lambda).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
+}
+
+#[test]
+fn names_are_unique_and_described() {
+    let all = methods::all();
+    for (i, method) in all.iter().enumerate() {
+        assert!(all[..i].iter().all(|m| m.name() != method.name()), "{} is there twice", method.name());
+        assert!(!method.description().is_empty() && (0.0..1.0).contains(&method.eta()), "{}", method.name());
+    }
+}
+
+#[test]
+fn gain_leaves_no_trace_and_runs_repeat() {
+    let ends = ends_of(&two_points(), Floor::Thesis);
+    for method in methods::all() {
+        let name = method.name();
+        let plain = run(&*method, &ends, "two points");
+        assert!(plain.lambda.lambda.iter().any(|v| *v > 0.9), "{name} sees nothing");
+        assert_eq!(plain, run(&*method, &ends, "two points again"), "{name} does not repeat");
+        // Powers of two keep every bit of the samples, so that the rounding floor beneath them stays the same too.
+        for gain in [2f64.powi(-66), 2f64.powi(66)] {
+            let scaled = run(&*method, &times(&ends, gain), "scaled samples");
+            let difference = largest_difference(&plain, &scaled);
+            assert!(difference < 2e-3, "{name}: gain {gain:e} changes Lambda by {difference}");
+        }
+        for gain in [1e-20, 1e20] {
+            run(&*method, &times(&ends, gain), "samples scaled by a power of ten");
+        }
+    }
+}
+
+#[test]
+fn silence_is_answered_with_nothing() {
+    let silence = BeatSignal::silence(&radar()).two_ends(&radar());
+    for method in methods::all() {
+        let answer = run(&*method, &silence, "silence");
+        let first = answer.lambda.lambda[[0, 0]];
+        assert!(answer.lambda.lambda.iter().all(|v| *v == first), "{}: silence is flat", method.name());
+        assert!(answer.reflectors.is_empty(), "{} finds reflectors in silence", method.name());
+    }
+}
+
+#[test]
+fn a_single_sample_and_noise_alone_have_an_answer() {
+    let mut single = BeatSignal::silence(&radar()).two_ends(&radar());
+    single.first[[3, 100]] = Complex64::new(0.0, 1.0);
+    let mut noise = BeatSignal::silence(&radar());
+    apertura::signal::floor::add_noise(&mut noise, &vec![1.0; 1024], 9);
+    let noise = noise.two_ends(&radar());
+    let drowned = ends_of(&two_points(), Floor::Snr(Decibels(-30.0)));
+    for method in methods::all() {
+        run(&*method, &single, "a single sample");
+        run(&*method, &noise, "noise");
+        run(&*method, &drowned, "two points under noise");
+    }
+}
+
+#[test]
+fn a_crowded_scene_ends_in_time() {
+    let crowded = Generator::new(&radar(), Reading::Program, Purpose::Validation, 4).scene(Kind::Set3, 0);
+    let ends = ends_of(&crowded, Floor::Thesis);
+    for method in methods::all() {
+        run(&*method, &ends, "a crowded scene");
+    }
+}
+
+#[test]
+fn whoever_is_asked_to_stop_stops() {
+    let ends = ends_of(&two_points(), Floor::Thesis);
+    let request = Request::default();
+    request.task.cancel();
+    // The baseline is done before anybody could ask.
+    for method in methods::all().into_iter().filter(|m| m.name() != "baseline") {
+        let answer = method.reconstruct(&radar(), &ends, &request);
+        assert_eq!(answer, Err(ReconstructError::Cancelled), "{}", method.name());
+    }
+}
+
+#[test]
+fn bad_samples_are_named() {
+    let mut ends = ends_of(&two_points(), Floor::Exact);
+    ends.last[[4, 70]].re = f64::NAN;
+    let short = TwoEnds { first: ends.first.clone(), last: ends.last.slice(ndarray::s![..5, ..]).to_owned() };
+    for method in methods::all() {
+        let error = method.reconstruct(&radar(), &ends, &Request::default()).unwrap_err().to_string();
+        assert!(error.contains("sample 70 of element 4 of the last end"), "{}: {error}", method.name());
+        let error = method.reconstruct(&radar(), &short, &Request::default()).unwrap_err().to_string();
+        assert!(error.contains("last end has shape [5, 512]"), "{}: {error}", method.name());
+    }
+}
