@@ -2,7 +2,7 @@
 
 use crate::reconstruct::nomp::Nomp;
 use crate::reconstruct::{
-    Bartlett, Baseline, Capon, Fista, LinearPrediction, MatchedFilter, Music, Omp, Reconstructor, RootMusic,
+    Bartlett, Baseline, Capon, Fista, Hybrid, LinearPrediction, MatchedFilter, Music, Omp, Reconstructor, RootMusic,
 };
 use std::sync::Arc;
 
@@ -20,6 +20,7 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
         Arc::new(Fista::default()),
         Arc::new(Omp::default()),
         Arc::new(Nomp::default()),
+        Arc::new(Hybrid::new(Arc::new(MatchedFilter::Incoherent))),
     ]
 }
 

@@ -73,40 +73,28 @@ impl Detector {
         })
     }
 
-    /// The strongest cells of `residual`, strongest first, none beside another.
-    pub fn strongest(&self, radar: &Radar, sensor: &Sensor, residual: &[Complex64], most: usize) -> Vec<Candidate> {
+    /// The strongest cell of `residual` (not windowed), up to one wrap beyond the maximum range.
+    pub fn strongest(&self, radar: &Radar, sensor: &Sensor, residual: &[Complex64]) -> Option<Candidate> {
         let beams = self.beams(radar, sensor, residual);
-        let mut cells = Array2::<f64>::zeros((self.bins, COLUMNS));
+        let mut cells = Array2::<f64>::zeros((2 * self.bins, COLUMNS));
         for ((bin, column), cell) in cells.indexed_iter_mut() {
             let [x, y] = self.position(bin, column);
             let mut sum = 0.0;
             for (end, centre) in self.centres.iter().enumerate() {
                 let dx = x - centre;
-                let range = dx.hypot(y).max(1e-9);
+                let range = (dx * dx + y * y).sqrt().max(1e-9);
                 let row = (range / self.bin_metres).round() as usize % self.bins;
                 let beam = ((dx / range + 1.0) / 2.0 * BEAMS as f64).floor().clamp(0.0, BEAMS as f64 - 1.0);
                 sum += beams[end][[row, beam as usize]];
             }
             *cell = sum * sum;
         }
-        let mut sorted: Vec<f64> = cells.iter().copied().collect();
-        let middle = sorted.len() / 2;
-        let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let mut found = Vec::new();
-        for _ in 0..most {
-            let Some(((bin, column), &power)) = cells.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)) else { break };
-            if power <= 0.0 {
-                break;
-            }
-            let [x, y] = self.position(bin, column);
-            found.push(Candidate { x, y, prominence: power / median.max(f64::MIN_POSITIVE) });
-            for b in bin.saturating_sub(3)..(bin + 4).min(self.bins) {
-                for c in column.saturating_sub(8)..(column + 9).min(COLUMNS) {
-                    cells[[b, c]] = 0.0;
-                }
-            }
-        }
-        found
+        let ((bin, column), &power) = cells.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1))?;
+        let mut all: Vec<f64> = cells.iter().copied().collect();
+        let middle = all.len() / 2;
+        let median = *all.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let [x, y] = self.position(bin, column);
+        (power > 0.0).then(|| Candidate { x, y, prominence: power / median.max(f64::MIN_POSITIVE) })
     }
 
     /// Centre (x, y) of a cell of the common grid, metres.

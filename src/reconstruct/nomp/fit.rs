@@ -6,8 +6,9 @@
 
 use super::atom::Atom;
 use super::sensor::Sensor;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve;
-use faer::{Mat, MatRef, Side};
+use faer::{Accum, Mat, MatRef, Par, Side};
 use num_complex::Complex64;
 
 /// Which samples share one gain for each atom.
@@ -92,7 +93,7 @@ impl Problem<'_> {
         let (mut grams, mut slopes) = (Vec::new(), Vec::new());
         for (block, ends) in self.blocks(tie) {
             let part = all.subrows(block.start, block.len());
-            let gram = part.adjoint() * part;
+            let gram = gram(part);
             let values = Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(first_column[i], first_column[j])]);
             let solver = Ridge::new(&values);
             // The second pass removes what the squared condition number of the normal equations left.
@@ -117,12 +118,12 @@ impl Problem<'_> {
         State { fit: Fit { atoms, gains, residual, cost }, grams, slopes, first_column }
     }
 
-    /// Moves the atoms marked in `moving` to a local minimum of the residual's energy. Stops early when the energy falls below `enough`.
+    /// Moves the atoms marked in `moving` to a local minimum of the residual's energy.
     pub fn refine(&self, atoms: Vec<Atom>, tie: Tie, moving: &[bool], limits: Limits) -> Fit {
         let mut state = self.state(atoms, tie, moving);
         let mut damping = 1e-3;
         for _ in 0..limits.iterations {
-            if state.fit.cost <= limits.enough || !moving.contains(&true) {
+            if state.fit.cost == 0.0 || !moving.contains(&true) {
                 break;
             }
             let (hessian, gradient) = self.normal_equations(&state, tie, moving);
@@ -198,8 +199,6 @@ impl Problem<'_> {
 pub struct Limits {
     /// Most steps.
     pub iterations: usize,
-    /// Residual energy that is good enough.
-    pub enough: f64,
     /// A step that lowers the energy by a smaller part than this is the last.
     pub least_gain: f64,
 }
@@ -242,6 +241,29 @@ fn damped_step(hessian: &Mat<f64>, gradient: &[f64], damping: f64) -> Option<Vec
     let step = scaled.llt(Side::Lower).ok()?.solve(&rhs);
     let step: Vec<f64> = (0..n).map(|i| step[(i, 0)] * scale[i]).collect();
     step.iter().all(|s| s.is_finite() && s.abs() < 1e3).then_some(step)
+}
+
+/// `A^H A`. One thread: the matrices are small, and whoever reconstructs many scenes already uses the others.
+fn gram(a: MatRef<'_, Complex64>) -> Mat<Complex64> {
+    let n = a.ncols();
+    let mut product = Mat::zeros(n, n);
+    triangular::matmul(
+        product.as_mut(),
+        BlockStructure::TriangularLower,
+        Accum::Replace,
+        a.adjoint(),
+        BlockStructure::Rectangular,
+        a,
+        BlockStructure::Rectangular,
+        Complex64::from(1.0),
+        Par::Seq,
+    );
+    for j in 1..n {
+        for i in 0..j {
+            product[(i, j)] = product[(j, i)].conj();
+        }
+    }
+    product
 }
 
 fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {

@@ -8,22 +8,29 @@
 //! |---|---|
 //! | `atom` | the dictionary: one reflector, or a line of them |
 //! | `sensor` | what an atom leaves in the samples, and its derivatives |
-//! | `detect` | strongest cells of a residual, both ends registered |
+//! | `detect` | strongest cell of a residual, both ends registered |
+//! | `lines` | lines that a residual may hold |
+//! | `place` | one more atom at its best place |
 //! | `fit` | Levenberg-Marquardt on positions, gains projected out |
 //! | `search` | the greedy loop and its second thoughts |
+//! | `finish` | one gain for both ends, reflectivities |
 //! | `draw` | expected map of the objects found |
 
 mod atom;
 mod detect;
 mod draw;
+mod finish;
 mod fit;
+mod lines;
+mod place;
 mod search;
 mod sensor;
 #[cfg(test)]
 mod tests;
 
 pub use atom::Atom;
-pub use search::{Found, Settings, find};
+pub use finish::Found;
+pub use search::{Settings, find};
 
 use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
 use crate::maps::RangeAngleMap;
@@ -31,6 +38,9 @@ use crate::radar::Radar;
 use crate::signal::{Floor, TwoEnds};
 use draw::{Noise, Weighted, expected_lambda};
 use ndarray::Array2;
+
+/// Threshold for the maps of found objects, chosen on validation scenes.
+pub(super) const ETA: f32 = 0.89;
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,7 +65,7 @@ impl Reconstructor for Nomp {
     }
 
     fn eta(&self) -> f32 {
-        0.89
+        ETA
     }
 
     fn reconstruct(

@@ -1,10 +1,13 @@
-//! The greedy loop: detect, refine alone, refine together, until the residual is the floor.
+//! The greedy loop and its second thoughts: detect, refine alone, refine together, until the residual is the floor.
 
 use super::atom::Atom;
-use super::detect::{Candidate, Detector};
+use super::detect::Detector;
+use super::finish::{Found, finish};
 use super::fit::{Fit, Limits, Problem, Tie, energy};
+use super::place::{Placer, TABLE_SPACINGS_BINS};
 use super::sensor::Sensor;
-use crate::radar::{Radar, hann};
+use crate::maps::channels_range_transform;
+use crate::radar::{End, Radar, hann};
 use crate::reconstruct::{ReconstructError, Request};
 use crate::scene::Reflector;
 use crate::signal::floor::thesis_noise_variance;
@@ -12,10 +15,16 @@ use crate::signal::{Floor, TwoEnds};
 use num_complex::Complex64;
 
 /// Of a refinement of all atoms: many small steps are worth it, close pairs share a long narrow valley.
-const TOGETHER: Limits = Limits { iterations: 100, enough: 0.0, least_gain: 1e-5 };
+const TOGETHER: Limits = Limits { iterations: 100, least_gain: 1e-5 };
 
 /// Of a refinement that only tells good starts from bad ones.
-const GLANCE: Limits = Limits { iterations: 12, enough: 0.0, least_gain: 1e-2 };
+pub(super) const GLANCE: Limits = Limits { iterations: 12, least_gain: 1e-2 };
+
+/// A residual counts as the floor up to this many times the floor's expected energy: the rounding model is good to a factor of a few.
+const FLOOR_MARGIN: f64 = 16.0;
+
+/// Range bins in a row that only something longer than a few reflectors fills.
+const LONG_RUN_BINS: usize = 48;
 
 /// Bounds on time and memory, and what counts as found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,25 +43,6 @@ impl Default for Settings {
     }
 }
 
-/// What was found in the samples.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Found {
-    /// The objects.
-    pub atoms: Vec<Atom>,
-    /// Their reflectivities for samples times `scale`.
-    pub reflectivities: Vec<f64>,
-    /// What the samples were multiplied with to have a peak of 1.
-    pub scale: f64,
-    /// Part of the samples' energy that is left unexplained.
-    pub unexplained: f64,
-    /// Mean power of the scaled samples.
-    pub sample_power: f64,
-    /// Mean power of the residual of the scaled samples.
-    pub residual_variance: f64,
-    /// Whether the residual is down to the floor that was asked for.
-    pub complete: bool,
-}
-
 /// Takes the samples apart into atoms.
 ///
 /// # Errors
@@ -61,15 +51,7 @@ pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Setting
     let sensor = Sensor::new(radar);
     let peak = ends.first.iter().chain(&ends.last).fold(0.0, |m: f64, v| m.max(v.re.abs().max(v.im.abs())));
     if peak == 0.0 {
-        return Ok(Found {
-            atoms: Vec::new(),
-            reflectivities: Vec::new(),
-            scale: 1.0,
-            unexplained: 0.0,
-            sample_power: 0.0,
-            residual_variance: 0.0,
-            complete: true,
-        });
+        return Ok(Found::nothing());
     }
     let scale = peak.recip().min(f64::MAX);
     let samples = sensor.flatten(ends, scale);
@@ -87,7 +69,8 @@ pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Setting
     };
     let fit = search.run()?;
     request.task.set_progress(1.0);
-    Ok(search.found(fit, scale))
+    let complete = search.is_explained(&fit);
+    Ok(finish(&sensor, &samples, &windowed, &window, fit, complete, request.floor, scale))
 }
 
 struct Search<'a> {
@@ -106,37 +89,39 @@ impl Search<'_> {
         Problem { sensor: self.sensor, samples: self.windowed, window: self.window }
     }
 
-    /// Residual energy of the windowed samples that the floor alone would leave, if `atoms` are what is there.
-    fn floor_energy(&self, fit: &Fit) -> f64 {
-        let window: f64 = self.window.iter().map(|w| w * w).sum();
-        let all = energy(self.windowed);
-        match self.request.floor {
-            Floor::Snr(snr) => all / (1.0 + snr.power_ratio()),
-            Floor::Exact => all * 1e-28,
-            Floor::Thesis => {
-                let reflectors: Vec<Reflector> = fit
-                    .atoms
-                    .iter()
-                    .zip(&fit.gains)
-                    .flat_map(|(a, g)| a.object((g[0].norm_sqr() + g[1].norm_sqr()).sqrt()).reflectors())
-                    .collect();
-                let variance = thesis_noise_variance(self.radar, &reflectors);
-                let ends = variance.iter().take(self.sensor.end_elements).sum::<f64>()
-                    + variance.iter().rev().take(self.sensor.end_elements).sum::<f64>();
-                ends * window
+    /// Points alone, then lines at the spacings of the thesis' scenes; lines first where the echo is long.
+    fn run(&self) -> Result<Fit, ReconstructError> {
+        let start = energy(self.windowed);
+        let mut best = self.problem().solve(&[], Tie::PerEnd);
+        let long = self.longest_run() >= LONG_RUN_BINS;
+        let points = (!long).then_some(None);
+        for spacing_bins in points.into_iter().chain(TABLE_SPACINGS_BINS.map(Some)) {
+            let trial = self.attempt(spacing_bins)?;
+            if trial.cost < best.cost {
+                best = trial;
+            }
+            // Points that explain nearly everything, and noise, are no matter for lines.
+            if self.is_explained(&best) || best.cost < 1e-2 * start || !self.stands_out(&best) {
+                break;
             }
         }
+        Ok(best)
     }
 
-    fn run(&self) -> Result<Fit, ReconstructError> {
-        let mut best = self.greedy(self.problem().solve(&[], Tie::PerEnd))?;
-        for _ in 0..self.settings.rounds {
-            if self.is_explained(&best) {
+    /// Greedy search and second thoughts, with points and lines of one spacing or with points alone.
+    fn attempt(&self, spacing_bins: Option<f64>) -> Result<Fit, ReconstructError> {
+        let start = energy(self.windowed);
+        let mut best = self.greedy(self.problem().solve(&[], Tie::PerEnd), spacing_bins)?;
+        let rounds = if spacing_bins.is_some() { 1 } else { self.settings.rounds };
+        for _ in 0..rounds {
+            if self.is_explained(&best) || best.cost > 1e-2 * start || best.atoms.is_empty() {
                 break;
             }
             let pruned = self.pruned(best.clone())?;
-            let trial = self.split(&pruned)?;
-            let trial = if self.is_explained(&trial) { trial } else { self.greedy(self.pruned(trial)?)? };
+            let mut trial = self.split(&pruned)?;
+            if !self.is_explained(&trial) {
+                trial = self.greedy(self.pruned(trial)?, None)?;
+            }
             if trial.cost >= 0.5 * best.cost {
                 break;
             }
@@ -145,44 +130,61 @@ impl Search<'_> {
         self.pruned(best)
     }
 
-    fn is_explained(&self, fit: &Fit) -> bool {
-        fit.cost <= 16.0 * self.floor_energy(fit)
-    }
-
     /// Adds atoms until the residual is the floor, nothing stands out, or there are too many.
-    fn greedy(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+    fn greedy(&self, mut fit: Fit, spacing_bins: Option<f64>) -> Result<Fit, ReconstructError> {
         let start = energy(self.windowed);
+        let mut lines_missed = 0;
         while !self.is_explained(&fit) && fit.atoms.len() < self.settings.most_atoms {
             self.request.task.check()?;
-            let Some(grown) = self.grown(&fit) else { break };
+            let residual = self.unwindowed(&fit);
+            let strongest = self.detector.strongest(self.radar, self.sensor, &residual);
+            let Some(candidate) = strongest.filter(|c| c.prominence >= self.settings.least_prominence) else { break };
+            let placer = Placer { radar: self.radar, problem: Problem { samples: &fit.residual, ..self.problem() } };
+            let mut placed = placer.point(&candidate);
+            // A point that leaves next to nothing needs no line beside it.
+            if let Some(bins) = spacing_bins.filter(|_| lines_missed < 2 && placed.cost > 0.1 * fit.cost) {
+                let line = placer.line(&residual, bins);
+                match line.filter(|line| line.cost < placed.cost) {
+                    Some(line) => (placed, lines_missed) = (line, 0),
+                    None => lines_missed += 1,
+                }
+            }
+            let mut atoms = fit.atoms.clone();
+            atoms.extend(placed.atoms);
+            let grown = self.together(atoms);
             if grown.cost >= 0.999 * fit.cost {
                 break;
             }
             fit = grown;
             self.request.task.set_progress(((fit.cost / start).max(1e-30).log10() / -24.0) as f32);
-            tracing::debug!(atoms = fit.atoms.len(), unexplained = fit.cost / start, "grown");
+            tracing::debug!(atoms = fit.atoms.len(), unexplained = fit.cost / start, last = ?fit.atoms.last(), "grown");
         }
         Ok(fit)
     }
 
+    fn together(&self, atoms: Vec<Atom>) -> Fit {
+        let moving = vec![true; atoms.len()];
+        self.problem().refine(atoms, Tie::PerEnd, &moving, TOGETHER)
+    }
+
     /// Without the atoms that explain nothing the others could not, or that ran away.
     fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        let before = fit.atoms.len();
+        let enough = if self.is_explained(&fit) { FLOOR_MARGIN * self.floor_energy(&fit) } else { 2.0 * fit.cost };
         let mut i = 0;
         while i < fit.atoms.len() {
             self.request.task.check()?;
             let mut rest = fit.atoms.clone();
             rest.remove(i);
-            let far = fit.atoms[i].position(0).into_iter().fold(0.0, f64::hypot) > 2.5 * self.radar.max_range_metres();
+            let [x, y] = fit.atoms[i].position(0);
             let without = self.problem().solve(&rest, Tie::PerEnd);
-            let enough = if self.is_explained(&fit) { 16.0 * self.floor_energy(&fit) } else { 2.0 * fit.cost };
-            if far || without.cost < enough {
+            if x.hypot(y) > 2.5 * self.radar.max_range_metres() || without.cost < enough {
                 fit = without;
             } else {
                 i += 1;
             }
         }
-        let moving = vec![true; fit.atoms.len()];
-        Ok(self.problem().refine(fit.atoms, Tie::PerEnd, &moving, TOGETHER))
+        Ok(if fit.atoms.len() < before { self.together(fit.atoms) } else { fit })
     }
 
     /// The best of replacing one atom by two beside each other: two reflectors closer than a beam are first found as one.
@@ -206,23 +208,54 @@ impl Search<'_> {
                 }
             }
         }
-        let moving = vec![true; best.atoms.len()];
-        Ok(self.problem().refine(best.atoms, Tie::PerEnd, &moving, TOGETHER))
+        Ok(self.together(best.atoms))
     }
 
-    /// One more atom, then everything together; `None` where nothing stands out any more.
-    fn grown(&self, fit: &Fit) -> Option<Fit> {
-        let problem = self.problem();
-        let residual = self.unwindowed(fit);
-        let candidate = self.detector.strongest(self.radar, self.sensor, &residual, 1).pop()?;
-        if candidate.prominence < self.settings.least_prominence {
-            return None;
+    /// Whether the residual is what the floor alone would leave.
+    fn is_explained(&self, fit: &Fit) -> bool {
+        match self.request.floor {
+            Floor::Snr(_) => !self.stands_out(fit),
+            Floor::Thesis | Floor::Exact => fit.cost <= FLOOR_MARGIN * self.floor_energy(fit),
         }
-        let atom = self.placed(&fit.residual, &candidate);
-        let mut atoms = fit.atoms.clone();
-        atoms.push(atom);
-        let moving = vec![true; atoms.len()];
-        Some(problem.refine(atoms, Tie::PerEnd, &moving, TOGETHER))
+    }
+
+    /// Whether a cell of the residual stands out of it.
+    fn stands_out(&self, fit: &Fit) -> bool {
+        let residual = self.unwindowed(fit);
+        let strongest = self.detector.strongest(self.radar, self.sensor, &residual);
+        strongest.is_some_and(|c| c.prominence >= self.settings.least_prominence)
+    }
+
+    /// Energy that rounding leaves in the windowed samples, if the atoms of `fit` are what is there.
+    fn floor_energy(&self, fit: &Fit) -> f64 {
+        let window: f64 = self.window.iter().map(|w| w * w).sum();
+        // Even an exact simulation is rounded to f64, and so is the fit.
+        let rounding = energy(self.windowed) * 1e-29;
+        if self.request.floor != Floor::Thesis {
+            return rounding;
+        }
+        let reflectivity = |g: &[Complex64; 2]| ((g[0].norm_sqr() + g[1].norm_sqr()) / 2.0).sqrt();
+        let objects = fit.atoms.iter().zip(&fit.gains).map(|(a, g)| a.object(reflectivity(g)));
+        let reflectors: Vec<Reflector> = objects.flat_map(|o| o.reflectors()).collect();
+        let variance = thesis_noise_variance(self.radar, &reflectors);
+        let of_end = |end| variance[self.radar.end_range(end)].iter().sum::<f64>();
+        rounding + window * End::BOTH.map(of_end).iter().sum::<f64>()
+    }
+
+    /// Most neighbouring range bins with an echo at either end, 60 dB below the strongest, ranges evened out by the 1/R^2 law.
+    fn longest_run(&self) -> usize {
+        let ends = self.sensor.unflatten(self.samples);
+        let run_of = |end| {
+            let profiles = channels_range_transform(self.radar, ends.end(end).view()).profiles;
+            let power = |bin: usize| {
+                let power: f64 = profiles.column(bin).iter().map(Complex64::norm_sqr).sum();
+                power * (bin as f64 + 10.0).powi(4)
+            };
+            let powers: Vec<f64> = (0..self.radar.samples).map(power).collect();
+            let least = 1e-6 * powers.iter().copied().fold(0.0, f64::max);
+            powers.split(|p| *p < least).map(<[f64]>::len).max().unwrap_or(0)
+        };
+        End::BOTH.map(run_of).into_iter().max().unwrap_or(0)
     }
 
     /// The residual without the window, of the atoms and gains of `fit`.
@@ -238,40 +271,5 @@ impl Search<'_> {
             }
         }
         residual
-    }
-
-    /// A candidate moved to its best place in `residual`, at its own range or one wrap further out.
-    fn placed(&self, residual: &[Complex64], candidate: &Candidate) -> Atom {
-        let problem = Problem { samples: residual, ..self.problem() };
-        let range = candidate.x.hypot(candidate.y);
-        let wrapped = 1.0 + self.radar.max_range_metres() / range.max(1e-3);
-        let limits = Limits { iterations: 15, enough: 0.0, least_gain: 1e-3 };
-        [1.0, wrapped]
-            .into_iter()
-            .map(|far| Atom::Point { x: candidate.x * far, y: candidate.y * far })
-            .map(|atom| problem.refine(vec![atom], Tie::PerEnd, &[true], limits))
-            .reduce(|near, far| if far.cost < 0.5 * near.cost { far } else { near })
-            .map_or(Atom::Point { x: candidate.x, y: candidate.y }, |fit| fit.atoms[0])
-    }
-
-    fn found(&self, fit: Fit, scale: f64) -> Found {
-        let complete = self.is_explained(&fit);
-        let tied = self.problem().refine(
-            fit.atoms.clone(),
-            Tie::Both,
-            &vec![true; fit.atoms.len()],
-            Limits { iterations: 10, enough: 0.0, least_gain: 1e-3 },
-        );
-        let all = energy(self.windowed);
-        let window: f64 = self.window.iter().map(|w| w * w).sum::<f64>() * self.sensor.element_x.len() as f64;
-        Found {
-            reflectivities: tied.gains.iter().map(|g| g[0].norm()).collect(),
-            atoms: tied.atoms,
-            scale,
-            unexplained: tied.cost / all,
-            sample_power: all / window,
-            residual_variance: tied.cost / window,
-            complete,
-        }
     }
 }

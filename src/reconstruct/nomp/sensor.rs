@@ -47,6 +47,11 @@ impl Sensor {
         self.element_x.len() * self.samples
     }
 
+    /// Distance at which the carrier's phase repeats.
+    pub fn wavelength_metres(&self) -> f64 {
+        TAU / self.carrier_radians_per_metre.abs()
+    }
+
     /// Samples of one end.
     pub fn end_len(&self) -> usize {
         self.end_elements * self.samples

@@ -1,8 +1,10 @@
 //! Whole reconstructions of known scenes.
 
 use super::*;
+use crate::bounds::{cramer_rao, noise_variance};
 use crate::evaluate::{detection_rates, squared_error};
 use crate::maps::{LogMaps, Normalisation};
+use crate::radar::{Decibels, Layout};
 use crate::reconstruct::Task;
 use crate::scene::Scene;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -23,10 +25,10 @@ fn worst_error_metres(scene: &Scene, found: &Reconstruction) -> f64 {
 }
 
 #[test]
-fn points_are_found_to_rounding_and_drawn_to_the_floor() {
+fn scenes_of_all_sets_are_found_to_rounding_and_drawn_to_the_floor() {
     let radar = Radar::default();
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 7);
-    for kind in [Kind::Set1, Kind::Set2] {
+    for kind in Kind::TEST_SETS {
         let scene = generator.scene(kind, 1);
         let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
         let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax);
@@ -36,7 +38,8 @@ fn points_are_found_to_rounding_and_drawn_to_the_floor() {
         let error = squared_error(&target, &found.lambda);
         assert!(error < 800.0, "{kind:?}: SE {error}");
         let (detection, alarms) = detection_rates(&target, &found.lambda, Nomp::default().eta());
-        assert!(detection.unwrap() > 0.97 && alarms < 5e-4, "{kind:?}: {detection:?} {alarms}");
+        let most_alarms = if kind == Kind::Set3 { 5e-3 } else { 5e-4 };
+        assert!(detection.unwrap() > 0.97 && alarms < most_alarms, "{kind:?}: {detection:?} {alarms}");
     }
 }
 
@@ -90,4 +93,44 @@ fn a_cancelled_request_ends_with_an_error() {
     let request = Request { task, ..Request::default() };
     let ends = ends_of(&radar, &Scene::of_points([(4.0, 9.0)]));
     assert_eq!(Nomp::default().reconstruct(&radar, &ends, &request), Err(ReconstructError::Cancelled));
+}
+
+/// Root-mean-square position error over the Cramer-Rao bound, for a reflector at (5, 18) m.
+fn error_over_bound(snr: Decibels, trials: u64) -> f64 {
+    let radar = Radar::default();
+    let reflector = crate::scene::Reflector { x_metres: 5.0, y_metres: 18.0, reflectivity: 1.0 };
+    let layout = Layout::two_ends(&radar);
+    let variance = noise_variance(&radar, &layout, &reflector, snr);
+    let bound = cramer_rao(&radar, &layout, &[reflector], variance).unwrap()[0].position_metres();
+    let clean = crate::signal::exact::beat_signal(&radar, &[reflector]);
+    let request = Request { floor: Floor::Snr(snr), ..Request::default() };
+    let squared_error: f64 = (0..trials)
+        .map(|seed| {
+            let mut noisy = clean.clone();
+            crate::signal::floor::add_noise(&mut noisy, &vec![variance; radar.elements], seed);
+            let found = find(&radar, &noisy.two_ends(&radar), &request, &Settings::default()).unwrap();
+            assert_eq!(found.atoms.len(), 1, "{snr}, seed {seed}: {:?}", found.atoms);
+            let [x, y] = found.atoms[0].position(0);
+            (x - reflector.x_metres).powi(2) + (y - reflector.y_metres).powi(2)
+        })
+        .sum();
+    (squared_error / trials as f64).sqrt() / bound
+}
+
+#[test]
+fn one_reflector_is_placed_as_well_as_the_bound_allows() {
+    for snr in [20.0, 40.0] {
+        let ratio = error_over_bound(Decibels(snr), 16);
+        assert!((0.5..1.3).contains(&ratio), "{snr} dB: {ratio}");
+    }
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn one_reflector_is_placed_as_well_as_the_bound_allows_at_every_snr() {
+    for snr in [0.0, 10.0, 20.0, 30.0, 40.0] {
+        let ratio = error_over_bound(Decibels(snr), 200);
+        println!("{snr} dB: error / bound = {ratio:.3}");
+        assert!((0.85..1.2).contains(&ratio), "{snr} dB: {ratio}");
+    }
 }

@@ -1,0 +1,245 @@
+//! Where the residual may hold a line of reflectors.
+//!
+//! A line far off broadside packs its points closer than a range bin: no single point stands out, the line does. Each end's beams
+//! are laid along every candidate line; the points' echoes are added with the phases the line predicts, a few neighbours at a time,
+//! so that a coarse grid of (x, start) still meets them. A true line shows the same gain everywhere along its length and at both
+//! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
+
+use super::atom::Atom;
+use super::sensor::Sensor;
+use crate::maps::channels_range_transform;
+use crate::radar::{End, Radar};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Beams formed by each end: fine enough to take the nearest.
+const BEAMS: usize = 96;
+
+/// Points added with their phases before magnitudes are taken.
+const BLOCK: usize = 5;
+
+/// Starts tried between one point and the next.
+const PHASES: usize = 3;
+
+/// Step of the coarse grid in x, metres.
+const X_STEP_METRES: f64 = 0.05;
+
+/// Part of the blocks that may be weaker than the gain a line is credited with.
+const QUANTILE: f64 = 0.3;
+
+/// Starts kept of each column of the coarse grid.
+const BEST_OF_COLUMN: usize = 8;
+
+/// A line that the residual may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineCandidate {
+    /// The line.
+    pub atom: Atom,
+    /// Energy it would explain, in arbitrary units that are the same for all candidates of one residual.
+    pub score: f64,
+}
+
+/// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
+pub struct LineDetector {
+    /// `[range bin * BEAMS + beam]` for each end.
+    beams: [Vec<Complex64>; 2],
+    centres: [f64; 2],
+    bins: usize,
+    bins_per_metre: f64,
+    /// Phase of an echo at the middle of the chirp, turns a metre.
+    turns_per_metre: f64,
+    extent_metres: f64,
+    /// Referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.
+    wrap_sign: f64,
+}
+
+impl LineDetector {
+    /// Forms the beams of `residual` (all samples of both ends, not windowed).
+    pub fn new(radar: &Radar, sensor: &Sensor, residual: &[Complex64]) -> Self {
+        let ends = sensor.unflatten(residual);
+        let bins = radar.samples;
+        let middle = (bins as f64 - 1.0) / 2.0;
+        let radians_per_element =
+            -TAU * radar.carrier.turns_per_wavelength() * radar.element_spacing_metres / radar.wavelength_metres();
+        let beams = End::BOTH.map(|end| {
+            let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
+            let centre = (profiles.nrows() as f64 - 1.0) / 2.0;
+            let mut beams = vec![Complex64::default(); bins * BEAMS];
+            for beam in 0..BEAMS {
+                let cos = (beam as f64 + 0.5) / BEAMS as f64 * 2.0 - 1.0;
+                for (n, profile) in profiles.outer_iter().enumerate() {
+                    let steer = Complex64::cis(-radians_per_element * cos * (n as f64 - centre));
+                    for (bin, p) in profile.iter().enumerate() {
+                        beams[bin * BEAMS + beam] += steer * p;
+                    }
+                }
+            }
+            for (bin, row) in beams.chunks_mut(BEAMS).enumerate() {
+                let shift = Complex64::cis(TAU * (bin as f64 * middle / bins as f64).fract());
+                row.iter_mut().for_each(|b| *b *= shift);
+            }
+            beams
+        });
+        LineDetector {
+            beams,
+            centres: End::BOTH.map(|e| radar.end_centre_metres(e)),
+            bins,
+            bins_per_metre: 1.0 / radar.range_resolution_metres(),
+            turns_per_metre: radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
+                + middle / radar.max_range_metres(),
+            extent_metres: radar.max_range_metres(),
+            wrap_sign: if bins.is_multiple_of(2) { -1.0 } else { 1.0 },
+        }
+    }
+
+    /// What a reflector at (x, y) would have left at an end, with its phase taken off; and its amplitude 1/R^2.
+    #[inline]
+    fn echo(&self, end: usize, x: f64, y: f64) -> (Complex64, f64) {
+        let dx = x - self.centres[end];
+        let range = (dx * dx + y * y).sqrt().max(0.05);
+        let beam = ((dx / range + 1.0) * (0.5 * BEAMS as f64)) as usize;
+        let beam = beam.min(BEAMS - 1);
+        let bin = range * self.bins_per_metre;
+        let (low, part) = (bin as usize, bin.fract());
+        let row = |k: usize| {
+            let value = self.beams[end][(k % self.bins) * BEAMS + beam];
+            if (k / self.bins) % 2 == 1 { value * self.wrap_sign } else { value }
+        };
+        // Neighbouring rows differ by half a turn (the middle of the chirp): `new` already took that off.
+        let value = row(low) * (1.0 - part) + row(low + 1) * part;
+        let turns = range * self.turns_per_metre;
+        (value * Complex64::cis(-TAU * (turns - turns.round())), 1.0 / (range * range))
+    }
+
+    /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
+    pub fn coarse(&self, spacing: f64, count: usize, most: usize) -> Vec<LineCandidate> {
+        let blocks = (count / BLOCK).max(1);
+        let columns = (2.0 * 0.82 * self.extent_metres / X_STEP_METRES) as usize;
+        let starts = (self.extent_metres / spacing) as usize;
+        let mut found: Vec<LineCandidate> = (0..columns)
+            .into_par_iter()
+            .flat_map_iter(|column| {
+                let x = column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
+                let mut best: Vec<LineCandidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
+                let mut gains = Vec::with_capacity(2 * blocks);
+                for phase in 0..PHASES {
+                    let offset = spacing * phase as f64 / PHASES as f64;
+                    let ends = [0, 1].map(|end| Blocks::new(self, end, x, offset, spacing, starts + count));
+                    for start in 0..starts {
+                        let [sum, weight] = [0, 1]
+                            .map(|end| ends[end].totals(start, blocks))
+                            .iter()
+                            .fold([0.0; 2], |total, of_end| [total[0] + of_end[0], total[1] + of_end[1]]);
+                        // The quantile can't exceed the mean of all over the part that lies above it: most starts end here.
+                        let bound = sum / (2 * blocks) as f64 / (1.0 - QUANTILE);
+                        let least = if best.len() < BEST_OF_COLUMN { 0.0 } else { best[BEST_OF_COLUMN - 1].score };
+                        if bound * bound * weight <= least {
+                            continue;
+                        }
+                        gains.clear();
+                        for end in &ends {
+                            gains.extend((0..blocks).map(|b| end.gain[start + b * BLOCK]));
+                        }
+                        let at = (gains.len() as f64 * QUANTILE) as usize;
+                        let gain = *gains.select_nth_unstable_by(at, f64::total_cmp).1;
+                        let score = gain * gain * weight;
+                        if score > least {
+                            let start = offset + start as f64 * spacing;
+                            best.push(LineCandidate { atom: Atom::Line { x, start, spacing, count }, score });
+                            best.sort_by(|a, b| b.score.total_cmp(&a.score));
+                            best.truncate(BEST_OF_COLUMN);
+                        }
+                    }
+                }
+                best
+            })
+            .collect();
+        found.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let mut apart: Vec<LineCandidate> = Vec::new();
+        for candidate in found {
+            if apart.iter().all(|a| distance(&a.atom, &candidate.atom) > 0.12) {
+                apart.push(candidate);
+                if apart.len() == most {
+                    break;
+                }
+            }
+        }
+        apart
+    }
+
+    /// Energy that a line explains when all its points at one end are added with their phases; the sum over both ends.
+    pub fn coherent(&self, atom: &Atom) -> f64 {
+        let mut energy = 0.0;
+        for end in 0..2 {
+            let (mut sum, mut weight) = (Complex64::default(), 0.0);
+            for i in 0..atom.reflectors() {
+                let [x, y] = atom.position(i);
+                let (echo, amplitude) = self.echo(end, x, y);
+                sum += echo * amplitude;
+                weight += amplitude * amplitude;
+            }
+            energy += sum.norm_sqr() / weight;
+        }
+        energy
+    }
+
+    /// The best place for `atom` on a fine grid around it, all points added with their phases.
+    pub fn fine(&self, atom: &Atom, reach_metres: f64, step_metres: f64) -> LineCandidate {
+        let steps = (reach_metres / step_metres).round() as i32;
+        (-steps..=steps)
+            .into_par_iter()
+            .flat_map_iter(|i| (-steps..=steps).map(move |j| (i, j)))
+            .map(|(i, j)| {
+                let atom = atom.moved(&[f64::from(i) * step_metres, f64::from(j) * step_metres, 0.0]);
+                LineCandidate { atom, score: self.coherent(&atom) }
+            })
+            .reduce(|| LineCandidate { atom: *atom, score: 0.0 }, |a, b| if b.score > a.score { b } else { a })
+    }
+}
+
+/// Blocks of neighbouring points in one column of the grid as one end sees them, one for every first point.
+struct Blocks {
+    /// Magnitude of each block's gain.
+    gain: Vec<f64>,
+    /// Running sums of gain and weight (sum of squared amplitudes) in steps of [`BLOCK`] points.
+    running: Vec<[f64; 2]>,
+}
+
+impl Blocks {
+    fn new(detector: &LineDetector, end: usize, x: f64, offset: f64, spacing: f64, points: usize) -> Self {
+        let (mut sum, mut weight) = (Complex64::default(), 0.0);
+        let mut prefix = Vec::with_capacity(points + 1);
+        prefix.push((sum, weight));
+        for i in 0..points {
+            let (echo, amplitude) = detector.echo(end, x, offset + i as f64 * spacing);
+            sum += echo * amplitude;
+            weight += amplitude * amplitude;
+            prefix.push((sum, weight));
+        }
+        let first = 0..=points.saturating_sub(BLOCK);
+        let mut blocks = Blocks { gain: Vec::with_capacity(points), running: Vec::with_capacity(points) };
+        for i in first {
+            let last = (i + BLOCK).min(points);
+            let weight = prefix[last].1 - prefix[i].1;
+            let gain = (prefix[last].0 - prefix[i].0).norm() / weight;
+            let before = if i >= BLOCK { blocks.running[i - BLOCK] } else { [0.0; 2] };
+            blocks.gain.push(gain);
+            blocks.running.push([before[0] + gain, before[1] + weight]);
+        }
+        blocks
+    }
+
+    /// Sum of gains and of weights of `count` blocks, one behind the other from point `start`.
+    fn totals(&self, start: usize, count: usize) -> [f64; 2] {
+        let last = self.running[start + (count - 1) * BLOCK];
+        let before = if start >= BLOCK { self.running[start - BLOCK] } else { [0.0; 2] };
+        [last[0] - before[0], last[1] - before[1]]
+    }
+}
+
+/// Larger of the distances in x and in start, metres.
+fn distance(a: &Atom, b: &Atom) -> f64 {
+    let ([ax, ay], [bx, by]) = (a.position(0), b.position(0));
+    (ax - bx).abs().max((ay - by).abs())
+}
