@@ -57,6 +57,8 @@ pub mod interact;
 pub mod live;
 pub mod maps;
 pub mod methods;
+#[cfg(feature = "network")]
+pub mod network;
 pub mod picture;
 pub mod radar;
 pub mod reconstruct;

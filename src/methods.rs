@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 /// Every method this build knows, in the order they are shown.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
-    vec![
+    #[cfg_attr(not(feature = "network"), expect(unused_mut, reason = "networks add to it"))]
+    let mut methods: Vec<Arc<dyn Reconstructor>> = vec![
         Arc::new(Baseline),
         Arc::new(Bartlett),
         Arc::new(MatchedFilter::Coherent),
@@ -21,7 +22,10 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
         Arc::new(Omp::default()),
         Arc::new(Nomp::default()),
         Arc::new(Hybrid::new(Arc::new(MatchedFilter::Incoherent))),
-    ]
+    ];
+    #[cfg(feature = "network")]
+    methods.extend(crate::network::shipped());
+    methods
 }
 
 /// The method whose output is shown where nobody chose one.

@@ -10,7 +10,10 @@ mod maps;
 mod open;
 mod output;
 mod picture;
+mod reconstruct;
 mod scenes;
+#[cfg(feature = "network")]
+mod train;
 
 pub use error::CommandError;
 pub use output::print;
@@ -37,7 +40,10 @@ struct Cli {
 enum Command {
     Evaluate(evaluate::Args),
     Maps(maps::Args),
+    Reconstruct(reconstruct::Args),
     Scenes(scenes::Args),
+    #[cfg(feature = "network")]
+    Train(train::Args),
 }
 
 impl Command {
@@ -45,7 +51,10 @@ impl Command {
         match self {
             Command::Evaluate(args) => args.run(),
             Command::Maps(args) => args.run(),
+            Command::Reconstruct(args) => args.run(),
             Command::Scenes(args) => args.run(),
+            #[cfg(feature = "network")]
+            Command::Train(args) => args.run(),
         }
     }
 }

@@ -36,11 +36,16 @@ pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
     channels_range_transform(radar, signal.samples.view())
 }
 
-/// Range profiles of any channels, `[channels, samples]` to `[channels, range bins]`.
+/// Hann-windowed range profiles of any channels, `[channels, samples]` to `[channels, range bins]`.
 pub fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> RangeProfiles {
+    windowed_range_transform(radar, samples, &hann(radar.samples))
+}
+
+/// Range profiles of any channels under a window of `radar.samples` weights.
+pub fn windowed_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>, window: &[f64]) -> RangeProfiles {
     let fft = FftPlanner::new().plan_fft_forward(radar.samples);
     let scale = (radar.samples as f64).sqrt().recip();
-    let window: Vec<f64> = hann(radar.samples).into_iter().map(|w| w * scale).collect();
+    let window: Vec<f64> = window.iter().map(|w| w * scale).collect();
     let mut profiles = samples.as_standard_layout().into_owned();
     profiles.outer_iter_mut().into_par_iter().for_each_init(
         || vec![Complex64::default(); fft.get_inplace_scratch_len()],

@@ -1,0 +1,127 @@
+//! `apertura train`: trains a network by a recipe.
+
+use super::{CommandError, print};
+use crate::network::backend::Backend;
+use crate::network::live::Live;
+use crate::network::recipe::{Network, Recipe, SHIPPED};
+use crate::network::students::Student;
+use crate::network::thesis::Thesis;
+use crate::network::train::{Progress, Run, train};
+use crate::network::unet::Unet;
+use crate::radar::Radar;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Duration;
+
+/// Train a network by a recipe
+///
+/// The folder gets log.csv, a checkpoint (replaced in one step) and, at the end, weights.safetensors with its record.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Recipe: the name of a shipped one, or a .toml file
+    #[arg(required_unless_present = "list")]
+    recipe: Option<String>,
+
+    /// Name the shipped recipes
+    #[arg(long)]
+    list: bool,
+
+    /// Folder of a new run [default: runs/RECIPE]
+    #[arg(long, value_name = "DIR", conflicts_with = "resume")]
+    output: Option<PathBuf>,
+
+    /// Go on with the run in this folder
+    #[arg(long, value_name = "DIR")]
+    resume: Option<PathBuf>,
+
+    /// Stop, with a checkpoint, after so many steps in all
+    #[arg(long, value_name = "N")]
+    steps: Option<u64>,
+
+    /// Stop, with a checkpoint, after so many minutes
+    #[arg(long, value_name = "M")]
+    minutes: Option<f64>,
+
+    /// Where tensors are computed
+    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::NAMES.join(", ")))]
+    backend: Backend,
+}
+
+impl Args {
+    /// Trains, showing progress and time left.
+    pub fn run(self) -> Result<(), CommandError> {
+        if self.list {
+            return list();
+        }
+        let recipe = self.recipe()?;
+        let resume = self.resume.is_some();
+        let folder = self.resume.or(self.output).unwrap_or_else(|| PathBuf::from("runs").join(&recipe.name));
+        let minutes = self.minutes.filter(|m| m.is_finite() && *m >= 0.0);
+        let run = Run {
+            folder,
+            device: self.backend.device(),
+            radar: Radar::default(),
+            max_steps: self.steps,
+            max_time: minutes.map(|m| Duration::from_secs_f64(60.0 * m)),
+            checkpoint_every: Duration::from_secs(120),
+            commit: commit(),
+        };
+        match &recipe.network {
+            Network::Thesis(config) => go::<Thesis>(&recipe, config, &run, resume),
+            Network::Unet(config) => go::<Unet>(&recipe, config, &run, resume),
+            Network::Live(config) => go::<Live>(&recipe, config, &run, resume),
+        }
+    }
+
+    fn recipe(&self) -> Result<Recipe, CommandError> {
+        let name = self.recipe.as_deref().unwrap_or_default();
+        if let Some(recipe) = Recipe::shipped(name) {
+            return recipe.map_err(CommandError::failed);
+        }
+        let path = PathBuf::from(name);
+        if !path.exists() {
+            let known: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
+            let message = format!("\"{name}\" is neither a file nor a shipped recipe; shipped: {}", known.join(", "));
+            return Err(CommandError::Usage(message));
+        }
+        let text = std::fs::read_to_string(&path).map_err(|source| CommandError::File { path, source })?;
+        Recipe::parse(name, &text).map_err(CommandError::failed)
+    }
+}
+
+fn list() -> Result<(), CommandError> {
+    for (name, text) in SHIPPED {
+        let recipe = Recipe::parse(name, text).map_err(CommandError::failed)?;
+        print(&format!("{name:20} {}", recipe.description))?;
+    }
+    Ok(())
+}
+
+fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &Run, resume: bool) -> Result<(), CommandError> {
+    let all = recipe.training_scenes().len() / recipe.batch * recipe.epochs as usize;
+    let bar = ProgressBar::new(run.max_steps.map_or(all as u64, |most| most.min(all as u64)));
+    let style = ProgressStyle::with_template("{bar:30} step {pos}/{len}, {eta} left, {msg}");
+    bar.set_style(style.map_err(CommandError::failed)?);
+    let watch = |p: &Progress| {
+        bar.set_position(p.step);
+        bar.set_message(format!("epoch {}, loss {:.5}", p.epoch, p.loss));
+    };
+    let end = train::<S>(recipe, config, run, resume, watch).map_err(CommandError::failed)?;
+    bar.finish_and_clear();
+    print(&format!(
+        "{} steps, {} maps, {:.0} minutes, loss {:.5}; wrote {}",
+        end.step,
+        end.maps,
+        end.seconds / 60.0,
+        end.loss,
+        run.folder.join("weights.safetensors").display()
+    ))
+}
+
+/// The commit of the working folder, for the record in the weights; "unknown" outside a repository.
+fn commit() -> String {
+    let out = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).output();
+    let text = out.ok().filter(|o| o.status.success()).and_then(|o| String::from_utf8(o.stdout).ok());
+    text.map_or_else(|| "unknown".to_owned(), |t| t.trim().to_owned())
+}

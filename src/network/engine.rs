@@ -1,0 +1,433 @@
+//! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::live`].
+//!
+//! [`super::live`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
+
+use super::fastmath::{exp10, log10};
+use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
+use super::kernel::{LANES, Packed, convolve, padded, product};
+use super::live::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
+use super::weights::{WeightFile, WeightsError};
+use rayon::prelude::*;
+
+/// Fine columns in a coarse one, and map columns in a fine one.
+const FOLD: usize = FINE / COARSE;
+const SPREAD: usize = COLUMNS / FINE;
+
+/// What the network says about one scene, in decades above the samples' gain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decades {
+    /// log10 |Y| of the whole array, `[512, 1024]` row-major.
+    pub map: Vec<f32>,
+    /// The smallest cell that the true map is expected to have.
+    pub minimum: f32,
+}
+
+#[derive(Debug)]
+struct Context {
+    row: Packed,
+    col: Packed,
+}
+
+#[derive(Debug)]
+struct Block {
+    conv1: Packed,
+    conv2: Packed,
+    context: Option<Context>,
+}
+
+/// The live network's weights, packed for [`super::kernel`].
+#[derive(Debug)]
+pub struct LiveEngine {
+    stem: Packed,
+    encoder: [Vec<Block>; 4],
+    down: [Packed; 3],
+    up: [Packed; 3],
+    decoder: [Vec<Block>; 3],
+    widen: Packed,
+    fine1: Packed,
+    fine2: Packed,
+    row_sources: Packed,
+    /// `[512, 512]`: side lobes in range.
+    columns: Vec<f32>,
+    /// `[128, 128]`: side lobes in angle.
+    rows: Vec<f32>,
+    scalar1: Packed,
+    scalar2: Packed,
+    channels: [usize; 4],
+}
+
+/// Channels-last picture: `[h, w, c]`.
+#[derive(Debug, Clone, Default)]
+struct Plane {
+    h: usize,
+    w: usize,
+    c: usize,
+    data: Vec<f32>,
+}
+
+impl Plane {
+    fn reset(&mut self, h: usize, w: usize, c: usize) {
+        (self.h, self.w, self.c) = (h, w, c);
+        self.data.resize(h * w * c, 0.0);
+    }
+}
+
+/// Buffers of one forward pass; keep them between calls.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    halo: Vec<f32>,
+    hidden: Plane,
+    delta: Plane,
+    level: [Plane; 4],
+    upward: Plane,
+    heads: Plane,
+    sources: Plane,
+    right: Vec<f32>,
+    pool: Vec<f32>,
+    mixed: Vec<f32>,
+}
+
+impl LiveEngine {
+    /// Packs the weights of `file`, which must fit `config`.
+    ///
+    /// # Errors
+    /// [`WeightsError`] names the tensor that is missing or of another shape.
+    pub fn new(file: &WeightFile, config: &LiveConfig) -> Result<Self, WeightsError> {
+        let [c0, c1, c2, c3] = config.channels;
+        let [b0, b1, b2, b3] = config.blocks;
+        let conv = |name: &str, input: usize, stride_in: usize, output: usize, kernel: usize, stride: usize| {
+            let weights = file.tensor(&format!("{name}.weight"), &[output, input, kernel, kernel])?;
+            let bias = file.tensor(&format!("{name}.bias"), &[output])?;
+            Ok(Packed::new(&weights, &bias, input, stride_in, kernel, stride))
+        };
+        let inner = |name: &str, input: usize, output: usize, kernel: usize| {
+            conv(name, input, padded(input), output, kernel, if kernel == 2 { 2 } else { 1 })
+        };
+        let linear = |name: &str, input: usize, output: usize| {
+            let weights = file.tensor(&format!("{name}.weight"), &[output, input])?;
+            let bias = file.tensor(&format!("{name}.bias"), &[output])?;
+            Ok(Packed::new(&weights, &bias, input, input, 1, 1))
+        };
+        let blocks = |name: &str, count: usize, c: usize, context: bool| {
+            let block = |i: usize| {
+                let part = |p: &str| format!("{name}.{i}.{p}");
+                // A context's input holds the means, then the maxima, both padded.
+                let mix = |p: &str| pooled_mix(file, &part(p), c);
+                let context =
+                    if context { Some(Context { row: mix("context.row")?, col: mix("context.col")? }) } else { None };
+                Ok(Block {
+                    conv1: inner(&part("conv1.conv"), c, c, 3)?,
+                    conv2: inner(&part("conv2.conv"), c, c, 3)?,
+                    context,
+                })
+            };
+            (0..count).map(block).collect::<Result<Vec<_>, WeightsError>>()
+        };
+        Ok(LiveEngine {
+            stem: conv("stem.conv", INPUT_CHANNELS, INPUT_CHANNELS, c0, 3, 1)?,
+            encoder: [
+                blocks("enc0", b0, c0, false)?,
+                blocks("enc1", b1.div_ceil(2), c1, false)?,
+                blocks("enc2", b2.div_ceil(2), c2, true)?,
+                blocks("enc3", b3, c3, true)?,
+            ],
+            down: [inner("down1", c0, c1, 2)?, inner("down2", c1, c2, 2)?, inner("down3", c2, c3, 2)?],
+            up: [inner("up0", c1, 4 * c0, 1)?, inner("up1", c2, 4 * c1, 1)?, inner("up2", c3, 4 * c2, 1)?],
+            decoder: [blocks("dec0", b0, c0, false)?, blocks("dec1", b1, c1, false)?, blocks("dec2", b2, c2, true)?],
+            widen: inner("widen.conv", c0, WIDENED * FOLD, 3)?,
+            fine1: conv("fine1.conv", WIDENED + FINE_CHANNELS, WIDENED + FINE_CHANNELS, config.fine, 3, 1)?,
+            fine2: inner("fine2", config.fine, 2 * SPREAD, 1)?,
+            row_sources: inner("row_sources", c0, WIDE / COARSE, 1)?,
+            columns: circulant(&file.tensor("col_kernel", &[ROWS / 2 + 1])?, ROWS),
+            rows: circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE),
+            scalar1: linear("scalar1", 2 * c3 + SCALARS, 64)?,
+            scalar2: linear("scalar2", 64, 2)?,
+            channels: config.channels,
+        })
+    }
+
+    /// Estimates the map of one scene.
+    pub fn forward(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
+        let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
+        let Scratch { halo, hidden, delta, level, upward, .. } = s;
+        fill_input(input, &scalars, halo);
+        apply(&self.stem, halo, ROWS, COARSE, &mut level[0]);
+        for k in 0..4 {
+            if k > 0 {
+                let (above, below) = level.split_at_mut(k);
+                let from = &above[k - 1];
+                below[0].reset(from.h / 2, from.w / 2, self.down[k - 1].output());
+                convolve(&self.down[k - 1], &from.data, from.w, from.w / 2, &mut below[0].data);
+            }
+            for block in &self.encoder[k] {
+                block.forward(&mut level[k], halo, hidden, delta, &mut s.pool, &mut s.mixed);
+            }
+        }
+        let (floor_shift, minimum_shift) = self.scalars(&level[3], &scalars);
+        for k in (0..3).rev() {
+            let (finer, coarser) = level.split_at_mut(k + 1);
+            let from = &coarser[0];
+            upward.reset(from.h, from.w, self.up[k].output());
+            convolve(&self.up[k], &from.data, from.w, from.w, &mut upward.data);
+            add_doubled(upward, &mut finer[k], self.channels[k]);
+            for block in &self.decoder[k] {
+                block.forward(&mut finer[k], halo, hidden, delta, &mut s.pool, &mut s.mixed);
+            }
+        }
+        let top = &mut level[0];
+        top.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        s.sources.reset(ROWS, COARSE, self.row_sources.output());
+        convolve(&self.row_sources, &top.data, COARSE, COARSE, &mut s.sources.data);
+        with_halo(top, false, halo);
+        apply(&self.widen, halo, ROWS, COARSE, hidden);
+        fill_fine(&input.fine, hidden, halo);
+        apply(&self.fine1, halo, ROWS, FINE, delta);
+        delta.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        s.heads.reset(ROWS, FINE, self.fine2.output());
+        convolve(&self.fine2, &delta.data, FINE, FINE, &mut s.heads.data);
+        let floor = input.scalars[0] + floor_shift;
+        let map = self.decode(&s.heads, &s.sources, floor, &mut s.right);
+        Decades { map, minimum: floor - 2.5 + minimum_shift }
+    }
+
+    /// Corrections of the floor and of the minimum, from the coarsest level.
+    fn scalars(&self, coarsest: &Plane, scalars: &[f32; SCALARS]) -> (f32, f32) {
+        let c = self.channels[3];
+        let cells = (coarsest.h * coarsest.w) as f32;
+        let mut pooled = vec![0.0f32; 2 * c + SCALARS];
+        pooled[c..2 * c].fill(f32::NEG_INFINITY);
+        for cell in coarsest.data.chunks_exact(coarsest.c) {
+            for (i, v) in cell[..c].iter().enumerate() {
+                pooled[i] += v / cells;
+                pooled[c + i] = pooled[c + i].max(*v);
+            }
+        }
+        pooled[2 * c..].copy_from_slice(scalars);
+        let mut hidden = vec![0.0; self.scalar1.output()];
+        convolve(&self.scalar1, &pooled, 1, 1, &mut hidden);
+        hidden.iter_mut().for_each(|v| *v = v.max(0.0));
+        let mut said = vec![0.0; self.scalar2.output()];
+        convolve(&self.scalar2, &hidden, 1, 1, &mut said);
+        (said[0], said[1])
+    }
+
+    /// Heads and side-lobe sources to decades.
+    fn decode(&self, heads: &Plane, sources: &Plane, floor: f32, right: &mut Vec<f32>) -> Vec<f32> {
+        const BLOCK: usize = 2 * LANES;
+        right.resize(ROWS * COLUMNS, 0.0);
+        right.par_chunks_mut(ROWS * BLOCK).enumerate().for_each(|(block, out)| {
+            for (row, out) in out.chunks_exact_mut(BLOCK).enumerate() {
+                let cells = &heads.data[(row * FINE + block * BLOCK / SPREAD) * heads.c..];
+                for (out, cell) in out.chunks_exact_mut(SPREAD).zip(cells.chunks_exact(heads.c)) {
+                    out.copy_from_slice(&cell[SPREAD..2 * SPREAD]);
+                }
+            }
+            amplitudes(out);
+        });
+        let mut map = vec![0.0; ROWS * COLUMNS];
+        product(&self.columns, right, ROWS, COLUMNS, &mut map);
+        let floor = 10f32.powf(floor);
+        map.par_chunks_mut(COLUMNS).enumerate().for_each(|(row, line)| {
+            let mut local = [0.0; COLUMNS];
+            let cells = heads.data[row * FINE * heads.c..].chunks_exact(heads.c);
+            for (out, cell) in local.chunks_exact_mut(SPREAD).zip(cells) {
+                out.copy_from_slice(&cell[..SPREAD]);
+            }
+            amplitudes(&mut local);
+            line.iter_mut().zip(&local).for_each(|(a, b)| *a += b);
+            let mut wide = [0.0; WIDE];
+            let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
+            for (out, cell) in wide.chunks_exact_mut(WIDE / COARSE).zip(cells) {
+                out.copy_from_slice(&cell[..WIDE / COARSE]);
+            }
+            amplitudes(&mut wide);
+            const EACH: usize = COLUMNS / WIDE;
+            for (w, cells) in wide.iter_mut().zip(line.chunks_exact(EACH)) {
+                *w += cells.iter().sum::<f32>() / EACH as f32;
+            }
+            let mut lobes = [floor; WIDE];
+            for (w, kernel) in wide.iter().zip(self.rows.chunks_exact(WIDE)) {
+                lobes.iter_mut().zip(kernel).for_each(|(l, k)| *l += w * k);
+            }
+            for (cells, lobe) in line.chunks_exact_mut(EACH).zip(lobes) {
+                cells.iter_mut().for_each(|v| *v += lobe);
+            }
+            log10(line);
+        });
+        map
+    }
+}
+
+/// 1x1 convolution of means and maxima, each padded to whole vectors.
+fn pooled_mix(file: &WeightFile, name: &str, c: usize) -> Result<Packed, WeightsError> {
+    let weights = file.tensor(&format!("{name}.weight"), &[c, 2 * c, 1, 1])?;
+    let bias = file.tensor(&format!("{name}.bias"), &[c])?;
+    let lanes = padded(c);
+    let mut spread = vec![0.0; c * 2 * lanes];
+    for (out, row) in spread.chunks_exact_mut(2 * lanes).zip(weights.chunks_exact(2 * c)) {
+        out[..c].copy_from_slice(&row[..c]);
+        out[lanes..lanes + c].copy_from_slice(&row[c..]);
+    }
+    Ok(Packed::new(&spread, &bias, 2 * lanes, 2 * lanes, 1, 1))
+}
+
+impl Block {
+    fn forward(
+        &self,
+        x: &mut Plane,
+        halo: &mut Vec<f32>,
+        hidden: &mut Plane,
+        delta: &mut Plane,
+        pool: &mut Vec<f32>,
+        mixed: &mut Vec<f32>,
+    ) {
+        with_halo(x, true, halo);
+        apply(&self.conv1, halo, x.h, x.w, hidden);
+        if let Some(context) = &self.context {
+            context.forward(hidden, pool, mixed);
+        }
+        with_halo(hidden, true, halo);
+        apply(&self.conv2, halo, x.h, x.w, delta);
+        x.data.par_iter_mut().with_min_len(1 << 15).zip(&delta.data).for_each(|(a, b)| *a += b);
+    }
+}
+
+impl Context {
+    fn forward(&self, x: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
+        let (h, w, c) = (x.h, x.w, x.c);
+        pool.clear();
+        pool.resize((h + w) * 2 * c, 0.0);
+        let (row_pool, col_pool) = pool.split_at_mut(h * 2 * c);
+        for pooled in row_pool.chunks_exact_mut(2 * c).chain(col_pool.chunks_exact_mut(2 * c)) {
+            pooled[c..].fill(f32::NEG_INFINITY);
+        }
+        for (y, line) in x.data.chunks_exact(w * c).enumerate() {
+            let row = &mut row_pool[y * 2 * c..(y + 1) * 2 * c];
+            for (cell, col) in line.chunks_exact(c).zip(col_pool.chunks_exact_mut(2 * c)) {
+                for (i, v) in cell.iter().enumerate() {
+                    row[i] += v / w as f32;
+                    row[c + i] = row[c + i].max(*v);
+                    col[i] += v / h as f32;
+                    col[c + i] = col[c + i].max(*v);
+                }
+            }
+        }
+        mixed.resize((h + w) * c, 0.0);
+        let (rows, cols) = mixed.split_at_mut(h * c);
+        convolve(&self.row, row_pool, h, h, rows);
+        convolve(&self.col, col_pool, w, w, cols);
+        mixed.iter_mut().for_each(|v| *v = v.max(0.0));
+        let (rows, cols) = mixed.split_at(h * c);
+        for (line, row) in x.data.chunks_exact_mut(w * c).zip(rows.chunks_exact(c)) {
+            for (cell, col) in line.chunks_exact_mut(c).zip(cols.chunks_exact(c)) {
+                for ((v, r), k) in cell.iter_mut().zip(row).zip(col) {
+                    *v += r + k;
+                }
+            }
+        }
+    }
+}
+
+/// Convolves a picture that has its halo.
+fn apply(weights: &Packed, halo: &[f32], h: usize, w: usize, out: &mut Plane) {
+    out.reset(h, w, weights.output());
+    convolve(weights, halo, w + 2, w, &mut out.data);
+}
+
+/// Copies `x`, through ReLU if asked, into `[h + 2, w + 2, c]`: angles wrap around, ranges end in zeros.
+fn with_halo(x: &Plane, relu: bool, halo: &mut Vec<f32>) {
+    let least = if relu { 0.0 } else { f32::NEG_INFINITY };
+    fill_halo(x.h, x.w, x.c, halo, |y, line| {
+        let from = &x.data[y * x.w * x.c..(y + 1) * x.w * x.c];
+        line.iter_mut().zip(from).for_each(|(a, b)| *a = b.max(least));
+    });
+}
+
+/// Fills a picture with a halo line by line.
+fn fill_halo(h: usize, w: usize, c: usize, halo: &mut Vec<f32>, fill: impl Fn(usize, &mut [f32]) + Sync) {
+    let line = (w + 2) * c;
+    halo.resize((h + 2) * line, 0.0);
+    halo[..line].fill(0.0);
+    halo[(h + 1) * line..].fill(0.0);
+    halo[line..(h + 1) * line].par_chunks_mut(line).with_min_len(8).enumerate().for_each(|(y, line)| {
+        fill(y, &mut line[c..(w + 1) * c]);
+        line.copy_within(w * c..(w + 1) * c, 0);
+        line.copy_within(c..2 * c, (w + 1) * c);
+    });
+}
+
+fn decades_in(v: f32) -> f32 {
+    ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
+}
+
+/// The first convolution's input, with its halo; channels in the order of [`super::live::Live::forward`].
+fn fill_input(input: &LiveInput, scalars: &[f32; SCALARS], halo: &mut Vec<f32>) {
+    fill_halo(ROWS, COARSE, INPUT_CHANNELS, halo, |row, line| {
+        let half = (COARSE / 2) as f32;
+        let range = row as f32;
+        let (linear, log) = (range / 256.0 - 1.0, (range + 4.0).log10() - 2.0);
+        for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
+            let mut values = cell.iter_mut();
+            let mut put = |v: f32| {
+                if let Some(slot) = values.next() {
+                    *slot = v;
+                }
+            };
+            for plane in input.fine.chunks_exact(ROWS * FINE) {
+                let at = row * FINE + k * FOLD;
+                plane[at..at + FOLD].iter().for_each(|v| put(decades_in(*v)));
+            }
+            for (c, plane) in input.coarse.chunks_exact(ROWS * COARSE).enumerate().take(COARSE_CHANNELS) {
+                let v = plane[row * COARSE + k];
+                put(if c < 4 { decades_in(v) } else { v });
+            }
+            for (c, plane) in input.rows.chunks_exact(ROWS).enumerate().take(ROW_CHANNELS) {
+                put(if c < 4 { plane[row] } else { decades_in(plane[row]) });
+            }
+            scalars.iter().for_each(|v| put(*v));
+            let u = (k as f32 - half) / half;
+            [linear, log, u, (1.0 - u * u).sqrt()].into_iter().for_each(put);
+        }
+    });
+}
+
+/// The fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
+fn fill_fine(fine: &[f32], widened: &Plane, halo: &mut Vec<f32>) {
+    const C: usize = WIDENED + FINE_CHANNELS;
+    fill_halo(ROWS, FINE, C, halo, |row, line| {
+        for (k, cell) in line.chunks_exact_mut(C).enumerate() {
+            let from = &widened.data[(row * COARSE + k / FOLD) * widened.c..];
+            for (i, v) in cell[..WIDENED].iter_mut().enumerate() {
+                *v = from[i * FOLD + k % FOLD];
+            }
+            for (i, v) in cell[WIDENED..].iter_mut().enumerate() {
+                *v = decades_in(fine[(i * ROWS + row) * FINE + k]);
+            }
+        }
+    });
+}
+
+/// Adds the pixel shuffle of `from` `[h, w, 4 c]` to `to` `[2 h, 2 w, c]`.
+fn add_doubled(from: &Plane, to: &mut Plane, c: usize) {
+    let (w, width, lanes) = (from.w, to.w, to.c);
+    to.data.par_chunks_mut(width * lanes).with_min_len(8).enumerate().for_each(|(y, line)| {
+        for (x, cell) in line.chunks_exact_mut(lanes).enumerate() {
+            let source = &from.data[((y / 2) * w + x / 2) * from.c..];
+            let sub = 2 * (y % 2) + x % 2;
+            for (i, v) in cell[..c].iter_mut().enumerate() {
+                *v += source[4 * i + sub];
+            }
+        }
+    });
+}
+
+fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
+    let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
+    (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
+}
+
+/// A head's output as amplitudes.
+fn amplitudes(values: &mut [f32]) {
+    values.iter_mut().for_each(|v| *v = (*v * 3.0 - 3.0).clamp(-18.0, 4.0));
+    exp10(values);
+}

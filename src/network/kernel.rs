@@ -1,0 +1,405 @@
+//! The one hot loop of the live network: a direct convolution over channels-last data, vectorised over output channels.
+//!
+//! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; which one
+//! runs is decided on the machine it runs on.
+
+use rayon::prelude::*;
+
+/// Output channels of a vector; every tensor's channels are padded to a multiple of it.
+pub const LANES: usize = 16;
+
+/// Channels rounded up to whole vectors.
+pub const fn padded(channels: usize) -> usize {
+    channels.div_ceil(LANES) * LANES
+}
+
+/// Weights of a convolution in the order the kernel reads them: blocks of one or two vectors of output channels, then kernel row,
+/// kernel column, input channel.
+#[derive(Debug, Clone)]
+pub struct Packed {
+    kernel: usize,
+    stride: usize,
+    input: usize,
+    output: usize,
+    weights: Vec<f32>,
+    bias: Vec<f32>,
+}
+
+impl Packed {
+    /// Packs weights `[output, input, kernel, kernel]` (PyTorch's order) and `bias` `[output]`. The kernel reads `input_stride`
+    /// channels a cell, of which the last `input_stride - input` meet zeros.
+    pub fn new(weights: &[f32], bias: &[f32], input: usize, input_stride: usize, kernel: usize, stride: usize) -> Self {
+        let area = kernel * kernel;
+        let output = bias.len();
+        assert_eq!(weights.len(), output * input * area, "weights and bias disagree");
+        let lanes = padded(output);
+        let mut packed = Vec::with_capacity(lanes * input_stride * area);
+        for (start, width) in blocks(lanes) {
+            for tap in 0..area {
+                for i in 0..input_stride {
+                    packed
+                        .extend((start..start + width).map(|o| {
+                            if o < output && i < input { weights[(o * input + i) * area + tap] } else { 0.0 }
+                        }));
+                }
+            }
+        }
+        let mut all_bias = bias.to_vec();
+        all_bias.resize(lanes, 0.0);
+        Packed { kernel, stride, input: input_stride, output: lanes, weights: packed, bias: all_bias }
+    }
+
+    /// Padded output channels.
+    pub fn output(&self) -> usize {
+        self.output
+    }
+}
+
+/// A matrix product in the shape of a convolution: `rows` of `inner` values times `right`, which lies as blocks of 32 columns.
+pub fn product(left: &[f32], right: &[f32], inner: usize, columns: usize, out: &mut [f32]) {
+    let bias = [0.0; 2 * LANES];
+    let rows = left.len() / inner;
+    assert!(columns.is_multiple_of(2 * LANES) && out.len() == rows * columns && right.len() == inner * columns);
+    // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
+    let job = Job { input: left, row_cells: rows, channels: inner, kernel: 1, stride: 1, width: rows };
+    const CELLS: usize = 32;
+    out.par_chunks_mut(CELLS * columns).enumerate().for_each(|(chunk, out)| {
+        let first = chunk * CELLS;
+        let job = Job { input: &left[first * inner..], width: out.len() / columns, ..job };
+        for (block, right) in right.chunks_exact(2 * LANES * inner).enumerate() {
+            dispatch(&job, Block { weights: right, bias: &bias, start: block * 2 * LANES, lanes: columns }, out);
+        }
+    });
+}
+
+/// Convolves `input`, which lies as rows of `row_cells` cells with a halo of one cell where the kernel is 3 wide, into `out`
+/// `[height, width, output]`.
+pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
+    let line = width * weights.output;
+    out.par_chunks_mut(line).enumerate().for_each(|(y, out)| {
+        let job = Job {
+            input: &input[y * weights.stride * row_cells * weights.input..],
+            row_cells,
+            channels: weights.input,
+            kernel: weights.kernel,
+            stride: weights.stride,
+            width,
+        };
+        let mut at = 0;
+        for (start, lanes) in blocks(weights.output) {
+            let size = weights.kernel * weights.kernel * weights.input * lanes;
+            let (weights, bias, all) =
+                (&weights.weights[at..at + size], &weights.bias[start..start + lanes], weights.output);
+            dispatch(&job, Block { weights, bias, start, lanes: all }, out);
+            at += size;
+        }
+    });
+}
+
+/// Output channels in blocks of two vectors and, at the end, one.
+fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..lanes).step_by(2 * LANES).map(move |start| (start, (lanes - start).min(2 * LANES)))
+}
+
+/// One line of output cells.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    input: &'a [f32],
+    row_cells: usize,
+    channels: usize,
+    kernel: usize,
+    stride: usize,
+    width: usize,
+}
+
+/// Where a line's results go, and with which weights: one block of output channels.
+#[derive(Clone, Copy)]
+struct Block<'a> {
+    weights: &'a [f32],
+    bias: &'a [f32],
+    /// First channel of the block.
+    start: usize,
+    /// Channels of an output cell.
+    lanes: usize,
+}
+
+/// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
+trait Vector: Copy {
+    /// # Safety
+    /// `from` must hold 16 values, and the CPU must have the features.
+    unsafe fn load(from: *const f32) -> Self;
+    /// # Safety
+    /// `to` must have room for 16 values, and the CPU must have the features.
+    unsafe fn store(self, to: *mut f32);
+    /// `self + value * weight`.
+    ///
+    /// # Safety
+    /// The CPU must have the features.
+    unsafe fn add_product(self, value: f32, weight: Self) -> Self;
+}
+
+/// Works everywhere; multiplies and adds apart.
+#[derive(Clone, Copy)]
+struct Portable([f32; LANES]);
+
+impl Vector for Portable {
+    #[inline(always)]
+    unsafe fn load(from: *const f32) -> Self {
+        // SAFETY: the caller's promise.
+        Portable(unsafe { from.cast::<[f32; LANES]>().read() })
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut f32) {
+        // SAFETY: the caller's promise.
+        unsafe { to.cast::<[f32; LANES]>().write(self.0) }
+    }
+    #[inline(always)]
+    unsafe fn add_product(self, value: f32, weight: Self) -> Self {
+        Portable(std::array::from_fn(|l| self.0[l] + value * weight.0[l]))
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::Vector;
+    use std::arch::x86_64::*;
+
+    #[derive(Clone, Copy)]
+    pub struct Avx512(__m512);
+
+    impl Vector for Avx512 {
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            // SAFETY: the caller's promise, here and below.
+            Avx512(unsafe { _mm512_loadu_ps(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            unsafe { _mm512_storeu_ps(to, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn add_product(self, value: f32, weight: Self) -> Self {
+            Avx512(unsafe { _mm512_fmadd_ps(_mm512_set1_ps(value), weight.0, self.0) })
+        }
+    }
+
+    #[derive(Clone, Copy)]
+    pub struct Avx2(__m256, __m256);
+
+    impl Vector for Avx2 {
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            unsafe { Avx2(_mm256_loadu_ps(from), _mm256_loadu_ps(from.add(8))) }
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            unsafe {
+                _mm256_storeu_ps(to, self.0);
+                _mm256_storeu_ps(to.add(8), self.1);
+            }
+        }
+        #[inline(always)]
+        unsafe fn add_product(self, value: f32, weight: Self) -> Self {
+            unsafe {
+                let value = _mm256_set1_ps(value);
+                Avx2(_mm256_fmadd_ps(value, weight.0, self.0), _mm256_fmadd_ps(value, weight.1, self.1))
+            }
+        }
+    }
+}
+
+/// Computes one line for one block of output channels with the widest vectors the machine has.
+fn dispatch(job: &Job, block: Block, out: &mut [f32]) {
+    job.check(&block, out);
+    #[cfg(target_arch = "x86_64")]
+    {
+        if is_x86_feature_detected!("avx512f") {
+            // SAFETY: the feature was just found; the slices were checked.
+            return unsafe { line_avx512(job, block, out) };
+        }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            // SAFETY: the features were just found; the slices were checked.
+            return unsafe { line_avx2(job, block, out) };
+        }
+    }
+    // SAFETY: needs no feature; the slices were checked.
+    unsafe { line::<Portable, 2>(job, block, out) };
+}
+
+impl Job<'_> {
+    /// Everything that the unchecked loops rely on.
+    fn check(&self, block: &Block, out: &[f32]) {
+        let lines = (self.kernel - 1) * self.row_cells;
+        let last = lines + (self.width - 1) * self.stride + self.kernel - 1;
+        assert!(self.width > 0 && self.input.len() >= (last + 1) * self.channels, "the input ends inside the line");
+        let lanes = block.bias.len();
+        assert!(lanes == LANES || lanes == 2 * LANES, "a block is one or two vectors");
+        assert_eq!(block.weights.len(), self.kernel * self.kernel * self.channels * lanes, "weights of another size");
+        assert!(block.start + lanes <= block.lanes && out.len() >= self.width * block.lanes, "the output is too short");
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f")]
+unsafe fn line_avx512(job: &Job, block: Block, out: &mut [f32]) {
+    // SAFETY: the caller's promise.
+    unsafe { line::<x86::Avx512, 8>(job, block, out) };
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn line_avx2(job: &Job, block: Block, out: &mut [f32]) {
+    // SAFETY: the caller's promise.
+    unsafe { line::<x86::Avx2, 3>(job, block, out) };
+}
+
+/// A line in tiles of `CELLS` cells, as many as the registers hold beside the weights.
+#[inline(always)]
+unsafe fn line<V: Vector, const CELLS: usize>(job: &Job, block: Block, out: &mut [f32]) {
+    let mut x = 0;
+    let pair = block.bias.len() == 2 * LANES;
+    while x < job.width {
+        let whole = job.width - x >= CELLS;
+        // SAFETY: the caller checked the slices; a tile stays inside the line.
+        unsafe {
+            match (pair, whole) {
+                (true, true) => tile::<V, CELLS, 2>(job, x, block, out),
+                (true, false) => tile::<V, 1, 2>(job, x, block, out),
+                (false, true) => tile::<V, CELLS, 1>(job, x, block, out),
+                (false, false) => tile::<V, 1, 1>(job, x, block, out),
+            }
+        }
+        x += if whole { CELLS } else { 1 };
+    }
+}
+
+/// `CELLS` neighbouring cells times `VECTORS` vectors of output channels, all held in registers.
+///
+/// # Safety
+/// [`Job::check`] must have passed and `x + CELLS` be at most the line's width.
+#[inline(always)]
+unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
+    job: &Job,
+    x: usize,
+    block: Block,
+    out: &mut [f32],
+) {
+    // SAFETY: all offsets lie inside what `Job::check` found.
+    unsafe {
+        let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(v * LANES)));
+        let mut sums = [bias; CELLS];
+        let step = job.stride * job.channels;
+        let mut w = block.weights.as_ptr();
+        for ky in 0..job.kernel {
+            for kx in 0..job.kernel {
+                let cells = job.input.as_ptr().add((ky * job.row_cells + x * job.stride + kx) * job.channels);
+                for i in 0..job.channels {
+                    let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
+                    for (p, sums) in sums.iter_mut().enumerate() {
+                        let value = *cells.add(p * step + i);
+                        for (sum, weight) in sums.iter_mut().zip(weight) {
+                            *sum = sum.add_product(value, weight);
+                        }
+                    }
+                    w = w.add(VECTORS * LANES);
+                }
+            }
+        }
+        for (p, sums) in sums.into_iter().enumerate() {
+            let to = out.as_mut_ptr().add((x + p) * block.lanes + block.start);
+            for (v, sum) in sums.into_iter().enumerate() {
+                sum.store(to.add(v * LANES));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(n: usize) -> Vec<f32> {
+        let mut state = 1u32;
+        let next = |_| {
+            state = state.wrapping_mul(1664525).wrapping_add(1013904223);
+            (state >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        (0..n).map(next).collect()
+    }
+
+    /// The convolution as its definition reads.
+    #[allow(clippy::too_many_arguments)]
+    fn defined(
+        w: &[f32],
+        bias: &[f32],
+        x: &[f32],
+        cells: usize,
+        c: usize,
+        k: usize,
+        stride: usize,
+        at: [usize; 3],
+    ) -> f32 {
+        let [y, column, o] = at;
+        let mut sum = bias[o];
+        for ky in 0..k {
+            for kx in 0..k {
+                for i in 0..c {
+                    sum += w[((o * c + i) * k + ky) * k + kx]
+                        * x[((y * stride + ky) * cells + column * stride + kx) * c + i];
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn every_shape_agrees_with_the_definition() {
+        for (c, o, k, stride, width, height) in
+            [(3, 16, 3, 1, 21, 4), (5, 40, 3, 1, 13, 3), (4, 64, 2, 2, 9, 2), (7, 2, 1, 1, 5, 3)]
+        {
+            let cells = width * stride + k - stride;
+            let x = numbers((height * stride + k) * cells * c);
+            let (w, bias) = (numbers(o * c * k * k), numbers(o));
+            let packed = Packed::new(&w, &bias, c, c, k, stride);
+            let mut out = vec![f32::NAN; height * width * packed.output()];
+            convolve(&packed, &x, cells, width, &mut out);
+            for y in 0..height {
+                for column in 0..width {
+                    for ch in 0..o {
+                        let expected = defined(&w, &bias, &x, cells, c, k, stride, [y, column, ch]);
+                        let found = out[(y * width + column) * packed.output() + ch];
+                        assert!((found - expected).abs() < 1e-4, "{c} {o} {k}: {found} for {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_portable_loop_agrees_with_the_chosen_one() {
+        let (x, w, bias) = (numbers(3 * 30 * 6), numbers(9 * 6 * 32), numbers(32));
+        let job = Job { input: &x, row_cells: 30, channels: 6, kernel: 3, stride: 1, width: 28 };
+        let (mut a, mut b) = (vec![0.0; 28 * 32], vec![0.0; 28 * 32]);
+        let block = Block { weights: &w, bias: &bias, start: 0, lanes: 32 };
+        dispatch(&job, block, &mut a);
+        // SAFETY: `dispatch` checked the same slices.
+        unsafe { line::<Portable, 2>(&job, block, &mut b) };
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-5));
+    }
+
+    #[test]
+    fn product_of_small_matrices() {
+        let (rows, inner) = (5, 3);
+        let left = numbers(rows * inner);
+        let right = numbers(inner * 64);
+        let mut out = vec![0.0; rows * 64];
+        product(&left, &right, inner, 64, &mut out);
+        for r in 0..rows {
+            for n in 0..64 {
+                let expected: f32 =
+                    (0..inner).map(|i| left[r * inner + i] * right[(n / 32 * inner + i) * 32 + n % 32]).sum();
+                assert!((out[r * 64 + n] - expected).abs() < 1e-5);
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The live network as a reconstruction method.
+
+use super::engine::{Decades, LiveEngine, Scratch};
+use super::features::{COLUMNS, FeatureExtractor, ROWS};
+use super::live::LiveConfig;
+use super::weights::{Provenance, WeightFile, WeightsError};
+use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::Radar;
+use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::signal::TwoEnds;
+use ndarray::Array2;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Name of the network, on the command line and in weight files.
+pub const NAME: &str = "live";
+
+/// The live network with its weights.
+#[derive(Debug)]
+pub struct LiveMethod {
+    engine: LiveEngine,
+    extractor: OnceLock<FeatureExtractor>,
+    scratch: Mutex<Scratch>,
+    eta: f32,
+    /// Where the weights come from.
+    pub provenance: Provenance,
+}
+
+impl LiveMethod {
+    /// The shipped architecture with the weights in `bytes`, a safetensors file called `name`.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when the file is damaged or belongs to another network.
+    pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, WeightsError> {
+        let file = WeightFile::parse(name, bytes)?;
+        file.expect_network(NAME)?;
+        Ok(LiveMethod {
+            engine: LiveEngine::new(&file, &LiveConfig::default())?,
+            extractor: OnceLock::new(),
+            scratch: Mutex::default(),
+            eta: file.provenance.eta().unwrap_or(0.8),
+            provenance: file.provenance,
+        })
+    }
+
+    /// The map in decades relative to the samples' own scale, before it is normalised.
+    ///
+    /// # Errors
+    /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
+    pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
+        let made;
+        let extractor = match self.extractor.get() {
+            Some(extractor) if *radar == Radar::default() => extractor,
+            _ => {
+                made = FeatureExtractor::new(radar)?;
+                self.extractor.get_or_init(|| made)
+            }
+        };
+        let input = extractor.extract(ends)?;
+        // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
+        let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut decades = self.engine.forward(&input, &mut scratch);
+        let gain = input.gain as f32;
+        decades.map.iter_mut().for_each(|v| *v += gain);
+        decades.minimum += gain;
+        Ok(decades)
+    }
+}
+
+impl Reconstructor for LiveMethod {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn description(&self) -> &'static str {
+        "a small network that draws the whole array's map from matched filters of both ends"
+    }
+
+    fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        request.task.check()?;
+        let Decades { map, minimum } = self.decades(radar, ends)?;
+        let peak = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
+        let lambda = map.into_iter().map(|v| scale.lambda(v.into()) as f32).collect();
+        let lambda = Array2::from_shape_vec((ROWS, COLUMNS), lambda)
+            .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
+        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new() })
+    }
+}

@@ -1,0 +1,242 @@
+//! Training recipes: everything that decides what a training run does, as TOML.
+
+use super::live::LiveConfig;
+use super::losses::Loss;
+use super::thesis::ThesisConfig;
+use super::unet::UnetConfig;
+use crate::scene::generate::Kind;
+use serde::{Deserialize, Serialize};
+
+/// The recipes that come with the program, by name.
+pub const SHIPPED: [(&str, &str); 6] = [
+    ("experiment-1", include_str!("../../assets/recipes/experiment-1.toml")),
+    ("experiment-1-small", include_str!("../../assets/recipes/experiment-1-small.toml")),
+    ("experiment-2", include_str!("../../assets/recipes/experiment-2.toml")),
+    ("experiment-2-small", include_str!("../../assets/recipes/experiment-2-small.toml")),
+    ("unet", include_str!("../../assets/recipes/unet.toml")),
+    ("live", include_str!("../../assets/recipes/live.toml")),
+];
+
+/// Which network, and how large.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Network {
+    /// The thesis' encoder-decoder.
+    Thesis(ThesisConfig),
+    /// The thesis' failing U-Net.
+    Unet(UnetConfig),
+    /// The live network.
+    Live(LiveConfig),
+}
+
+/// How weights follow the gradient.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Optimizer {
+    /// Stochastic gradient descent.
+    Sgd {
+        /// Step size.
+        learning_rate: f64,
+        /// Part of the last step that is kept.
+        momentum: f64,
+    },
+    /// Adam with decoupled weight decay 1e-4.
+    AdamW {
+        /// Step size.
+        learning_rate: f64,
+    },
+}
+
+impl Optimizer {
+    /// Step size before any decay.
+    pub fn learning_rate(&self) -> f64 {
+        match self {
+            Optimizer::Sgd { learning_rate, .. } | Optimizer::AdamW { learning_rate } => *learning_rate,
+        }
+    }
+}
+
+/// The learning rate is multiplied by `factor` after every `epochs` epochs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Decay {
+    /// Epochs between two decays.
+    pub epochs: u32,
+    /// The factor.
+    pub factor: f64,
+}
+
+/// So many training scenes of a kind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Share {
+    /// The kind.
+    pub kind: Kind,
+    /// How many.
+    pub count: u32,
+}
+
+/// A training run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recipe {
+    /// Name, as in `apertura train NAME`.
+    pub name: String,
+    /// One line for `apertura train --list`.
+    pub description: String,
+    /// Seed of the weights, the scenes and their order.
+    pub seed: u64,
+    /// Passes over the training scenes.
+    pub epochs: u32,
+    /// Scenes a step.
+    pub batch: usize,
+    /// What is minimised.
+    pub loss: Loss,
+    /// Validation scenes of each of the three sets.
+    pub validation_scenes: u32,
+    /// The network.
+    pub network: Network,
+    /// The optimizer.
+    pub optimizer: Optimizer,
+    /// Learning-rate decay.
+    pub decay: Option<Decay>,
+    /// The training scenes. They, the validation and the test scenes come from disjoint random streams.
+    pub scenes: Vec<Share>,
+}
+
+/// What is wrong with a recipe.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RecipeError {
+    /// It is not TOML, or misses or misspells something.
+    #[error("recipe {name}: {reason}")]
+    Syntax {
+        /// Name of the recipe or file.
+        name: String,
+        /// What the parser says, with line and column.
+        reason: String,
+    },
+    /// A value makes no sense.
+    #[error("recipe {name}: {field} is {value}; expected {expected}")]
+    Value {
+        /// Name of the recipe or file.
+        name: String,
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// What it must be.
+        expected: &'static str,
+    },
+}
+
+impl Recipe {
+    /// Reads and checks a recipe; `name` is for messages.
+    ///
+    /// # Errors
+    /// [`RecipeError`] says what is wrong and where.
+    pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
+        let syntax = |e: toml::de::Error| RecipeError::Syntax { name: name.to_owned(), reason: e.to_string() };
+        let recipe: Recipe = toml::from_str(text).map_err(syntax)?;
+        recipe.check(name)?;
+        Ok(recipe)
+    }
+
+    /// A shipped recipe.
+    pub fn shipped(name: &str) -> Option<Result<Recipe, RecipeError>> {
+        SHIPPED.iter().find(|(known, _)| *known == name).map(|(name, text)| Recipe::parse(name, text))
+    }
+
+    fn check(&self, name: &str) -> Result<(), RecipeError> {
+        let fail = |field, value: &dyn std::fmt::Display, expected| {
+            Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
+        };
+        let rate = self.optimizer.learning_rate();
+        if !(rate.is_finite() && rate > 0.0) {
+            return fail("optimizer.learning_rate", &rate, "a number above 0");
+        }
+        if let Optimizer::Sgd { momentum, .. } = self.optimizer
+            && !(0.0..1.0).contains(&momentum)
+        {
+            return fail("optimizer.momentum", &momentum, "at least 0 and below 1");
+        }
+        if self.batch == 0 {
+            return fail("batch", &self.batch, "at least 1");
+        }
+        if self.epochs == 0 {
+            return fail("epochs", &self.epochs, "at least 1");
+        }
+        if let Some(decay) = &self.decay {
+            if decay.epochs == 0 {
+                return fail("decay.epochs", &decay.epochs, "at least 1");
+            }
+            if !(decay.factor > 0.0 && decay.factor <= 1.0) {
+                return fail("decay.factor", &decay.factor, "above 0 and at most 1");
+            }
+        }
+        let total: u64 = self.scenes.iter().map(|s| u64::from(s.count)).sum();
+        if total < self.batch as u64 {
+            return fail("scenes", &total, "at least one batch in all");
+        }
+        match &self.network {
+            Network::Thesis(c) if c.filters == 0 || c.filters > 512 => fail("network.filters", &c.filters, "1 to 512"),
+            Network::Thesis(c) if !(1..=8).contains(&c.levels) => fail("network.levels", &c.levels, "1 to 8"),
+            Network::Unet(c) if !(1..=6).contains(&c.levels) => fail("network.levels", &c.levels, "1 to 6"),
+            Network::Unet(c) if c.channels == 0 || c.channels > 256 => {
+                fail("network.channels", &c.channels, "1 to 256")
+            }
+            Network::Unet(c) if c.rows == 0 || !c.rows.is_multiple_of(1 << c.levels) => {
+                fail("network.rows", &c.rows, "a multiple of two to the levels")
+            }
+            Network::Live(c) if c.channels.contains(&0) || c.fine == 0 => fail("network.channels", &0, "at least 1"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Learning rate of an epoch, counted from 0.
+    pub fn learning_rate(&self, epoch: u32) -> f64 {
+        let decays = self.decay.as_ref().map_or(1.0, |d| d.factor.powi((epoch / d.epochs) as i32));
+        self.optimizer.learning_rate() * decays
+    }
+
+    /// Every training scene, as (kind, number).
+    pub fn training_scenes(&self) -> Vec<(Kind, u32)> {
+        self.scenes.iter().flat_map(|share| (0..share.count).map(|number| (share.kind, number))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shipped_recipes_are_sound_and_say_what_the_thesis_says() {
+        for (name, text) in SHIPPED {
+            let recipe = Recipe::parse(name, text).unwrap();
+            assert_eq!(recipe.name, name);
+            assert_eq!(toml::from_str::<Recipe>(&toml::to_string(&recipe).unwrap()).unwrap(), recipe);
+        }
+        let two = Recipe::shipped("experiment-2").unwrap().unwrap();
+        assert_eq!((two.batch, two.epochs, two.loss), (32, 100, Loss::NormalisedSquare));
+        assert_eq!(two.training_scenes().len(), 8000);
+        assert!((two.learning_rate(25) - 0.1 * 0.64).abs() < 1e-12);
+        assert!(Recipe::shipped("nonsense").is_none());
+    }
+
+    #[test]
+    fn bad_recipes_are_named() {
+        let good = SHIPPED[0].1;
+        for (from, to, expected) in [
+            ("batch = 8", "batch = 0", "batch is 0"),
+            ("batch = 8", "batch = 8\ncolour = 3", "colour"),
+            ("momentum = 0.9", "momentum = 1.5", "optimizer.momentum is 1.5"),
+            ("learning_rate = 0.1", "learning_rate = nan", "optimizer.learning_rate is NaN"),
+            ("factor = 0.8", "factor = 0.0", "decay.factor is 0"),
+            ("levels = 5", "levels = 50", "network.levels is 50"),
+            ("loss = \"mean-square\"", "loss = \"mean-cube\"", "mean-cube"),
+        ] {
+            assert!(good.contains(from), "{from} is not in the recipe");
+            let error = Recipe::parse("test", &good.replace(from, to)).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! The thesis' encoder-decoder: two towers of dilated circular convolutions, joined, and transposed convolutions back up.
+//!
+//! Five levels of 64 filters a tower in the thesis: 1.62 M parameters, 40.5 GMAC. Width and depth are configurable; two cores can
+//! train 16 filters (2.5 GMAC). Follows the author's published program: dilation 2, circular padding on both axes, no bias.
+
+use super::weights::{WeightFile, WeightsError};
+use burn::module::{Module, Param};
+use burn::nn::conv::{Conv2d, Conv2dConfig, ConvTranspose2d, ConvTranspose2dConfig};
+use burn::nn::{BatchNorm, BatchNormConfig};
+use burn::tensor::activation::relu;
+use burn::tensor::module::max_pool2d;
+use burn::tensor::ops::MaxPoolOptions;
+use burn::tensor::{Device, Tensor};
+use serde::{Deserialize, Serialize};
+
+/// Dilation of every convolution of the towers.
+const DILATION: usize = 2;
+
+/// Width and depth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThesisConfig {
+    /// Filters of each tower; the decoder has twice as many.
+    pub filters: usize,
+    /// Halvings of the map, 5 in the thesis.
+    pub levels: usize,
+}
+
+impl Default for ThesisConfig {
+    /// The thesis' width and depth.
+    fn default() -> Self {
+        ThesisConfig { filters: 64, levels: 5 }
+    }
+}
+
+/// Convolution, batch norm, ReLU and max-pool.
+#[derive(Module, Debug)]
+struct DownStage {
+    conv: Conv2d,
+    norm: Option<BatchNorm>,
+}
+
+/// Transposed convolution, batch norm and ReLU.
+#[derive(Module, Debug)]
+struct UpStage {
+    conv: ConvTranspose2d,
+    norm: Option<BatchNorm>,
+}
+
+/// The two towers.
+#[derive(Module, Debug)]
+struct Down {
+    layer3x3: Vec<DownStage>,
+    layer5x5: Vec<DownStage>,
+}
+
+/// The way back to full size.
+#[derive(Module, Debug)]
+struct Up {
+    upconv: Vec<UpStage>,
+}
+
+/// The thesis' network, `[batch, 4, range bins, columns]` to `[batch, 1, range bins, columns]`.
+#[derive(Module, Debug)]
+pub struct Thesis {
+    down: Down,
+    up: Up,
+}
+
+impl Thesis {
+    /// A network with random weights.
+    pub fn new(config: &ThesisConfig, device: &Device) -> Self {
+        let ThesisConfig { filters, levels } = *config;
+        let norm = |c: usize| Some(BatchNormConfig::new(c).init(device));
+        let tower = |kernel: usize| {
+            let stage = |i: usize| DownStage {
+                conv: Conv2dConfig::new([if i == 0 { 4 } else { filters }, filters], [kernel, kernel])
+                    .with_dilation([DILATION, DILATION])
+                    .with_bias(false)
+                    .init(device),
+                norm: norm(filters),
+            };
+            (0..levels).map(stage).collect()
+        };
+        let up = |i: usize| {
+            let out = if i + 1 == levels { 1 } else { 2 * filters };
+            UpStage {
+                conv: ConvTranspose2dConfig::new([2 * filters, out], [4, 4])
+                    .with_stride([2, 2])
+                    .with_padding([1, 1])
+                    .with_bias(false)
+                    .init(device),
+                norm: norm(out),
+            }
+        };
+        Thesis {
+            down: Down { layer3x3: tower(3), layer5x5: tower(5) },
+            up: Up { upconv: (0..levels).map(up).collect() },
+        }
+    }
+
+    /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()` as safetensors
+    /// (`safetensors.torch.save_file(torch.load("trained_model.pt")...)`).
+    ///
+    /// # Errors
+    /// [`WeightsError`] when they don't fit.
+    pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
+        let mut network = Thesis::new(config, device);
+        let renamed = file.renamed(from_pytorch)?;
+        WeightFile::parse(file.name(), &renamed)?
+            .load_into(&mut network, |name| name.ends_with("num_batches_tracked"))?;
+        Ok(network)
+    }
+
+    /// Estimates Lambda of a batch.
+    pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let tower = |stages: &[DownStage]| stages.iter().fold(x.clone(), |x, stage| stage.forward(x));
+        let joined = Tensor::cat(vec![tower(&self.down.layer3x3), tower(&self.down.layer5x5)], 1);
+        self.up.upconv.iter().fold(joined, |x, stage| stage.forward(x))
+    }
+
+    /// The same function with every batch norm folded into its convolution: for inference.
+    pub fn folded(mut self) -> Self {
+        let Down { layer3x3, layer5x5 } = &mut self.down;
+        for stage in layer3x3.iter_mut().chain(layer5x5) {
+            if let Some(norm) = stage.norm.take() {
+                let (scale, shift) = scale_and_shift(&norm);
+                let filters = scale.dims()[0];
+                stage.conv.weight = stage.conv.weight.clone().map(|w| w * scale.clone().reshape([filters, 1, 1, 1]));
+                stage.conv.bias = Some(Param::from_tensor(shift));
+            }
+        }
+        for stage in &mut self.up.upconv {
+            if let Some(norm) = stage.norm.take() {
+                let (scale, shift) = scale_and_shift(&norm);
+                let filters = scale.dims()[0];
+                stage.conv.weight = stage.conv.weight.clone().map(|w| w * scale.clone().reshape([1, filters, 1, 1]));
+                stage.conv.bias = Some(Param::from_tensor(shift));
+            }
+        }
+        self
+    }
+}
+
+/// What a batch norm does at inference: `x * scale + shift` for each channel.
+fn scale_and_shift(norm: &BatchNorm) -> (Tensor<1>, Tensor<1>) {
+    let scale = norm.gamma.val() / (norm.running_var.value() + norm.epsilon).sqrt();
+    let shift = norm.beta.val() - norm.running_mean.value() * scale.clone();
+    (scale, shift)
+}
+
+impl DownStage {
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let [kernel, _] = self.conv.kernel_size;
+        let border = DILATION * (kernel / 2);
+        let x = self.conv.forward(wrap(wrap(x, 2, border), 3, border));
+        let x = self.norm.as_ref().map_or(x.clone(), |norm| norm.forward(x));
+        max_pool2d(relu(x), MaxPoolOptions::new([2, 2]))
+    }
+}
+
+impl UpStage {
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let x = self.conv.forward(x);
+        relu(self.norm.as_ref().map_or(x.clone(), |norm| norm.forward(x)))
+    }
+}
+
+/// Continues both ends of a dimension circularly by `n`, repeating where the dimension is shorter than that.
+fn wrap(x: Tensor<4>, dim: usize, n: usize) -> Tensor<4> {
+    let size = x.dims()[dim];
+    let n = n.min(size * 8);
+    let mut parts = Vec::new();
+    let mut left = n % size;
+    if left > 0 {
+        parts.push(x.clone().narrow(dim, size - left, left));
+    }
+    left = n / size;
+    (0..2 * left + 1).for_each(|_| parts.push(x.clone()));
+    if !n.is_multiple_of(size) {
+        parts.push(x.narrow(dim, 0, n % size));
+    }
+    Tensor::cat(parts, dim)
+}
+
+/// The author's tensor names as ours: the convolution and the batch norm of a stage are its items 0 and 1.
+fn from_pytorch(name: &str) -> String {
+    let mut parts: Vec<&str> = name.split('.').collect();
+    if let [.., _, index, _] = parts.as_mut_slice() {
+        match *index {
+            "0" => *index = "conv",
+            "1" => *index = "norm",
+            _ => {}
+        }
+    }
+    parts.join(".")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Written by `benches/twin/reference.py` from a PyTorch model with the author's layout: 3 filters, 3 levels, batch norm
+    /// statistics away from their defaults.
+    const WEIGHTS: &[u8] = include_bytes!("../../tests/data/thesis_reference_weights.safetensors");
+    const REFERENCE: &[u8] = include_bytes!("../../tests/data/thesis_reference.safetensors");
+
+    #[test]
+    fn reproduces_pytorch() {
+        let device = Device::flex();
+        let config = ThesisConfig { filters: 3, levels: 3 };
+        let file = WeightFile::parse("weights", WEIGHTS).unwrap();
+        let network = Thesis::load(&file, &config, &device).unwrap();
+        let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+        let input = reference.tensor("input", &[1, 4, 16, 32]).unwrap();
+        let expected = reference.tensor("output", &[1, 1, 16, 32]).unwrap();
+        let input = Tensor::<4>::from_data(burn::tensor::TensorData::new(input, vec![1, 4, 16, 32]), &device);
+        for (name, network) in [("as loaded", network.clone()), ("folded", network.folded())] {
+            let found = network.forward(input.clone()).into_data().try_into_vec::<f32>().unwrap();
+            let worst = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(worst < 1e-4, "{name}: {worst}");
+        }
+        assert!(expected.iter().any(|v| *v > 0.1), "a reference of zeros would prove nothing");
+    }
+
+    #[test]
+    fn the_full_width_has_the_thesis_size() {
+        let network = Thesis::new(&ThesisConfig::default(), &Device::flex());
+        // Convolutions; scale and shift of the batch norms; their running mean and variance.
+        assert_eq!(network.num_params(), 1_616_384 + 2306 + 2306);
+    }
+}

@@ -1,0 +1,112 @@
+//! The thesis' failure (its section 3.3 and figure 3-2): a U-Net between thresholded Cartesian maps learns to answer nothing.
+//!
+//! Both ends' maps are thresholded and projected onto the scene; the target is the whole array's map treated alike. Only a
+//! few cells in a thousand are bright, so an output of zeros is nearly perfect to a mean square, and the network settles there:
+//! the gradient towards the few bright cells is drowned by the many dark ones. It ships so that this can be seen.
+
+use burn::module::Module;
+use burn::nn::PaddingConfig2d;
+use burn::nn::conv::{Conv2d, Conv2dConfig, ConvTranspose2d, ConvTranspose2dConfig};
+use burn::tensor::activation::{relu, sigmoid};
+use burn::tensor::module::max_pool2d;
+use burn::tensor::ops::MaxPoolOptions;
+use burn::tensor::{Device, Tensor};
+use serde::{Deserialize, Serialize};
+
+/// Width and depth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UnetConfig {
+    /// Channels of the finest level; every level below has twice as many.
+    pub channels: usize,
+    /// Halvings.
+    pub levels: usize,
+    /// Rows of the Cartesian maps; they have twice as many columns.
+    pub rows: usize,
+}
+
+impl Default for UnetConfig {
+    /// The shipped size.
+    fn default() -> Self {
+        UnetConfig { channels: 8, levels: 3, rows: 128 }
+    }
+}
+
+/// Two 3x3 convolutions with ReLU.
+#[derive(Module, Debug)]
+struct Pair {
+    conv1: Conv2d,
+    conv2: Conv2d,
+}
+
+impl Pair {
+    fn new(input: usize, output: usize, device: &Device) -> Self {
+        let conv = |i: usize| {
+            Conv2dConfig::new([i, output], [3, 3]).with_padding(PaddingConfig2d::Explicit(1, 1, 1, 1)).init(device)
+        };
+        Pair { conv1: conv(input), conv2: conv(output) }
+    }
+
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        relu(self.conv2.forward(relu(self.conv1.forward(x))))
+    }
+}
+
+/// The U-Net, `[batch, 2, rows, 2 rows]` to `[batch, 1, rows, 2 rows]`, every cell in [0, 1].
+#[derive(Module, Debug)]
+pub struct Unet {
+    down: Vec<Pair>,
+    bottom: Pair,
+    up: Vec<ConvTranspose2d>,
+    join: Vec<Pair>,
+    head: Conv2d,
+}
+
+impl Unet {
+    /// A network with random weights.
+    pub fn new(config: &UnetConfig, device: &Device) -> Self {
+        let width = |level: usize| config.channels << level;
+        let levels = config.levels;
+        let up = |level: usize| {
+            ConvTranspose2dConfig::new([width(level + 1), width(level)], [2, 2]).with_stride([2, 2]).init(device)
+        };
+        Unet {
+            down: (0..levels).map(|l| Pair::new(if l == 0 { 2 } else { width(l - 1) }, width(l), device)).collect(),
+            bottom: Pair::new(width(levels - 1), width(levels), device),
+            up: (0..levels).map(up).collect(),
+            join: (0..levels).map(|l| Pair::new(2 * width(l), width(l), device)).collect(),
+            head: Conv2dConfig::new([width(0), 1], [1, 1]).init(device),
+        }
+    }
+
+    /// Estimates the thresholded map of a batch.
+    pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let mut x = x;
+        let mut kept = Vec::new();
+        for pair in &self.down {
+            let y = pair.forward(x);
+            x = max_pool2d(y.clone(), MaxPoolOptions::new([2, 2]));
+            kept.push(y);
+        }
+        x = self.bottom.forward(x);
+        for ((up, join), y) in self.up.iter().zip(&self.join).zip(kept).rev() {
+            x = join.forward(Tensor::cat(vec![y, up.forward(x)], 1));
+        }
+        sigmoid(self.head.forward(x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shape_and_range() {
+        let device = Device::flex();
+        let config = UnetConfig { channels: 2, levels: 2, rows: 16 };
+        let x = Tensor::<4>::ones([1, 2, 16, 32], &device);
+        let y = Unet::new(&config, &device).forward(x);
+        assert_eq!(y.dims(), [1, 1, 16, 32]);
+        assert!(y.into_data().iter::<f32>().all(|v| (0.0..=1.0).contains(&v)));
+    }
+}

@@ -1,0 +1,286 @@
+//! Weight files: safetensors with a record of where the weights come from.
+//!
+//! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
+//! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
+
+use burn::module::Module;
+use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a weight file says about itself; kept in its safetensors header.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Provenance {
+    /// All entries, by name: `network`, `recipe`, `trainer`, `seed`, `maps_seen`, `validation`, `eta`, ...
+    pub entries: BTreeMap<String, String>,
+}
+
+impl Provenance {
+    /// An entry, or "" where the file doesn't have it.
+    pub fn get(&self, name: &str) -> &str {
+        self.entries.get(name).map_or("", String::as_str)
+    }
+
+    /// The detection threshold chosen on validation scenes, if the file names a valid one.
+    pub fn eta(&self) -> Option<f32> {
+        self.get("eta").parse().ok().filter(|eta| (0.0..=1.0).contains(eta))
+    }
+}
+
+/// Why a weight file can't be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WeightsError {
+    /// The file is not safetensors at all.
+    #[error("{file} is not a safetensors file: {reason}")]
+    NotSafetensors {
+        /// Name of the file.
+        file: String,
+        /// What its first bytes lack.
+        reason: String,
+    },
+    /// The file ends early or goes on too long.
+    #[error("{file} holds {found} bytes; its header promises {expected}; it was truncated or damaged")]
+    Length {
+        /// Name of the file.
+        file: String,
+        /// Bytes found.
+        found: usize,
+        /// Bytes promised by the header.
+        expected: usize,
+    },
+    /// The file is for another network.
+    #[error("{file} holds weights of \"{found}\"; expected \"{expected}\"")]
+    Foreign {
+        /// Name of the file.
+        file: String,
+        /// Network named in the file.
+        found: String,
+        /// Network wanted.
+        expected: String,
+    },
+    /// A tensor that the network needs is missing, or one it doesn't know is there.
+    #[error("{file}: tensor \"{tensor}\" {problem}")]
+    Tensor {
+        /// Name of the file.
+        file: String,
+        /// Name of the tensor.
+        tensor: String,
+        /// What is wrong with it, and what was expected.
+        problem: String,
+    },
+    /// The store refused the file.
+    #[error("{file}: {reason}")]
+    Store {
+        /// Name of the file.
+        file: String,
+        /// What the store said.
+        reason: String,
+    },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct TensorHeader {
+    dtype: String,
+    shape: Vec<usize>,
+    data_offsets: [usize; 2],
+}
+
+/// A weight file that was read and found whole.
+#[derive(Debug)]
+pub struct WeightFile<'a> {
+    name: String,
+    bytes: &'a [u8],
+    data: &'a [u8],
+    tensors: BTreeMap<String, TensorHeader>,
+    /// Where the weights come from.
+    pub provenance: Provenance,
+}
+
+impl<'a> WeightFile<'a> {
+    /// Reads the header of the file called `name` and checks its length.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when it isn't safetensors or is cut short.
+    pub fn parse(name: &str, bytes: &'a [u8]) -> Result<Self, WeightsError> {
+        let not = |reason: &str| WeightsError::NotSafetensors { file: name.to_owned(), reason: reason.to_owned() };
+        let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(|| not("it is shorter than 8 bytes"))?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
+        if length > 16 << 20 {
+            return Err(not("its first 8 bytes are no header length"));
+        }
+        if length > rest.len() {
+            return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected: length + 8 });
+        }
+        let (header, data) = rest.split_at(length);
+        let header: BTreeMap<String, serde_json::Value> =
+            serde_json::from_slice(header).map_err(|e| not(&format!("its header is no JSON: {e}")))?;
+        let mut provenance = Provenance::default();
+        let mut tensors = BTreeMap::new();
+        for (key, value) in header {
+            if key == "__metadata__" {
+                provenance.entries =
+                    serde_json::from_value(value).map_err(|e| not(&format!("its metadata is odd: {e}")))?;
+            } else {
+                let tensor: TensorHeader =
+                    serde_json::from_value(value).map_err(|e| not(&format!("tensor \"{key}\": {e}")))?;
+                tensors.insert(key, tensor);
+            }
+        }
+        let end = tensors.values().map(|t| t.data_offsets[1]).max().unwrap_or(0);
+        if end != data.len() {
+            let expected = end.saturating_add(length + 8);
+            return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected });
+        }
+        Ok(WeightFile { name: name.to_owned(), bytes, data, tensors, provenance })
+    }
+
+    /// Name of the file, for messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The same file with other tensor names.
+    ///
+    /// # Errors
+    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
+    pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
+        let not =
+            |e: serde_json::Error| WeightsError::NotSafetensors { file: self.name.clone(), reason: e.to_string() };
+        let mut header = serde_json::Map::new();
+        for (name, tensor) in &self.tensors {
+            header.insert(rename(name), serde_json::to_value(tensor).map_err(not)?);
+        }
+        header.insert("__metadata__".into(), serde_json::to_value(&self.provenance.entries).map_err(not)?);
+        let mut header = serde_json::to_vec(&header).map_err(not)?;
+        header.resize(header.len().next_multiple_of(8), b' ');
+        Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), self.data].concat())
+    }
+
+    /// Every 32-bit value in the file, whatever tensor it belongs to.
+    pub fn all_values(&self) -> Vec<f32> {
+        self.data.as_chunks::<4>().0.iter().map(|v| f32::from_le_bytes(*v)).collect()
+    }
+
+    /// Checks that the file says it holds `network`.
+    ///
+    /// # Errors
+    /// [`WeightsError::Foreign`] otherwise.
+    pub fn expect_network(&self, network: &str) -> Result<(), WeightsError> {
+        let found = self.provenance.get("network");
+        if found == network {
+            return Ok(());
+        }
+        let found = if found.is_empty() { "no named network" } else { found }.to_owned();
+        Err(WeightsError::Foreign { file: self.name.clone(), found, expected: network.to_owned() })
+    }
+
+    /// The values of one tensor.
+    ///
+    /// # Errors
+    /// [`WeightsError::Tensor`] when it is missing, of another shape or type, or not finite.
+    pub fn tensor(&self, name: &str, shape: &[usize]) -> Result<Vec<f32>, WeightsError> {
+        let bad = |problem: String| WeightsError::Tensor { file: self.name.clone(), tensor: name.to_owned(), problem };
+        let found = self.tensors.get(name).ok_or_else(|| bad("is missing".into()))?;
+        if found.shape != shape {
+            return Err(bad(format!("has shape {:?}; expected {shape:?}", found.shape)));
+        }
+        if found.dtype != "F32" {
+            return Err(bad(format!("is of type {}; expected F32", found.dtype)));
+        }
+        let values: Vec<f32> = self
+            .data
+            .get(found.data_offsets[0]..found.data_offsets[1])
+            .filter(|v| v.len() == 4 * shape.iter().product::<usize>())
+            .ok_or_else(|| bad("lies outside the file".into()))?
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|v| f32::from_le_bytes(*v))
+            .collect();
+        match values.iter().position(|v| !v.is_finite()) {
+            Some(i) => Err(bad(format!("is not finite at element {i}"))),
+            None => Ok(values),
+        }
+    }
+
+    /// Loads the weights, under PyTorch's names, into `module`. Buffers that `ignored` accepts may lie in the file unused.
+    ///
+    /// # Errors
+    /// [`WeightsError`] names the first tensor that is missing, unknown, of another shape or type, or not finite.
+    pub fn load_into<M: Module>(&self, module: &mut M, ignored: fn(&str) -> bool) -> Result<(), WeightsError> {
+        let bad = |tensor: &str, problem: String| WeightsError::Tensor {
+            file: self.name.clone(),
+            tensor: tensor.into(),
+            problem,
+        };
+        let wanted: BTreeMap<String, Vec<usize>> = module
+            .collect(None, Some(Box::new(BurnToPyTorchAdapter)), false)
+            .into_iter()
+            .map(|t| (t.name.clone(), t.shape.to_vec()))
+            .collect();
+        for (name, shape) in &wanted {
+            self.tensor(name, shape)?;
+        }
+        if let Some(name) = self.tensors.keys().find(|n| !wanted.contains_key(*n) && !ignored(n)) {
+            return Err(bad(name, "is not part of this network".into()));
+        }
+        let mut store = SafetensorsStore::from_bytes(Some(self.bytes.to_vec())).with_from_adapter(PyTorchToBurnAdapter);
+        let store_error = |reason: String| WeightsError::Store { file: self.name.clone(), reason };
+        let result = module.load_from(&mut store).map_err(|e| store_error(e.to_string()))?;
+        if !result.missing.is_empty() || !result.errors.is_empty() {
+            return Err(store_error(format!("missing {:?}, errors {:?}", result.missing, result.errors)));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::live::{Live, LiveConfig};
+    use burn::tensor::Device;
+
+    const WEIGHTS: &[u8] = include_bytes!("../../tests/data/live_reference_weights.safetensors");
+
+    fn load(bytes: &[u8], channels: [usize; 4]) -> Result<(), WeightsError> {
+        let config = LiveConfig { channels, blocks: [1, 1, 1, 1], fine: 4 };
+        let file = WeightFile::parse("test.safetensors", bytes)?;
+        file.load_into(&mut Live::new(&config, &Device::flex()), |_| false)
+    }
+
+    #[test]
+    fn every_kind_of_damage_is_told_apart() {
+        let good = [4, 6, 8, 10];
+        load(WEIGHTS, good).unwrap();
+        let says = |bytes: &[u8], channels, expected: &str| {
+            let message = load(bytes, channels).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        };
+        says(&[], good, "shorter than 8 bytes");
+        says(b"PK\x03\x04 this is a zip file", good, "not a safetensors file");
+        says(&WEIGHTS[..WEIGHTS.len() - 4], good, "truncated");
+        says(&WEIGHTS[..100], good, "truncated");
+        says(&[WEIGHTS, &[0; 4]].concat(), good, "truncated or damaged");
+        says(WEIGHTS, [4, 6, 8, 12], "expected [");
+        let file = WeightFile::parse("test.safetensors", WEIGHTS).unwrap();
+        let renamed = file.renamed(|n| if n == "up0.bias" { "up9.bias".into() } else { n.into() }).unwrap();
+        says(&renamed, good, "tensor \"up0.bias\" is missing");
+        let mut bad = WEIGHTS.to_vec();
+        let end = bad.len();
+        bad[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
+        says(&bad, good, "is not finite");
+        assert!(matches!(file.expect_network("thesis"), Err(WeightsError::Foreign { .. })));
+        let stranger = include_bytes!("../../tests/data/thesis_reference.safetensors");
+        says(stranger, good, "is missing");
+    }
+
+    #[test]
+    fn renaming_back_and_forth_keeps_the_weights() {
+        let file = WeightFile::parse("test", WEIGHTS).unwrap();
+        let there = file.renamed(|n| format!("x.{n}")).unwrap();
+        let there = WeightFile::parse("there", &there).unwrap();
+        let back = there.renamed(|n| n.trim_start_matches("x.").to_owned()).unwrap();
+        load(&back, [4, 6, 8, 10]).unwrap();
+        assert_eq!(WeightFile::parse("back", &back).unwrap().provenance, file.provenance);
+    }
+}

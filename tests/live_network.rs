@@ -1,0 +1,89 @@
+//! The shipped live network on fresh scenes.
+#![cfg(feature = "network")]
+
+use apertura::evaluate::Metrics;
+use apertura::evaluate::tables::Tally;
+use apertura::maps::{LogMaps, Normalisation};
+use apertura::methods;
+use apertura::radar::Radar;
+use apertura::reconstruct::Request;
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::scene::{Reflector, Scene};
+use apertura::signal::{Floor, TwoEnds, simulate};
+use std::time::Instant;
+
+fn tally(kind: Kind, scenes: u32) -> Tally {
+    let radar = Radar::default();
+    let live = methods::by_name("live").expect("the live network ships with the program");
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 77);
+    let mut tally = Tally::default();
+    for number in 0..scenes {
+        let signal = simulate(&radar, &generator.scene(kind, number), Floor::Thesis, 0).unwrap();
+        let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax);
+        let start = Instant::now();
+        let out = live.reconstruct(&radar, &signal.two_ends(&radar), &Request::default()).unwrap();
+        let time = start.elapsed().as_secs_f64() * 1e3;
+        tally.add(&Metrics::of(&target, &out.lambda, live.eta()), |roc| roc.add(&target, &out.lambda), time);
+    }
+    tally
+}
+
+#[test]
+fn beats_the_baseline_by_far_on_every_set() {
+    for (kind, at_most) in Kind::TEST_SETS.into_iter().zip([2000.0, 2500.0, 3500.0]) {
+        let tally = tally(kind, 4);
+        let error = tally.squared_error().mean;
+        assert!(error < at_most, "{kind:?}: SE {error}");
+        assert!(tally.detection().mean > 0.7, "{kind:?}: P_D {}", tally.detection().mean);
+    }
+}
+
+#[test]
+#[ignore = "half a minute; prints the figures"]
+fn figures_on_validation_scenes() {
+    for kind in Kind::TEST_SETS {
+        let t = tally(kind, 30);
+        println!(
+            "{kind:?}: SE {:.0} +- {:.0}, P_D {:.4}, P_FA {:.4}, {:.1} ms",
+            t.squared_error().mean,
+            t.squared_error().standard_error,
+            t.detection().mean,
+            t.false_alarm().mean,
+            t.median_milliseconds()
+        );
+    }
+}
+
+fn ends_of(reflectors: &[Reflector]) -> TwoEnds {
+    let radar = Radar::default();
+    apertura::signal::direct::beat_signal(&radar, reflectors).two_ends(&radar)
+}
+
+#[test]
+fn loudness_does_not_matter() {
+    let radar = Radar::default();
+    let live = methods::by_name("live").unwrap();
+    let quiet = ends_of(&[Reflector { x_metres: 4.0, y_metres: 15.0, reflectivity: 1.0 }]);
+    // A power of two, so that the rounding noise beneath is the same.
+    let gain = 2f64.powi(40);
+    let loud = TwoEnds { first: quiet.first.mapv(|v| v * gain), last: quiet.last.mapv(|v| v * gain) };
+    let run = |ends| live.reconstruct(&radar, ends, &Request::default()).unwrap().lambda;
+    let (a, b) = (run(&quiet), run(&loud));
+    let worst = a.lambda.iter().zip(&b.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst < 1e-4, "{worst}");
+}
+
+#[test]
+fn unusable_samples_are_errors() {
+    let live = methods::by_name("live").unwrap();
+    let radar = Radar::default();
+    let silence = ends_of(&[]);
+    let message = live.reconstruct(&radar, &silence, &Request::default()).unwrap_err().to_string();
+    assert!(message.contains("silent"), "{message}");
+    let other = Radar { elements: 512, ..Radar::default() };
+    let signal =
+        simulate(&other, &Scene { name: String::new(), notes: String::new(), objects: vec![] }, Floor::Exact, 0);
+    let ends = signal.unwrap().two_ends(&other);
+    let message = live.reconstruct(&other, &ends, &Request::default()).unwrap_err().to_string();
+    assert!(message.contains("table 3.1"), "{message}");
+}

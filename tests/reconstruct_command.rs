@@ -1,0 +1,64 @@
+//! `apertura reconstruct` and `apertura train` as a user runs them.
+#![cfg(feature = "network")]
+
+use assert_cmd::Command;
+use ndarray::{Array2, Array3, Ix0};
+use ndarray_npy::{NpzReader, NpzWriter};
+use num_complex::Complex64;
+use predicates::str::contains;
+use std::fs::File;
+use std::path::Path;
+
+fn apertura() -> Command {
+    Command::cargo_bin("apertura").expect("the program is built with its tests")
+}
+
+/// Samples of one far reflector at broadside, as NumPy would store them.
+fn write_samples(path: &Path, gain: f64) {
+    let mut npz = NpzWriter::new(File::create(path).unwrap());
+    let end = Array2::from_shape_fn((512, 12), |(n, _)| Complex64::from_polar(gain, 0.9 * n as f64));
+    npz.add_array("sub0", &end).unwrap();
+    npz.add_array("sub1", &end).unwrap();
+    npz.finish().unwrap();
+}
+
+#[test]
+fn live_writes_what_it_promises() {
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
+    write_samples(&input, 3.0);
+    apertura().arg("reconstruct").arg(&input).arg("-o").arg(&output).assert().success().stdout(contains("live"));
+    let mut npz = NpzReader::new(File::open(&output).unwrap()).unwrap();
+    let map: Array2<f32> = npz.by_name("net_output").unwrap();
+    assert_eq!(map.dim(), (512, 1024));
+    assert!(map.iter().all(|v| (0.0..=1.0).contains(v)));
+    let eta: ndarray::Array<f64, Ix0> = npz.by_name("eta").unwrap();
+    assert!((0.5..1.0).contains(&eta.into_scalar()));
+    let time: ndarray::Array<f64, Ix0> = npz.by_name("milliseconds").unwrap();
+    assert!(time.into_scalar() > 0.0);
+}
+
+#[test]
+fn unsuitable_input_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
+    write_samples(&input, 0.0);
+    let run = |method: &str| {
+        let mut command = apertura();
+        command.arg("reconstruct").arg(&input).arg("-o").arg(&output).args(["--method", method]);
+        command.assert().failure()
+    };
+    run("live").stderr(contains("silent"));
+    run("magic").stderr(contains("unknown method \"magic\""));
+    let mut npz = NpzWriter::new(File::create(&input).unwrap());
+    npz.add_array("polar_partial_mag_phase", &Array3::<f64>::zeros((4, 8, 8))).unwrap();
+    npz.finish().unwrap();
+    run("live").stderr(contains("needs sub0 and sub1"));
+    assert!(!output.exists());
+}
+
+#[test]
+fn recipes_are_listed_and_unknown_ones_refused() {
+    apertura().args(["train", "--list"]).assert().success().stdout(contains("experiment-2-small"));
+    apertura().args(["train", "no-such"]).assert().failure().stderr(contains("neither a file nor a shipped recipe"));
+}
