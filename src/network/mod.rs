@@ -30,16 +30,18 @@ pub mod weights;
 
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstructor};
+use backend::Backend;
 use live_method::LiveMethod;
 use ndarray::{Array2, Array3};
 use std::sync::{Arc, LazyLock};
-use thesis_method::ThesisMethod;
+use thesis_method::{ThesisMethod, UnetMethod};
 use weights::WeightsError;
 
 /// The networks whose weights are part of the program.
 struct Shipped {
     live: Option<Arc<LiveMethod>>,
     thesis: Vec<Arc<ThesisMethod>>,
+    unet: Option<Arc<UnetMethod>>,
 }
 
 static SHIPPED: LazyLock<Shipped> = LazyLock::new(|| Shipped {
@@ -48,14 +50,21 @@ static SHIPPED: LazyLock<Shipped> = LazyLock::new(|| Shipped {
         include_bytes!("../../assets/weights/live.safetensors"),
     )),
     thesis: Vec::new(),
+    unet: usable(UnetMethod::from_bytes(
+        "assets/weights/unet.safetensors",
+        include_bytes!("../../assets/weights/unet.safetensors"),
+        unet::UnetConfig::default(),
+        Backend::default(),
+    )),
 });
 
 /// The networks whose weights are part of the program. One whose weights can't be used is left out, with a warning in the log.
 pub fn shipped() -> Vec<Arc<dyn Reconstructor>> {
-    let Shipped { live, thesis } = &*SHIPPED;
+    let Shipped { live, thesis, unet } = &*SHIPPED;
     let live = live.iter().cloned().map(|m| m as Arc<dyn Reconstructor>);
     let thesis = thesis.iter().cloned().map(|m| m as Arc<dyn Reconstructor>);
-    live.chain(thesis).collect()
+    let unet = unet.iter().cloned().map(|m| m as Arc<dyn Reconstructor>);
+    live.chain(thesis).chain(unet).collect()
 }
 
 /// Estimates Lambda with the thesis network called `method` from its own input, `[4, range bins, columns]`.
