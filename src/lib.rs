@@ -49,6 +49,8 @@
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |
 #![warn(missing_docs)]
 
+#[cfg(feature = "app")]
+pub mod app;
 pub mod bounds;
 pub mod commands;
 pub mod evaluate;

@@ -2,15 +2,14 @@
 
 use super::arguments::{self, FloorArgs};
 use super::{CommandError, picture, print};
-use crate::files::npz::write_npz;
+use crate::files::archive::write_maps;
 use crate::files::write_bytes;
-use crate::maps::{self, Aperture, Normalisation, network_input};
+use crate::maps::Normalisation;
 use crate::methods;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, End, Radar};
-use crate::scene::{Scene, file, npz};
-use crate::signal::{self, BeatSignal};
-use ndarray::Axis;
+use crate::radar::Carrier;
+use crate::scene::file;
+use crate::signal;
 use std::path::{Path, PathBuf};
 
 /// Compute the maps of a scene, to an .npz archive or a .png picture
@@ -62,7 +61,9 @@ impl Args {
         let signal =
             signal::simulate(&radar, &scene, self.floor.floor, self.seed).map_err(CommandError::on(&self.scene))?;
         match output {
-            Output::Archive => write_archive(&self.output, &radar, &scene, &signal)?,
+            Output::Archive => {
+                write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))?;
+            }
             Output::Picture => {
                 let method = match &self.method {
                     Some(name) => methods::by_name(name).map_err(CommandError::failed)?,
@@ -98,21 +99,4 @@ impl Output {
             ))),
         }
     }
-}
-
-/// Writes the archive; arrays are in NumPy's usual (C) order.
-fn write_archive(path: &Path, radar: &Radar, scene: &Scene, signal: &BeatSignal) -> Result<(), CommandError> {
-    let profiles = maps::range_transform(radar, signal);
-    let map = |aperture| maps::angle_transform(radar, &profiles, aperture);
-    let [first, last] = End::BOTH.map(|end| map(Aperture::End(end)));
-    let full = map(Aperture::Full).log_magnitude();
-    write_npz(path, |out| {
-        npz::add_positions(out, scene)?;
-        for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
-            out.add(key, &signal.end(radar, end).t().as_standard_layout())?;
-        }
-        out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
-        out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))
-    })
-    .map_err(CommandError::on(path))
 }

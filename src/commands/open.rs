@@ -30,14 +30,40 @@ impl Args {
             Some(path) => file::load(path).map_err(CommandError::failed)?,
             None => presets::default_scene(),
         };
-        eprintln!("apertura: {}; drawing the scene's panels to a picture instead", no_window());
+        let reason = match self.open_window() {
+            Ok(()) => return Ok(()),
+            Err(WindowError::NoWindow(reason)) => reason,
+            #[cfg(feature = "app")]
+            Err(WindowError::Failed(error)) => return Err(CommandError::failed(error)),
+        };
+        eprintln!("apertura: {reason}; drawing the scene's panels to a picture instead");
         draw_instead(&file)
+    }
+
+    /// Opens the app and returns when it is closed.
+    #[cfg(feature = "app")]
+    fn open_window(self) -> Result<(), WindowError> {
+        use crate::app::{self, AppError};
+        let options = app::Options { scene: self.scene, frame_log: self.frame_log, ..app::Options::default() };
+        app::run(options).map_err(|error| match error {
+            AppError::Window(_) => WindowError::NoWindow(error.to_string()),
+            AppError::Start(_) => WindowError::Failed(error),
+        })
+    }
+
+    #[cfg(not(feature = "app"))]
+    fn open_window(self) -> Result<(), WindowError> {
+        Err(WindowError::NoWindow("this build has no app".to_owned()))
     }
 }
 
-/// Why there is no window.
-fn no_window() -> &'static str {
-    "this build has no app"
+/// Why the app did not open.
+enum WindowError {
+    /// There is no window to be had here.
+    NoWindow(String),
+    /// There is, but the app could not start.
+    #[cfg(feature = "app")]
+    Failed(crate::app::AppError),
 }
 
 fn draw_instead(file: &SceneFile) -> Result<(), CommandError> {

@@ -1,5 +1,6 @@
 //! Files that are either whole or not there, and NumPy archives with errors that name the key.
 
+pub mod archive;
 pub mod npz;
 
 use std::fs::Permissions;

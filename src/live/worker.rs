@@ -42,7 +42,7 @@ pub enum Reply<T> {
 
 struct Slot<Q, T> {
     pending: Option<(Generation, Q, Task)>,
-    running: Option<Task>,
+    running: Option<(Task, Instant)>,
     replies: Vec<Reply<T>>,
     generation: Generation,
     stop: bool,
@@ -116,7 +116,16 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
     pub fn cancel(&self) {
         let mut slot = self.shared.lock();
         slot.pending = None;
-        if let Some(task) = &slot.running {
+        if let Some((task, _)) = &slot.running {
+            task.cancel();
+        }
+    }
+
+    /// Cancels what runs if it began longer ago than `patience`; what waits stays.
+    pub fn cancel_older_than(&self, patience: Duration) {
+        if let Some((task, began)) = &self.shared.lock().running
+            && began.elapsed() > patience
+        {
             task.cancel();
         }
     }
@@ -129,7 +138,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
 
     /// Progress of what runs, 0 to 1; `None` when idle.
     pub fn progress(&self) -> Option<f32> {
-        self.shared.lock().running.as_ref().map(Task::progress)
+        self.shared.lock().running.as_ref().map(|(task, _)| task.progress())
     }
 
     /// The replies since the last call, oldest first.
@@ -147,7 +156,7 @@ impl<Q, T> Shared<Q, T> {
                 return None;
             }
             if let Some(next) = slot.pending.take() {
-                slot.running = Some(next.2.clone());
+                slot.running = Some((next.2.clone(), Instant::now()));
                 return Some(next);
             }
             slot = self.ready.wait(slot).unwrap_or_else(PoisonError::into_inner);
@@ -159,7 +168,7 @@ impl<Q, T> Drop for Worker<Q, T> {
     fn drop(&mut self) {
         let mut slot = self.shared.lock();
         slot.stop = true;
-        if let Some(task) = &slot.running {
+        if let Some((task, _)) = &slot.running {
             task.cancel();
         }
         drop(slot);

@@ -3,6 +3,7 @@
 use super::RangeAngleMap;
 use crate::radar::Radar;
 use ndarray::Array2;
+use rayon::prelude::*;
 
 /// A map over x (columns, from -max range to +max range) and y (rows, from 0 to max range).
 #[derive(Debug, Clone, PartialEq)]
@@ -13,28 +14,71 @@ pub struct CartesianMap {
     pub extent_metres: f64,
 }
 
-/// Projects `map` onto `rows` by `2 * rows` pixels, bilinear in range and cos(theta).
+/// Where one pixel takes its value from: four cells and the weights of the upper row and the right column.
+#[derive(Debug, Clone, Copy)]
+struct Tap {
+    bin: u32,
+    column: u32,
+    bin_part: f32,
+    column_part: f32,
+}
+
+/// A projection prepared once and used for many maps of one radar.
+#[derive(Debug, Clone)]
+pub struct Projector {
+    radar: Radar,
+    rows: usize,
+    /// `None` beyond the maximum range.
+    taps: Vec<Option<Tap>>,
+}
+
+impl Projector {
+    /// Prepares the projection onto `rows` by `2 * rows` pixels.
+    pub fn new(radar: &Radar, rows: usize) -> Self {
+        let extent = radar.max_range_metres();
+        let pixel = extent / rows.max(1) as f64;
+        let tap = |i: usize, j: usize| {
+            let (x, y) = ((j as f64 + 0.5) * pixel - extent, (i as f64 + 0.5) * pixel);
+            let polar = radar.polar_of(x, y);
+            let bin = radar.bin_of_range(polar.range_metres);
+            let column = radar.column_of_cos(polar.cos_theta);
+            (bin <= radar.samples as f64 - 1.0).then(|| Tap {
+                bin: bin as u32,
+                column: column as u32,
+                bin_part: bin.fract() as f32,
+                column_part: column.fract() as f32,
+            })
+        };
+        let taps = (0..rows).flat_map(|i| (0..2 * rows).map(move |j| (i, j))).map(|(i, j)| tap(i, j)).collect();
+        Projector { radar: radar.clone(), rows, taps }
+    }
+
+    /// Whether this is the projection for `radar` onto `rows` rows.
+    pub fn fits(&self, radar: &Radar, rows: usize) -> bool {
+        self.rows == rows && self.radar == *radar
+    }
+
+    /// Projects `map`, `[samples, elements]` of the radar, bilinear in range and cos(theta).
+    pub fn project(&self, map: &RangeAngleMap) -> CartesianMap {
+        let (bins, columns) = map.lambda.dim();
+        let cells = &map.lambda;
+        let value = |tap: &Option<Tap>| {
+            let Some(tap) = tap else { return f32::NAN };
+            let (b, c) = ((tap.bin as usize).min(bins - 1), tap.column as usize % columns);
+            let (next_b, next_c) = ((b + 1).min(bins - 1), if c + 1 == columns { 0 } else { c + 1 });
+            let near = cells[[b, c]] * (1.0 - tap.column_part) + cells[[b, next_c]] * tap.column_part;
+            let far = cells[[next_b, c]] * (1.0 - tap.column_part) + cells[[next_b, next_c]] * tap.column_part;
+            near * (1.0 - tap.bin_part) + far * tap.bin_part
+        };
+        let pixels: Vec<f32> = self.taps.par_iter().map(value).collect();
+        let lambda = Array2::from_shape_vec((self.rows, 2 * self.rows), pixels).unwrap_or_default();
+        CartesianMap { lambda, extent_metres: self.radar.max_range_metres() }
+    }
+}
+
+/// Projects one `map` onto `rows` by `2 * rows` pixels, bilinear in range and cos(theta).
 pub fn project(radar: &Radar, map: &RangeAngleMap, rows: usize) -> CartesianMap {
-    let extent_metres = radar.max_range_metres();
-    let pixel = extent_metres / rows.max(1) as f64;
-    let (bins, columns) = map.lambda.dim();
-    let lambda = Array2::from_shape_fn((rows, 2 * rows), |(i, j)| {
-        let (x, y) = ((j as f64 + 0.5) * pixel - extent_metres, (i as f64 + 0.5) * pixel);
-        let polar = radar.polar_of(x, y);
-        let bin = radar.bin_of_range(polar.range_metres);
-        if bin > bins as f64 - 1.0 {
-            return f32::NAN;
-        }
-        let column = radar.column_of_cos(polar.cos_theta);
-        let (b, c) = (bin.floor(), column.floor());
-        let (fb, fc) = ((bin - b) as f32, (column - c) as f32);
-        let at = |b: usize, c: usize| map.lambda[[b.min(bins - 1), c % columns]];
-        let (b, c) = (b as usize, c as usize);
-        let near = at(b, c) * (1.0 - fc) + at(b, c + 1) * fc;
-        let far = at(b + 1, c) * (1.0 - fc) + at(b + 1, c + 1) * fc;
-        near * (1.0 - fb) + far * fb
-    });
-    CartesianMap { lambda, extent_metres }
+    Projector::new(radar, rows).project(map)
 }
 
 #[cfg(test)]

@@ -1,0 +1,376 @@
+//! The thin part that wires panels, settings, editor and workers together.
+
+use super::command::Command;
+use super::export::Export;
+use super::files::Files;
+use super::frame_log::FrameLog;
+use super::layout::{self, Layout, Panel};
+use super::palette::Palette;
+use super::pictures::MapKind;
+use super::pipeline::{LiveRequest, Pipeline};
+use super::settings::Settings;
+use super::view::{Cursor, SceneView, Window};
+use super::{APP_ID, execute, menu, status_bar, theme};
+use crate::interact::Editor;
+use crate::live::Wanted;
+use crate::radar::Radar;
+use crate::reconstruct::Reconstructor;
+use crate::scene::file::SceneFile;
+use crate::scene::presets;
+use eframe::egui;
+use eframe::egui::{ColorImage, TextureHandle};
+use egui_notify::Toasts;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// How the app is started.
+#[derive(Default)]
+pub struct Options {
+    /// Scene to open.
+    pub scene: Option<PathBuf>,
+    /// CSV file for the time of every frame.
+    pub frame_log: Option<PathBuf>,
+    /// Reconstruction methods; those of [`crate::methods::all`] where empty.
+    pub methods: Vec<Arc<dyn Reconstructor>>,
+    /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
+    pub data_folder: Option<PathBuf>,
+}
+
+/// What is kept from one start to the next.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Kept {
+    settings: Settings,
+    layout: Layout,
+    recent: Vec<PathBuf>,
+}
+
+/// Where a texture came from: the picture is sent to the graphics card only when it changed.
+struct Texture {
+    handle: TextureHandle,
+    image: Arc<ColorImage>,
+}
+
+/// The app.
+pub struct App {
+    pub(super) editor: Editor,
+    pub(super) radar: Radar,
+    pub(super) settings: Settings,
+    pub(super) layout: Layout,
+    pub(super) pipeline: Pipeline,
+    pub(super) files: Files,
+    pub(super) toasts: Toasts,
+    /// Exports that other threads have finished.
+    pub(super) exports: (Sender<Export>, Receiver<Export>),
+    pub(super) palette: Palette,
+    /// What panels asked for; done at the end of the frame.
+    pub(super) commands: Vec<Command>,
+    pub(super) scene_view: SceneView,
+    /// Corner where a box selection began.
+    pub(super) box_start: Option<crate::interact::Place>,
+    pub(super) range_angle: Window,
+    pub(super) cartesian: Window,
+    /// Where the pointer was in the last frame.
+    pub(super) cursor: Option<Cursor>,
+    /// Where the pointer is in this frame; the panels fill it in.
+    pub(super) next_cursor: Option<Cursor>,
+    /// Where the pointer was last, for panels that need a place even when it is elsewhere.
+    last_cursor: Option<Cursor>,
+    textures: BTreeMap<MapKind, Texture>,
+    frame_log: Option<FrameLog>,
+    title: String,
+    /// The scene that the autosave holds.
+    autosaved: Arc<crate::scene::Scene>,
+}
+
+impl App {
+    /// Starts workers and opens the scene asked for, an unsaved one of an earlier run, or the default.
+    ///
+    /// # Errors
+    /// When the system can't start a thread or create the frame log.
+    pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
+        let ctx = creation.egui_ctx.clone();
+        let kept: Kept = creation.storage.and_then(|s| eframe::get_value(s, eframe::APP_KEY)).unwrap_or_default();
+        let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
+        let wake = {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| eframe::storage_dir(APP_ID)));
+        let default = presets::default_scene();
+        let mut app = App {
+            editor: Editor::new(default.scene),
+            radar: default.radar,
+            settings: kept.settings,
+            layout: kept.layout,
+            pipeline: Pipeline::start(methods, wake)?,
+            files: Files::new(folder.as_deref(), kept.recent),
+            toasts: Toasts::default(),
+            exports: channel(),
+            palette: Palette::default(),
+            commands: Vec::new(),
+            scene_view: SceneView::default(),
+            box_start: None,
+            range_angle: Window::default(),
+            cartesian: Window::default(),
+            cursor: None,
+            next_cursor: None,
+            last_cursor: None,
+            textures: BTreeMap::new(),
+            frame_log: options.frame_log.as_deref().map(FrameLog::create).transpose()?,
+            title: String::new(),
+            autosaved: Arc::default(),
+        };
+        app.autosaved = app.editor.scene().clone();
+        theme::apply(&ctx, app.settings.theme);
+        app.radar.carrier = app.settings.carrier;
+        app.restore();
+        if let Some(path) = options.scene {
+            app.open(path);
+        }
+        Ok(app)
+    }
+
+    fn restore(&mut self) {
+        match self.files.restore() {
+            Some(Ok(file)) => {
+                self.set_scene("restore", file);
+                self.editor.mark_unsaved();
+                self.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
+            }
+            Some(Err(message)) => self.error(format!("The unsaved scene of the last session can't be read: {message}")),
+            None => {}
+        }
+    }
+
+    /// Opens a scene file; on any error the scene on screen stays.
+    pub(super) fn open(&mut self, path: PathBuf) {
+        match self.files.open(&path) {
+            Ok(file) => self.set_scene("open", file),
+            Err(message) => self.error(format!("{message}\nThe scene on screen was kept.")),
+        }
+    }
+
+    /// Puts another scene on screen; undo brings the last one back.
+    pub(super) fn set_scene(&mut self, label: &str, file: SceneFile) {
+        self.editor.open(label, file.scene);
+        self.settings.carrier = file.radar.carrier;
+        self.radar = file.radar;
+        self.scene_view.fit = true;
+    }
+
+    /// The scene with its radar, as a file holds them.
+    pub(super) fn scene_file(&self) -> SceneFile {
+        SceneFile { scene: crate::scene::Scene::clone(self.editor.scene()), radar: self.radar.clone() }
+    }
+
+    /// Shows a message that passes.
+    pub(super) fn info(&mut self, text: impl Into<String>) {
+        // egui-notify's own symbols are not in egui's fonts.
+        self.toasts.custom(text.into(), "i".to_owned(), theme::INFO).duration(Duration::from_secs(6));
+    }
+
+    /// Shows a message that stays a while and can be closed.
+    pub(super) fn error(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        tracing::warn!("{text}");
+        self.toasts.custom(text, "!".to_owned(), theme::ERROR).duration(Duration::from_secs(15));
+    }
+
+    /// The method in use.
+    pub(super) fn method(&self) -> Option<Arc<dyn Reconstructor>> {
+        self.pipeline.method_named(&self.settings.method).cloned()
+    }
+
+    /// eta of the method in use: the user's, or the method's own.
+    pub(super) fn output_eta(&self) -> f32 {
+        let Some(method) = self.method() else { return crate::evaluate::TARGET_ETA };
+        self.settings.method_eta.get(method.name()).copied().unwrap_or_else(|| method.eta())
+    }
+
+    /// Where cuts are taken: under the pointer, where it was last, or through the first object.
+    pub(super) fn cut_cursor(&self) -> Cursor {
+        let first =
+            || self.editor.scene().objects.first().map(|o| Cursor::at_place(&self.radar, o.centre_metres().into()));
+        let inside = |c: &Cursor| c.cell(&self.radar).is_some();
+        self.last_cursor.or_else(first).filter(inside).unwrap_or_else(|| Cursor::at_cell(&self.radar, 0.0, 0.0))
+    }
+
+    /// The scene being edited, what is selected and what can be undone.
+    pub fn editor(&self) -> &Editor {
+        &self.editor
+    }
+
+    /// What the user chose.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Where the panels are.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Asks for a command, as a menu entry would.
+    pub fn ask(&mut self, command: Command) {
+        self.commands.push(command);
+    }
+
+    /// Whether a worker has something to do.
+    pub fn is_busy(&self) -> bool {
+        self.pipeline.is_busy()
+    }
+
+    /// Report of the last update, if there was one.
+    pub fn report(&self) -> Option<&crate::live::Report> {
+        self.pipeline.result.as_ref().map(|r| &r.frame.report)
+    }
+
+    /// Maps with a picture of the latest scene.
+    pub fn pictures(&self) -> Vec<MapKind> {
+        self.pipeline.result.as_ref().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
+    }
+
+    /// Requests sent to the maps worker, and pictures painted, since the start.
+    pub fn work_done(&self) -> (u64, u64) {
+        (self.pipeline.requests, self.pipeline.result.as_ref().map_or(0, |r| r.painted))
+    }
+
+    /// Number of messages on screen.
+    pub fn messages(&self) -> usize {
+        self.toasts.len()
+    }
+
+    /// The texture of a map's latest picture.
+    pub(super) fn texture(&mut self, ctx: &egui::Context, kind: MapKind) -> Option<egui::TextureId> {
+        let image = self.pipeline.result.as_ref()?.pictures.get(&kind)?.image.clone();
+        let options =
+            egui::TextureOptions { minification: egui::TextureFilter::Linear, ..egui::TextureOptions::NEAREST };
+        match self.textures.get_mut(&kind) {
+            Some(texture) => {
+                if !Arc::ptr_eq(&texture.image, &image) {
+                    texture.handle.set(image.clone(), options);
+                    texture.image = image;
+                }
+            }
+            None => {
+                let handle = ctx.load_texture(kind.title(), image.clone(), options);
+                self.textures.insert(kind, Texture { handle, image });
+            }
+        }
+        self.textures.get(&kind).map(|t| t.handle.id())
+    }
+
+    /// Asks the workers for what the panels drawn in this frame need, if that changed.
+    fn ask_for_maps(&mut self) {
+        let shown = self.layout.shown();
+        let map = |kind| shown.contains(&Panel::Map(kind));
+        let (cuts, roc) = (shown.contains(&Panel::Cuts), shown.contains(&Panel::Roc));
+        let output = MapKind::ALL.into_iter().any(|k| k.needs_output() && map(k)) || cuts || roc;
+        let scores = output && !self.editor.scene().objects.is_empty();
+        let wanted = Wanted {
+            floor: self.settings.floor,
+            seed: self.settings.seed,
+            normalisation: self.settings.normalisation,
+            first: map(MapKind::Input0) || cuts,
+            last: map(MapKind::Input1) || cuts,
+            full: map(MapKind::Target) || map(MapKind::TargetAbove) || output,
+            ends: output,
+        };
+        let request = LiveRequest {
+            radar: self.radar.clone(),
+            scene: self.editor.scene().clone(),
+            wanted,
+            pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
+            output: self.pipeline.output.as_ref().filter(|_| output).map(|o| o.lambda.clone()),
+            colours: self.settings.colours,
+            projection: self.settings.projection,
+            target_eta: self.settings.target_eta,
+            output_eta: self.output_eta(),
+            scores,
+            roc,
+        };
+        self.pipeline.ask(request);
+        if output {
+            self.pipeline.ask_method(&self.radar, &self.settings, wanted);
+        }
+    }
+
+    fn keep_unsaved_scene(&mut self, ctx: &egui::Context) {
+        if Arc::ptr_eq(&self.autosaved, self.editor.scene()) || self.editor.dragged().is_some() {
+            return;
+        }
+        if !self.editor.is_modified() {
+            self.files.forget_autosave();
+            self.autosaved = self.editor.scene().clone();
+            return;
+        }
+        match self.files.autosave(&self.scene_file()) {
+            Ok(None) => self.autosaved = self.editor.scene().clone(),
+            Ok(Some(later)) => ctx.request_repaint_after(later),
+            Err(message) => {
+                self.autosaved = self.editor.scene().clone();
+                self.error(format!("The scene could not be autosaved: {message}"));
+            }
+        }
+    }
+
+    fn update_title(&mut self, ctx: &egui::Context) {
+        let mark = if self.editor.is_modified() { " •" } else { "" };
+        let title = format!("{}{mark} — apertura", self.files.title());
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let began = Instant::now();
+        let ctx = ui.ctx().clone();
+        for message in self.pipeline.poll() {
+            self.error(message);
+        }
+        execute::read_input(self, &ctx);
+        menu::show(self, ui);
+        status_bar::show(self, ui);
+        let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
+        egui::CentralPanel::default().frame(background).show(ui, |ui| layout::show(self, ui));
+        super::palette::show(self, &ctx);
+        for command in std::mem::take(&mut self.commands) {
+            execute::run(self, &ctx, command);
+        }
+        if self.next_cursor != self.cursor {
+            // Panels drawn before the one under the pointer still show the old place.
+            ctx.request_repaint();
+        }
+        self.cursor = self.next_cursor.take();
+        self.last_cursor = self.cursor.filter(|c| c.cell(&self.radar).is_some()).or(self.last_cursor);
+        self.ask_for_maps();
+        self.keep_unsaved_scene(&ctx);
+        self.update_title(&ctx);
+        self.toasts.show(&ctx);
+        if self.pipeline.method_progress().is_some() {
+            ctx.request_repaint_after(Duration::from_millis(100));
+        }
+        let (requested, painted) = self.work_done();
+        if let Some(log) = &mut self.frame_log
+            && let Err(error) = log.write(began.elapsed(), frame.info().cpu_usage, requested, painted)
+        {
+            self.frame_log = None;
+            self.error(format!("The frame log can't be written: {error}"));
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        let layout = std::mem::take(&mut self.layout);
+        let kept = Kept { settings: self.settings.clone(), layout, recent: self.files.recent.clone() };
+        eframe::set_value(storage, eframe::APP_KEY, &kept);
+        self.layout = kept.layout;
+    }
+}

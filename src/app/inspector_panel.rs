@@ -1,0 +1,166 @@
+//! Numbers of what is selected, with units.
+
+use super::application::App;
+use super::command::{Command, NewObject};
+use crate::scene::{Object, Scene};
+use eframe::egui;
+use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+
+/// Draws the panel.
+pub(super) fn show(app: &mut App, ui: &mut Ui) {
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| match app.editor.selection().len() {
+            0 => nothing(app, ui),
+            1 => single(app, ui),
+            count => many(app, ui, count),
+        });
+    });
+}
+
+fn nothing(app: &mut App, ui: &mut Ui) {
+    let scene = app.editor.scene();
+    if scene.objects.is_empty() {
+        ui.weak("The scene is empty.");
+        if ui.button("Add a point").clicked() {
+            app.commands.push(Command::Add(NewObject::Point, None));
+        }
+        return;
+    }
+    if !scene.name.is_empty() {
+        ui.strong(&scene.name);
+    }
+    if !scene.notes.is_empty() {
+        ui.label(&scene.notes);
+    }
+    ui.add_space(4.0);
+    ui.weak("Click an object to see and edit its numbers; drag a box around several.");
+}
+
+fn many(app: &mut App, ui: &mut Ui, count: usize) {
+    ui.strong(format!("{count} objects selected"));
+    let reflectors: usize = app
+        .editor
+        .selection()
+        .iter()
+        .filter_map(|i| app.editor.scene().objects.get(i))
+        .map(Object::reflector_count)
+        .sum();
+    ui.label(format!("{reflectors} reflectors"));
+    buttons(app, ui);
+}
+
+fn buttons(app: &mut App, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        for command in [Command::Duplicate, Command::Delete] {
+            let spec = command.spec();
+            if ui.button(spec.name).on_hover_text(spec.tooltip).clicked() {
+                app.commands.push(command);
+            }
+        }
+    });
+}
+
+/// How a number is shown and edited.
+struct Field {
+    name: &'static str,
+    tooltip: &'static str,
+    unit: &'static str,
+    speed: f64,
+    low: f64,
+    high: f64,
+    digits: usize,
+}
+
+const fn metres(name: &'static str, tooltip: &'static str) -> Field {
+    Field { name, tooltip, unit: " m", speed: 0.02, low: -1e4, high: 1e4, digits: 3 }
+}
+
+const REFLECTIVITY: Field = Field {
+    name: "reflectivity",
+    tooltip: "σ of each reflector; the thesis uses 1",
+    unit: "",
+    speed: 0.01,
+    low: -1e6,
+    high: 1e6,
+    digits: 3,
+};
+
+fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
+    let label = ui.label(field.name).on_hover_text(field.tooltip);
+    let drag = DragValue::new(value)
+        .range(field.low..=field.high)
+        .clamp_existing_to_range(false)
+        .speed(field.speed)
+        .max_decimals(6)
+        .min_decimals(field.digits)
+        .suffix(field.unit);
+    ui.add(drag).labelled_by(label.id).on_hover_text(field.tooltip);
+    ui.end_row();
+}
+
+fn count(ui: &mut Ui, value: &mut usize) {
+    let label = ui.label("count").on_hover_text("Number of reflectors");
+    ui.add(DragValue::new(value).range(1..=10_000).speed(0.2)).labelled_by(label.id);
+    ui.end_row();
+}
+
+fn single(app: &mut App, ui: &mut Ui) {
+    let Some(index) = app.editor.selection().single() else { return };
+    let Some(object) = app.editor.scene().objects.get(index) else { return };
+    let mut edited = object.clone();
+    ui.strong(format!("{} {}", capital(object.kind()), index + 1));
+    Grid::new("object").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| fields(ui, &mut edited));
+    let [x, y] = edited.centre_metres();
+    let polar = app.radar.polar_of(x, y);
+    let (bin, column) = (app.radar.bin_of_range(polar.range_metres), app.radar.column_of_cos(polar.cos_theta));
+    ui.weak(format!(
+        "range {:.3} m · cos θ {:.4} · bin {bin:.1} · column {column:.1}",
+        polar.range_metres, polar.cos_theta
+    ));
+    if polar.range_metres > app.radar.max_range_metres() {
+        ui.colored_label(ui.visuals().warn_fg_color, "Beyond the maximum range: it wraps around in the maps.");
+    } else if y < 0.0 {
+        ui.colored_label(ui.visuals().warn_fg_color, "Behind the array: it appears mirrored in front of it.");
+    }
+    if edited != app.editor.scene().objects[index] {
+        let key = format!("inspector {index}");
+        app.editor.edit("edit numbers", Some(&key), |scene: &mut Scene, _| scene.objects[index] = edited);
+    }
+    buttons(app, ui);
+}
+
+fn fields(ui: &mut Ui, object: &mut Object) {
+    match object {
+        Object::Point(p) => {
+            number(ui, &metres("x", "Along the array"), &mut p.x_metres);
+            number(ui, &metres("y", "Ahead of the array"), &mut p.y_metres);
+            number(ui, &REFLECTIVITY, &mut p.reflectivity);
+        }
+        Object::Line(l) => {
+            number(ui, &metres("x", "Along the array"), &mut l.x_metres);
+            number(ui, &metres("y of the nearest", "Ahead of the array"), &mut l.y_start_metres);
+            let spacing =
+                Field { speed: 0.001, low: 1e-3, high: 100.0, digits: 4, ..metres("spacing", "Between neighbours") };
+            number(ui, &spacing, &mut l.spacing_metres);
+            count(ui, &mut l.count);
+            number(ui, &REFLECTIVITY, &mut l.reflectivity);
+        }
+        Object::Gaussian(g) => {
+            number(ui, &metres("x", "Of its centre, along the array"), &mut g.x_metres);
+            number(ui, &metres("y", "Of its centre, ahead of the array"), &mut g.y_metres);
+            let spread = |name| Field { low: 0.0, ..metres(name, "Standard deviation") };
+            number(ui, &spread("spread in x"), &mut g.x_std_metres);
+            number(ui, &spread("spread in y"), &mut g.y_std_metres);
+            count(ui, &mut g.count);
+            let label = ui.label("seed").on_hover_text("Another seed scatters the reflectors otherwise");
+            ui.add(DragValue::new(&mut g.seed).speed(0.05)).labelled_by(label.id);
+            ui.end_row();
+            number(ui, &REFLECTIVITY, &mut g.reflectivity);
+        }
+    }
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
