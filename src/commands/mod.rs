@@ -4,6 +4,7 @@
 //! `Command` and a line in `Command::run`. Its own errors travel as [`CommandError::Failed`] unless they need a name here.
 
 mod arguments;
+mod bench;
 mod error;
 mod evaluate;
 mod maps;
@@ -38,6 +39,7 @@ struct Cli {
 /// What the program can do beside opening its window.
 #[derive(Debug, Subcommand)]
 enum Command {
+    Bench(bench::Args),
     Evaluate(evaluate::Args),
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
@@ -49,6 +51,7 @@ enum Command {
 impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
+            Command::Bench(args) => args.run(),
             Command::Evaluate(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),

@@ -7,7 +7,7 @@ mod incremental;
 mod report;
 pub mod worker;
 
-pub use incremental::Engine;
+pub use incremental::{Engine, Forced};
 pub use report::{Outcome, Report, Stage, StageReport};
 
 use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};

@@ -4,6 +4,7 @@
 //! (half-wavelength spacing). Transforms are orthonormal: `1/sqrt(N_r)` over range, `1/sqrt(N_a)` over the elements.
 
 pub mod cartesian;
+pub mod fast;
 mod lambda;
 mod log_map;
 pub mod network_input;

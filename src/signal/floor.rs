@@ -3,8 +3,10 @@
 //! A map normalised by its minimum shows its floor as much as its peaks, so the floor is always named: no function picks one silently.
 
 use super::BeatSignal;
+use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
+use ndarray::Array2;
 use num_complex::Complex64;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -62,28 +64,56 @@ impl fmt::Display for Floor {
 /// Variance of the white complex noise, for each element, that leaves the floor of the thesis' f64 evaluation: the sum over
 /// reflectors of `1.5 * amplitude^2 * ulp(2 pi |s q| R / lambda)^2 / 12`. Measured to give the same minimum, median and metrics.
 pub fn thesis_noise_variance(radar: &Radar, reflectors: &[Reflector]) -> Vec<f64> {
-    let radians_per_metre =
-        radar.carrier.turns_per_wavelength().abs() * std::f64::consts::TAU / radar.wavelength_metres();
-    (0..radar.elements)
-        .into_par_iter()
-        .map(|n| {
-            let element_x = radar.element_x_metres(n);
-            let of_one = |r: &Reflector| {
-                let dx = element_x - r.x_metres;
-                let square = dx * dx + r.y_metres * r.y_metres;
-                let amplitude = radar.transmit_power_watts * r.reflectivity / square;
-                let ulp = ulp(radians_per_metre * square.sqrt());
-                1.5 / 12.0 * (amplitude * ulp).powi(2)
-            };
-            reflectors.iter().map(of_one).sum()
-        })
-        .collect()
+    let turns_per_metre = radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
+    powers(radar, reflectors, 1.5 / 12.0, Some(turns_per_metre * std::f64::consts::TAU))
 }
 
-/// Variance of thermal noise at `snr`: the mean power of all samples over the ratio. Silence has no noise.
-pub fn snr_noise_variance(signal: &BeatSignal, snr: Decibels) -> f64 {
-    let power = signal.samples.iter().map(Complex64::norm_sqr).sum::<f64>();
-    power / signal.samples.len().max(1) as f64 / snr.power_ratio()
+/// Variance of thermal noise at `snr`, the same for every element: the reflectors' own powers, added up and averaged over the
+/// array, over the ratio. Whether their echoes happen to interfere does not change the noise; silence has none.
+pub fn snr_noise_variance(radar: &Radar, reflectors: &[Reflector], snr: Decibels) -> Vec<f64> {
+    let power = powers(radar, reflectors, 1.0, None);
+    let mean = power.iter().sum::<f64>() / radar.elements.max(1) as f64;
+    vec![mean / snr.power_ratio(); radar.elements]
+}
+
+/// For each element, the sum over reflectors of `factor * amplitude^2`, times `ulp(radians)^2` where radians per metre are given.
+fn powers(radar: &Radar, reflectors: &[Reflector], factor: f64, radians_per_metre: Option<f64>) -> Vec<f64> {
+    let mut out = vec![0.0; radar.elements];
+    out.par_chunks_mut(LANES_F64).enumerate().for_each(|(block, out)| {
+        let first_element = block * LANES_F64;
+        let block = Simd::best().run(BlockPowers { radar, reflectors, factor, radians_per_metre, first_element });
+        out.iter_mut().zip(block.0).for_each(|(out, power)| *out = power);
+    });
+    out
+}
+
+struct BlockPowers<'a> {
+    radar: &'a Radar,
+    reflectors: &'a [Reflector],
+    factor: f64,
+    radians_per_metre: Option<f64>,
+    first_element: usize,
+}
+
+impl Kernel for BlockPowers<'_> {
+    type Output = Lanes<f64, LANES_F64>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let element_x = Lanes(std::array::from_fn(|i| self.radar.element_x_metres(self.first_element + i)));
+        let mut total = Lanes::splat(0.0);
+        for r in self.reflectors {
+            let dx = element_x - Lanes::splat(r.x_metres);
+            let square = dx * dx + Lanes::splat(r.y_metres * r.y_metres);
+            let scale = self.radar.transmit_power_watts * r.reflectivity;
+            let mut amplitude = square.map(|s| scale / s);
+            if let Some(rate) = self.radians_per_metre {
+                amplitude = amplitude * square.sqrt().map(|distance| ulp(rate * distance));
+            }
+            total = total + amplitude * amplitude;
+        }
+        total * Lanes::splat(self.factor)
+    }
 }
 
 /// White complex noise of unit variance for one element, the same for the same seed whatever thread asks.
@@ -100,17 +130,24 @@ pub fn unit_noise(seed: u64, element: usize) -> impl Iterator<Item = Complex64> 
 
 /// Adds white complex noise of the given variance for each element.
 pub fn add_noise(signal: &mut BeatSignal, variance: &[f64], seed: u64) {
-    signal.samples.outer_iter_mut().into_par_iter().zip(variance).enumerate().for_each(|(n, (mut row, variance))| {
+    add_noise_from(&mut signal.samples, 0, variance, seed);
+}
+
+/// Adds white complex noise to `samples`, `[elements, samples]`, of elements `first_element` and following; one variance an element.
+pub fn add_noise_from(samples: &mut Array2<Complex64>, first_element: usize, variance: &[f64], seed: u64) {
+    samples.outer_iter_mut().into_par_iter().zip(variance).enumerate().for_each(|(n, (mut row, variance))| {
         let deviation = variance.sqrt();
-        for (sample, noise) in row.iter_mut().zip(unit_noise(seed, n)) {
+        for (sample, noise) in row.iter_mut().zip(unit_noise(seed, first_element + n)) {
             *sample += noise * deviation;
         }
     });
 }
 
-/// Distance from `v` to the next f64 above it; 0 for 0.
+/// Distance from a positive normal `v` to the next f64 above it; 0 for 0.
+#[inline(always)]
 fn ulp(v: f64) -> f64 {
-    if v == 0.0 { 0.0 } else { v.next_up() - v }
+    const EXPONENT: u64 = 0x7FF0_0000_0000_0000;
+    f64::from_bits(v.to_bits() & EXPONENT) * f64::EPSILON
 }
 
 #[cfg(test)]
@@ -125,6 +162,24 @@ mod tests {
         for bad in ["", "snr", "snr=", "snr=nan", "snr=1e9", "Thesis"] {
             assert!(bad.parse::<Floor>().is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn ulp_is_the_distance_to_the_next_number() {
+        for v in [1.0, 1.5, 3.7e4, 0.1, 6.02e23] {
+            assert_eq!(ulp(v), v.next_up() - v);
+        }
+        assert_eq!(ulp(0.0), 0.0);
+    }
+
+    #[test]
+    fn noise_of_one_reflector_has_the_ratio_asked_for() {
+        let radar = Radar::default();
+        let reflectors = [Reflector { x_metres: 1.0, y_metres: 20.0, reflectivity: 2.0 }];
+        let power =
+            super::super::exact::beat_signal(&radar, &reflectors).samples.mapv(|v| v.norm_sqr()).mean().unwrap();
+        let variance = snr_noise_variance(&radar, &reflectors, Decibels(20.0));
+        assert!((power / variance[5] / 100.0 - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -4,18 +4,30 @@
 //! |---|---|---|
 //! | [`direct`] | the formula word for word in f64 | the thesis' own numbers, rounding floor included |
 //! | [`exact`] | the same with phases reduced to turns first | accuracy to the last bits of f64 |
-//! | [`judge`] | the same in double-double | holding all others to their promise |
+//! | [`split`] | products of 16 + 32 phasors, one lane an element | few reflectors, or the last bits |
+//! | [`gridded`] | reflectors spread on a range grid, then transformed | many reflectors |
+//! | [`judge`] | equation 3.3 in double-double | holding all others to their promise |
+//!
+//! [`plan`] chooses among them and says what it chose; [`synthesis`] runs the block algorithms over the array.
 //!
 //! [`floor`] says what lies beneath the reflectors: rounding noise as in the thesis, nothing, or thermal noise.
 
 pub mod direct;
 pub mod exact;
 pub mod floor;
+pub mod gridded;
 pub mod judge;
+pub mod lane_fft;
 pub mod phase;
+pub mod plan;
+pub mod simd;
+pub mod split;
+pub mod synthesis;
 
 pub use floor::Floor;
+pub use plan::{Algorithm, Precision, Recipe};
 
+use crate::maps::Normalisation;
 use crate::radar::{End, Radar};
 use crate::scene::{Scene, SceneError};
 use ndarray::{Array2, ArrayView2, s};
@@ -70,21 +82,31 @@ impl TwoEnds {
     }
 }
 
-/// Beat signal of a scene over the named floor; `seed` picks the noise of [`Floor::Snr`].
+/// Beat signal of a scene over the named floor; `seed` picks the floor's noise.
+///
+/// The fastest algorithm whose error stays far beneath the floor is used; `floor::Floor::Thesis` is exact phase and the noise that
+/// rounding leaves in the thesis' evaluation. [`direct::beat_signal`] makes that evaluation itself, rounding and all, [`exact`] and
+/// [`plan::beat_signal`] any other.
 ///
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
     scene.validate(radar)?;
     let reflectors = scene.reflectors();
-    Ok(match floor {
-        Floor::Thesis => direct::beat_signal(radar, &reflectors),
-        Floor::Exact => exact::beat_signal(radar, &reflectors),
+    let recipe = Recipe::plan(reflectors.len(), plan::amplitude_bound(radar, &reflectors), simulation_tolerance(floor));
+    let mut signal = plan::beat_signal(radar, &reflectors, &recipe);
+    match floor {
+        Floor::Exact => {}
+        Floor::Thesis => floor::add_noise(&mut signal, &floor::thesis_noise_variance(radar, &reflectors), seed),
         Floor::Snr(snr) => {
-            let mut signal = exact::beat_signal(radar, &reflectors);
-            let variance = floor::snr_noise_variance(&signal, snr);
-            floor::add_noise(&mut signal, &vec![variance; radar.elements], seed);
-            signal
+            let variance = floor::snr_noise_variance(radar, &reflectors, snr);
+            floor::add_noise(&mut signal, &variance, seed);
         }
-    })
+    }
+    Ok(signal)
+}
+
+/// Samples are for any use and kept in f64, so they are never coarser than the thesis' floor asks for.
+fn simulation_tolerance(floor: Floor) -> f64 {
+    plan::tolerance_for(floor, Normalisation::MinMax).min(1e-12)
 }

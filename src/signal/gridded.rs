@@ -1,0 +1,245 @@
+//! Equation 3.3 by gridding: a type-1 non-uniform transform over range with twofold oversampling.
+//!
+//! Every reflector is spread over a few cells of a fine range grid with the "exponential of semicircle" kernel (Barnett, Magland and af
+//! Klinteberg, SIAM J. Sci. Comput. 41, C479, 2019); one transform of the grid and a division by the kernel's own transform give the
+//! samples. The cost of a reflector is a dozen cells instead of 512 samples.
+
+use super::lane_fft::LaneFft;
+use super::phase::EchoModel;
+use super::simd::{ComplexLanes, Lanes, Real, phasor};
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use std::f64::consts::{PI, TAU};
+
+/// Widest kernel; its error is near the last bits of f64.
+const MAX_WIDTH: usize = 16;
+
+/// `exp(beta (sqrt(1 - (2x/width)^2) - 1))` for |x| <= width/2, as polynomials between the cells.
+#[derive(Debug, Clone)]
+struct Kernel {
+    width: usize,
+    beta: f64,
+}
+
+impl Kernel {
+    /// The narrowest kernel of even width that keeps the error below `tolerance`, relative to the sum of amplitudes.
+    fn for_tolerance(tolerance: f64) -> Self {
+        let digits = -tolerance.max(1e-16).log10();
+        let width = ((digits + 2.0).ceil() as usize).next_multiple_of(2).min(MAX_WIDTH);
+        Kernel { width, beta: 2.3 * width as f64 }
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        let z = 2.0 * x / self.width as f64;
+        if z.abs() > 1.0 { 0.0 } else { (self.beta * ((1.0 - z * z).sqrt() - 1.0)).exp() }
+    }
+
+    /// Integral of `value(x) cos(2 pi frequency x)`: with `2x = width sin(t)` the trapezoidal rule converges geometrically.
+    fn transform(&self, frequency: f64) -> f64 {
+        const STEPS: usize = 600;
+        let half = self.width as f64 / 2.0;
+        let step = PI / STEPS as f64;
+        let integrand =
+            |t: f64| (self.beta * (t.cos() - 1.0)).exp() * t.cos() * (TAU * frequency * half * t.sin()).cos();
+        (1..STEPS).map(|i| integrand(i as f64 * step - PI / 2.0)).sum::<f64>() * step * half
+    }
+
+    /// Coefficients, lowest first, of the polynomial in `t` in [-1, 1] through the kernel at Chebyshev points, where
+    /// `x = t/2 + 1/2 - width/2 + cell`.
+    fn polynomial(&self, cell: usize, terms: usize) -> Vec<f64> {
+        let x = |t: f64| t / 2.0 + 0.5 - self.width as f64 / 2.0 + cell as f64;
+        let angle = |node: usize| PI * (node as f64 + 0.5) / terms as f64;
+        let chebyshev = (0..terms).map(|k| {
+            let sum: f64 = (0..terms).map(|n| self.value(x(angle(n).cos())) * (k as f64 * angle(n)).cos()).sum();
+            sum * if k == 0 { 1.0 } else { 2.0 } / terms as f64
+        });
+        // T_0 = 1, T_1 = t, T_{k+1} = 2 t T_k - T_{k-1}
+        let mut total = vec![0.0; terms];
+        let (mut before, mut now) = (vec![0.0; terms], vec![0.0; terms]);
+        now[0] = 1.0;
+        for (k, c) in chebyshev.enumerate() {
+            total.iter_mut().zip(&now).for_each(|(t, v)| *t += c * v);
+            let factor = if k == 0 { 1.0 } else { 2.0 };
+            let shifted = |i: usize| if i > 0 { now[i - 1] } else { 0.0 };
+            let next = (0..terms).map(|i| factor * shifted(i) - before[i]).collect();
+            before = std::mem::replace(&mut now, next);
+        }
+        total
+    }
+}
+
+/// A gridding prepared for one radar and tolerance.
+#[derive(Clone)]
+pub struct Gridding<T: Real> {
+    samples: usize,
+    grid: usize,
+    width: usize,
+    /// For each cell of the left half of the kernel: even and odd coefficients in `t^2`, highest first. The right half mirrors it.
+    pieces: Vec<[Vec<T>; 2]>,
+    /// One over the kernel's transform, by sample.
+    correction: Vec<T>,
+    fft: LaneFft<T>,
+}
+
+/// Room for [`block_signal`] to work in.
+#[derive(Debug, Clone)]
+pub struct Scratch<T, const W: usize> {
+    grid: Vec<ComplexLanes<T, W>>,
+    spare: Vec<ComplexLanes<T, W>>,
+}
+
+impl<T: Real, const W: usize> Scratch<T, W> {
+    /// For chirps of `samples` samples.
+    pub fn new(samples: usize) -> Self {
+        let zero = ComplexLanes::zero();
+        Scratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
+    }
+}
+
+impl<T: Real> Gridding<T> {
+    /// Prepares the kernel for `radar`; the error stays below `tolerance` times the sum of amplitudes, but for the rounding of `T`.
+    pub fn new(radar: &Radar, tolerance: f64) -> Self {
+        let samples = radar.samples;
+        let kernel = Kernel::for_tolerance(tolerance.max(T::EPSILON));
+        let terms = kernel.width + 4;
+        let pieces = (0..kernel.width / 2)
+            .map(|cell| {
+                let all = kernel.polynomial(cell, terms);
+                [0, 1].map(|odd| all.iter().skip(odd).step_by(2).rev().map(|c| T::of(*c)).collect())
+            })
+            .collect();
+        let grid = 2 * samples;
+        let half = samples / 2;
+        let of_offset: Vec<f64> =
+            (0..=samples - half).map(|offset| 1.0 / kernel.transform(offset as f64 / grid as f64)).collect();
+        let correction = (0..samples).map(|n| T::of(of_offset.get(n.abs_diff(half)).copied().unwrap_or(0.0))).collect();
+        Gridding { samples, grid, width: kernel.width, pieces, correction, fft: LaneFft::new(grid) }
+    }
+
+    /// Cells that each reflector is spread over.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+}
+
+/// Beat signal of `reflectors` at the `W` elements at `element_x` metres, written to `out`, one vector a sample.
+#[inline(always)]
+pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
+    plan: &Gridding<T>,
+    model: &EchoModel,
+    element_x: Lanes<f64, W>,
+    reflectors: &[Reflector],
+    scratch: &mut Scratch<T, W>,
+    out: &mut [ComplexLanes<T, W>],
+) {
+    let Scratch { grid, spare } = scratch;
+    grid.fill(ComplexLanes::zero());
+    for r in reflectors {
+        spread::<T, W, FMA>(plan, model, element_x, r, grid);
+    }
+    plan.fft.process::<W, FMA>(grid, spare);
+    let half = plan.samples / 2;
+    for (n, (sample, correction)) in out.iter_mut().zip(&plan.correction).enumerate() {
+        let cell = if n < half { plan.grid + n - half } else { n - half };
+        let factor = Lanes::splat(*correction);
+        // The grid held conjugates, so that a forward transform serves as a backward one.
+        *sample = ComplexLanes { re: grid[cell].re * factor, im: -(grid[cell].im * factor) };
+    }
+}
+
+#[inline(always)]
+fn spread<T: Real, const W: usize, const FMA: bool>(
+    plan: &Gridding<T>,
+    model: &EchoModel,
+    element_x: Lanes<f64, W>,
+    r: &Reflector,
+    grid: &mut [ComplexLanes<T, W>],
+) {
+    let of = Lanes::<f64, W>::splat;
+    let cells = plan.grid as f64;
+    let echo = model.echo_lanes::<W, FMA>(element_x, r);
+    // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
+    let middle = (plan.samples / 2) as f64;
+    let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);
+    let amplitude = echo.amplitude.round_to();
+    let value = ComplexLanes { re: p.re * amplitude, im: -(p.im * amplitude) };
+
+    // Grid position, on the same side of the wrap as the first lane's.
+    let position = echo.beat_turns * of(cells);
+    let first = of(position.0[0]);
+    let wraps = ((position - first) * of(1.0 / cells)).nearest();
+    let position = position - wraps * of(cells);
+    let edge = position - of(plan.width as f64 / 2.0);
+    let left = (edge + of(0.5)).nearest();
+    // In [-1, 1] up to rounding; `left` lies within half a cell of `edge + 1/2`.
+    let t: Lanes<T, W> = ((left - edge - echo.beat_turns_low * of(cells)) * of(2.0) - of(1.0)).round_to();
+    let t2 = t * t;
+
+    let mut values = [Lanes::splat(T::default()); MAX_WIDTH];
+    for (cell, [even, odd]) in plan.pieces.iter().enumerate() {
+        let horner = |terms: &[T]| {
+            let mut v = Lanes::splat(terms[0]);
+            for term in &terms[1..] {
+                v = v.mul_add::<FMA>(t2, Lanes::splat(*term));
+            }
+            v
+        };
+        let (even, odd) = (horner(even), horner(odd) * t);
+        values[cell] = even + odd;
+        values[plan.width - 1 - cell] = even - odd;
+    }
+
+    let lowest = left.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
+    let highest = left.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
+    // Neighbouring elements nearly always share their left cell; where not, each group of lanes is spread by itself.
+    let mut start = lowest;
+    while start <= highest {
+        let value = if lowest == highest {
+            value
+        } else {
+            value.scaled(left.map(|l| f64::from(u8::from(l == start))).round_to())
+        };
+        let mut cell = (start.rem_euclid(cells)) as usize;
+        for kernel in &values[..plan.width] {
+            if cell >= plan.grid {
+                cell -= plan.grid;
+            }
+            let sum = &mut grid[cell];
+            sum.re = value.re.mul_add::<FMA>(*kernel, sum.re);
+            sum.im = value.im.mul_add::<FMA>(*kernel, sum.im);
+            cell += 1;
+        }
+        start += 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_follow_the_kernel() {
+        for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
+            let kernel = Kernel::for_tolerance(tolerance);
+            let mut worst = 0.0f64;
+            for cell in 0..kernel.width {
+                let p = kernel.polynomial(cell, kernel.width + 4);
+                for i in -50..=50 {
+                    let t = f64::from(i) / 50.0;
+                    let value = p.iter().rev().fold(0.0, |v, c| v * t + c);
+                    let x = t / 2.0 + 0.5 - kernel.width as f64 / 2.0 + cell as f64;
+                    worst = worst.max((value - kernel.value(x)).abs());
+                }
+            }
+            assert!(worst < tolerance.max(1e-14), "width {}: {worst:e}", kernel.width);
+        }
+    }
+
+    #[test]
+    fn the_kernel_transform_of_known_sums() {
+        // Poisson: the sum over whole numbers is the sum of the transform at whole frequencies, all but the first tiny.
+        let kernel = Kernel::for_tolerance(1e-12);
+        let sum: f64 = (-8..=8).map(|i| kernel.value(f64::from(i))).sum();
+        assert!((sum - kernel.transform(0.0)).abs() < 1e-13 * sum);
+    }
+}

@@ -1,0 +1,116 @@
+//! Equation 3.3 by phasors split at 32 samples: sample `n = 32 a + b` is `A[a] * B[b]`, so 512 phasors cost 16 + 32.
+//!
+//! Recurrences drift as they run; this does not: every phasor is the product of four that were evaluated from their exact phase.
+//! Summed over reflectors it is a matrix product, carried out in registers, one lane an element.
+
+use super::phase::EchoModel;
+use super::simd::{ComplexLanes, Lanes, Real, phasor};
+use crate::scene::Reflector;
+
+/// Samples in a row of the split.
+const STRIDE: usize = 32;
+/// Reflectors whose phasors are kept at a time: as many as fit the first-level cache.
+const CHUNK: usize = 8;
+/// Phasors evaluated from their phase are this many apart; those between are products.
+const STEP: usize = 4;
+/// Rows and columns of the product kept in registers.
+const TILE: (usize, usize) = (2, 4);
+
+/// Phasors of one reflector.
+#[derive(Debug, Clone)]
+struct Factors<T, const W: usize> {
+    rows: Vec<ComplexLanes<T, W>>,
+    columns: [ComplexLanes<T, W>; STRIDE],
+}
+
+/// Room for [`block_signal`] to work in.
+#[derive(Debug, Clone)]
+pub struct Scratch<T, const W: usize> {
+    factors: Vec<Factors<T, W>>,
+    padded: Vec<ComplexLanes<T, W>>,
+}
+
+impl<T: Real, const W: usize> Scratch<T, W> {
+    /// For chirps of `samples` samples.
+    pub fn new(samples: usize) -> Self {
+        let rows = samples.div_ceil(STRIDE).next_multiple_of(STEP);
+        let zero = ComplexLanes::zero();
+        Scratch {
+            factors: vec![Factors { rows: vec![zero; rows], columns: [zero; STRIDE] }; CHUNK],
+            padded: vec![zero; rows * STRIDE],
+        }
+    }
+}
+
+/// Beat signal of `reflectors` at the `W` elements at `element_x` metres, one vector a sample.
+#[inline(always)]
+pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
+    model: &EchoModel,
+    element_x: Lanes<f64, W>,
+    reflectors: &[Reflector],
+    samples: usize,
+    scratch: &'s mut Scratch<T, W>,
+) -> &'s mut [ComplexLanes<T, W>] {
+    let Scratch { factors, padded } = scratch;
+    padded.fill(ComplexLanes::zero());
+    for chunk in reflectors.chunks(CHUNK) {
+        for (r, f) in chunk.iter().zip(factors.iter_mut()) {
+            fill_factors::<T, W, FMA>(model, element_x, r, f);
+        }
+        add_product::<T, W, FMA>(&factors[..chunk.len()], padded);
+    }
+    &mut padded[..samples]
+}
+
+#[inline(always)]
+fn fill_factors<T: Real, const W: usize, const FMA: bool>(
+    model: &EchoModel,
+    element_x: Lanes<f64, W>,
+    r: &Reflector,
+    f: &mut Factors<T, W>,
+) {
+    let echo = model.echo_lanes::<W, FMA>(element_x, r);
+    let fine: [_; STEP] = std::array::from_fn(|i| phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64)));
+    for (i, columns) in f.columns.chunks_exact_mut(STEP).enumerate() {
+        let coarse = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STEP) as f64));
+        for (column, fine) in columns.iter_mut().zip(fine) {
+            *column = coarse.times::<FMA>(fine);
+        }
+    }
+    let amplitude = echo.amplitude.round_to();
+    let fine: [_; STEP] =
+        std::array::from_fn(|i| phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STRIDE) as f64)).scaled(amplitude));
+    for (i, rows) in f.rows.chunks_exact_mut(STEP).enumerate() {
+        let turns = echo.beat_turns_at::<FMA>((i * STEP * STRIDE) as f64) + echo.carrier_turns;
+        let coarse = phasor::<T, W, FMA>(turns);
+        for (row, fine) in rows.iter_mut().zip(fine) {
+            *row = coarse.times::<FMA>(fine);
+        }
+    }
+}
+
+/// `out[32 a + b] += sum over factors of rows[a] * columns[b]`.
+#[inline(always)]
+#[allow(clippy::needless_range_loop)] // constant bounds keep the tile in registers
+fn add_product<T: Real, const W: usize, const FMA: bool>(factors: &[Factors<T, W>], out: &mut [ComplexLanes<T, W>]) {
+    for a in (0..out.len() / STRIDE).step_by(TILE.0) {
+        for b in (0..STRIDE).step_by(TILE.1) {
+            let mut tile = [[ComplexLanes::zero(); TILE.1]; TILE.0];
+            for f in factors {
+                let rows: [_; TILE.0] = std::array::from_fn(|i| f.rows[a + i]);
+                for j in 0..TILE.1 {
+                    let column = f.columns[b + j];
+                    for i in 0..TILE.0 {
+                        tile[i][j] = tile[i][j].plus_product::<FMA>(rows[i], column);
+                    }
+                }
+            }
+            for (i, sums) in tile.iter().enumerate() {
+                let begin = (a + i) * STRIDE + b;
+                for (sample, sum) in out[begin..begin + TILE.1].iter_mut().zip(sums) {
+                    *sample = *sample + *sum;
+                }
+            }
+        }
+    }
+}

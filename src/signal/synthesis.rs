@@ -1,0 +1,212 @@
+//! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel.
+//!
+//! Every block is computed alone and in the same order whatever the number of threads, so results do not depend on it.
+
+use super::floor::unit_noise;
+use super::gridded::{self, Gridding};
+use super::lane_fft::LaneFft;
+use super::phase::EchoModel;
+use super::plan::{Algorithm, Recipe};
+use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
+use super::split;
+use crate::radar::{Radar, hann};
+use crate::scene::Reflector;
+use ndarray::{Array2, Axis};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Windowed range profiles of the whole array in blocks of `W` elements: `[block][range bin]`, one lane an element.
+///
+/// Lanes past the last element hold nothing of meaning.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockProfiles<T, const W: usize> {
+    /// Range bins of every element.
+    pub bins: usize,
+    /// The profiles, block after block.
+    pub cells: Vec<ComplexLanes<T, W>>,
+}
+
+impl<T: Real, const W: usize> BlockProfiles<T, W> {
+    /// Silence.
+    pub fn silence(radar: &Radar) -> Self {
+        let bins = radar.samples;
+        BlockProfiles { bins, cells: vec![ComplexLanes::zero(); bins * radar.elements.div_ceil(W)] }
+    }
+
+    /// Adds (`sign` = 1) or takes away (`sign` = -1) other profiles.
+    pub fn add(&mut self, other: &Self, sign: f64) {
+        let sign = Lanes::splat(T::of(sign));
+        let bins = self.bins;
+        self.cells.par_chunks_mut(bins).zip(other.cells.par_chunks(bins)).for_each(|(a, b)| {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a = *a + b.scaled(sign));
+        });
+    }
+}
+
+/// A recipe made ready for one radar.
+#[derive(Clone)]
+pub struct Synthesis<T: Real, const W: usize> {
+    model: EchoModel,
+    radar: Radar,
+    recipe: Recipe,
+    gridding: Option<Gridding<T>>,
+    window: Vec<T>,
+    fft: LaneFft<T>,
+}
+
+enum Scratch<T, const W: usize> {
+    Split(split::Scratch<T, W>),
+    Gridded(gridded::Scratch<T, W>, Vec<ComplexLanes<T, W>>),
+}
+
+/// One block of samples.
+struct Block<'a, 'b, T: Real, const W: usize> {
+    synthesis: &'a Synthesis<T, W>,
+    first_element: usize,
+    reflectors: &'a [Reflector],
+    scratch: &'b mut Scratch<T, W>,
+}
+
+impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
+    #[inline(always)]
+    fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
+        let s = self.synthesis;
+        let element_x = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
+        let samples = s.radar.samples;
+        match (self.scratch, &s.gridding) {
+            (Scratch::Gridded(scratch, out), Some(gridding)) => {
+                gridded::block_signal::<T, W, FMA>(gridding, &s.model, element_x, self.reflectors, scratch, out);
+                out
+            }
+            (Scratch::Split(scratch), _) => {
+                split::block_signal::<T, W, FMA>(&s.model, element_x, self.reflectors, samples, scratch)
+            }
+            (Scratch::Gridded(_, out), None) => out,
+        }
+    }
+}
+
+/// Samples, written as rows of f64.
+struct ToRows<'a, 'b, T: Real, const W: usize>(Block<'a, 'b, T, W>, &'b mut [Complex64]);
+
+impl<T: Real, const W: usize> Kernel for ToRows<'_, '_, T, W> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let samples = self.0.synthesis.radar.samples;
+        let block = self.0.samples::<FMA>();
+        for (lane, row) in self.1.chunks_mut(samples).enumerate() {
+            for (out, v) in row.iter_mut().zip(block.iter()) {
+                *out = Complex64::new(v.re.0[lane].wide(), v.im.0[lane].wide());
+            }
+        }
+    }
+}
+
+/// Samples of a block, or those already in place, windowed and transformed over range.
+struct ToProfiles<'a, 'b, T: Real, const W: usize>(
+    &'a Synthesis<T, W>,
+    Option<Block<'a, 'b, T, W>>,
+    &'b mut [ComplexLanes<T, W>],
+    &'b mut Vec<ComplexLanes<T, W>>,
+);
+
+impl<T: Real, const W: usize> Kernel for ToProfiles<'_, '_, T, W> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let ToProfiles(synthesis, block, cells, spare) = self;
+        if let Some(block) = block {
+            cells.copy_from_slice(block.samples::<FMA>());
+        }
+        for (cell, window) in cells.iter_mut().zip(&synthesis.window) {
+            *cell = cell.scaled(Lanes::splat(*window));
+        }
+        synthesis.fft.process::<W, FMA>(cells, spare);
+    }
+}
+
+impl<T: Real, const W: usize> Synthesis<T, W> {
+    /// Prepares `recipe` for `radar`. [`Algorithm::Gridded`] grids; every other algorithm is evaluated by phasor split.
+    pub fn new(radar: &Radar, recipe: Recipe) -> Self {
+        let scale = (radar.samples as f64).sqrt().recip();
+        Synthesis {
+            model: EchoModel::new(radar),
+            radar: radar.clone(),
+            recipe,
+            gridding: (recipe.algorithm == Algorithm::Gridded).then(|| Gridding::new(radar, recipe.tolerance)),
+            window: hann(radar.samples).into_iter().map(|w| T::of(w * scale)).collect(),
+            fft: LaneFft::new(radar.samples),
+        }
+    }
+
+    /// What was prepared.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    fn simd(&self) -> Simd {
+        self.recipe.simd
+    }
+
+    fn scratch(&self) -> Scratch<T, W> {
+        let samples = self.radar.samples;
+        if self.gridding.is_some() {
+            Scratch::Gridded(gridded::Scratch::new(samples), vec![ComplexLanes::zero(); samples])
+        } else {
+            Scratch::Split(split::Scratch::new(samples))
+        }
+    }
+
+    /// Samples of a run of neighbouring elements, `[elements, samples]`.
+    pub fn samples(&self, reflectors: &[Reflector], elements: Range<usize>) -> Array2<Complex64> {
+        let mut out = Array2::zeros((elements.len(), self.radar.samples));
+        out.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each_init(
+            || self.scratch(),
+            |scratch, (block, mut rows)| {
+                let first_element = elements.start + block * W;
+                if let Some(rows) = rows.as_slice_mut() {
+                    self.simd().run(ToRows(Block { synthesis: self, first_element, reflectors, scratch }, rows));
+                }
+            },
+        );
+        out
+    }
+
+    /// Windowed range profiles of every element; replaces what `out` held.
+    pub fn range_profiles(&self, reflectors: &[Reflector], out: &mut BlockProfiles<T, W>) {
+        if reflectors.is_empty() {
+            out.cells.fill(ComplexLanes::zero());
+            return;
+        }
+        let bins = self.radar.samples;
+        out.cells.par_chunks_mut(bins).enumerate().for_each_init(
+            || (self.scratch(), vec![ComplexLanes::zero(); bins]),
+            |(scratch, spare), (block, cells)| {
+                let block = Block { synthesis: self, first_element: block * W, reflectors, scratch };
+                self.simd().run(ToProfiles(self, Some(block), cells, spare));
+            },
+        );
+    }
+}
+
+/// Windowed range profiles of white noise of unit variance: [`super::floor::unit_noise`] of every element.
+pub fn unit_noise_profiles<T: Real, const W: usize>(radar: &Radar, seed: u64) -> BlockProfiles<T, W> {
+    let recipe = Recipe::plan(0, 0.0, super::plan::BEST_TOLERANCE);
+    let synthesis = Synthesis::<T, W>::new(radar, recipe);
+    let mut out = BlockProfiles::silence(radar);
+    let bins = radar.samples;
+    out.cells.par_chunks_mut(bins).enumerate().for_each_init(
+        || vec![ComplexLanes::zero(); bins],
+        |spare, (block, cells)| {
+            for lane in 0..W {
+                for (cell, noise) in cells.iter_mut().zip(unit_noise(seed, block * W + lane)) {
+                    (cell.re.0[lane], cell.im.0[lane]) = (T::of(noise.re), T::of(noise.im));
+                }
+            }
+            synthesis.simd().run(ToProfiles(&synthesis, None, cells, spare));
+        },
+    );
+    out
+}
