@@ -8,7 +8,12 @@ use std::sync::Arc;
 
 /// Every method this build knows, in the order they are shown.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
-    #[cfg_attr(not(feature = "network"), expect(unused_mut, reason = "networks add to it"))]
+    #[cfg(feature = "network")]
+    let networks = crate::network::shipped();
+    #[cfg(not(feature = "network"))]
+    let networks: Vec<Arc<dyn Reconstructor>> = Vec::new();
+    let live = networks.iter().find(|m| m.name() == "live").cloned();
+    let fallback = live.unwrap_or_else(|| Arc::new(MatchedFilter::Incoherent));
     let mut methods: Vec<Arc<dyn Reconstructor>> = vec![
         Arc::new(Baseline),
         Arc::new(Bartlett),
@@ -21,10 +26,9 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
         Arc::new(Fista::default()),
         Arc::new(Omp::default()),
         Arc::new(Nomp::default()),
-        Arc::new(Hybrid::new(Arc::new(MatchedFilter::Incoherent))),
+        Arc::new(Hybrid::new(fallback)),
     ];
-    #[cfg(feature = "network")]
-    methods.extend(crate::network::shipped());
+    methods.extend(networks);
     methods
 }
 

@@ -1,5 +1,7 @@
 //! What no estimator can beat: bounds on position errors, and how alike two places look to an array.
 
+mod ambiguity;
 mod cramer_rao;
 
+pub use ambiguity::{Ambiguity, ambiguity};
 pub use cramer_rao::{BoundsError, PositionBound, cramer_rao, noise_variance};

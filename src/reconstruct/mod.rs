@@ -20,7 +20,7 @@ mod registered;
 mod rendering;
 mod root_music;
 mod rows;
-mod steering;
+pub(crate) mod steering;
 
 pub use bartlett::Bartlett;
 pub use baseline::Baseline;

@@ -54,7 +54,7 @@ struct Series {
 
 /// Echo of one reflector in the samples of both ends.
 #[derive(Debug, Clone)]
-pub(super) struct Atom {
+pub(crate) struct Atom {
     pub reflector: Reflector,
     series: Vec<Series>,
     samples: usize,
@@ -67,8 +67,14 @@ fn element_xs(radar: &Radar) -> impl Iterator<Item = f64> + '_ {
 }
 
 impl Atom {
-    /// The atom of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`).
+    /// The atom of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`), as both ends hear it.
     pub fn at(radar: &Radar, range_metres: f64, cos_theta: f64) -> Self {
+        let xs: Vec<f64> = element_xs(radar).collect();
+        Atom::heard_by(radar, &xs, range_metres, cos_theta)
+    }
+
+    /// The same as the elements at `element_xs` metres hear it.
+    pub fn heard_by(radar: &Radar, element_xs: &[f64], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
         let reflector = Reflector {
             x_metres: range_metres * cos,
@@ -76,8 +82,9 @@ impl Atom {
             reflectivity: 1.0,
         };
         let model = EchoModel::new(radar);
-        let series: Vec<Series> = element_xs(radar)
-            .map(|x| {
+        let series: Vec<Series> = element_xs
+            .iter()
+            .map(|&x| {
                 let echo = model.echo(x, &reflector);
                 Series {
                     start: Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(0)),
