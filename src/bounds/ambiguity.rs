@@ -1,0 +1,94 @@
+//! The ambiguity function: how alike the echoes of two places are to an array (P. M. Woodward, "Probability and Information
+//! Theory, with Applications to Radar", 1953).
+
+use crate::radar::{Layout, Polar, Radar};
+use crate::reconstruct::steering::Atom;
+use ndarray::Array2;
+use rayon::prelude::*;
+
+/// Likeness of every place in a patch of the polar grid with one reflector.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ambiguity {
+    /// Ranges of the rows, metres.
+    pub range_metres: Vec<f64>,
+    /// cos(theta) of the columns.
+    pub cos_theta: Vec<f64>,
+    /// `|<echo there, echo of the reflector>|` of echoes scaled to norm 1, `[ranges, cosines]`: 1 where no array could tell the two
+    /// apart, whatever their gains.
+    pub likeness: Array2<f64>,
+}
+
+/// Likeness with the reflector at `centre` of the places at `ranges_metres` and `cosines`, as `layout` hears them.
+///
+/// A layout without elements hears nothing: its likeness is 0 everywhere.
+pub fn ambiguity(radar: &Radar, layout: &Layout, centre: Polar, ranges_metres: &[f64], cosines: &[f64]) -> Ambiguity {
+    let atom = |range, cos| Atom::heard_by(radar, &layout.x_metres, range, cos);
+    let reflector = atom(centre.range_metres, centre.cos_theta);
+    let likeness: Vec<f64> = ranges_metres
+        .par_iter()
+        .flat_map_iter(|range| cosines.iter().map(|cos| atom(*range, *cos).inner(&reflector).norm()))
+        .map(|v| if v.is_finite() { v.min(1.0) } else { 0.0 })
+        .collect();
+    let mut out = Array2::zeros((ranges_metres.len(), cosines.len()));
+    out.iter_mut().zip(likeness).for_each(|(o, v)| *o = v);
+    Ambiguity { range_metres: ranges_metres.to_vec(), cos_theta: cosines.to_vec(), likeness: out }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::End;
+
+    /// Likeness along cos(theta) at the reflector's range, `steps` to each side.
+    fn cut(layout: &Layout, step: f64, steps: i32) -> Vec<f64> {
+        let centre = Polar { range_metres: 20.0, cos_theta: 0.0 };
+        let cosines: Vec<f64> = (-steps..=steps).map(|i| centre.cos_theta + f64::from(i) * step).collect();
+        ambiguity(&Radar::default(), layout, centre, &[centre.range_metres], &cosines)
+            .likeness
+            .into_raw_vec_and_offset()
+            .0
+    }
+
+    #[test]
+    fn two_ends_have_a_comb_of_one_tooth_an_angle_bin() {
+        let radar = Radar::default();
+        let bin = 2.0 / radar.elements as f64;
+        let along = cut(&Layout::two_ends(&radar), bin / 64.0, 6 * 64);
+        let peaks: Vec<usize> =
+            (1..along.len() - 1).filter(|&i| along[i] > along[i - 1] && along[i] >= along[i + 1]).collect();
+        let middle = peaks.iter().position(|i| *i == 6 * 64).expect("the reflector itself is a peak");
+        assert!((along[6 * 64] - 1.0).abs() < 1e-9);
+        // One bin off, as an independent program has it. The tooth itself stands 4 % further out, where the chirp's own phase has
+        // caught up with the carrier's, and is higher still.
+        let one_bin_off = along[6 * 64 + 64];
+        assert!((one_bin_off - 0.992).abs() < 0.001, "{one_bin_off}");
+        let first = along[peaks[middle + 1]];
+        assert!(first > one_bin_off && first < 0.9995, "first side peak {first}");
+        for pair in peaks.windows(2) {
+            assert!((pair[1] - pair[0]).abs_diff(66) <= 2, "teeth {} apart", pair[1] - pair[0]);
+        }
+    }
+
+    #[test]
+    fn the_whole_array_has_one_peak_and_one_end_a_wide_one() {
+        let radar = Radar::default();
+        let bin = 2.0 / radar.elements as f64;
+        let whole = cut(&Layout::uniform(&radar), bin / 4.0, 12);
+        assert!(whole[12 - 8] < 0.25 && whole[12 + 8] < 0.25, "two bins off: {:?}", whole);
+        let end = cut(&Layout::one_end(&radar, End::First), bin, 10);
+        assert!(end[0] > 0.8, "ten bins off one end still hears much the same: {}", end[0]);
+        let random = cut(&Layout::random(&radar, 24, 5).unwrap(), bin / 4.0, 12);
+        assert!(random[12 + 4] < 0.9, "random elements have no comb: {}", random[16]);
+    }
+
+    #[test]
+    fn range_bins_part_echoes_and_nothing_is_heard_without_elements() {
+        let radar = Radar::default();
+        let centre = Polar { range_metres: 20.0, cos_theta: 0.0 };
+        let far = [20.0, 20.0 + radar.range_resolution_metres()];
+        let a = ambiguity(&radar, &Layout::one_end(&radar, End::First), centre, &far, &[0.0]);
+        assert!(a.likeness[[1, 0]] < 0.05, "one bin off is a null of the range response: {}", a.likeness[[1, 0]]);
+        let none = ambiguity(&radar, &Layout { x_metres: Vec::new() }, centre, &far, &[0.0]);
+        assert!(none.likeness.iter().all(|v| *v == 0.0));
+    }
+}
