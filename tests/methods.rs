@@ -69,7 +69,8 @@ fn gain_leaves_no_trace_and_runs_repeat() {
     for method in methods::all() {
         let name = method.name();
         let plain = run(&*method, &ends, "two points");
-        assert!(plain.lambda.lambda.iter().any(|v| *v > 0.9), "{name} sees nothing");
+        // The U-Net is there to show how the thesis' first attempt collapsed to nothing.
+        assert!(name == "unet" || plain.lambda.lambda.iter().any(|v| *v > 0.9), "{name} sees nothing");
         assert_eq!(plain, run(&*method, &ends, "two points again"), "{name} does not repeat");
         // Powers of two keep every bit of the samples, so that the rounding floor beneath them stays the same too.
         for gain in [2f64.powi(-66), 2f64.powi(66)] {

@@ -170,15 +170,15 @@ impl App {
 
     /// Shows a message that passes.
     pub(super) fn info(&mut self, text: impl Into<String>) {
-        // egui-notify's own symbols are not in egui's fonts.
-        self.toasts.custom(text.into(), "i".to_owned(), theme::INFO).duration(Duration::from_secs(6));
+        // egui-notify's own symbols, its closing cross among them, are not in egui's fonts.
+        self.toasts.custom(text.into(), "i".to_owned(), theme::INFO).closable(false).duration(Duration::from_secs(6));
     }
 
-    /// Shows a message that stays a while and can be closed.
+    /// Shows a message that stays a while.
     pub(super) fn error(&mut self, text: impl Into<String>) {
         let text = text.into();
         tracing::warn!("{text}");
-        self.toasts.custom(text, "!".to_owned(), theme::ERROR).duration(Duration::from_secs(15));
+        self.toasts.custom(text, "!".to_owned(), theme::ERROR).closable(false).duration(Duration::from_secs(15));
     }
 
     /// The method in use.

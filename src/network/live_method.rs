@@ -6,7 +6,7 @@ use super::live::LiveConfig;
 use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends, silence, unit_gain};
 use crate::signal::TwoEnds;
 use ndarray::Array2;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -86,7 +86,9 @@ impl Reconstructor for LiveMethod {
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
         request.task.check()?;
-        let Decades { map, minimum } = self.decades(radar, ends)?;
+        check_ends(radar, ends)?;
+        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
+        let Decades { map, minimum } = self.decades(radar, &ends)?;
         let peak = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let lambda = map.into_iter().map(|v| scale.lambda(v.into()) as f32).collect();

@@ -7,7 +7,7 @@ use super::unet::{Unet, UnetConfig};
 use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
+use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends, silence, unit_gain};
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
@@ -92,8 +92,9 @@ impl Reconstructor for ThesisMethod {
     ) -> Result<Reconstruction, ReconstructError> {
         check_ends(radar, ends)?;
         request.task.check()?;
+        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
         let tables = Thesis::tables(&self.config, radar)?;
-        let input = Thesis::input(&tables, ends)?;
+        let input = Thesis::input(&tables, &ends)?;
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         Ok(Reconstruction { lambda: RangeAngleMap::stretched(map), reflectors: Vec::new() })
     }
@@ -145,10 +146,11 @@ impl Reconstructor for UnetMethod {
     ) -> Result<Reconstruction, ReconstructError> {
         check_ends(radar, ends)?;
         request.task.check()?;
+        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
         let tables: UnetTables = Unet::tables(&self.config, radar)?;
         let rows = self.config.rows;
         let cartesian =
-            estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
+            estimate(&self.network, Unet::NAME, Unet::input(&tables, &ends)?, [rows, 2 * rows], &self.device)?;
         let pixel = radar.max_range_metres() / rows as f64;
         let lambda = Array2::from_shape_fn((radar.samples, radar.elements), |(bin, column)| {
             let range = radar.range_of_bin_metres(bin as f64);

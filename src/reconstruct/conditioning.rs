@@ -27,7 +27,7 @@ pub(super) fn condition(radar: &Radar, ends: &TwoEnds) -> Result<Option<Conditio
 }
 
 /// Scales the samples of both ends to a peak between 1 and 2 and says by how much; `None` for silence.
-pub(super) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
+pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
     let peak = ends.first.iter().chain(&ends.last).fold(0.0f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
     if peak == 0.0 {
         return None;

@@ -33,6 +33,11 @@ pub use music::Music;
 pub use omp::Omp;
 pub use root_music::RootMusic;
 
+#[cfg(feature = "network")]
+pub(crate) use conditioning::unit_gain;
+#[cfg(feature = "network")]
+pub(crate) use rendering::silence;
+
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::scene::Reflector;

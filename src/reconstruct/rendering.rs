@@ -7,7 +7,7 @@ use crate::scene::Reflector;
 use ndarray::{Array2, Zip};
 
 /// The answer to silence: Lambda 0 everywhere, no reflector.
-pub(super) fn silence(radar: &Radar) -> Reconstruction {
+pub(crate) fn silence(radar: &Radar) -> Reconstruction {
     Reconstruction {
         lambda: RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) },
         reflectors: Vec::new(),
