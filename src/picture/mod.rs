@@ -9,6 +9,8 @@ mod png;
 mod scene_panel;
 mod text;
 
+pub(crate) use text::register_fonts;
+
 pub use colour::ColourMap;
 pub use png::{encode_png, is_our_png};
 

@@ -2,6 +2,7 @@
 
 use super::CommandError;
 use super::measure::Row;
+use crate::picture;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::path::Path;
@@ -12,6 +13,7 @@ const SIZE: (u32, u32) = (1000, 640);
 pub fn draw(folder: &Path, rows: &[Row], bare_fft_ms: f64) -> Result<(), CommandError> {
     std::fs::create_dir_all(folder).map_err(|source| CommandError::File { path: folder.to_owned(), source })?;
     let svg = folder.join("bench.svg");
+    picture::register_fonts().map_err(|e| failed(&svg, &e))?;
     front(&SVGBackend::new(&svg, SIZE).into_drawing_area(), rows, bare_fft_ms).map_err(|e| failed(&svg, &e))?;
     let png = folder.join("bench.png");
     front(&BitMapBackend::new(&png, SIZE).into_drawing_area(), rows, bare_fft_ms).map_err(|e| failed(&png, &e))
