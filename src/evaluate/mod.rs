@@ -1,6 +1,7 @@
-//! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables.
+//! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables; and run time against error.
 
 pub mod campaign;
+pub mod front;
 mod metrics;
 mod roc;
 pub mod tables;

@@ -1,6 +1,7 @@
 //! Files that are either whole or not there, and NumPy archives with errors that name the key.
 
 pub mod archive;
+pub mod memory;
 pub mod npz;
 
 use std::fs::Permissions;

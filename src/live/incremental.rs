@@ -14,6 +14,7 @@ use crate::signal::simd::{LANES_F32, LANES_F64, Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
 use crate::signal::{Floor, TwoEnds, floor};
 use ndarray::Array2;
+use num_complex::Complex64;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -25,6 +26,8 @@ pub struct Engine {
     forced: Forced,
     single: Option<Bank<f32, LANES_F32>>,
     double: Option<Bank<f64, LANES_F64>>,
+    /// The precision of the last maps.
+    last: Option<Precision>,
     shown: Option<Shown>,
 }
 
@@ -56,7 +59,7 @@ struct Shown {
 impl Engine {
     /// An engine that has computed nothing yet. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: Radar) -> Self {
-        Engine { radar, forced: Forced::default(), single: None, double: None, shown: None }
+        Engine { radar, forced: Forced::default(), single: None, double: None, last: None, shown: None }
     }
 
     /// Takes choices from the planner and drops every cache.
@@ -79,6 +82,14 @@ impl Engine {
     /// The radar it simulates.
     pub fn radar(&self) -> &Radar {
         &self.radar
+    }
+
+    /// Range profile of one element as the last update left it, `[range bins]`, without the floor; `None` if it computed none.
+    pub fn range_profile(&self, element: usize) -> Option<Vec<Complex64>> {
+        match self.last? {
+            Precision::F32 => self.single.as_ref()?.profile(element),
+            Precision::F64 => self.double.as_ref()?.profile(element),
+        }
     }
 
     /// Bytes held in caches.
@@ -126,6 +137,7 @@ impl Engine {
             recipe.precision = self.forced.precision.unwrap_or(recipe.precision);
             let job =
                 Job { radar: &self.radar, scene, wanted, recipe, forced: self.forced.algorithm, amplitude, missing };
+            self.last = Some(recipe.precision);
             match recipe.precision {
                 Precision::F32 => {
                     self.single.get_or_insert_with(|| Bank::new(&self.radar)).run(
@@ -316,6 +328,11 @@ impl<T: Real, const W: usize> Bank<T, W> {
 
     fn forget(&mut self) {
         self.built = None;
+    }
+
+    fn profile(&self, element: usize) -> Option<Vec<Complex64>> {
+        let (rest, active) = (self.rest.profiles.profile(element)?, self.active.profiles.profile(element)?);
+        Some(rest.into_iter().zip(active).map(|(a, b)| a + b).collect())
     }
 
     fn bytes(&self) -> usize {

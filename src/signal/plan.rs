@@ -27,6 +27,11 @@ impl Algorithm {
     /// Every algorithm.
     pub const ALL: [Algorithm; 4] = [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded];
 
+    /// Whether it computes in blocks of elements ([`super::synthesis`]), in either precision, as fast as a tolerance allows.
+    pub fn is_fast(self) -> bool {
+        !matches!(self, Algorithm::Direct | Algorithm::Exact)
+    }
+
     /// Name in reports and on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -65,6 +70,15 @@ pub enum Precision {
     F32,
     /// Double.
     F64,
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        })
+    }
 }
 
 /// What is to be computed, and how: the planner's answer. Any field may be changed before it runs.

@@ -10,7 +10,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
 /// An instruction set that kernels are compiled for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Simd {
     /// What every machine of the target has; no fused multiply-add.

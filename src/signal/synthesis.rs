@@ -34,6 +34,13 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         BlockProfiles { bins, cells: vec![ComplexLanes::zero(); bins * radar.elements.div_ceil(W)] }
     }
 
+    /// Range profile of one element, `[range bins]`; `None` past the last block.
+    pub fn profile(&self, element: usize) -> Option<Vec<Complex64>> {
+        let (block, lane) = (element / W, element % W);
+        let cells = self.cells.get(block * self.bins..(block + 1) * self.bins)?;
+        Some(cells.iter().map(|c| Complex64::new(c.re.0[lane].wide(), c.im.0[lane].wide())).collect())
+    }
+
     /// Adds (`sign` = 1) or takes away (`sign` = -1) other profiles.
     pub fn add(&mut self, other: &Self, sign: f64) {
         let sign = Lanes::splat(T::of(sign));

@@ -1,10 +1,11 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
 mod chart;
-mod measure;
 
 use super::{CommandError, print};
-use measure::{Bench, Row};
+use crate::evaluate::front::{self, Front, FrontRequest};
+use crate::files::write_bytes;
+use crate::radar::Radar;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -17,7 +18,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
 
-    /// Folder for the chart, bench.svg and bench.png; made where it is missing
+    /// Folder for the chart, bench.svg and bench.png, and the figures, bench.json; made where it is missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 
@@ -37,11 +38,8 @@ pub struct Args {
 
 #[derive(serde::Serialize)]
 struct Report<'a> {
-    /// Median of the bare 512 x 1024 c64 transform on one thread.
-    bare_fft_ms: f64,
-    threads: usize,
-    simd: crate::signal::simd::Simd,
-    rows: &'a [Row],
+    #[serde(flatten)]
+    front: &'a Front,
     /// Reflectors to median milliseconds of the NumPy script; none if it could not run.
     numpy_ms: Option<serde_json::Value>,
 }
@@ -49,34 +47,34 @@ struct Report<'a> {
 impl Args {
     /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
-        let bench = Bench::new(self.repeats as usize);
-        let bar = indicatif::ProgressBar::new(self.reflectors.len() as u64);
-        let mut rows = Vec::new();
-        for count in &self.reflectors {
-            rows.extend(bench.rows(*count as usize).map_err(CommandError::failed)?);
-            bar.inc(1);
-        }
+        let request = FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), self.repeats as usize);
+        let bar = indicatif::ProgressBar::new(1000);
+        let front =
+            front::measure(&Radar::default(), &request, |part, _| bar.set_position((1e3 * part) as u64), || false)
+                .map_err(CommandError::failed)?;
         bar.finish_and_clear();
         let numpy_ms = self.numpy.as_ref().and_then(|script| self.run_numpy(script));
-        let report = Report {
-            bare_fft_ms: bench.bare_fft_ms,
-            threads: rayon::current_num_threads(),
-            simd: crate::signal::simd::Simd::best(),
-            rows: &rows,
-            numpy_ms,
-        };
+        let report = Report { front: &front, numpy_ms };
+        let json = serde_json::to_string_pretty(&report).map_err(CommandError::failed)?;
         if let Some(folder) = &self.output {
-            chart::draw(folder, &rows, bench.bare_fft_ms)?;
+            chart::draw(folder, &front)?;
+            let file = folder.join("bench.json");
+            write_bytes(&file, json.as_bytes()).map_err(|source| CommandError::File { path: file, source })?;
         }
-        if self.json {
-            return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
-        }
+        if self.json { print(&json) } else { self.print_table(&report) }
+    }
+
+    fn print_table(&self, report: &Report<'_>) -> Result<(), CommandError> {
+        let front = report.front;
         print(&format!(
-            "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {} threads, {:?}\n\
-             {:7} {:>10} {:9} {:4} {:>9} {:>9} {:>8} {:>7} {:>9} {:>12}",
-            report.bare_fft_ms,
-            report.threads,
-            report.simd,
+            "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {} threads, {:?}; medians of at most {} runs\n\
+             signal: largest error of a range cell, relative to the peak; Lambda: largest and rms error of the maps, drawn over no floor\n\
+             and 100 dB (exact db=100) and as the thesis does (thesis min-max); * marks the one that was timed\n\
+             {:7} {:>10} {:11} {:4} {:>9} {:>9} {:>8} {:>7} {:>8} {:>18} {:>18}",
+            front.bare_fft_ms,
+            front.threads,
+            front.simd,
+            self.repeats,
             "task",
             "reflectors",
             "algorithm",
@@ -86,21 +84,26 @@ impl Args {
             "spread",
             "x bare",
             "signal",
-            "Lambda",
+            "exact db=100",
+            "thesis min-max",
         ))?;
-        for r in &rows {
+        for r in &front.rows {
+            let lambda = r.lambda.iter().map(|l| {
+                let mark = if l.convention == r.convention { "*" } else { " " };
+                format!(" {:>8.1e} {:>8.1e}{mark}", l.max, l.rms)
+            });
             print(&format!(
-                "{:7} {:>10} {:9} {:4} {:>9.0e} {:>9.3} {:>8.3} {:>7.2} {:>9.1e} {:>12.1e}",
-                r.task,
+                "{:7} {:>10} {:11} {:4} {:>9.0e} {:>9.3} {:>8.3} {:>7.2} {:>8.1e}{}",
+                r.task.name(),
                 r.reflectors,
                 r.algorithm,
                 r.precision,
                 r.tolerance,
                 r.median_ms,
                 r.spread_ms,
-                r.median_ms / report.bare_fft_ms,
+                r.median_ms / front.bare_fft_ms,
                 r.signal_error,
-                r.lambda_error,
+                lambda.collect::<String>(),
             ))?;
         }
         match &report.numpy_ms {

@@ -1,0 +1,288 @@
+//! Measuring a front, row by row.
+
+use super::reference::{Reference, SEED, maps_of, plain_maps, profile};
+use super::{Convention, Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError};
+use crate::files::memory::{peak_resident_bytes, reset_peak_resident};
+use crate::live::{Engine, Forced, Wanted};
+use crate::maps::BareTransform;
+use crate::radar::Radar;
+use crate::scene::{Scene, SceneError};
+use crate::signal::plan::{self, Precision, Recipe};
+use crate::signal::simd::Simd;
+use std::time::Instant;
+
+/// Updates before the timed ones: the first two moves of a drag let the dragged reflector leave the sum at rest.
+const WARM_UP: usize = 3;
+/// The slow algorithms are repeated so often at most, by whether the scene is large.
+const SLOW_REPEATS: [usize; 2] = [3, 1];
+
+/// One row to be measured.
+#[derive(Clone, Copy)]
+struct Job {
+    task: FrontTask,
+    entrant: Entrant,
+    precision: Precision,
+    recipe: Recipe,
+}
+
+/// Measures what `request` names on `radar`, on reflectors scattered before the array.
+///
+/// `on_row` is called with the part that is done (0 to 1) and each new row, in order. As soon as `cancelled` says so, what is measured by
+/// then is returned. Everything runs on the calling thread and rayon's.
+///
+/// # Errors
+/// [`SceneError`] when the radar can't see the scenes.
+pub fn measure(
+    radar: &Radar,
+    request: &FrontRequest,
+    mut on_row: impl FnMut(f32, &FrontRow),
+    cancelled: impl Fn() -> bool,
+) -> Result<Front, SceneError> {
+    let repeats = request.repeats.max(1);
+    let mut front = Front {
+        bare_fft_ms: bare_fft_ms(repeats.max(9)),
+        threads: rayon::current_num_threads(),
+        simd: Simd::best(),
+        rows: Vec::new(),
+    };
+    for (i, count) in request.reflectors.iter().enumerate() {
+        if cancelled() {
+            break;
+        }
+        let scene = scattered(*count);
+        scene.validate(radar)?;
+        let reference = Reference::new(radar, scene.reflectors());
+        let jobs = jobs(radar, request, &reference);
+        for (j, job) in jobs.iter().enumerate() {
+            if cancelled() {
+                return Ok(front);
+            }
+            let row = match job.recipe.algorithm.is_fast() {
+                true => fast_row(radar, &scene, &reference, job, repeats)?,
+                false => plain_row(radar, &reference, job, repeats),
+            };
+            let scenes_done = i as f32 + (j + 1) as f32 / jobs.len() as f32;
+            on_row(scenes_done / request.reflectors.len() as f32, &row);
+            front.rows.push(row);
+        }
+    }
+    Ok(front)
+}
+
+/// Reflectors on a lattice in front of the array, the same as in `benches/numpy_maps.py`.
+fn scattered(count: usize) -> Scene {
+    let lattice = |i: usize, step: usize, span: usize| (i * step % span) as f64;
+    Scene::of_points((0..count).map(|i| (lattice(i, 37, 61) - 30.0, 2.37 + lattice(i, 53, 33))))
+}
+
+fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job> {
+    let count = reference.reflectors.len();
+    let amplitude = plan::amplitude_bound(radar, &reference.reflectors);
+    let mut jobs = Vec::new();
+    for tolerance in &request.tolerances {
+        let planned = Recipe::plan(count, amplitude, *tolerance);
+        for entrant in &request.entrants {
+            let (algorithm, precisions): (_, &[Precision]) = match (*entrant, planned.precision) {
+                (Entrant::Planned, _) => (planned.algorithm, &[planned.precision]),
+                (Entrant::Forced(algorithm), _) if !algorithm.is_fast() => continue,
+                (Entrant::Forced(algorithm), Precision::F32) => (algorithm, &[Precision::F32, Precision::F64]),
+                (Entrant::Forced(algorithm), Precision::F64) => (algorithm, &[Precision::F64]),
+            };
+            for precision in precisions {
+                let recipe = Recipe { algorithm, precision: *precision, ..planned };
+                jobs.extend(request.tasks.iter().map(|task| Job {
+                    task: *task,
+                    entrant: *entrant,
+                    precision: *precision,
+                    recipe,
+                }));
+            }
+        }
+    }
+    for entrant in &request.entrants {
+        if let Entrant::Forced(algorithm) = *entrant
+            && !algorithm.is_fast()
+            && request.tasks.contains(&FrontTask::Scratch)
+        {
+            let recipe = Recipe { tolerance: 1e-12, ..Recipe::plan(count, amplitude, plan::BEST_TOLERANCE) };
+            let recipe = recipe.with_algorithm(algorithm);
+            jobs.push(Job { task: FrontTask::Scratch, entrant: *entrant, precision: Precision::F64, recipe });
+        }
+    }
+    jobs
+}
+
+/// One of the fast algorithms, by the live engine.
+fn fast_row(
+    radar: &Radar,
+    scene: &Scene,
+    reference: &Reference,
+    job: &Job,
+    repeats: usize,
+) -> Result<FrontRow, SceneError> {
+    let convention = Convention::for_tolerance(job.recipe.tolerance);
+    let wanted = |c: Convention| Wanted {
+        floor: c.floor,
+        normalisation: c.normalisation,
+        seed: SEED,
+        ends: false,
+        ..Wanted::default()
+    };
+    let mut engine = Engine::new(radar.clone());
+    engine.force(Forced {
+        algorithm: match job.entrant {
+            Entrant::Planned => None,
+            Entrant::Forced(algorithm) => Some(algorithm),
+        },
+        precision: Some(job.precision),
+        tolerance: Some(job.recipe.tolerance),
+    });
+    reset_peak_resident();
+    let mut moved = scene.clone();
+    if let Some(object) = moved.objects.first_mut() {
+        object.translate(0.01, 0.0);
+    }
+    let mut times = Vec::new();
+    let mut frame = engine.update(scene, &wanted(convention))?;
+    for left in (0..repeats + WARM_UP).rev() {
+        let next = match job.task {
+            // The last move leads back to where the reference was computed.
+            FrontTask::Drag if left % 2 == 1 => &moved,
+            FrontTask::Drag => scene,
+            FrontTask::Scratch => {
+                engine.forget();
+                scene
+            }
+        };
+        let start = Instant::now();
+        frame = engine.update(next, &wanted(convention))?;
+        if left < repeats {
+            times.push(1e3 * start.elapsed().as_secs_f64());
+        }
+    }
+    let peak_bytes = peak_resident_bytes();
+    let signal_error = reference.signal_error(radar, |element| engine.range_profile(element));
+    let mut lambda = Vec::new();
+    for other in Convention::BOTH {
+        if other != convention {
+            frame = engine.update(scene, &wanted(other))?;
+        }
+        lambda.extend(maps_of(&frame).map(|maps| reference.lambda_error(other, maps)));
+        if other != convention {
+            frame = engine.update(scene, &wanted(convention))?;
+        }
+    }
+    Ok(row(job, reference, times, signal_error, lambda, peak_bytes))
+}
+
+/// The plain formulas: signal, transforms and maps without any of the fast paths.
+fn plain_row(radar: &Radar, reference: &Reference, job: &Job, repeats: usize) -> FrontRow {
+    let repeats = repeats.min(SLOW_REPEATS[usize::from(reference.reflectors.len() > 50)]);
+    let convention = Convention::for_tolerance(job.recipe.tolerance);
+    reset_peak_resident();
+    let once = || {
+        let start = Instant::now();
+        let signal = plan::beat_signal(radar, &reference.reflectors, &job.recipe);
+        let maps = plain_maps(radar, &reference.reflectors, &signal, convention);
+        (1e3 * start.elapsed().as_secs_f64(), signal, maps)
+    };
+    let (first, signal, maps) = once();
+    let times = std::iter::once(first).chain((1..repeats).map(|_| once().0)).collect();
+    let peak_bytes = peak_resident_bytes();
+    let signal_error = reference.signal_error(radar, |element| profile(radar, signal.samples.view(), element));
+    let lambda = Convention::BOTH.map(|other| {
+        let drawn;
+        let maps = if other == convention {
+            &maps
+        } else {
+            drawn = plain_maps(radar, &reference.reflectors, &signal, other);
+            &drawn
+        };
+        reference.lambda_error(other, maps.each_ref())
+    });
+    row(job, reference, times, signal_error, lambda.to_vec(), peak_bytes)
+}
+
+fn row(
+    job: &Job,
+    reference: &Reference,
+    mut times: Vec<f64>,
+    signal_error: f64,
+    lambda: Vec<LambdaError>,
+    peak_bytes: Option<u64>,
+) -> FrontRow {
+    let convention = Convention::for_tolerance(job.recipe.tolerance);
+    let timed = lambda.iter().find(|l| l.convention == convention);
+    FrontRow {
+        task: job.task,
+        reflectors: reference.reflectors.len(),
+        algorithm: job.entrant,
+        chosen: job.recipe.algorithm,
+        precision: job.precision,
+        tolerance: job.recipe.tolerance,
+        convention,
+        median_ms: quantile(&mut times, 0.5),
+        spread_ms: quantile(&mut times, 0.75) - quantile(&mut times, 0.25),
+        fastest_ms: quantile(&mut times, 0.0),
+        repeats: times.len(),
+        signal_error,
+        lambda_error: timed.map_or(0.0, |l| l.max),
+        lambda_rms_error: timed.map_or(0.0, |l| l.rms),
+        lambda,
+        peak_bytes,
+    }
+}
+
+fn bare_fft_ms(repeats: usize) -> f64 {
+    let mut transform = BareTransform::default();
+    let mut times: Vec<f64> = (0..repeats + 2).map(|_| 1e3 * transform.run().as_secs_f64()).collect();
+    quantile(&mut times[2..], 0.5)
+}
+
+fn quantile(times: &mut [f64], part: f64) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get((times.len().saturating_sub(1) as f64 * part).round() as usize).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::Algorithm;
+    use std::cell::Cell;
+
+    fn small() -> Radar {
+        Radar { elements: 64, samples: 32, end_elements: 4, ..Radar::default() }
+    }
+
+    fn request() -> FrontRequest {
+        FrontRequest { reflectors: vec![1, 5], repeats: 2, ..FrontRequest::full(Vec::new(), 1) }
+    }
+
+    #[test]
+    fn every_row_meets_the_tolerance_it_was_asked_for() {
+        let mut parts = Vec::new();
+        let front = measure(&small(), &request(), |part, _| parts.push(part), || false).unwrap();
+        assert_eq!(front.rows.len(), parts.len());
+        assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
+        for r in &front.rows {
+            let floor = if r.algorithm == Entrant::Forced(Algorithm::Direct) { 1e-10 } else { 0.0 };
+            assert!(r.signal_error <= r.tolerance.max(floor), "{r:?}");
+            assert!(r.median_ms > 0.0 && r.fastest_ms <= r.median_ms, "{r:?}");
+            assert_eq!(r.lambda.len(), 2);
+        }
+        let coarse = front.rows.iter().find(|r| r.tolerance == 1e-3 && r.chosen == Algorithm::Gridded).unwrap();
+        assert!(coarse.signal_error > 1e-9, "an error that is never seen can't be believed: {coarse:?}");
+        let text = serde_json::to_string(&front).unwrap();
+        let read: Front = serde_json::from_str(&text).unwrap();
+        let key = |r: &FrontRow| (r.task, r.algorithm, r.chosen, r.precision, r.repeats);
+        assert!(read.rows.iter().map(key).eq(front.rows.iter().map(key)));
+        assert_eq!(read.rows[0].convention, front.rows[0].convention);
+    }
+
+    #[test]
+    fn a_cancelled_measurement_returns_what_it_has() {
+        let seen = Cell::new(0);
+        let front = measure(&small(), &request(), |_, _| seen.set(seen.get() + 1), || seen.get() == 3).unwrap();
+        assert_eq!(front.rows.len(), 3);
+    }
+}

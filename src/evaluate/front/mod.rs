@@ -1,0 +1,239 @@
+//! The front of run time against error: how long three Lambda maps take, and how far they are from the truth, by algorithm,
+//! precision, tolerance and number of reflectors.
+//!
+//! [`measure`] does the work for `apertura bench` and for whoever wants to draw the front while it grows: it calls back with every row and
+//! stops when asked to. [`FrontRequest::short`] takes a second or two, [`FrontRequest::full`] about a minute.
+//!
+//! Times are for three Lambda maps ready, on all threads; [`Front::bare_fft_ms`] is one bare two-dimensional transform on one thread,
+//! measured in the same run.
+
+mod measurement;
+mod reference;
+
+pub use measurement::measure;
+
+use crate::maps::Normalisation;
+use crate::signal::simd::Simd;
+use crate::signal::{Algorithm, Floor, Precision};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// What is measured. Every combination gives a row, but for [`Algorithm::Direct`] and [`Algorithm::Exact`]: they know neither
+/// tolerance nor single precision nor dragging, and give one row for each number of reflectors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontRequest {
+    /// Numbers of reflectors.
+    pub reflectors: Vec<usize>,
+    /// Errors allowed, relative to the peak.
+    pub tolerances: Vec<f64>,
+    /// Who takes part.
+    pub entrants: Vec<Entrant>,
+    /// What is timed.
+    pub tasks: Vec<FrontTask>,
+    /// Timed repeats of every measurement; 0 counts as 1.
+    pub repeats: usize,
+}
+
+impl FrontRequest {
+    /// All there is, for these numbers of reflectors.
+    pub fn full(reflectors: Vec<usize>, repeats: usize) -> Self {
+        FrontRequest {
+            reflectors,
+            tolerances: vec![1e-3, 1e-6, 1e-9, 1e-12],
+            entrants: std::iter::once(Entrant::Planned).chain(Algorithm::ALL.map(Entrant::Forced)).collect(),
+            tasks: vec![FrontTask::Scratch, FrontTask::Drag],
+            repeats,
+        }
+    }
+
+    /// A second or two: few reflectors, few repeats, the fast algorithms alone, from scratch.
+    pub fn short() -> Self {
+        FrontRequest {
+            entrants: [Entrant::Planned]
+                .into_iter()
+                .chain(Algorithm::ALL.into_iter().filter(|a| a.is_fast()).map(Entrant::Forced))
+                .collect(),
+            tasks: vec![FrontTask::Scratch],
+            ..FrontRequest::full(vec![1, 10, 75], 3)
+        }
+    }
+}
+
+/// Who is measured: the planner, or an algorithm forced upon it. Written and read as "plan" or the algorithm's name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub enum Entrant {
+    /// Whatever the planner chooses.
+    Planned,
+    /// This algorithm.
+    Forced(Algorithm),
+}
+
+impl Entrant {
+    /// "plan" or the algorithm's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Entrant::Planned => "plan",
+            Entrant::Forced(algorithm) => algorithm.name(),
+        }
+    }
+}
+
+impl fmt::Display for Entrant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Entrant {
+    type Err = crate::signal::plan::UnknownAlgorithm;
+
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        if s == "plan" { Ok(Entrant::Planned) } else { s.parse().map(Entrant::Forced) }
+    }
+}
+
+impl From<Entrant> for String {
+    fn from(entrant: Entrant) -> String {
+        entrant.name().to_owned()
+    }
+}
+
+impl TryFrom<String> for Entrant {
+    type Error = crate::signal::plan::UnknownAlgorithm;
+
+    fn try_from(name: String) -> Result<Self, Self::Error> {
+        name.parse()
+    }
+}
+
+/// What is timed, until three Lambda maps are ready.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrontTask {
+    /// Nothing of the scene is known before.
+    Scratch,
+    /// One of the reflectors moved.
+    Drag,
+}
+
+impl FrontTask {
+    /// "scratch" or "drag".
+    pub fn name(self) -> &'static str {
+        match self {
+            FrontTask::Scratch => "scratch",
+            FrontTask::Drag => "drag",
+        }
+    }
+}
+
+/// What lies beneath the reflectors, and how decades become Lambda: no error of Lambda means anything without both.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Convention {
+    /// The floor.
+    #[serde(with = "as_text")]
+    pub floor: Floor,
+    /// The normalisation.
+    #[serde(with = "as_text")]
+    pub normalisation: Normalisation,
+}
+
+impl Convention {
+    /// The thesis': its rounding floor, normalised from the smallest to the largest cell.
+    pub const THESIS: Convention = Convention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
+    /// Stable whatever the precision: no floor, 100 dB below the peak.
+    pub const FIXED_RANGE: Convention =
+        Convention { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)) };
+    /// Both of those that errors are given for.
+    pub const BOTH: [Convention; 2] = [Convention::FIXED_RANGE, Convention::THESIS];
+
+    /// The convention that maps of this tolerance are good for, and timed with.
+    pub fn for_tolerance(tolerance: f64) -> Convention {
+        if tolerance >= 1e-6 { Convention::FIXED_RANGE } else { Convention::THESIS }
+    }
+}
+
+impl fmt::Display for Convention {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.floor, self.normalisation)
+    }
+}
+
+/// Floors and normalisations as the command line writes them.
+mod as_text {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+    use std::fmt::Display;
+    use std::str::FromStr;
+
+    pub fn serialize<S: Serializer>(value: &impl Display, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(value)
+    }
+
+    pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        String::deserialize(from)?.parse().map_err(D::Error::custom)
+    }
+}
+
+/// How far three maps are from the exact path's, over one floor and normalisation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LambdaError {
+    /// What the maps are drawn by.
+    #[serde(flatten)]
+    pub convention: Convention,
+    /// Largest error of a cell.
+    pub max: f64,
+    /// Root of the mean squared error.
+    pub rms: f64,
+}
+
+/// One measurement: a point of the front.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrontRow {
+    /// What was timed.
+    pub task: FrontTask,
+    /// Reflectors in the scene.
+    pub reflectors: usize,
+    /// Who computed.
+    pub algorithm: Entrant,
+    /// What the planner chose for the whole scene, or the algorithm again.
+    pub chosen: Algorithm,
+    /// Precision of everything after the phase.
+    pub precision: Precision,
+    /// Error asked for, relative to the peak.
+    pub tolerance: f64,
+    /// What the timed maps are drawn by.
+    #[serde(flatten)]
+    pub convention: Convention,
+    /// Median over the repeats.
+    pub median_ms: f64,
+    /// From the first to the third quartile of the repeats.
+    pub spread_ms: f64,
+    /// Fastest of the repeats.
+    pub fastest_ms: f64,
+    /// Repeats.
+    pub repeats: usize,
+    /// Largest error of a range cell against the judge (every range bin of a few elements), relative to the largest.
+    pub signal_error: f64,
+    /// Largest error of Lambda, three maps, in the convention they were timed in.
+    pub lambda_error: f64,
+    /// Root of the mean squared error, likewise.
+    pub lambda_rms_error: f64,
+    /// Errors of Lambda in every convention of [`Convention::BOTH`].
+    pub lambda: Vec<LambdaError>,
+    /// Largest resident size of the process while it ran, where the system tells.
+    pub peak_bytes: Option<u64>,
+}
+
+/// A measured front, as it stands in `bench.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Front {
+    /// Median time of a bare 512 x 1024 single-precision transform on one thread, in the same run.
+    pub bare_fft_ms: f64,
+    /// Threads the maps were computed on.
+    pub threads: usize,
+    /// Instructions used.
+    pub simd: Simd,
+    /// The measurements.
+    pub rows: Vec<FrontRow>,
+}
