@@ -5,7 +5,7 @@
 
 use super::lambda::{LambdaScale, Normalisation, RangeAngleMap};
 use super::log_map::LOG_GUARD;
-use crate::radar::{End, Radar, hann};
+use crate::radar::{End, Radar};
 use crate::signal::lane_fft::LaneFft;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use crate::signal::synthesis::BlockProfiles;
@@ -93,9 +93,9 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
         MapMaker {
             radar: radar.clone(),
             simd,
-            window: hann(radar.elements).into_iter().map(|w| T::of(w * scale)).collect(),
+            window: radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect(),
             fft: FftPlanner::new().plan_fft_forward(radar.elements),
-            ends: Pruned::new(radar.end_elements, radar.elements),
+            ends: Pruned::new(radar),
         }
     }
 
@@ -327,10 +327,11 @@ struct Pruned<T: Real, const W: usize> {
 const MAX_POINTS: usize = 64;
 
 impl<T: Real, const W: usize> Pruned<T, W> {
-    fn new(inputs: usize, columns: usize) -> Self {
+    fn new(radar: &Radar) -> Self {
+        let (inputs, columns) = (radar.end_elements, radar.elements);
         let points = inputs.next_power_of_two();
         let scale = (columns as f64).sqrt().recip();
-        let window: Vec<f64> = hann(inputs).into_iter().map(|w| w * scale).collect();
+        let window: Vec<f64> = radar.window.weights(inputs).into_iter().map(|w| w * scale).collect();
         let fits = points <= MAX_POINTS && columns.is_multiple_of(2 * points * W);
         let stride = columns / points;
         let twiddle = |n: usize, q: usize| {
@@ -394,6 +395,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
 mod tests {
     use super::*;
     use crate::maps::LogMaps;
+    use crate::radar::WindowFunction;
     use crate::scene::Scene;
     use crate::signal::simd::{LANES_F32, LANES_F64};
     use crate::signal::{Recipe, exact, synthesis::Synthesis};
@@ -441,7 +443,9 @@ mod tests {
     fn fast_maps_agree_with_plain_ones_on_every_instruction_set() {
         for simd in Simd::available() {
             compare(&Radar::default(), simd);
-            compare(&Radar { elements: 90, samples: 60, end_elements: 7, ..Radar::default() }, simd);
+            let small = Radar { elements: 90, samples: 60, end_elements: 7, ..Radar::default() };
+            compare(&small, simd);
+            compare(&Radar { window: WindowFunction::Hamming, elements: 256, samples: 64, ..small }, simd);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The windowed two-dimensional transform (thesis section 3.1).
 
 use super::log_map::{LOG_GUARD, LogMap};
-use crate::radar::{End, Radar, hann};
+use crate::radar::{End, Radar};
 use crate::signal::BeatSignal;
 use ndarray::{Array2, ArrayView2, s};
 use num_complex::Complex64;
@@ -36,9 +36,9 @@ pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
     channels_range_transform(radar, signal.samples.view())
 }
 
-/// Hann-windowed range profiles of any channels, `[channels, samples]` to `[channels, range bins]`.
+/// Windowed range profiles of any channels, `[channels, samples]` to `[channels, range bins]`.
 pub fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> RangeProfiles {
-    windowed_range_transform(radar, samples, &hann(radar.samples))
+    windowed_range_transform(radar, samples, &radar.window.weights(radar.samples))
 }
 
 /// Range profiles of any channels under a window of `radar.samples` weights.
@@ -80,7 +80,7 @@ fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> Com
     let columns = radar.elements;
     let fft = FftPlanner::new().plan_fft_forward(columns);
     let scale = (columns as f64).sqrt().recip();
-    let window: Vec<f64> = hann(profiles.nrows()).into_iter().map(|w| w * scale).collect();
+    let window: Vec<f64> = radar.window.weights(profiles.nrows()).into_iter().map(|w| w * scale).collect();
     let mut cells = Array2::zeros((profiles.ncols(), columns));
     cells.outer_iter_mut().into_par_iter().enumerate().for_each_init(
         || vec![Complex64::default(); fft.get_inplace_scratch_len()],

@@ -89,7 +89,7 @@ impl FeatureExtractor {
         if *radar != Radar::default() {
             return Err(ReconstructError::Unusable {
                 method: "live",
-                reason: "the network was trained for the radar of table 3.1 and knows no other".into(),
+                reason: "the network was trained for the radar of table 3.1 with its one-way carrier and Hann window, and knows no other".into(),
             });
         }
         let ends = End::BOTH.map(|end| radar.end_centre_metres(end));

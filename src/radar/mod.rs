@@ -8,7 +8,7 @@ mod window;
 
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use units::Decibels;
-pub use window::hann;
+pub use window::{WindowFunction, hann};
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -76,6 +76,8 @@ pub struct Radar {
     pub samples: usize,
     /// Which way the carrier's phase is read.
     pub carrier: Carrier,
+    /// Weights of the samples and of the elements in the two transforms that make a map.
+    pub window: WindowFunction,
 }
 
 impl Default for Radar {
@@ -90,6 +92,7 @@ impl Default for Radar {
             end_elements: 12,
             samples: 512,
             carrier: Carrier::OneWay,
+            window: WindowFunction::Hann,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Reconstruction, Request};
 use crate::maps::{LambdaScale, RangeAngleMap};
-use crate::radar::{Radar, hann};
+use crate::radar::Radar;
 use crate::scene::Reflector;
 use ndarray::{Array2, Zip};
 
@@ -16,13 +16,13 @@ pub(crate) fn silence(radar: &Radar) -> Reconstruction {
 
 /// Magnitude in the whole array's map of a focused reflector whose samples have amplitude 1: the sum of both windows, scaled.
 pub(super) fn focused_gain(radar: &Radar) -> f64 {
-    let mean = |n: usize| hann(n).iter().sum::<f64>() / (n as f64).sqrt();
+    let mean = |n: usize| radar.window.weights(n).iter().sum::<f64>() / (n as f64).sqrt();
     mean(radar.samples) * mean(radar.elements)
 }
 
 /// Mean square of a noise cell of the whole array's map for noise of variance 1 a sample.
 fn cell_noise(radar: &Radar) -> f64 {
-    let mean = |n: usize| hann(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
+    let mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
     mean(radar.samples) * mean(radar.elements)
 }
 

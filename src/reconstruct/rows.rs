@@ -9,7 +9,7 @@ use super::registered::register;
 use super::rendering::{of_power, silence};
 use super::{ReconstructError, Reconstruction, Request};
 use crate::maps::{Spectrum, range_transform};
-use crate::radar::{End, Radar, hann};
+use crate::radar::{End, Radar};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis, Zip};
 use num_complex::Complex64;
@@ -88,12 +88,12 @@ fn end_power(
     let snapshot = |bin: usize| values.get(bin * elements..(bin + 1) * elements).unwrap_or_default();
     let row_power = |bin: usize| snapshot(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
     let strongest = (0..bins).map(row_power).fold(0.0, f64::max);
-    let window_power = hann(bins).iter().map(|w| w * w).sum::<f64>() / bins as f64;
+    let window_power = radar.window.weights(bins).iter().map(|w| w * w).sum::<f64>() / bins as f64;
     let noise_variance = conditioned.noise_variance * window_power;
     let quiet = (strongest * ACTIVE_ROW).max(2.0 * elements as f64 * noise_variance);
 
     let spectrum = Spectrum::new(columns);
-    let angle_gain = (hann(columns).iter().sum::<f64>()).powi(2) / columns as f64;
+    let angle_gain = (radar.window.weights(columns).iter().sum::<f64>()).powi(2) / columns as f64;
     let done = AtomicUsize::new(0);
     let mut power = Array2::zeros((bins, columns));
     power.axis_iter_mut(Axis(0)).into_par_iter().enumerate().try_for_each(|(bin, mut out)| {

@@ -9,7 +9,7 @@ use super::phase::EchoModel;
 use super::plan::{Algorithm, Recipe};
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
-use crate::radar::{Radar, hann};
+use crate::radar::Radar;
 use crate::scene::Reflector;
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -143,7 +143,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             radar: radar.clone(),
             recipe,
             gridding: (recipe.algorithm == Algorithm::Gridded).then(|| Gridding::new(radar, recipe.tolerance)),
-            window: hann(radar.samples).into_iter().map(|w| T::of(w * scale)).collect(),
+            window: radar.window.weights(radar.samples).into_iter().map(|w| T::of(w * scale)).collect(),
             fft: LaneFft::new(radar.samples),
         }
     }

@@ -6,7 +6,7 @@
 use super::atom::Atom;
 use super::sensor::Sensor;
 use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
-use crate::radar::{Radar, hann};
+use crate::radar::Radar;
 use crate::scene::Reflector;
 use crate::signal::BeatSignal;
 use crate::signal::floor::thesis_noise_variance;
@@ -84,8 +84,8 @@ pub fn expected_lambda(
 
 /// Variance of each map cell's noise, from that of a sample of each element: the window's mean power in range and in angle.
 fn cell_noise(radar: &Radar, variance: &[f64]) -> f64 {
-    let range: f64 = hann(radar.samples).iter().map(|w| w * w).sum::<f64>() / radar.samples as f64;
-    let angle: f64 = hann(radar.elements).iter().zip(variance).map(|(w, v)| w * w * v).sum::<f64>();
+    let range: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>() / radar.samples as f64;
+    let angle: f64 = radar.window.weights(radar.elements).iter().zip(variance).map(|(w, v)| w * w * v).sum::<f64>();
     range * angle / radar.elements as f64
 }
 
