@@ -22,6 +22,8 @@ pub struct PositionBound {
     pub x_metres: f64,
     /// Of y, metres; infinite on the array's axis, where a line array can't tell a small y from none.
     pub y_metres: f64,
+    /// Covariance of the errors of x and y, square metres; 0 where `y_metres` is infinite.
+    pub xy_covariance_metres2: f64,
 }
 
 impl PositionBound {
@@ -82,6 +84,7 @@ pub fn cramer_rao(
         let polar = radar.polar_of(r.x_metres, r.y_metres);
         let sin = (1.0 - polar.cos_theta.powi(2)).max(0.0).sqrt();
         // x = range cos, y = range sin: the covariance goes through the derivatives of both.
+        let y_by_cos = -polar.range_metres * polar.cos_theta / sin;
         let through = |by_range: f64, by_cos: f64| {
             (by_range.powi(2) * range + by_cos.powi(2) * cos + 2.0 * by_range * by_cos * both).max(0.0).sqrt()
         };
@@ -89,7 +92,14 @@ pub fn cramer_rao(
             range_metres: range.sqrt(),
             cos_theta: cos.sqrt(),
             x_metres: through(polar.cos_theta, polar.range_metres),
-            y_metres: if sin > 0.0 { through(sin, -polar.range_metres * polar.cos_theta / sin) } else { f64::INFINITY },
+            y_metres: if sin > 0.0 { through(sin, y_by_cos) } else { f64::INFINITY },
+            xy_covariance_metres2: if sin > 0.0 {
+                polar.cos_theta * sin * range
+                    + polar.range_metres * y_by_cos * cos
+                    + (polar.cos_theta * y_by_cos + polar.range_metres * sin) * both
+            } else {
+                0.0
+            },
         }
     };
     Ok(reflectors.iter().enumerate().map(bound).collect())
@@ -250,6 +260,16 @@ mod tests {
         assert!((bound.cos_theta / cos - 1.0).abs() < 1e-3, "{} {cos}", bound.cos_theta);
         assert!((bound.x_metres / (1e4 * cos) - 1.0).abs() < 1e-3, "x is range times cos");
         assert_eq!(bound.y_metres, bound.range_metres, "y is the range ahead of the array");
+    }
+
+    #[test]
+    fn the_covariance_of_x_and_y_gives_the_range_back() {
+        let bound = alone(&Layout::two_ends(&Radar::default()), at(15.0, 0.6));
+        let (cos, sin) = (0.6, 0.8);
+        let along = cos * cos * bound.x_metres.powi(2)
+            + sin * sin * bound.y_metres.powi(2)
+            + 2.0 * cos * sin * bound.xy_covariance_metres2;
+        assert!((along.sqrt() / bound.range_metres - 1.0).abs() < 1e-6, "{bound:?}");
     }
 
     #[test]

@@ -104,9 +104,15 @@ impl Campaign {
             for trial in trials? {
                 for (method, tally) in methods.iter().zip(&mut tallies) {
                     let start = Instant::now();
-                    let found = method.reconstruct(&self.radar, &trial.ends, &request).map_err(|source| {
-                        CampaignError::Method { method: method.name(), kind, number: trial.number, source }
-                    })?;
+                    let found = task
+                        .check()
+                        .and_then(|()| method.reconstruct(&self.radar, &trial.ends, &request))
+                        .map_err(|source| CampaignError::Method {
+                            method: method.name(),
+                            kind,
+                            number: trial.number,
+                            source,
+                        })?;
                     let milliseconds = start.elapsed().as_secs_f64() * 1e3;
                     let metrics = Metrics::of(&trial.target, &found.lambda, method.eta());
                     tally.add(&metrics, |roc: &mut Roc| roc.add(&trial.target, &found.lambda), milliseconds);
@@ -140,5 +146,9 @@ mod tests {
         let (a, b) = (run(&Task::default()).unwrap(), run(&Task::default()).unwrap());
         assert_eq!(a[0].squared_error(), b[0].squared_error());
         assert_eq!((a[0].scenes(), a[0].roc().scenes()), (3, 3));
+        let task = Task::default();
+        task.cancel();
+        let stopped = run(&task).unwrap_err();
+        assert!(matches!(stopped, CampaignError::Method { source: ReconstructError::Cancelled, .. }), "{stopped}");
     }
 }

@@ -26,14 +26,14 @@ pub struct Editor {
     selection: Selection,
     history: History,
     drag: Option<Drag>,
-    saved: Arc<Scene>,
+    saved: Option<Arc<Scene>>,
 }
 
 impl Editor {
     /// Starts from a saved `scene`.
     pub fn new(scene: Scene) -> Self {
         let scene = Arc::new(scene);
-        Editor { saved: scene.clone(), scene, ..Editor::default() }
+        Editor { saved: Some(scene.clone()), scene, ..Editor::default() }
     }
 
     /// The scene as it is now.
@@ -53,17 +53,17 @@ impl Editor {
 
     /// Whether the scene differs from what was last opened or saved.
     pub fn is_modified(&self) -> bool {
-        self.scene != self.saved
+        self.saved.as_ref() != Some(&self.scene)
     }
 
     /// Says that the scene as it is now is on disk.
     pub fn mark_saved(&mut self) {
-        self.saved = self.scene.clone();
+        self.saved = Some(self.scene.clone());
     }
 
     /// Says that the scene as it is now is nowhere on disk, as after restoring it from an autosave.
     pub fn mark_unsaved(&mut self) {
-        self.saved = Arc::new(Scene::default());
+        self.saved = None;
     }
 
     /// Ends the current undo step, as when the mouse button or a text field is left.
