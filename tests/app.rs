@@ -1,10 +1,10 @@
 //! Drives the whole app without a display: pointer, keys, files; asserts on state and on what was computed and what was not.
 #![cfg(feature = "app")]
 
-use apertura::app::{App, Command, MapKind, Options, Panel};
+use apertura::app::{App, Command, MapKind, NewObject, Options, Panel};
 use apertura::live::Stage;
 use apertura::maps::Normalisation;
-use apertura::radar::{Decibels, Radar};
+use apertura::radar::{Carrier, Decibels, Radar, WindowFunction};
 use apertura::reconstruct::{Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::Object;
 use apertura::signal::{Floor, TwoEnds};
@@ -215,9 +215,9 @@ fn hidden_panels_are_not_computed() {
     let mut s = Session::start();
     // The tabs behind the two output maps need the output too.
     for kind in [MapKind::Input1, MapKind::Output, MapKind::OutputAbove, MapKind::Difference] {
-        s.ask(Command::TogglePanel(Panel::Map(kind)));
+        s.ask(Command::ClosePanel(Panel::Map(kind)));
     }
-    s.ask(Command::TogglePanel(Panel::Roc));
+    s.ask(Command::ClosePanel(Panel::Roc));
     assert_eq!(s.state().pictures(), [MapKind::Input0, MapKind::Target, MapKind::TargetAbove]);
     s.ask(Command::RandomScene(2));
     let report = s.state().report().unwrap();
@@ -284,6 +284,149 @@ fn an_unsaved_scene_comes_back_after_a_crash() {
     let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
     assert_eq!(app.state().editor().scene().objects, scene.objects);
     assert!(app.state().editor().is_modified());
+}
+
+#[test]
+fn two_windows_keep_apart_and_a_killed_one_leaves_its_scene_to_the_next() {
+    let mut first = Session::start();
+    first.press(Modifiers::COMMAND, Key::A);
+    first.press(Modifiers::NONE, Key::Delete);
+    let copies = |folder: &Path| -> Vec<_> {
+        let files = std::fs::read_dir(folder.join("data")).unwrap().map(|f| f.unwrap().file_name());
+        let mut copies: Vec<_> = files.filter(|n| n.to_string_lossy().ends_with(".toml")).collect();
+        copies.sort();
+        copies
+    };
+    let Session { app: first, folder } = first;
+    assert_eq!(copies(folder.path()), ["autosave.toml"]);
+    let mut second = harness(folder.path(), None, vec![Arc::new(Baseline)]);
+    assert!(!second.state().editor().scene().objects.is_empty(), "what an open window holds is not restored");
+    second.state_mut().ask(Command::Add(NewObject::Point, None));
+    second.run_steps(2);
+    assert_eq!(copies(folder.path()), ["autosave-2.toml", "autosave.toml"]);
+    // Dropped without being closed, as a kill would.
+    drop(first);
+    let third = harness(folder.path(), None, vec![Arc::new(Baseline)]);
+    assert!(third.state().editor().scene().objects.is_empty() && third.state().editor().is_modified());
+}
+
+#[test]
+fn messages_can_be_closed() {
+    let mut s = Session::start();
+    s.ask(Command::OpenPath(s.folder.path().join("missing.toml")));
+    assert_eq!(s.state().messages(), 1);
+    s.app.get_by_label("Close this message").click();
+    s.settle();
+    assert_eq!(s.state().messages(), 0);
+}
+
+#[test]
+fn the_window_reaches_the_maps_and_comes_back() {
+    let mut s = Session::start();
+    let (requests, painted) = s.state().work_done();
+    s.app.get_by_label("hamming").scroll_to_me();
+    s.settle();
+    s.app.get_by_label("hamming").click();
+    s.settle();
+    assert_eq!(s.state().settings().window, WindowFunction::Hamming);
+    let after = s.state().work_done();
+    assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
+    s.ask(Command::SetWindow(WindowFunction::Hann));
+    assert_eq!(s.state().settings().window, WindowFunction::Hann);
+}
+
+#[test]
+fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
+    let mut s = Session::start();
+    assert_eq!(s.state().bounds_asked(), 0);
+    s.ask(Command::OpenPanel(Panel::Bounds));
+    let before = s.state().position_bound().expect("of the first reflector");
+    let at = s.handle("point 2: move");
+    s.drag(at, vec2(0.0, 20.0), 4);
+    let after = s.state().position_bound().unwrap();
+    assert_ne!(before, after);
+    s.ask(Command::TogglePanel(Panel::Bounds));
+    let asked = s.state().bounds_asked();
+    let at = s.handle("point 2: move");
+    s.drag(at, vec2(0.0, 20.0), 4);
+    assert_eq!(s.state().bounds_asked(), asked);
+}
+
+#[test]
+fn every_button_of_the_guide_leaves_a_working_app() {
+    let mut s = Session::start();
+    s.ask(Command::Maximise(Panel::Guide));
+    s.app.get_by_label("Two-way").scroll_to_me();
+    s.settle();
+    s.app.get_by_label("Two-way").click();
+    s.settle();
+    assert_eq!(s.state().settings().carrier, Carrier::TwoWay);
+    assert_eq!(s.state().editor().scene().name, "Four reflectors");
+    assert_eq!(s.state().messages(), 0);
+}
+
+/// Steps until `done`, without waiting for everything to rest.
+fn step_until(s: &mut Session, what: &str, done: impl Fn(&Session) -> bool) {
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !done(s) {
+        assert!(Instant::now() < deadline, "{what}");
+        s.app.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
+    let mut s = Session::start();
+    s.ask(Command::Maximise(Panel::Evaluation));
+    s.app.get_by_label("Evaluate").click();
+    step_until(&mut s, "it starts", |s| s.state().is_at_work());
+    step_until(&mut s, "it can be cancelled", |s| s.app.query_by_label("Cancel").is_some());
+    s.app.get_by_label("Cancel").click();
+    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
+    s.settle();
+    assert!(s.state().evaluation_csv().starts_with("set,method,"));
+    assert!(s.app.query_by_label_contains("cancelled").is_some());
+}
+
+#[test]
+fn run_times_arrive_while_they_are_measured() {
+    let mut s = Session::start();
+    s.ask(Command::Maximise(Panel::Front));
+    s.app.get_by_label("Measure").click();
+    step_until(&mut s, "a row arrives", |s| s.state().front_rows() > 0);
+    s.app.step();
+    s.app.get_by_label("Cancel").click();
+    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
+    assert!(s.state().front_rows() > 0, "what was measured stays");
+}
+
+/// A file dropped on the window.
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}
+
+#[test]
+fn a_training_log_is_followed_and_a_broken_one_is_told() {
+    let mut s = Session::start();
+    let log = s.folder.path().join("log.csv");
+    std::fs::write(&log, "step,loss\n1,4.25\n").unwrap();
+    s.app.input_mut().dropped_files.push(Arc::new(Dropped(log.clone())));
+    let shows = |text: &'static str| move |s: &Session| s.app.query_all_by_label(text).next().is_some();
+    step_until(&mut s, "the last loss is shown", shows("4.2500e0"));
+    std::fs::write(&log, "step,loss\n1,4.25\n2,3.5\n").unwrap();
+    step_until(&mut s, "it grew", shows("3.5000e0"));
+    std::fs::write(&log, "step,loss\n1,none\n").unwrap();
+    step_until(&mut s, "it is told", |s| s.app.query_by_label_contains("line 2").is_some());
 }
 
 /// Panics until told not to.

@@ -200,7 +200,7 @@ fn bad_input_is_named_and_leaves_nothing() {
             .stderr(contains("error: ").and(contains(parts[0])).and(contains(parts[1])));
     }
     for (arguments, part) in [
-        ("maps good.toml -o out.gif", ".npz or .png"),
+        ("maps good.toml -o out.gif", ".npz, .png or .svg"),
         ("maps good.toml -o nowhere/out.npz", "nowhere"),
         ("maps good.toml -o out.npz --floor loud", "snr=DB"),
         ("maps good.toml -o out.npz --carrier sideways", "one-way"),

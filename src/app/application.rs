@@ -1,14 +1,21 @@
 //! The thin part that wires panels, settings, editor and workers together.
 
+use super::bounds::Bounds;
 use super::command::Command;
+use super::evaluation::Evaluation;
+use super::evaluation_panel::EvaluationPanel;
 use super::export::Export;
 use super::files::Files;
 use super::frame_log::FrameLog;
+use super::front_panel::FrontPanel;
+use super::guide_panel::Guide;
 use super::layout::{self, Layout, Panel};
+use super::messages::{self, Kind, Messages};
 use super::palette::Palette;
 use super::pictures::MapKind;
 use super::pipeline::{LiveRequest, Pipeline};
 use super::settings::Settings;
+use super::training::Training;
 use super::view::{Cursor, SceneView, Window};
 use super::{APP_ID, execute, menu, status_bar, theme};
 use crate::interact::Editor;
@@ -19,7 +26,6 @@ use crate::scene::file::SceneFile;
 use crate::scene::presets;
 use eframe::egui;
 use eframe::egui::{ColorImage, TextureHandle};
-use egui_notify::Toasts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -34,6 +40,8 @@ pub struct Options {
     pub scene: Option<PathBuf>,
     /// CSV file for the time of every frame.
     pub frame_log: Option<PathBuf>,
+    /// When the program was started, for that file; now where `None`.
+    pub started: Option<Instant>,
     /// Reconstruction methods; those of [`crate::methods::all`] where empty.
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
@@ -62,8 +70,13 @@ pub struct App {
     pub(super) settings: Settings,
     pub(super) layout: Layout,
     pub(super) pipeline: Pipeline,
+    pub(super) bounds: Bounds,
+    pub(super) evaluation: EvaluationPanel,
+    pub(super) front: FrontPanel,
+    pub(super) training: Training,
+    pub(super) guide: Guide,
     pub(super) files: Files,
-    pub(super) toasts: Toasts,
+    pub(super) messages: Messages,
     /// Exports that other threads have finished.
     pub(super) exports: (Sender<Export>, Receiver<Export>),
     pub(super) palette: Palette,
@@ -102,14 +115,21 @@ impl App {
         };
         let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| eframe::storage_dir(APP_ID)));
         let default = presets::default_scene();
+        let began = options.started.unwrap_or_else(Instant::now);
+        let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
         let mut app = App {
             editor: Editor::new(default.scene),
             radar: default.radar,
             settings: kept.settings,
             layout: kept.layout,
-            pipeline: Pipeline::start(methods, wake)?,
+            pipeline: Pipeline::start(methods, wake.clone())?,
+            bounds: Bounds::start(wake.clone())?,
+            evaluation: EvaluationPanel::new(Evaluation::start(wake.clone())?),
+            front: FrontPanel::start(wake.clone())?,
+            training: Training::start(wake)?,
+            guide: Guide::default(),
             files: Files::new(folder.as_deref(), kept.recent),
-            toasts: Toasts::default(),
+            messages: Messages::default(),
             exports: channel(),
             palette: Palette::default(),
             commands: Vec::new(),
@@ -121,13 +141,14 @@ impl App {
             next_cursor: None,
             last_cursor: None,
             textures: BTreeMap::new(),
-            frame_log: options.frame_log.as_deref().map(FrameLog::create).transpose()?,
+            frame_log,
             title: String::new(),
             autosaved: Arc::default(),
         };
         app.autosaved = app.editor.scene().clone();
         theme::apply(&ctx, app.settings.theme);
         app.radar.carrier = app.settings.carrier;
+        app.radar.window = app.settings.window;
         app.restore();
         if let Some(path) = options.scene {
             app.open(path);
@@ -136,7 +157,7 @@ impl App {
     }
 
     fn restore(&mut self) {
-        match self.files.restore() {
+        match self.files.autosave.as_ref().and_then(|a| a.restore()) {
             Some(Ok(file)) => {
                 self.set_scene("restore", file);
                 self.editor.mark_unsaved();
@@ -159,6 +180,7 @@ impl App {
     pub(super) fn set_scene(&mut self, label: &str, file: SceneFile) {
         self.editor.open(label, file.scene);
         self.settings.carrier = file.radar.carrier;
+        self.settings.window = file.radar.window;
         self.radar = file.radar;
         self.scene_view.fit = true;
     }
@@ -170,15 +192,14 @@ impl App {
 
     /// Shows a message that passes.
     pub(super) fn info(&mut self, text: impl Into<String>) {
-        // egui-notify's own symbols, its closing cross among them, are not in egui's fonts.
-        self.toasts.custom(text.into(), "i".to_owned(), theme::INFO).closable(false).duration(Duration::from_secs(6));
+        self.messages.add(Kind::Info, text.into());
     }
 
     /// Shows a message that stays a while.
     pub(super) fn error(&mut self, text: impl Into<String>) {
         let text = text.into();
         tracing::warn!("{text}");
-        self.toasts.custom(text, "!".to_owned(), theme::ERROR).closable(false).duration(Duration::from_secs(15));
+        self.messages.add(Kind::Error, text);
     }
 
     /// The method in use.
@@ -198,51 +219,6 @@ impl App {
             || self.editor.scene().objects.first().map(|o| Cursor::at_place(&self.radar, o.centre_metres().into()));
         let inside = |c: &Cursor| c.cell(&self.radar).is_some();
         self.last_cursor.or_else(first).filter(inside).unwrap_or_else(|| Cursor::at_cell(&self.radar, 0.0, 0.0))
-    }
-
-    /// The scene being edited, what is selected and what can be undone.
-    pub fn editor(&self) -> &Editor {
-        &self.editor
-    }
-
-    /// What the user chose.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// Where the panels are.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    /// Asks for a command, as a menu entry would.
-    pub fn ask(&mut self, command: Command) {
-        self.commands.push(command);
-    }
-
-    /// Whether a worker has something to do.
-    pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy()
-    }
-
-    /// Report of the last update, if there was one.
-    pub fn report(&self) -> Option<&crate::live::Report> {
-        self.pipeline.result.as_ref().map(|r| &r.frame.report)
-    }
-
-    /// Maps with a picture of the latest scene.
-    pub fn pictures(&self) -> Vec<MapKind> {
-        self.pipeline.result.as_ref().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
-    }
-
-    /// Requests sent to the maps worker, and pictures painted, since the start.
-    pub fn work_done(&self) -> (u64, u64) {
-        (self.pipeline.requests, self.pipeline.result.as_ref().map_or(0, |r| r.painted))
-    }
-
-    /// Number of messages on screen.
-    pub fn messages(&self) -> usize {
-        self.toasts.len()
     }
 
     /// The texture of a map's latest picture.
@@ -304,12 +280,14 @@ impl App {
         if Arc::ptr_eq(&self.autosaved, self.editor.scene()) || self.editor.dragged().is_some() {
             return;
         }
+        let file = self.scene_file();
+        let Some(autosave) = &mut self.files.autosave else { return };
         if !self.editor.is_modified() {
-            self.files.forget_autosave();
+            autosave.forget();
             self.autosaved = self.editor.scene().clone();
             return;
         }
-        match self.files.autosave(&self.scene_file()) {
+        match autosave.keep(&file) {
             Ok(None) => self.autosaved = self.editor.scene().clone(),
             Ok(Some(later)) => ctx.request_repaint_after(later),
             Err(message) => {
@@ -333,9 +311,12 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let began = Instant::now();
         let ctx = ui.ctx().clone();
-        for message in self.pipeline.poll() {
-            self.error(message);
-        }
+        let mut messages = self.pipeline.poll();
+        messages.extend(self.bounds.poll());
+        messages.extend(self.evaluation.evaluation.poll());
+        messages.extend(self.front.poll());
+        messages.extend(self.training.poll());
+        messages.into_iter().for_each(|m| self.error(m));
         execute::read_input(self, &ctx);
         menu::show(self, ui);
         status_bar::show(self, ui);
@@ -354,7 +335,7 @@ impl eframe::App for App {
         self.ask_for_maps();
         self.keep_unsaved_scene(&ctx);
         self.update_title(&ctx);
-        self.toasts.show(&ctx);
+        messages::show(self, &ctx);
         if self.pipeline.method_progress().is_some() {
             ctx.request_repaint_after(Duration::from_millis(100));
         }
@@ -372,5 +353,12 @@ impl eframe::App for App {
         let kept = Kept { settings: self.settings.clone(), layout, recent: self.files.recent.clone() };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         self.layout = kept.layout;
+        let file = self.scene_file();
+        if self.editor.is_modified()
+            && let Some(autosave) = &mut self.files.autosave
+            && let Err(error) = autosave.keep_now(&file)
+        {
+            tracing::warn!("the scene could not be autosaved: {error}");
+        }
     }
 }

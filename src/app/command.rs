@@ -1,10 +1,11 @@
 //! Everything a button, a menu entry, a shortcut or the palette can ask for.
 
 use super::layout::Panel;
+use super::settings::Projection;
 use crate::interact::Place;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Decibels};
+use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::signal::Floor;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
@@ -37,7 +38,9 @@ pub enum Command {
     Preset(usize),
     /// Make a random scene of test set 1, 2 or 3.
     RandomScene(u8),
-    /// Save the shown panels as a picture.
+    /// Ask for the log of a training and watch it.
+    OpenLog,
+    /// Save the window as a picture, or the scene's panels as a drawing.
     ExportPicture,
     /// Save the maps as NumPy arrays.
     ExportMaps,
@@ -69,14 +72,20 @@ pub enum Command {
     FitScene,
     /// Show whole maps.
     ResetMaps,
-    /// Show or hide a panel.
+    /// Hide a panel that is in sight, or bring it into sight.
     TogglePanel(Panel),
+    /// Hide a panel.
+    ClosePanel(Panel),
+    /// Show a panel, in front.
+    OpenPanel(Panel),
     /// Let a panel fill the window, or end that.
     Maximise(Panel),
     /// Put all panels where they were at first.
     ResetLayout,
-    /// Range-angle or Cartesian maps.
+    /// Range-angle or Cartesian maps, the other way round.
     ToggleProjection,
+    /// Range-angle or Cartesian maps.
+    SetProjection(Projection),
     /// Colours of the maps.
     Colours(ColourMap),
     /// How maps are normalised.
@@ -85,6 +94,8 @@ pub enum Command {
     SetFloor(Floor),
     /// How the carrier's phase is read.
     SetCarrier(Carrier),
+    /// Which window both transforms use.
+    SetWindow(WindowFunction),
     /// Draw true reflectors over the maps or not.
     ToggleReflectors,
     /// Draw the ends' fields of view or not.
@@ -93,6 +104,8 @@ pub enum Command {
     NextMethod,
     /// Stop the reconstruction that runs.
     CancelMethod,
+    /// Close every message.
+    CloseMessages,
     /// Light or dark.
     ToggleTheme,
     /// Larger interface.
@@ -145,6 +158,7 @@ impl Command {
             RandomScene(1),
             RandomScene(2),
             RandomScene(3),
+            OpenLog,
             ExportPicture,
             ExportMaps,
             ExportMetrics,
@@ -161,6 +175,8 @@ impl Command {
             ResetMaps,
             ResetLayout,
             ToggleProjection,
+            SetProjection(Projection::RangeAngle),
+            SetProjection(Projection::Cartesian),
             Normalise(Normalisation::MinMax),
             Normalise(Normalisation::DynamicRange(Decibels(60.0))),
             Normalise(Normalisation::DynamicRange(Decibels(100.0))),
@@ -173,6 +189,7 @@ impl Command {
             ToggleFieldsOfView,
             NextMethod,
             CancelMethod,
+            CloseMessages,
             ToggleTheme,
             ZoomIn,
             ZoomOut,
@@ -180,6 +197,7 @@ impl Command {
             Palette,
             Quit,
         ];
+        all.extend(WindowFunction::ALL.map(SetWindow));
         all.extend(ColourMap::ALL.map(Colours));
         all.extend(Panel::all().into_iter().map(TogglePanel));
         all.extend(Panel::all().into_iter().map(Maximise));
@@ -199,7 +217,8 @@ impl Command {
             RandomScene(1) => spec("Random scene: one point", "A scene of test set 1", key(Key::Num1)),
             RandomScene(2) => spec("Random scene: 3 to 6 points", "A scene of test set 2", key(Key::Num2)),
             RandomScene(_) => spec("Random scene: points and lines", "A scene of test set 3", key(Key::Num3)),
-            ExportPicture => spec("Export picture…", "Save the scene's panels as PNG", command(Key::E)),
+            OpenLog => spec("Open training log…", "Watch the loss of a training (its log.csv)", None),
+            ExportPicture => spec("Export picture…", "Save the window as PNG, or all panels as SVG", command(Key::E)),
             ExportMaps => spec("Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),
             ExportMetrics => spec("Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None),
             Undo => spec("Undo", "Undo the last change of the scene", command(Key::Z)),
@@ -216,12 +235,16 @@ impl Command {
             Add(NewObject::Cluster, _) => spec("Add cluster", "Add a Gaussian cluster of 40 reflectors", key(Key::G)),
             FitScene => spec("Fit scene", "Show the whole scene", key(Key::F)),
             ResetMaps => spec("Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
-            TogglePanel(panel) => spec(panel_name(*panel, "Show or hide"), panel.describe(), panel_key(*panel)),
+            TogglePanel(panel) | OpenPanel(panel) | ClosePanel(panel) => {
+                spec(panel_name(*panel, "Show or hide"), panel.describe(), panel_key(*panel))
+            }
             Maximise(panel) => spec(panel_name(*panel, "Maximise"), panel.describe(), None),
             ResetLayout => spec("Reset layout", "Put all panels where they were at first", None),
             ToggleProjection => {
                 spec("Cartesian / range-angle", "Draw maps over x and y, or over cos θ and range", key(Key::C))
             }
+            SetProjection(Projection::RangeAngle) => spec("Maps: range-angle", "Draw maps over cos θ and range", None),
+            SetProjection(Projection::Cartesian) => spec("Maps: Cartesian", "Draw maps over x and y", None),
             Colours(ColourMap::Grey) => spec("Colours: grey", "The thesis' grey", None),
             Colours(ColourMap::Viridis) => spec("Colours: viridis", "Colours of even brightness steps", None),
             Colours(ColourMap::Diverging) => spec("Colours: diverging", "Blue below the middle, red above", None),
@@ -240,10 +263,21 @@ impl Command {
             SetCarrier(Carrier::TwoWay) => {
                 spec("Carrier: two-way", "As equation 3.1 is printed: cos θ folds twice", None)
             }
+            SetWindow(WindowFunction::Hann) => spec("Window: Hann", "Side lobes that fall fast (the thesis)", None),
+            SetWindow(WindowFunction::Hamming) => {
+                spec("Window: Hamming", "The first side lobes lower, the far ones higher", None)
+            }
+            SetWindow(WindowFunction::Blackman) => {
+                spec("Window: Blackman", "Lower side lobes still, a wider main lobe", None)
+            }
+            SetWindow(WindowFunction::Rectangular) => {
+                spec("Window: rectangular", "No weights: the narrowest main lobe, the highest side lobes", None)
+            }
             ToggleReflectors => spec("Mark true reflectors", "Draw the scene's reflectors over the maps", key(Key::R)),
             ToggleFieldsOfView => spec("Fields of view", "Draw what each end can see in the scene", key(Key::V)),
             NextMethod => spec("Next method", "Reconstruct with the next method", key(Key::N)),
             CancelMethod => spec("Cancel reconstruction", "Stop the reconstruction that runs", None),
+            CloseMessages => spec("Close messages", "Close every message in the corner", None),
             ToggleTheme => spec("Light / dark", "Switch between light and dark", command(Key::T)),
             ZoomIn => spec("Zoom in", "Larger interface", command(Key::Plus)),
             ZoomOut => spec("Zoom out", "Smaller interface", command(Key::Minus)),
@@ -261,6 +295,11 @@ fn panel_key(panel: Panel) -> Option<KeyboardShortcut> {
         Panel::Cuts => key(Key::F4),
         Panel::Roc => key(Key::F6),
         Panel::Timing => key(Key::F7),
+        Panel::Bounds => key(Key::F8),
+        Panel::Evaluation => key(Key::F9),
+        Panel::Front => key(Key::F10),
+        Panel::Training => key(Key::F12),
+        Panel::Guide => key(Key::F1),
         _ => None,
     }
 }
@@ -292,6 +331,11 @@ fn panel_name(panel: Panel, verb: &str) -> &'static str {
         Panel::Cuts => "Cuts",
         Panel::Roc => "ROC",
         Panel::Timing => "Timing",
+        Panel::Bounds => "Bounds",
+        Panel::Evaluation => "Evaluation",
+        Panel::Front => "Run time",
+        Panel::Training => "Training",
+        Panel::Guide => "Guide",
     }
 }
 

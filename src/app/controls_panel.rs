@@ -2,14 +2,15 @@
 
 use super::application::App;
 use super::command::Command;
+use super::jobs;
 use super::settings::Projection;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Decibels};
+use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::signal::Floor;
 use eframe::egui;
-use eframe::egui::{ComboBox, DragValue, Grid, ProgressBar, ScrollArea, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, Ui};
 
 /// Draws the panel.
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
@@ -23,6 +24,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
                 normalisation(app, ui);
                 floor(app, ui);
                 carrier(app, ui);
+                window(app, ui);
             });
             ui.add_space(6.0);
             heading(ui, "Display");
@@ -88,17 +90,9 @@ fn reconstruction(app: &mut App, ui: &mut Ui) {
 /// P_D, P_FA and SE, or why there are none.
 fn figures(app: &mut App, ui: &mut Ui) {
     if let Some(progress) = app.pipeline.method_progress() {
-        ui.horizontal(|ui| {
-            let bar = if progress > 0.0 {
-                ProgressBar::new(progress).show_percentage()
-            } else {
-                ProgressBar::new(0.0).animate(true)
-            };
-            ui.add(bar.desired_width(150.0));
-            if ui.small_button("Cancel").on_hover_text("Stop this reconstruction; the last output stays").clicked() {
-                app.commands.push(Command::CancelMethod);
-            }
-        });
+        if jobs::progress(ui, progress, 150.0, "Stop this reconstruction; the last output stays") {
+            app.commands.push(Command::CancelMethod);
+        }
     } else if let Some(error) = &app.pipeline.method_error {
         ui.colored_label(ui.visuals().error_fg_color, error);
     } else if let Some(output) = &app.pipeline.output {
@@ -197,6 +191,30 @@ fn carrier(app: &mut App, ui: &mut Ui) {
     });
     if carrier != app.settings.carrier {
         app.commands.push(Command::SetCarrier(carrier));
+    }
+}
+
+fn window(app: &mut App, ui: &mut Ui) {
+    let mut window = app.settings.window;
+    row(
+        ui,
+        "Window",
+        "Weights of samples and elements in both transforms: low side lobes cost a wide main lobe",
+        |ui| {
+            ui.horizontal(|ui| {
+                let mut first = None;
+                for choice in WindowFunction::ALL {
+                    let tooltip = Command::SetWindow(choice).spec().tooltip;
+                    let response = ui.selectable_value(&mut window, choice, choice.name()).on_hover_text(tooltip);
+                    first.get_or_insert(response);
+                }
+                first.unwrap_or_else(|| ui.label(""))
+            })
+            .inner
+        },
+    );
+    if window != app.settings.window {
+        app.commands.push(Command::SetWindow(window));
     }
 }
 

@@ -19,14 +19,23 @@ enum Cut {
 /// Draws the panel: angle cut above (or left), range profile below (or right).
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
     let place = app.cut_cursor();
-    let Some((bin, column)) = place.cell(&app.radar) else { return };
     let maps = maps(app);
+    // Where there is little room a legend inside the plot would cover it.
+    let roomy = ui.available_height() > 320.0;
+    if !roomy {
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            for (kind, colour, _) in &maps {
+                ui.colored_label(*colour, kind.title());
+            }
+        });
+    }
     let size = ui.available_size();
     let wide = size.x > 1.6 * size.y;
     let half = if wide { egui::vec2(size.x / 2.0 - 4.0, size.y) } else { egui::vec2(size.x, size.y / 2.0 - 4.0) };
     let both = |ui: &mut Ui| {
         for cut in [Cut::Angle, Cut::Range] {
-            ui.allocate_ui(half, |ui| draw(app, ui, cut, &maps, &place, bin, column));
+            ui.allocate_ui(half, |ui| draw(app, ui, cut, &maps, &place, roomy));
         }
     };
     if wide { ui.horizontal(both).inner } else { ui.vertical(both).inner }
@@ -54,10 +63,10 @@ fn draw(
     cut: Cut,
     maps: &[(MapKind, Color32, Arc<RangeAngleMap>)],
     cursor: &Cursor,
-    bin: usize,
-    column: usize,
+    legend: bool,
 ) {
     let radar = &app.radar;
+    let Some((bin, column)) = cursor.cell(radar) else { return };
     let (title, at, low, high) = match cut {
         Cut::Angle => {
             let title = format!("cos θ, at range {:.2} m", radar.range_of_bin_metres(bin as f64));
@@ -75,7 +84,7 @@ fn draw(
         .default_y_bounds(0.0, 1.05)
         .allow_scroll(false)
         .y_axis_min_width(28.0);
-    if cut == Cut::Angle {
+    if cut == Cut::Angle && legend {
         plot = plot.legend(Legend::default().background_alpha(0.7));
     }
     plot.show(ui, |plot| {

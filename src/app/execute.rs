@@ -3,7 +3,7 @@
 use super::application::App;
 use super::command::{Command, NewObject};
 use super::files::{Answer, Purpose};
-use super::layout::Layout;
+use super::layout::{Layout, Panel};
 use super::settings::{Projection, Theme};
 use super::view::Window;
 use super::{export, theme};
@@ -24,7 +24,10 @@ pub(super) fn read_input(app: &mut App, ctx: &Context) {
     }
     let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
     if let Some(path) = dropped {
-        app.commands.push(Command::OpenPath(path));
+        match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+            true => watch(app, path),
+            false => app.commands.push(Command::OpenPath(path)),
+        }
     }
     export::poll(app);
     if ctx.input(|i| i.pointer.any_released()) {
@@ -91,11 +94,18 @@ fn nudge(app: &mut App, ctx: &Context) {
 fn file_chosen(app: &mut App, ctx: &Context, purpose: Purpose, path: PathBuf) {
     match purpose {
         Purpose::Open => app.commands.push(Command::OpenPath(path)),
+        Purpose::OpenLog => watch(app, path),
         Purpose::SaveScene => save(app, path),
         Purpose::ExportPicture => export::picture(app, ctx, path),
         Purpose::ExportMaps => export::maps(app, ctx, path),
         Purpose::ExportMetrics => export::metrics(app, &path),
     }
+}
+
+/// Watches the log of a training.
+fn watch(app: &mut App, path: PathBuf) {
+    app.training.follow(path);
+    app.layout.set_open(Panel::Training, true);
 }
 
 fn save(app: &mut App, mut path: PathBuf) {
@@ -135,6 +145,7 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
         Command::SaveAs => ask_file(app, ctx, Purpose::SaveScene),
         Command::Preset(index) => preset(app, index),
         Command::RandomScene(set) => random_scene(app, set),
+        Command::OpenLog => ask_file(app, ctx, Purpose::OpenLog),
         Command::ExportPicture => ask_file(app, ctx, Purpose::ExportPicture),
         Command::ExportMaps => ask_file(app, ctx, Purpose::ExportMaps),
         Command::ExportMetrics => ask_file(app, ctx, Purpose::ExportMetrics),
@@ -159,6 +170,8 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
         Command::FitScene => app.scene_view.fit = true,
         Command::ResetMaps => (app.range_angle, app.cartesian) = (Window::default(), Window::default()),
         Command::TogglePanel(panel) => app.layout.toggle(panel),
+        Command::ClosePanel(panel) => app.layout.set_open(panel, false),
+        Command::OpenPanel(panel) => app.layout.set_open(panel, true),
         Command::Maximise(panel) => app.layout.toggle_maximised(panel),
         Command::ResetLayout => app.layout = Layout::default(),
         Command::ToggleProjection => {
@@ -167,6 +180,7 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
                 Projection::Cartesian => Projection::RangeAngle,
             }
         }
+        Command::SetProjection(projection) => app.settings.projection = projection,
         Command::Colours(colours) => app.settings.colours = colours,
         Command::Normalise(normalisation) => {
             app.settings.normalisation = normalisation;
@@ -184,10 +198,15 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
             app.settings.carrier = carrier;
             app.radar.carrier = carrier;
         }
+        Command::SetWindow(window) => {
+            app.settings.window = window;
+            app.radar.window = window;
+        }
         Command::ToggleReflectors => app.settings.show_reflectors ^= true,
         Command::ToggleFieldsOfView => app.settings.show_fields_of_view ^= true,
         Command::NextMethod => next_method(app),
         Command::CancelMethod => app.pipeline.cancel_method(),
+        Command::CloseMessages => app.messages.clear(),
         Command::ToggleTheme => {
             app.settings.theme = if ctx.theme() == egui::Theme::Dark { Theme::Light } else { Theme::Dark };
             theme::apply(ctx, app.settings.theme);

@@ -3,28 +3,83 @@
 use super::application::App;
 use crate::files::archive::write_maps;
 use crate::files::write_bytes;
+use crate::live::worker::panic_message;
+use crate::picture::{Format, Style, compose};
 use crate::signal;
 use eframe::egui::{ColorImage, Context};
 use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::Sender;
+
+/// Writes a picture: what the window shows as PNG, or all panels of the scene drawn afresh as SVG.
+pub(super) fn picture(app: &mut App, ctx: &Context, path: PathBuf) {
+    match Format::of_path(&path) {
+        Some(Format::Svg) => drawing(app, ctx, path),
+        _ => window(app, ctx, path),
+    }
+}
 
 /// Takes a picture of the window and writes it as PNG.
-pub(super) fn picture(app: &mut App, ctx: &Context, mut path: PathBuf) {
+fn window(app: &mut App, ctx: &Context, mut path: PathBuf) {
     path.set_extension("png");
     let (done, wake) = (app.exports.0.clone(), ctx.clone());
     ctx.request_screenshot(move |picture| {
         // Compressing takes longer than a frame.
-        let report = done.clone();
-        let write = move || {
-            let written = write_png(&path, &picture);
-            // The window may be gone by now.
-            let _closed = report.send(Export { path, written });
-            wake.request_repaint();
-        };
-        if let Err(error) = std::thread::Builder::new().name("export".to_owned()).spawn(write) {
+        if let Err(error) = in_background(done, wake, path, move |path| write_png(path, &picture)) {
             tracing::warn!("the picture could not be exported: {error}");
         }
     });
+}
+
+/// Draws the panels that `apertura maps` draws, with the method and the settings on screen.
+fn drawing(app: &mut App, ctx: &Context, path: PathBuf) {
+    let Some(method) = app.method() else { return app.error("There is no method to draw the output of.") };
+    let (radar, scene) = (app.radar.clone(), app.editor.scene().clone());
+    let style = Style {
+        floor: app.settings.floor,
+        normalisation: app.settings.normalisation,
+        colours: app.settings.colours,
+        eta: Some(app.output_eta()),
+    };
+    let seed = app.settings.seed;
+    start(app, ctx, path, move |path| {
+        let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
+        let bytes =
+            compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg).map_err(|e| e.to_string())?;
+        write_bytes(path, &bytes).map_err(|e| e.to_string())
+    });
+}
+
+/// Starts an export that takes a moment, and says so.
+fn start(
+    app: &mut App,
+    ctx: &Context,
+    path: PathBuf,
+    write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
+) {
+    let name = path.display().to_string();
+    match in_background(app.exports.0.clone(), ctx.clone(), path, write) {
+        Ok(()) => app.info(format!("Exporting {name}…")),
+        Err(error) => app.error(format!("{name}: the export could not be started: {error}")),
+    }
+}
+
+/// Writes a file on a thread of its own; a panic there is an error like any other.
+fn in_background(
+    done: Sender<Export>,
+    wake: Context,
+    path: PathBuf,
+    write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
+) -> std::io::Result<()> {
+    let work = move || {
+        let written = catch_unwind(AssertUnwindSafe(|| write(&path)))
+            .unwrap_or_else(|panic| Err(format!("failed: {}", panic_message(panic.as_ref()))));
+        // The window may be gone by now.
+        let _closed = done.send(Export { path, written });
+        wake.request_repaint();
+    };
+    std::thread::Builder::new().name("export".to_owned()).spawn(work).map(|_| ())
 }
 
 fn write_png(path: &Path, picture: &ColorImage) -> Result<(), String> {
@@ -41,19 +96,10 @@ pub(super) fn maps(app: &mut App, ctx: &Context, mut path: PathBuf) {
     path.set_extension("npz");
     let (radar, scene) = (app.radar.clone(), app.editor.scene().clone());
     let (floor, seed) = (app.settings.floor, app.settings.seed);
-    let (done, wake) = (app.exports.0.clone(), ctx.clone());
-    let write = move || {
-        let written = signal::simulate(&radar, &scene, floor, seed)
-            .map_err(|e| e.to_string())
-            .and_then(|signal| write_maps(&path, &radar, &scene, &signal).map_err(|e| e.to_string()));
-        // The window may be gone by now.
-        let _closed = done.send(Export { path, written });
-        wake.request_repaint();
-    };
-    match std::thread::Builder::new().name("export".to_owned()).spawn(write) {
-        Ok(_) => app.info("Exporting the maps…"),
-        Err(error) => app.error(format!("The maps could not be exported: {error}")),
-    }
+    start(app, ctx, path, move |path| {
+        let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
+        write_maps(path, &radar, &scene, &signal).map_err(|e| e.to_string())
+    });
 }
 
 /// What came of an export on another thread.

@@ -13,11 +13,11 @@ pub(super) struct FrameLog {
 }
 
 impl FrameLog {
-    /// Creates the file.
-    pub fn create(path: &Path) -> io::Result<Self> {
+    /// Creates the file; its times count from `began`.
+    pub fn create(path: &Path, began: Instant) -> io::Result<Self> {
         let mut out = BufWriter::new(File::create(path)?);
         writeln!(out, "frame,seconds,ui_ms,previous_frame_ms,maps_requested,pictures_painted,resident_mib")?;
-        Ok(FrameLog { out, began: Instant::now(), frame: 0 })
+        Ok(FrameLog { out, began, frame: 0 })
     }
 
     /// Writes one frame: time in the app's own code, and the whole of the previous frame with layout, tessellation and drawing.

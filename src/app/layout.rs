@@ -2,7 +2,10 @@
 
 use super::application::App;
 use super::pictures::MapKind;
-use super::{controls_panel, cuts_panel, inspector_panel, map_panel, roc_panel, scene_panel, timing_panel};
+use super::{
+    bounds_panel, controls_panel, cuts_panel, evaluation_panel, front_panel, guide_panel, inspector_panel, map_panel,
+    roc_panel, scene_panel, timing_panel, training_panel,
+};
 use eframe::egui;
 use eframe::egui::{Ui, WidgetText};
 use egui_tiles::{Container, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
@@ -26,14 +29,28 @@ pub enum Panel {
     Roc,
     /// What each stage cost and what was skipped.
     Timing,
+    /// Ambiguity function and Cramer-Rao bound.
+    Bounds,
+    /// Methods on the tables' test sets.
+    Evaluation,
+    /// Run time against error.
+    Front,
+    /// A training watched.
+    Training,
+    /// What the maps show and why.
+    Guide,
 }
 
 impl Panel {
+    /// Panels that are closed at first: each is a tool for a question of its own.
+    pub const TOOLS: [Panel; 5] = [Panel::Guide, Panel::Bounds, Panel::Evaluation, Panel::Front, Panel::Training];
+
     /// All panels, in the order menus list them.
     pub fn all() -> Vec<Panel> {
         let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector];
         all.extend(MapKind::ALL.map(Panel::Map));
         all.extend([Panel::Cuts, Panel::Roc, Panel::Timing]);
+        all.extend(Panel::TOOLS);
         all
     }
 
@@ -47,6 +64,11 @@ impl Panel {
             Panel::Cuts => "Cuts",
             Panel::Roc => "ROC",
             Panel::Timing => "Timing",
+            Panel::Bounds => "Bounds",
+            Panel::Evaluation => "Evaluation",
+            Panel::Front => "Run time",
+            Panel::Training => "Training",
+            Panel::Guide => "Guide",
         }
     }
 
@@ -60,6 +82,11 @@ impl Panel {
             Panel::Cuts => "Range profile and angle cut of all maps through the cursor",
             Panel::Roc => "Detection against false alarm of this scene, over every threshold",
             Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
+            Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
+            Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
+            Panel::Front => "Run time against error of the simulation on this machine",
+            Panel::Training => "The loss of a network while it is trained",
+            Panel::Guide => "What the maps show and why, with something to try",
         }
     }
 }
@@ -81,11 +108,14 @@ impl Default for Layout {
         let [scene, controls, inspector] = [Panel::Scene, Panel::Controls, Panel::Inspector].map(&mut pane);
         let [in0, in1, target, output, target_above, output_above, difference] =
             MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
-        let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(pane);
-        tiles.set_visible(timing, false);
+        let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
+        let [guide, tools @ ..] = Panel::TOOLS.map(pane);
+        for closed in [timing, guide].iter().chain(&tools) {
+            tiles.set_visible(*closed, false);
+        }
         let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
         let scene = tabs(&mut tiles, vec![scene]);
-        let controls = tabs(&mut tiles, vec![controls, timing]);
+        let controls = tabs(&mut tiles, vec![controls, timing, guide]);
         let inspector = tabs(&mut tiles, vec![inspector]);
         let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
         let first = tabs(&mut tiles, vec![in0]);
@@ -94,7 +124,7 @@ impl Default for Layout {
         let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
         let first = tabs(&mut tiles, vec![in1]);
         let second = tabs(&mut tiles, vec![output, difference]);
-        let third = tabs(&mut tiles, vec![output_above, roc]);
+        let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
         let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
         let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, left_maps, right_maps], &[1.1, 1.0, 1.0]);
         Layout { tree: Tree::new(egui::Id::unique("panels"), root, tiles), maximised: None, shown: BTreeSet::new() }
@@ -139,10 +169,10 @@ impl Layout {
         self.tree.tiles.find_pane(&panel).is_some_and(|id| self.tree.tiles.is_visible(id))
     }
 
-    /// Hides a panel, or shows it and brings its tab to the front.
+    /// Hides a panel that is in sight; shows any other, its tab in front.
     pub fn toggle(&mut self, panel: Panel) {
-        let open = self.is_open(panel);
-        self.set_open(panel, !open);
+        let in_sight = self.is_open(panel) && self.shown.contains(&panel);
+        self.set_open(panel, !in_sight);
     }
 
     /// Shows or hides a panel; a shown one comes to the front.
@@ -189,6 +219,10 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         None => layout.tree.ui(&mut behavior, ui),
     }
     let Behavior { app, shown, maximise, hide } = behavior;
+    if shown != layout.shown {
+        // A tab that has just come to the front is laid out in this frame and drawn in the next.
+        ui.request_repaint();
+    }
     layout.shown = shown;
     if let Some(panel) = maximise {
         layout.toggle_maximised(panel);
@@ -218,6 +252,11 @@ impl Behavior<'_> {
             Panel::Cuts => cuts_panel::show(app, ui),
             Panel::Roc => roc_panel::show(app, ui),
             Panel::Timing => timing_panel::show(app, ui),
+            Panel::Bounds => bounds_panel::show(app, ui),
+            Panel::Evaluation => evaluation_panel::show(app, ui),
+            Panel::Front => front_panel::show(app, ui),
+            Panel::Training => training_panel::show(app, ui),
+            Panel::Guide => guide_panel::show(app, ui),
         }
     }
 }
@@ -283,13 +322,13 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
     }
 }
 
-enum Icon {
+pub(super) enum Icon {
     Maximise,
     Close,
 }
 
 /// A small drawn button with a name for tooltips and screen readers.
-fn icon(ui: &mut Ui, icon: Icon, name: &str) -> egui::Response {
+pub(super) fn icon(ui: &mut Ui, icon: Icon, name: &str) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(18.0), egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     let visuals = ui.style().interact(&response);
@@ -315,12 +354,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_panel_is_there_and_timing_is_closed() {
+    fn every_panel_is_there_and_the_tools_are_closed() {
         let mut layout = Layout::default();
         for panel in Panel::all() {
-            assert_eq!(layout.is_open(panel), panel != Panel::Timing, "{panel:?}");
+            let closed = panel == Panel::Timing || Panel::TOOLS.contains(&panel);
+            assert_eq!(layout.is_open(panel), !closed, "{panel:?}");
         }
         layout.toggle(Panel::Timing);
+        layout.toggle(Panel::Cuts);
+        assert!(layout.is_open(Panel::Cuts), "it was behind another tab");
+        layout.shown.insert(Panel::Cuts);
         layout.toggle(Panel::Cuts);
         assert!(layout.is_open(Panel::Timing) && !layout.is_open(Panel::Cuts));
     }

@@ -68,7 +68,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui, kind: MapKind) {
 /// What stands in the title bar of a map's panel: its figures.
 pub(super) fn heading(app: &App, ui: &mut Ui, kind: MapKind) {
     let weak = |ui: &mut Ui, text: String| {
-        let text = egui::RichText::new(text).small().weak();
+        let text = egui::RichText::new(text).size(11.0).weak();
         ui.add(egui::Label::new(text).selectable(false).truncate());
     };
     let scores = app.pipeline.result.as_ref().and_then(|r| r.scores);
@@ -320,7 +320,7 @@ fn menu(app: &mut App, ui: &mut Ui, kind: MapKind) {
         Command::ToggleProjection,
         Command::ResetMaps,
         Command::ToggleReflectors,
-        Command::TogglePanel(Panel::Map(kind)),
+        Command::ClosePanel(Panel::Map(kind)),
     ] {
         super::menu::entry(app, ui, command, true);
     }

@@ -30,6 +30,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             ui.menu_button("Edit", |ui| edit(app, ui));
             ui.menu_button("Scene", |ui| scene(app, ui));
             ui.menu_button("View", |ui| view(app, ui));
+            ui.menu_button("Tools", |ui| tools(app, ui));
             ui.separator();
             for (kind, label) in
                 [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
@@ -156,13 +157,24 @@ fn scene(app: &mut App, ui: &mut Ui) {
     entry(app, ui, Command::FitScene, true);
 }
 
+fn tools(app: &mut App, ui: &mut Ui) {
+    ui.set_min_width(240.0);
+    for panel in Panel::TOOLS {
+        let mut open = app.layout.is_open(panel);
+        if ui.checkbox(&mut open, panel.title()).on_hover_text(panel.describe()).clicked() {
+            app.commands.push(if open { Command::OpenPanel(panel) } else { Command::ClosePanel(panel) });
+            ui.close();
+        }
+    }
+}
+
 fn view(app: &mut App, ui: &mut Ui) {
     ui.set_min_width(240.0);
     ui.menu_button("Panels", |ui| {
         for panel in Panel::all() {
             let mut open = app.layout.is_open(panel);
             if ui.checkbox(&mut open, panel.title()).on_hover_text(panel.describe()).clicked() {
-                app.commands.push(Command::TogglePanel(panel));
+                app.commands.push(if open { Command::OpenPanel(panel) } else { Command::ClosePanel(panel) });
             }
         }
     });

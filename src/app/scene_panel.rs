@@ -62,7 +62,8 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
 
 /// Shows everything the radar can see, and whatever else the scene holds nearby.
 fn fit(app: &mut App, rect: Rect) {
-    if !app.scene_view.fit || rect.width() < 40.0 || rect.height() < 40.0 {
+    let resized = app.scene_view.fitted.is_some_and(|size| size != rect.size()) && app.editor.dragged().is_none();
+    if !(app.scene_view.fit || resized) || rect.width() < 40.0 || rect.height() < 40.0 {
         return;
     }
     let extent = app.radar.max_range_metres();
@@ -76,7 +77,7 @@ fn fit(app: &mut App, rect: Rect) {
         high.y_metres = high.y_metres.max(b.y_metres.min(limit));
     }
     app.scene_view.show(rect, low, high);
-    app.scene_view.fit = false;
+    (app.scene_view.fit, app.scene_view.fitted) = (false, Some(rect.size()));
 }
 
 fn navigate(app: &mut App, ui: &Ui, rect: Rect, response: &Response) {
@@ -85,10 +86,12 @@ fn navigate(app: &mut App, ui: &Ui, rect: Rect, response: &Response) {
         let factor = f64::from(pinch * (scroll / 200.0).exp());
         if factor != 1.0 {
             app.scene_view.zoom(factor, rect, pos);
+            app.scene_view.fitted = None;
         }
     }
     if response.dragged_by(PointerButton::Middle) || response.dragged_by(PointerButton::Secondary) {
         let delta = response.drag_delta();
+        app.scene_view.fitted = None;
         app.scene_view.centre.x_metres -= f64::from(delta.x) * app.scene_view.metres_per_point;
         app.scene_view.centre.y_metres += f64::from(delta.y) * app.scene_view.metres_per_point;
     }
@@ -97,20 +100,21 @@ fn navigate(app: &mut App, ui: &Ui, rect: Rect, response: &Response) {
 fn pointer(app: &mut App, ui: &Ui, rect: Rect, response: &Response) {
     let (origin, now, modifiers) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers));
     let view = app.scene_view;
-    if response.drag_started_by(PointerButton::Primary)
-        && let Some(origin) = origin
-    {
+    // A tap can come and go within one frame: then there is no drag, but still something to select.
+    let tapped = ui.input(|i| i.pointer.primary_pressed() && i.pointer.primary_released() && !i.pointer.primary_down());
+    let began = response.drag_started_by(PointerButton::Primary) || (tapped && response.contains_pointer());
+    if began && let Some(origin) = origin.or(now) {
         ui.memory_mut(|m| m.stop_text_input());
         let place = view.to_scene(rect, origin);
         let mode = if modifiers.shift || modifiers.command { SelectionMode::Toggle } else { SelectionMode::Replace };
         match app.editor.hit(place, view.metres_per_point) {
-            Some(hit) if mode == SelectionMode::Toggle => app.editor.select([hit.object], mode),
+            Some(hit) if tapped || mode == SelectionMode::Toggle => app.editor.select([hit.object], mode),
             Some(hit) => app.editor.begin_drag(hit, place),
             None => {
                 if mode == SelectionMode::Replace {
                     app.editor.select([], mode);
                 }
-                app.box_start = Some(place);
+                app.box_start = (!tapped).then_some(place);
             }
         }
     }

@@ -1,9 +1,10 @@
 //! What the user chose: kept from one start to the next.
 
+use super::bounds_panel::BoundsSettings;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Decibels};
+use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -46,6 +47,8 @@ pub struct Settings {
     pub snr: Decibels,
     /// Which way the carrier's phase is read.
     pub carrier: Carrier,
+    /// Window of both transforms.
+    pub window: WindowFunction,
     /// Colours of the maps.
     pub colours: ColourMap,
     /// Coordinates of the maps.
@@ -66,6 +69,8 @@ pub struct Settings {
     pub snap: Snap,
     /// Light or dark.
     pub theme: Theme,
+    /// What the bounds are computed for.
+    pub bounds: BoundsSettings,
     /// Number and seed last used for a random scene.
     pub random_seed: u64,
 }
@@ -79,6 +84,7 @@ impl Default for Settings {
             dynamic_range: Decibels(100.0),
             snr: Decibels(20.0),
             carrier: Carrier::OneWay,
+            window: WindowFunction::Hann,
             colours: ColourMap::default(),
             projection: Projection::default(),
             target_eta: crate::evaluate::TARGET_ETA,
@@ -89,6 +95,7 @@ impl Default for Settings {
             show_fields_of_view: false,
             snap: Snap::Off,
             theme: Theme::System,
+            bounds: BoundsSettings::default(),
             random_seed: 1,
         }
     }

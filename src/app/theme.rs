@@ -78,10 +78,12 @@ pub(super) fn apply(ctx: &Context, theme: Theme) {
                 style.visuals.panel_fill = Color32::from_rgb(30, 33, 40);
                 style.visuals.extreme_bg_color = Color32::from_rgb(18, 20, 25);
                 style.visuals.override_text_color = Some(Color32::from_rgb(218, 223, 232));
+                style.visuals.weak_text_color = Some(Color32::from_rgb(154, 162, 176));
                 style.visuals.selection.bg_fill = Color32::from_rgb(38, 92, 150);
             } else {
                 style.visuals.panel_fill = Color32::from_rgb(245, 247, 250);
                 style.visuals.override_text_color = Some(Color32::from_rgb(34, 40, 52));
+                style.visuals.weak_text_color = Some(Color32::from_rgb(88, 98, 116));
                 style.visuals.selection.bg_fill = Color32::from_rgb(176, 210, 250);
             }
         });

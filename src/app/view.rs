@@ -64,11 +64,13 @@ pub(super) struct SceneView {
     pub metres_per_point: f64,
     /// Fit to the window at the next opportunity.
     pub fit: bool,
+    /// Size on screen that it was fitted to, until the user zooms or pans: it is fitted again when that changes.
+    pub fitted: Option<Vec2>,
 }
 
 impl Default for SceneView {
     fn default() -> Self {
-        SceneView { centre: Place::new(0.0, 18.0), metres_per_point: 0.1, fit: true }
+        SceneView { centre: Place::new(0.0, 18.0), metres_per_point: 0.1, fit: true, fitted: None }
     }
 }
 

@@ -1,18 +1,18 @@
 //! `apertura maps`: the maps of one scene, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
-use super::{CommandError, picture, print};
+use super::{CommandError, print};
 use crate::files::archive::write_maps;
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::methods;
-use crate::picture::ColourMap;
+use crate::picture::{ColourMap, Format, Style, compose};
 use crate::radar::Carrier;
 use crate::scene::file;
 use crate::signal;
 use std::path::{Path, PathBuf};
 
-/// Compute the maps of a scene, to an .npz archive or a .png picture
+/// Compute the maps of a scene, to an .npz archive or a .png or .svg picture
 ///
 /// The archive holds all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
@@ -22,7 +22,7 @@ pub struct Args {
     /// Scene to look at (.toml or .npz)
     scene: PathBuf,
 
-    /// File to write (.npz or .png)
+    /// File to write (.npz, .png or .svg)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
@@ -64,17 +64,19 @@ impl Args {
             Output::Archive => {
                 write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))?;
             }
-            Output::Picture => {
+            Output::Picture(format) => {
                 let method = match &self.method {
                     Some(name) => methods::by_name(name).map_err(CommandError::failed)?,
                     None => methods::preferred(),
                 };
-                let style = picture::Style {
+                let style = Style {
                     floor: self.floor.floor,
                     normalisation: self.normalisation,
                     colours: self.colours,
+                    eta: None,
                 };
-                let bytes = picture::draw(&radar, &scene, &signal, method.as_ref(), &style)?;
+                let bytes =
+                    compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
                 write_bytes(&self.output, &bytes)
                     .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
             }
@@ -85,18 +87,19 @@ impl Args {
 
 enum Output {
     Archive,
-    Picture,
+    Picture(Format),
 }
 
 impl Output {
     fn of_path(path: &Path) -> Result<Output, CommandError> {
-        match path.extension().map(|e| e.to_ascii_lowercase()).as_deref().and_then(|e| e.to_str()) {
-            Some("npz") => Ok(Output::Archive),
-            Some("png") => Ok(Output::Picture),
-            _ => Err(CommandError::Usage(format!(
-                "{}: can't tell what to write from this name; expected one ending in .npz or .png",
-                path.display()
-            ))),
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz")) {
+            return Ok(Output::Archive);
         }
+        Format::of_path(path).map(Output::Picture).ok_or_else(|| {
+            CommandError::Usage(format!(
+                "{}: can't tell what to write from this name; expected one ending in .npz, .png or .svg",
+                path.display()
+            ))
+        })
     }
 }

@@ -10,7 +10,6 @@ mod evaluate;
 mod maps;
 mod open;
 mod output;
-mod picture;
 mod reconstruct;
 mod scenes;
 #[cfg(feature = "network")]

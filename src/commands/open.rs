@@ -1,13 +1,14 @@
 //! No subcommand: the app, or a picture where there is no display.
 
-use super::{CommandError, picture, print};
+use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::methods;
-use crate::picture::is_our_png;
+use crate::picture::{Format, Style, compose, is_our_png};
 use crate::scene::file::{self, SceneFile};
 use crate::scene::presets;
 use crate::signal;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// What to open.
 #[derive(Debug, clap::Args)]
@@ -26,11 +27,12 @@ const PICTURE: &str = "apertura.png";
 impl Args {
     /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
     pub fn run(self) -> Result<(), CommandError> {
+        let started = Instant::now();
         let file = match &self.scene {
             Some(path) => file::load(path).map_err(CommandError::failed)?,
             None => presets::default_scene(),
         };
-        let reason = match self.open_window() {
+        let reason = match self.open_window(started) {
             Ok(()) => return Ok(()),
             Err(WindowError::NoWindow(reason)) => reason,
             #[cfg(feature = "app")]
@@ -42,9 +44,14 @@ impl Args {
 
     /// Opens the app and returns when it is closed.
     #[cfg(feature = "app")]
-    fn open_window(self) -> Result<(), WindowError> {
+    fn open_window(self, started: Instant) -> Result<(), WindowError> {
         use crate::app::{self, AppError};
-        let options = app::Options { scene: self.scene, frame_log: self.frame_log, ..app::Options::default() };
+        let options = app::Options {
+            scene: self.scene,
+            frame_log: self.frame_log,
+            started: Some(started),
+            ..app::Options::default()
+        };
         app::run(options).map_err(|error| match error {
             AppError::Window(_) => WindowError::NoWindow(error.to_string()),
             AppError::Start(_) => WindowError::Failed(error),
@@ -52,7 +59,7 @@ impl Args {
     }
 
     #[cfg(not(feature = "app"))]
-    fn open_window(self) -> Result<(), WindowError> {
+    fn open_window(self, _: Instant) -> Result<(), WindowError> {
         Err(WindowError::NoWindow("this build has no app".to_owned()))
     }
 }
@@ -68,9 +75,10 @@ enum WindowError {
 
 fn draw_instead(file: &SceneFile) -> Result<(), CommandError> {
     let SceneFile { scene, radar } = file;
-    let style = picture::Style::default();
+    let style = Style::default();
     let signal = signal::simulate(radar, scene, style.floor, 0).map_err(CommandError::failed)?;
-    let bytes = picture::draw(radar, scene, &signal, methods::preferred().as_ref(), &style)?;
+    let bytes = compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
+        .map_err(CommandError::failed)?;
     let path = free_name(Path::new("."));
     write_bytes(&path, &bytes).map_err(|source| CommandError::File { path: path.clone(), source })?;
     print(&format!("wrote {}", path.display()))

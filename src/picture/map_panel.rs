@@ -34,7 +34,7 @@ const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
 
 impl MapPanel<'_> {
-    pub(super) fn draw(&self, area: &Area, radar: &Radar) -> Result<(), PictureError> {
+    pub(super) fn draw<B: DrawingBackend>(&self, area: &Area<B>, radar: &Radar) -> Result<(), PictureError> {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width as i32, height as i32);
         text::line(area, (62, 8), &self.title, 21, Weight::Bold, &INK)?;
@@ -126,7 +126,12 @@ impl Cells<'_> {
     }
 }
 
-fn colour_bar(area: &Area, (x, y): (i32, i32), height: i32, colours: ColourMap) -> Result<(), PictureError> {
+fn colour_bar<B: DrawingBackend>(
+    area: &Area<B>,
+    (x, y): (i32, i32),
+    height: i32,
+    colours: ColourMap,
+) -> Result<(), PictureError> {
     const WIDTH: i32 = 14;
     for row in 0..height {
         let [r, g, b] = colours.colour(1.0 - row as f32 / (height - 1).max(1) as f32);
@@ -141,7 +146,7 @@ fn colour_bar(area: &Area, (x, y): (i32, i32), height: i32, colours: ColourMap) 
 }
 
 /// What the colours of a detection panel mean, at the right of its title.
-fn legend(area: &Area) -> Result<(), PictureError> {
+fn legend<B: DrawingBackend>(area: &Area<B>) -> Result<(), PictureError> {
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - BAR_SPACE;
     for (name, [r, g, b]) in [("miss", MISS), ("false alarm", FALSE_ALARM), ("hit", HIT)] {

@@ -4,6 +4,7 @@
 //! the right, and what both thresholds make of them.
 
 pub mod colour;
+mod compose;
 mod map_panel;
 mod png;
 mod scene_panel;
@@ -12,6 +13,7 @@ mod text;
 pub(crate) use text::register_fonts;
 
 pub use colour::ColourMap;
+pub use compose::{ComposeError, Format, Style, compose};
 pub use png::{encode_png, is_our_png};
 
 use crate::evaluate::{Metrics, TARGET_ETA};
@@ -61,7 +63,7 @@ impl PictureError {
     }
 }
 
-type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+type Area<B> = DrawingArea<B, Shift>;
 
 const WIDTH: u32 = 2180;
 const HEIGHT: u32 = 1120;
@@ -83,15 +85,25 @@ pub fn render(panels: &Panels) -> Result<RgbImage, PictureError> {
     let mut buffer = vec![0; (WIDTH * HEIGHT * 3) as usize];
     {
         let root = BitMapBackend::with_buffer(&mut buffer, (WIDTH, HEIGHT)).into_drawing_area();
-        root.fill(&PAPER).map_err(PictureError::new)?;
         panels.draw(&root)?;
-        root.present().map_err(PictureError::new)?;
     }
     RgbImage::from_raw(WIDTH, HEIGHT, buffer).ok_or_else(|| PictureError("its buffer is too small".to_owned()))
 }
 
+/// Draws the same picture as SVG: lines and text stay sharp at any size, the maps are bitmaps in it.
+///
+/// # Errors
+/// [`PictureError`] when plotters can't draw.
+pub fn render_svg(panels: &Panels) -> Result<String, PictureError> {
+    text::register_fonts()?;
+    let mut svg = String::new();
+    panels.draw(&SVGBackend::with_string(&mut svg, (WIDTH, HEIGHT)).into_drawing_area())?;
+    Ok(svg)
+}
+
 impl Panels<'_> {
-    fn draw(&self, root: &Area) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+        root.fill(&PAPER).map_err(PictureError::new)?;
         self.header(root)?;
         let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
         let field = |row: i32| {
@@ -110,10 +122,10 @@ impl Panels<'_> {
             let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
             panel.draw(&area, self.radar)?;
         }
-        Ok(())
+        root.present().map_err(PictureError::new)
     }
 
-    fn header(&self, root: &Area) -> Result<(), PictureError> {
+    fn header<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
         let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
         let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
         let name = text::fitted(root, &name, 34, text::Weight::Bold, (LEFT - MARGIN) as u32)?;
@@ -151,7 +163,7 @@ impl Panels<'_> {
     }
 
     /// The three figures of the tables for this scene, then the scene's notes.
-    fn figures_and_notes(&self, area: &Area) -> Result<(), PictureError> {
+    fn figures_and_notes<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
         let metrics = Metrics::of(self.target, self.output, self.eta);
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
@@ -181,7 +193,7 @@ mod tests {
         let maps = LogMaps::of_signal(&radar, &BeatSignal::silence(&radar));
         let flat = maps.full.normalise(Normalisation::MinMax);
         let file = presets::default_scene();
-        let picture = render(&Panels {
+        let panels = Panels {
             scene: &file.scene,
             radar: &radar,
             conditions: "exact floor",
@@ -192,8 +204,11 @@ mod tests {
             method: "baseline",
             eta: 0.9,
             colours: ColourMap::Grey,
-        })
-        .unwrap();
+        };
+        let svg = render_svg(&panels).unwrap();
+        assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
+        assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
+        let picture = render(&panels).unwrap();
         assert_eq!(picture.dimensions(), (WIDTH, HEIGHT));
         let bytes = encode_png(&picture).unwrap();
         assert!(is_our_png(&bytes));

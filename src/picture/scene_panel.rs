@@ -22,7 +22,12 @@ pub(super) enum Content<'a> {
 }
 
 /// Draws the half plane out to the maximum range, equal scale on both axes, with range rings, angle spokes and the array.
-pub(super) fn draw(area: &Area, radar: &Radar, title: &str, content: Content) -> Result<(), PictureError> {
+pub(super) fn draw<B: DrawingBackend>(
+    area: &Area<B>,
+    radar: &Radar,
+    title: &str,
+    content: Content,
+) -> Result<(), PictureError> {
     text::line(area, (8, 0), title, 21, Weight::Bold, &INK)?;
     let max = radar.max_range_metres();
     let (width, height) = area.dim_in_pixel();
@@ -98,9 +103,9 @@ pub(super) fn draw(area: &Area, radar: &Radar, title: &str, content: Content) ->
     Ok(())
 }
 
-type Chart<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-fn draw_objects(chart: &mut Chart, scene: &Scene, max: f64) -> Result<(), PictureError> {
+fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64) -> Result<(), PictureError> {
     for object in &scene.objects {
         let (radius, [red, green, blue]) = match object {
             Object::Point(_) => (5, [24, 92, 168]),

@@ -37,8 +37,8 @@ pub(super) fn style(size: i32, weight: Weight, colour: &RGBColor) -> TextStyle<'
 }
 
 /// One line of text, its top left corner at `at`.
-pub(super) fn line(
-    area: &Area,
+pub(super) fn line<B: DrawingBackend>(
+    area: &Area<B>,
     at: (i32, i32),
     text: &str,
     size: i32,
@@ -49,7 +49,13 @@ pub(super) fn line(
 }
 
 /// Shortens `text` until it fits `width` pixels; an ellipsis stands for what is left out.
-pub(super) fn fitted(area: &Area, text: &str, size: i32, weight: Weight, width: u32) -> Result<String, PictureError> {
+pub(super) fn fitted<B: DrawingBackend>(
+    area: &Area<B>,
+    text: &str,
+    size: i32,
+    weight: Weight,
+    width: u32,
+) -> Result<String, PictureError> {
     let style = style(size, weight, &RGBColor(0, 0, 0));
     let mut shown = text.to_owned();
     let mut kept = text.chars().count();
@@ -61,8 +67,8 @@ pub(super) fn fitted(area: &Area, text: &str, size: i32, weight: Weight, width: 
 }
 
 /// Lines broken at spaces to the area's width; what does not fit its height is left out, with an ellipsis.
-pub(super) fn paragraphs(
-    area: &Area,
+pub(super) fn paragraphs<B: DrawingBackend>(
+    area: &Area<B>,
     at: (i32, i32),
     text: &str,
     size: i32,

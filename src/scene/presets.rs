@@ -29,6 +29,7 @@ pub const ALL: &[Preset] = presets![
     "points-by-a-line",
     "gaussian-clusters",
     "point-behind-a-line",
+    "beyond-the-range",
     "test-set-1",
     "test-set-2",
     "test-set-3",

@@ -1,0 +1,147 @@
+//! Messages in the corner: they wrap, can be read aloud and closed, and go away by themselves.
+
+use super::application::App;
+use super::layout::{Icon, icon};
+use super::theme;
+use eframe::egui;
+use eframe::egui::{Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
+
+/// Widest message, in points.
+const WIDTH: f32 = 380.0;
+
+/// Seconds for which a message stays: long enough to read an error and do what it says.
+const INFO_SECONDS: f64 = 6.0;
+const ERROR_SECONDS: f64 = 20.0;
+
+/// Most messages on screen; the oldest make room.
+const LIMIT: usize = 5;
+
+/// What a message is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Something was done.
+    Info,
+    /// Something could not be done.
+    Error,
+}
+
+struct Message {
+    number: u64,
+    kind: Kind,
+    text: String,
+    /// Seconds of egui's clock; set when it is first drawn.
+    until: Option<f64>,
+}
+
+/// The messages on screen, oldest first.
+#[derive(Default)]
+pub(super) struct Messages {
+    list: Vec<Message>,
+    count: u64,
+}
+
+impl Messages {
+    /// Shows a message; one that is there already stays longer instead of standing there twice.
+    pub fn add(&mut self, kind: Kind, text: String) {
+        match self.list.iter_mut().find(|m| m.kind == kind && m.text == text) {
+            Some(same) => same.until = None,
+            None => {
+                self.count += 1;
+                self.list.push(Message { number: self.count, kind, text, until: None });
+                let excess = self.list.len().saturating_sub(LIMIT);
+                self.list.drain(..excess);
+            }
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Closes all.
+    pub fn clear(&mut self) {
+        self.list.clear();
+    }
+}
+
+/// Draws the messages and drops those whose time is over.
+pub(super) fn show(app: &mut App, ctx: &Context) {
+    let messages = &mut app.messages.list;
+    if messages.is_empty() {
+        return;
+    }
+    let now = ctx.input(|i| i.time);
+    let pointer = ctx.input(|i| i.pointer.hover_pos());
+    let width = WIDTH.min(ctx.content_rect().width() - 40.0);
+    let mut closed = Vec::new();
+    let mut hovered = false;
+    Area::new(Id::unique("messages"))
+        .order(Order::Foreground)
+        .anchor(Align2::RIGHT_BOTTOM, vec2(-12.0, -36.0))
+        .interactable(true)
+        .show(ctx, |ui| {
+            ui.set_max_width(width);
+            for message in messages.iter() {
+                let drawn = Frame::popup(ui.style()).show(ui, |ui| draw(ui, message, width));
+                if drawn.inner {
+                    closed.push(message.number);
+                }
+                hovered |= pointer.is_some_and(|p: Pos2| drawn.response.rect.contains(p));
+            }
+        });
+    for message in messages.iter_mut() {
+        let seconds = match message.kind {
+            Kind::Info => INFO_SECONDS,
+            Kind::Error => ERROR_SECONDS,
+        };
+        let until = message.until.get_or_insert(now + seconds);
+        if hovered {
+            // Nothing goes away under the pointer.
+            *until = until.max(now + 2.0);
+        }
+    }
+    messages.retain(|m| !closed.contains(&m.number) && m.until.is_none_or(|until| until > now));
+    if let Some(next) = messages.iter().filter_map(|m| m.until).min_by(f64::total_cmp) {
+        ctx.request_repaint_after_secs((next - now).max(0.0) as f32);
+    }
+}
+
+/// Draws one message; whether it was closed.
+fn draw(ui: &mut egui::Ui, message: &Message, width: f32) -> bool {
+    let (sign, colour) = match message.kind {
+        Kind::Info => ("i", theme::INFO),
+        Kind::Error => ("!", theme::ERROR),
+    };
+    ui.horizontal_top(|ui| {
+        ui.set_width(width - 24.0);
+        ui.label(egui::RichText::new(sign).strong().color(colour));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
+            let closed = icon(ui, Icon::Close, "Close this message").clicked();
+            ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
+                ui.add(egui::Label::new(&message.text).wrap());
+            });
+            closed
+        })
+        .inner
+    })
+    .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_message_stands_there_once_and_old_ones_make_room() {
+        let mut messages = Messages::default();
+        messages.add(Kind::Error, "a".to_owned());
+        messages.add(Kind::Error, "a".to_owned());
+        assert_eq!(messages.len(), 1);
+        for i in 0..9 {
+            messages.add(Kind::Info, i.to_string());
+        }
+        assert_eq!(messages.len(), LIMIT);
+        assert_eq!(messages.list.last().unwrap().text, "8");
+    }
+}

@@ -1,0 +1,87 @@
+//! From a signal to a picture's bytes: maps, reconstruction, panels.
+
+use super::{ColourMap, Panels, PictureError, encode_png, render, render_svg};
+use crate::maps::{LogMaps, Normalisation};
+use crate::radar::Radar;
+use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::scene::Scene;
+use crate::signal::{BeatSignal, Floor};
+use std::path::Path;
+
+/// Kind of picture file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// A bitmap.
+    Png,
+    /// Lines and text as such, maps as bitmaps.
+    Svg,
+}
+
+impl Format {
+    /// The kind that a file's name says, if it is one of these.
+    pub fn of_path(path: &Path) -> Option<Format> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Format::Png),
+            "svg" => Some(Format::Svg),
+            _ => None,
+        }
+    }
+}
+
+/// How the maps are made and painted.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Style {
+    /// The floor beneath the signal.
+    pub floor: Floor,
+    /// How decades become Lambda.
+    pub normalisation: Normalisation,
+    /// Colours of the maps.
+    pub colours: ColourMap,
+    /// Threshold of the output; the method's own where `None`.
+    pub eta: Option<f32>,
+}
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum ComposeError {
+    /// The method failed.
+    #[error(transparent)]
+    Reconstruct(#[from] ReconstructError),
+    /// The panels can't be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// Reconstructs and draws all panels; the bytes of a file.
+///
+/// # Errors
+/// [`ComposeError`] when the method fails or the panels can't be drawn.
+pub fn compose(
+    radar: &Radar,
+    scene: &Scene,
+    signal: &BeatSignal,
+    method: &dyn Reconstructor,
+    style: &Style,
+    format: Format,
+) -> Result<Vec<u8>, ComposeError> {
+    let Style { floor, normalisation, colours, eta } = *style;
+    let maps = LogMaps::of_signal(radar, signal);
+    let request = Request { floor, normalisation, ..Request::default() };
+    let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
+    let panels = Panels {
+        scene,
+        radar,
+        conditions: &format!("floor {floor}, normalisation {normalisation}"),
+        first: &maps.first.normalise(normalisation),
+        last: &maps.last.normalise(normalisation),
+        target: &maps.full.normalise(normalisation),
+        output: &output.lambda,
+        method: method.name(),
+        eta: eta.unwrap_or_else(|| method.eta()),
+        colours,
+    };
+    Ok(match format {
+        Format::Png => encode_png(&render(&panels)?)?,
+        Format::Svg => render_svg(&panels)?.into_bytes(),
+    })
+}

@@ -1,0 +1,71 @@
+//! The app's panels as pictures, compared with those in `tests/snapshots`. Needs a Vulkan driver (lavapipe will do) and is skipped
+//! without one. After a change that is meant to be seen: `UPDATE_SNAPSHOTS=1 cargo test --test app_pictures`.
+#![cfg(feature = "app")]
+
+use apertura::app::{App, Command, Options, Panel};
+use apertura::reconstruct::Baseline;
+use eframe::egui::Theme;
+use egui_kittest::wgpu::WgpuTestRenderer;
+use egui_kittest::{Harness, SnapshotOptions};
+use std::panic::catch_unwind;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A radar small enough that its maps take a moment only.
+const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
+                     [[object]]\nkind = \"point\"\nx_metres = -9.0\ny_metres = 20.0\n\n\
+                     [[object]]\nkind = \"line\"\nx_metres = 8.0\ny_start_metres = 8.0\nspacing_metres = 0.5\ncount = 30\n";
+
+/// The renderer, where there is a driver for it.
+fn renderer() -> Option<WgpuTestRenderer> {
+    let made = catch_unwind(WgpuTestRenderer::new);
+    if made.is_err() {
+        eprintln!("skipped: there is no Vulkan driver here");
+    }
+    made.ok()
+}
+
+/// Takes a picture of one panel that fills a small window.
+fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
+    let Some(renderer) = renderer() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    let options = Options { scene: Some(scene), methods: vec![Arc::new(Baseline)], ..Options::default() };
+    let mut app: Harness<'_, App> = Harness::builder()
+        .with_size([560.0, 400.0])
+        .renderer(renderer)
+        .build_eframe(|creation| App::new(creation, options).unwrap());
+    let light = (theme == Theme::Light).then_some(Command::ToggleTheme);
+    for command in light.into_iter().chain(commands).chain([Command::Maximise(panel)]) {
+        app.state_mut().ask(command);
+        app.step();
+    }
+    let deadline = Instant::now() + Duration::from_secs(60);
+    let mut quiet = 0;
+    while quiet < 5 {
+        assert!(Instant::now() < deadline, "the workers never came to rest");
+        app.step();
+        quiet = if app.state().is_busy() { 0 } else { quiet + 1 };
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // Times in the status line differ from run to run, and drivers round differently.
+    let tolerant = SnapshotOptions::new().threshold(2.0).max_failed_pixels(2500usize);
+    app.snapshot_options(name, &tolerant);
+}
+
+#[test]
+fn the_scene_in_light() {
+    compare("scene-light", Theme::Light, Panel::Scene, vec![Command::SelectAll]);
+}
+
+#[test]
+fn the_target_in_dark() {
+    use apertura::app::MapKind;
+    compare("target-dark", Theme::Dark, Panel::Map(MapKind::Target), vec![Command::ToggleReflectors]);
+}
+
+#[test]
+fn the_guide_in_light() {
+    compare("guide-light", Theme::Light, Panel::Guide, vec![]);
+}
