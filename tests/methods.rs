@@ -3,9 +3,9 @@
 
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::Scene;
+use apertura::reconstruct::{Fista, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::scene::{GaussianCluster, Object, Scene};
 use apertura::signal::{BeatSignal, Floor, TwoEnds, simulate};
 use num_complex::Complex64;
 use std::time::{Duration, Instant};
@@ -108,6 +108,30 @@ fn a_single_sample_and_noise_alone_have_an_answer() {
         run(&*method, &noise, "noise");
         run(&*method, &drowned, "two points under noise");
     }
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn ten_thousand_reflectors_end_in_time() {
+    let cluster = GaussianCluster {
+        x_metres: 1.0,
+        y_metres: 14.0,
+        x_std_metres: 6.0,
+        y_std_metres: 3.0,
+        count: 10_000,
+        seed: 2,
+        reflectivity: 1.0,
+    };
+    let ends = ends_of(&Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() }, Floor::Thesis);
+    for method in methods::all() {
+        run(&*method, &ends, "ten thousand reflectors");
+    }
+}
+
+#[test]
+fn ten_thousand_candidates_fit_into_bounded_memory() {
+    let fista = Fista { candidates: 10_000, iterations: 2, ..Fista::default() };
+    run(&fista, &ends_of(&two_points(), Floor::Thesis), "ten thousand candidates");
 }
 
 #[test]

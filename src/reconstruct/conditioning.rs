@@ -4,6 +4,8 @@ use super::{ReconstructError, check_ends};
 use crate::maps::Spectrum;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
+use ndarray::ArrayView1;
+use num_complex::Complex64;
 
 /// Samples of both ends with a peak between 1 and 2, and the noise beneath them.
 pub(super) struct Conditioned {
@@ -22,7 +24,7 @@ pub(super) struct Conditioned {
 pub(super) fn condition(radar: &Radar, ends: &TwoEnds) -> Result<Option<Conditioned>, ReconstructError> {
     check_ends(radar, ends)?;
     let Some((ends, gain)) = unit_gain(ends) else { return Ok(None) };
-    let noise_variance = noise_variance(radar, &ends);
+    let noise_variance = noise_variance(radar, End::BOTH.into_iter().flat_map(|e| ends.end(e).outer_iter()));
     Ok(Some(Conditioned { ends, gain, noise_variance }))
 }
 
@@ -43,22 +45,23 @@ const KAISER_BETA: f64 = 32.0;
 /// Part of the range bins that are taken to hold noise only.
 const QUIET_PART: f64 = 0.2;
 
-/// Variance of white noise in the samples: the power of the quietest range bins under a window without side lobes.
-fn noise_variance(radar: &Radar, ends: &TwoEnds) -> f64 {
+/// Variance of white noise in the samples of `channels`: the power of the quietest range bins under a window without side lobes.
+pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
     let window = kaiser(radar.samples);
     let power: f64 = window.iter().map(|w| w * w).sum();
     let spectrum = Spectrum::new(radar.samples);
     let mut bins = vec![0.0; radar.samples];
-    for channel in End::BOTH.into_iter().flat_map(|e| ends.end(e).outer_iter()) {
+    let mut count = 0.0;
+    for channel in channels {
         for (bin, v) in bins.iter_mut().zip(spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * w))) {
             *bin += v.norm_sqr();
         }
+        count += 1.0;
     }
     let quiet = (QUIET_PART * bins.len() as f64) as usize;
     let quantile = *bins.select_nth_unstable_by(quiet, f64::total_cmp).1;
-    let channels = 2.0 * radar.end_elements as f64;
-    // The mean of `channels` exponential powers is nearly normal with this relative spread; its 20 % quantile is 0.84 below.
-    quantile / (channels * power) / (1.0 - 0.84 / channels.sqrt()).max(0.3)
+    // The mean of `count` exponential powers is nearly normal with this relative spread; its 20 % quantile is 0.84 below.
+    quantile / (count * power) / (1.0 - 0.84 / f64::sqrt(count)).max(0.3)
 }
 
 /// Kaiser window (J. F. Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", 1974).

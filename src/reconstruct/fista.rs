@@ -20,9 +20,9 @@ use rayon::prelude::*;
 /// which both ends together heard most, since the others' gains would be zero.
 #[derive(Debug, Clone, Copy)]
 pub struct Fista {
-    /// Penalty, as a part of the one that would leave no reflector at all.
+    /// Penalty, as a part of the one that would leave no reflector at all. The default is by tests/choose_eta.rs.
     pub penalty: f64,
-    /// Cells that are candidates.
+    /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
     /// Iterations.
     pub iterations: usize,
@@ -33,6 +33,9 @@ impl Default for Fista {
         Fista { penalty: 0.02, candidates: 1024, iterations: 150 }
     }
 }
+
+/// Most candidates: memory and time grow with their square.
+const MOST_CANDIDATES: usize = 4096;
 
 /// Most reflectors that are drawn; the strongest of what the penalty left.
 const MOST_DRAWN: usize = 200;
@@ -61,7 +64,7 @@ impl Problem {
         let power = Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
         let mut cells: Vec<(usize, f64)> =
             power.iter().copied().enumerate().filter(|(i, _)| *i >= radar.elements).collect();
-        let count = settings.candidates.min(cells.len());
+        let count = settings.candidates.min(MOST_CANDIDATES).min(cells.len());
         if count == 0 {
             return Ok(Problem { atoms: Vec::new(), gram: Vec::new(), heard: Vec::new(), penalty: 0.0 });
         }

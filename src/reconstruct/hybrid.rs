@@ -6,9 +6,6 @@ use crate::radar::Radar;
 use crate::signal::TwoEnds;
 use std::sync::Arc;
 
-/// Part of the samples' energy that may be left unexplained before the fallback is asked.
-const MOST_UNEXPLAINED: f64 = 0.03;
-
 /// [`super::nomp::Nomp`] with a fallback for scenes that are not a handful of points and lines.
 #[derive(Clone)]
 pub struct Hybrid {
@@ -17,6 +14,9 @@ pub struct Hybrid {
 }
 
 impl Hybrid {
+    /// Part of the samples' energy that may be left unexplained before the fallback is asked; by tests/choose_eta.rs.
+    pub const MOST_UNEXPLAINED: f64 = 0.03;
+
     /// With the method that fills in.
     pub fn new(fallback: Arc<dyn Reconstructor>) -> Self {
         Hybrid { fallback, settings: Settings::default() }
@@ -45,7 +45,7 @@ impl Reconstructor for Hybrid {
         check_ends(radar, ends)?;
         let found = find(radar, ends, request, &self.settings)?;
         let mut drawn = found.reconstruction(radar, request);
-        if !found.complete && found.unexplained > MOST_UNEXPLAINED {
+        if !found.complete && found.unexplained > Hybrid::MOST_UNEXPLAINED {
             // The objects found stay in the picture: they are sharper than anything the fallback draws.
             let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;
             drawn.lambda.lambda.zip_mut_with(&filled.lambda, |drawn, filled| *drawn = drawn.max(*filled));

@@ -8,19 +8,29 @@ use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::scene::Reflector;
 
 /// Samples in a row of the split.
-const STRIDE: usize = 32;
+pub const STRIDE: usize = 32;
 /// Reflectors whose phasors are kept at a time: as many as fit the first-level cache.
-const CHUNK: usize = 8;
+pub const CHUNK: usize = 8;
 /// Phasors evaluated from their phase are this many apart; those between are products.
 const STEP: usize = 4;
 /// Rows and columns of the product kept in registers.
 const TILE: (usize, usize) = (2, 4);
 
-/// Phasors of one reflector.
+/// Phasors of one reflector: its echo at sample `32 a + b` is `rows[a] * columns[b]`.
 #[derive(Debug, Clone)]
-struct Factors<T, const W: usize> {
-    rows: Vec<ComplexLanes<T, W>>,
-    columns: [ComplexLanes<T, W>; STRIDE],
+pub struct Factors<T, const W: usize> {
+    /// Amplitude and phase of every 32nd sample; somewhat more of them than the chirp needs.
+    pub rows: Vec<ComplexLanes<T, W>>,
+    /// Phase from there to each of the next 32.
+    pub columns: [ComplexLanes<T, W>; STRIDE],
+}
+
+impl<T: Real, const W: usize> Factors<T, W> {
+    /// Room for the phasors of chirps of `samples` samples.
+    pub fn new(samples: usize) -> Self {
+        let zero = ComplexLanes::zero();
+        Factors { rows: vec![zero; samples.div_ceil(STRIDE).next_multiple_of(STEP)], columns: [zero; STRIDE] }
+    }
 }
 
 /// Room for [`block_signal`] to work in.
@@ -33,12 +43,9 @@ pub struct Scratch<T, const W: usize> {
 impl<T: Real, const W: usize> Scratch<T, W> {
     /// For chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
-        let rows = samples.div_ceil(STRIDE).next_multiple_of(STEP);
-        let zero = ComplexLanes::zero();
-        Scratch {
-            factors: vec![Factors { rows: vec![zero; rows], columns: [zero; STRIDE] }; CHUNK],
-            padded: vec![zero; rows * STRIDE],
-        }
+        let factors = vec![Factors::new(samples); CHUNK];
+        let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
+        Scratch { factors, padded }
     }
 }
 
@@ -62,8 +69,9 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     &mut padded[..samples]
 }
 
+/// Phasors of `r` at the `W` elements at `element_x` metres.
 #[inline(always)]
-fn fill_factors<T: Real, const W: usize, const FMA: bool>(
+pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
     element_x: Lanes<f64, W>,
     r: &Reflector,
@@ -92,7 +100,10 @@ fn fill_factors<T: Real, const W: usize, const FMA: bool>(
 /// `out[32 a + b] += sum over factors of rows[a] * columns[b]`.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // constant bounds keep the tile in registers
-fn add_product<T: Real, const W: usize, const FMA: bool>(factors: &[Factors<T, W>], out: &mut [ComplexLanes<T, W>]) {
+pub fn add_product<T: Real, const W: usize, const FMA: bool>(
+    factors: &[Factors<T, W>],
+    out: &mut [ComplexLanes<T, W>],
+) {
     for a in (0..out.len() / STRIDE).step_by(TILE.0) {
         for b in (0..STRIDE).step_by(TILE.1) {
             let mut tile = [[ComplexLanes::zero(); TILE.1]; TILE.0];

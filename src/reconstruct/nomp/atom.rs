@@ -26,7 +26,10 @@ pub enum Atom {
 }
 
 impl Atom {
-    /// Number of continuous parameters: (x, y) or (x, start, spacing).
+    /// Number of continuous parameters: (x, y^2) or (x, start, spacing).
+    ///
+    /// A point's distance from the array follows the square of its y: near the array's axis y itself hardly changes anything, its
+    /// square does.
     pub fn parameters(&self) -> usize {
         match self {
             Atom::Point { .. } => 2,
@@ -37,7 +40,7 @@ impl Atom {
     /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameters`].
     pub fn moved(&self, step: &[f64]) -> Atom {
         match *self {
-            Atom::Point { x, y } => Atom::Point { x: x + step[0], y: (y + step[1]).abs() },
+            Atom::Point { x, y } => Atom::Point { x: x + step[0], y: (y * y + step[1]).max(0.0).sqrt() },
             Atom::Line { x, start, spacing, count } => {
                 Atom::Line { x: x + step[0], start: start + step[1], spacing: spacing + step[2], count }
             }
@@ -60,12 +63,14 @@ impl Atom {
         }
     }
 
-    /// How reflector `i`'s (x, y) follow the parameters: for each parameter, its share of a step in x and in y.
+    /// How reflector `i`'s x and half the square of its y follow the parameter.
     pub fn share(&self, i: usize, parameter: usize) -> [f64; 2] {
-        match parameter {
-            0 => [1.0, 0.0],
-            1 => [0.0, 1.0],
-            _ => [0.0, i as f64],
+        let [_, y] = self.position(i);
+        match (self, parameter) {
+            (_, 0) => [1.0, 0.0],
+            (Atom::Point { .. }, _) => [0.0, 0.5],
+            (_, 1) => [0.0, y],
+            _ => [0.0, i as f64 * y],
         }
     }
 
@@ -77,5 +82,17 @@ impl Atom {
                 Object::Line(Line { x_metres: x, y_start_metres: start, spacing_metres: spacing, count, reflectivity })
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_steps_in_the_square_of_its_y_and_stays_ahead_of_the_array() {
+        let point = Atom::Point { x: 3.0, y: 4.0 };
+        assert_eq!(point.moved(&[1.0, 9.0]), Atom::Point { x: 4.0, y: 5.0 });
+        assert_eq!(point.moved(&[0.0, -20.0]), Atom::Point { x: 3.0, y: 0.0 });
     }
 }

@@ -4,14 +4,16 @@
 //! twice the variance that a draw and its mean do.
 
 use super::atom::Atom;
-use super::sensor::Sensor;
 use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
 use crate::radar::Radar;
-use crate::scene::Reflector;
-use crate::signal::BeatSignal;
+use crate::reconstruct::Request;
+use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::thesis_noise_variance;
+use crate::signal::plan::{self, Recipe};
+use ndarray::{Array2, Zip};
 use rayon::prelude::*;
 use std::f64::consts::LN_10;
+use std::sync::LazyLock;
 
 /// Euler's constant.
 const EULER: f64 = 0.577_215_664_901_532_9;
@@ -34,52 +36,54 @@ pub struct Weighted {
     pub reflectivity: f64,
 }
 
-/// Beat signal of `objects` at every element of the array.
-pub fn beat_signal(radar: &Radar, objects: &[Weighted]) -> BeatSignal {
-    let sensor = Sensor::new(radar);
-    let mut signal = BeatSignal::silence(radar);
-    signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
-        let Some(row) = row.as_slice_mut() else { return };
-        for o in objects {
-            sensor.add_channel(&o.atom, o.reflectivity, radar.element_x_metres(n), row);
-        }
-    });
-    signal
-}
-
-/// Expected Lambda of the whole array over `objects`.
-pub fn expected_lambda(
-    radar: &Radar,
-    objects: &[Weighted],
-    noise: Noise,
-    normalisation: Normalisation,
-) -> RangeAngleMap {
-    let signal = beat_signal(radar, objects);
+/// Expected Lambda of the whole array over `objects`, as accurate as the floor of `request` can show.
+pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, request: &Request) -> RangeAngleMap {
+    let reflectors: Vec<Reflector> = objects
+        .iter()
+        .flat_map(|o| o.atom.object(o.reflectivity).reflectors())
+        // The simulator takes reflectors that touch no element.
+        .map(|r| Reflector { y_metres: r.y_metres.max(MIN_ELEMENT_DISTANCE_METRES), ..r })
+        .collect();
+    let tolerance = plan::tolerance_for(request.floor, request.normalisation);
+    let recipe = Recipe::plan(reflectors.len(), plan::amplitude_bound(radar, &reflectors), tolerance);
+    let signal = plan::beat_signal(radar, &reflectors, &recipe);
     let variance = match noise {
         Noise::Variance(v) => vec![v; radar.elements],
-        Noise::Rounding => {
-            let reflectors: Vec<Reflector> =
-                objects.iter().flat_map(|o| o.atom.object(o.reflectivity).reflectors()).collect();
-            thesis_noise_variance(radar, &reflectors)
-        }
+        Noise::Rounding => thesis_noise_variance(radar, &reflectors),
     };
     let cell_noise = cell_noise(radar, &variance).max(f64::MIN_POSITIVE);
     let profiles = range_transform(radar, &signal);
     let cells = angle_transform(radar, &profiles, Aperture::Full).cells;
 
     // The smallest of all cells: near zero each |Y|^2 has density exp(-s/N)/N, so the minimum of |Y|^2 is exponential with the sum of these.
-    let rate: f64 = cells.as_slice().map_or(0.0, |c| {
-        c.par_chunks(4096).map(|c| c.iter().map(|y| (-y.norm_sqr() / cell_noise).exp()).sum::<f64>()).sum()
-    }) / cell_noise;
-    let decades = cells.mapv(|y| expected_decades(y.norm_sqr(), cell_noise));
-    let strongest = decades.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut decades = Array2::zeros(cells.dim());
+    let rows: Vec<(f64, f64)> = Zip::from(decades.rows_mut())
+        .and(cells.rows())
+        .into_par_iter()
+        .map(|(row, cells)| {
+            let (mut rate, mut strongest) = (0.0, f64::NEG_INFINITY);
+            for (decades, cell) in row.into_iter().zip(cells) {
+                let ratio = cell.norm_sqr() / cell_noise;
+                rate += if ratio < LARGE_RATIO { (-ratio).exp() } else { 0.0 };
+                *decades = 0.5 * (cell_noise.log10() + mean_log(ratio) / LN_10);
+                strongest = strongest.max(*decades);
+            }
+            (rate, strongest)
+        })
+        .collect();
+    let rate = rows.iter().map(|r| r.0).sum::<f64>() / cell_noise;
+    let strongest = rows.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
     let noise_peak = (cell_noise * ((cells.len() as f64).ln() + EULER)).log10() / 2.0;
     let peak = strongest.max(noise_peak);
-    let range = match normalisation {
+    let range = match request.normalisation {
         Normalisation::DynamicRange(db) => db.amplitude_decades(),
         Normalisation::MinMax => expected_range(peak, rate),
     };
-    RangeAngleMap { lambda: decades.mapv(|l| (1.0 - (peak - l) / range).clamp(0.0, 1.0) as f32) }
+    let mut lambda = Array2::zeros(decades.dim());
+    Zip::from(&mut lambda)
+        .and(&decades)
+        .par_for_each(|out, l| *out = (1.0 - (peak - l) / range).clamp(0.0, 1.0) as f32);
+    RangeAngleMap { lambda }
 }
 
 /// Variance of each map cell's noise, from that of a sample of each element: the window's mean power in range and in angle.
@@ -103,11 +107,21 @@ fn expected_range(peak: f64, rate: f64) -> f64 {
     mean_inverse.recip()
 }
 
-/// Mean of `log10 |Y|` for complex Gaussian Y of mean power `signal` and variance `noise`: half of `ln s + E1(s / N)`, in decades.
-fn expected_decades(signal: f64, noise: f64) -> f64 {
-    let ratio = signal / noise;
-    let nats = if ratio > 40.0 { signal.ln() } else { noise.ln() + ln_plus_e1(ratio) };
-    nats / (2.0 * LN_10)
+/// Power over noise from which on the noise no longer shows in the mean of the logarithm.
+const LARGE_RATIO: f64 = 40.0;
+
+/// Mean of `ln |Y|^2` for complex Gaussian Y of variance 1 around a mean of power `ratio`: [`ln_plus_e1`], from a table.
+fn mean_log(ratio: f64) -> f64 {
+    /// Entries for each unit of the ratio; a straight line between them is off by at most 2e-5.
+    const DENSITY: f64 = 64.0;
+    static TABLE: LazyLock<Vec<f64>> =
+        LazyLock::new(|| (0..=(LARGE_RATIO * DENSITY) as usize + 1).map(|i| ln_plus_e1(i as f64 / DENSITY)).collect());
+    if ratio >= LARGE_RATIO {
+        return ratio.ln();
+    }
+    let at = ratio * DENSITY;
+    let (low, part) = (at as usize, at.fract());
+    TABLE[low] + part * (TABLE[low + 1] - TABLE[low])
 }
 
 /// `ln x + E1(x)`, E1 the exponential integral: -EULER at 0, ln x far out (Abramowitz and Stegun 5.1.11 and 5.1.22).
@@ -140,5 +154,8 @@ mod tests {
             assert!((found - e1).abs() < 2e-9, "{x}: {found} {e1}");
         }
         assert!((ln_plus_e1(0.0) + EULER).abs() < 1e-15);
+        for ratio in [0.0, 0.003, 0.7, 5.01, 39.999, 40.0, 1e6] {
+            assert!((mean_log(ratio) - if ratio > 700.0 { ratio.ln() } else { ln_plus_e1(ratio) }).abs() < 2e-5);
+        }
     }
 }

@@ -22,7 +22,7 @@ pub struct Found {
     pub atoms: Vec<Atom>,
     /// Their reflectivities for samples times `scale`.
     pub reflectivities: Vec<f64>,
-    /// What the samples were multiplied with to have a peak of 1.
+    /// What the samples were multiplied with to have a peak between 1 and 2.
     pub scale: f64,
     /// Part of the samples' energy that is left unexplained.
     pub unexplained: f64,

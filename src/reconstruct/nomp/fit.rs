@@ -10,6 +10,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve;
 use faer::{Accum, Mat, MatRef, Par, Side};
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// Which samples share one gain for each atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,15 +57,6 @@ struct State {
 }
 
 impl Problem<'_> {
-    /// Rows of the blocks that have their own gains, and the ends that each block holds.
-    fn blocks(&self, tie: Tie) -> Vec<(std::ops::Range<usize>, std::ops::Range<usize>)> {
-        let end = self.sensor.end_len();
-        match tie {
-            Tie::PerEnd => vec![(0..end, 0..1), (end..2 * end, 1..2)],
-            Tie::Both => vec![(0..2 * end, 0..2)],
-        }
-    }
-
     /// Gains and residual for `atoms` where they are.
     pub fn solve(&self, atoms: &[Atom], tie: Tie) -> Fit {
         self.state(atoms.to_vec(), tie, &vec![false; atoms.len()]).fit
@@ -81,39 +73,50 @@ impl Problem<'_> {
         }
         let mut flat = vec![Complex64::default(); rows * columns];
         let mut rest = flat.chunks_exact_mut(rows);
-        for (atom, moving) in atoms.iter().zip(moving) {
-            let wanted = 1 + if *moving { atom.parameters() } else { 0 };
-            let mut own: Vec<&mut [Complex64]> = rest.by_ref().take(wanted).collect();
-            self.sensor.add_atom(atom, self.window, &mut own);
-        }
+        let own: Vec<Vec<&mut [Complex64]>> = atoms
+            .iter()
+            .zip(moving)
+            .map(|(atom, moving)| rest.by_ref().take(1 + if *moving { atom.parameters() } else { 0 }).collect())
+            .collect();
+        atoms
+            .par_iter()
+            .zip(own)
+            .for_each(|(atom, mut columns)| self.sensor.fill_atom(atom, self.window, &mut columns));
         let all = MatRef::from_column_major_slice(&flat, rows, columns);
 
-        let mut gains = vec![[Complex64::default(); 2]; atoms.len()];
         let mut residual = self.samples.to_vec();
-        let (mut grams, mut slopes) = (Vec::new(), Vec::new());
-        for (block, ends) in self.blocks(tie) {
-            let part = all.subrows(block.start, block.len());
-            let gram = gram(part);
-            let values = Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(first_column[i], first_column[j])]);
-            let solver = Ridge::new(&values);
-            // The second pass removes what the squared condition number of the normal equations left.
-            for _ in 0..2 {
-                let rhs = Mat::from_fn(atoms.len(), 1, |i, _| {
-                    dot(&flat[first_column[i] * rows..][block.clone()], &residual[block.clone()])
-                });
-                let step = solver.solve(&rhs);
-                for (i, gain) in gains.iter_mut().enumerate() {
-                    let column = &flat[first_column[i] * rows..][block.clone()];
-                    for (r, v) in residual[block.clone()].iter_mut().zip(column) {
-                        *r -= v * step[(i, 0)];
+        let end = self.sensor.end_len();
+        let (first, last) = rayon::join(|| gram(all.subrows(0, end)), || gram(all.subrows(end, end)));
+        let grams = match tie {
+            Tie::PerEnd => vec![first, last],
+            Tie::Both => vec![first + last],
+        };
+        let block_len = residual.len() / grams.len();
+        let solved: Vec<(Vec<Complex64>, Vec<Complex64>)> = residual
+            .par_chunks_mut(block_len)
+            .zip(&grams)
+            .enumerate()
+            .map(|(block, (residual, gram))| {
+                let column = |j: usize| &flat[j * rows + block * block_len..][..block_len];
+                let values = Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(first_column[i], first_column[j])]);
+                let solver = Ridge::new(&values);
+                let mut gains = vec![Complex64::default(); atoms.len()];
+                // The second pass removes what the squared condition number of the normal equations left.
+                for _ in 0..2 {
+                    let rhs = Mat::from_fn(atoms.len(), 1, |i, _| dot(column(first_column[i]), residual));
+                    let step = solver.solve(&rhs);
+                    for (i, gain) in gains.iter_mut().enumerate() {
+                        for (r, v) in residual.iter_mut().zip(column(first_column[i])) {
+                            *r -= v * step[(i, 0)];
+                        }
+                        *gain += step[(i, 0)];
                     }
-                    ends.clone().for_each(|e| gain[e] += step[(i, 0)]);
                 }
-            }
-            slopes
-                .push((0..columns).map(|j| dot(&flat[j * rows..][block.clone()], &residual[block.clone()])).collect());
-            grams.push(gram);
-        }
+                (gains, (0..columns).map(|j| dot(column(j), residual)).collect())
+            })
+            .collect();
+        let gains = (0..atoms.len()).map(|i| [solved[0].0[i], solved[solved.len() - 1].0[i]]).collect();
+        let slopes = solved.into_iter().map(|s| s.1).collect();
         let cost = energy(&residual);
         State { fit: Fit { atoms, gains, residual, cost }, grams, slopes, first_column }
     }
@@ -126,13 +129,18 @@ impl Problem<'_> {
             if state.fit.cost == 0.0 || !moving.contains(&true) {
                 break;
             }
-            let (hessian, gradient) = self.normal_equations(&state, tie, moving);
+            let (hessian, gradient) = self.normal_equations(&state, moving);
             let mut accepted = None;
             for _ in 0..6 {
                 let Some(step) = damped_step(&hessian, &gradient, damping) else {
                     damping *= 10.0;
                     continue;
                 };
+                // The most that the step can gain; at a minimum nothing, and no shorter step gains more.
+                let most = 2.0 * step.iter().zip(&gradient).map(|(s, g)| s * g).sum::<f64>();
+                if most < 0.1 * limits.least_gain * state.fit.cost {
+                    break;
+                }
                 let mut at = 0;
                 let atoms = state.fit.atoms.iter().zip(moving).map(|(atom, moving)| {
                     if !*moving {
@@ -161,7 +169,7 @@ impl Problem<'_> {
     }
 
     /// Gauss-Newton matrix and gradient for the parameters of the moving atoms, gains projected out.
-    fn normal_equations(&self, state: &State, tie: Tie, moving: &[bool]) -> (Mat<f64>, Vec<f64>) {
+    fn normal_equations(&self, state: &State, moving: &[bool]) -> (Mat<f64>, Vec<f64>) {
         let atoms = &state.fit.atoms;
         // (atom, column) of every parameter.
         let parameters: Vec<(usize, usize)> = (0..atoms.len())
@@ -172,9 +180,8 @@ impl Problem<'_> {
         let size = parameters.len();
         let mut hessian = Mat::<f64>::zeros(size, size);
         let mut gradient = vec![0.0; size];
-        for (b, (_, ends)) in self.blocks(tie).into_iter().enumerate() {
-            let gram = &state.grams[b];
-            let gain = |atom: usize| state.fit.gains[atom][ends.start];
+        for (b, gram) in state.grams.iter().enumerate() {
+            let gain = |atom: usize| state.fit.gains[atom][b];
             let values =
                 Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(state.first_column[i], state.first_column[j])]);
             let cross = Mat::from_fn(atoms.len(), size, |i, j| {
@@ -243,7 +250,7 @@ fn damped_step(hessian: &Mat<f64>, gradient: &[f64], damping: f64) -> Option<Vec
     step.iter().all(|s| s.is_finite() && s.abs() < 1e3).then_some(step)
 }
 
-/// `A^H A`. One thread: the matrices are small, and whoever reconstructs many scenes already uses the others.
+/// `A^H A`, on one thread: the other end's has the next.
 fn gram(a: MatRef<'_, Complex64>) -> Mat<Complex64> {
     let n = a.ncols();
     let mut product = Mat::zeros(n, n);
@@ -266,8 +273,18 @@ fn gram(a: MatRef<'_, Complex64>) -> Mat<Complex64> {
     product
 }
 
+/// `a^H b`, in four sums that don't wait for each other.
 fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+    let mut sums = [Complex64::default(); 4];
+    let (a_fours, b_fours) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest = a_fours.remainder().iter().zip(b_fours.remainder());
+    let rest: Complex64 = rest.map(|(a, b)| a.conj() * b).sum();
+    for (a, b) in a_fours.zip(b_fours) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a.conj() * b;
+        }
+    }
+    sums.iter().sum::<Complex64>() + rest
 }
 
 /// Sum of squared magnitudes.

@@ -6,9 +6,9 @@
 //! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
 
 use super::atom::Atom;
-use super::sensor::Sensor;
-use crate::maps::channels_range_transform;
+use super::beams::{beam_of_cos, end_beams};
 use crate::radar::{End, Radar};
+use crate::signal::simd::{Kernel, LANES_F64, Lanes, Simd, phasor};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -42,7 +42,7 @@ pub struct LineCandidate {
 
 /// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
 pub struct LineDetector {
-    /// `[range bin * BEAMS + beam]` for each end.
+    /// `[beam * bins + range bin]` for each end.
     beams: [Vec<Complex64>; 2],
     centres: [f64; 2],
     bins: usize,
@@ -56,30 +56,14 @@ pub struct LineDetector {
 
 impl LineDetector {
     /// Forms the beams of `residual` (all samples of both ends, not windowed).
-    pub fn new(radar: &Radar, sensor: &Sensor, residual: &[Complex64]) -> Self {
-        let ends = sensor.unflatten(residual);
+    pub fn new(radar: &Radar, residual: &[Complex64]) -> Self {
         let bins = radar.samples;
         let middle = (bins as f64 - 1.0) / 2.0;
-        let radians_per_element =
-            -TAU * radar.carrier.turns_per_wavelength() * radar.element_spacing_metres / radar.wavelength_metres();
-        let beams = End::BOTH.map(|end| {
-            let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
-            let centre = (profiles.nrows() as f64 - 1.0) / 2.0;
-            let mut beams = vec![Complex64::default(); bins * BEAMS];
-            for beam in 0..BEAMS {
-                let cos = (beam as f64 + 0.5) / BEAMS as f64 * 2.0 - 1.0;
-                for (n, profile) in profiles.outer_iter().enumerate() {
-                    let steer = Complex64::cis(-radians_per_element * cos * (n as f64 - centre));
-                    for (bin, p) in profile.iter().enumerate() {
-                        beams[bin * BEAMS + beam] += steer * p;
-                    }
-                }
-            }
-            for (bin, row) in beams.chunks_mut(BEAMS).enumerate() {
-                let shift = Complex64::cis(TAU * (bin as f64 * middle / bins as f64).fract());
-                row.iter_mut().for_each(|b| *b *= shift);
-            }
-            beams
+        let shift: Vec<Complex64> =
+            (0..bins).map(|bin| Complex64::cis(TAU * (bin as f64 * middle / bins as f64).fract())).collect();
+        let beams = end_beams(radar, residual, BEAMS).map(|mut beams| {
+            beams.outer_iter_mut().for_each(|mut row| row.iter_mut().zip(&shift).for_each(|(b, shift)| *b *= shift));
+            beams.into_raw_vec_and_offset().0
         });
         LineDetector {
             beams,
@@ -93,23 +77,11 @@ impl LineDetector {
         }
     }
 
-    /// What a reflector at (x, y) would have left at an end, with its phase taken off; and its amplitude 1/R^2.
-    #[inline]
-    fn echo(&self, end: usize, x: f64, y: f64) -> (Complex64, f64) {
-        let dx = x - self.centres[end];
-        let range = (dx * dx + y * y).sqrt().max(0.05);
-        let beam = ((dx / range + 1.0) * (0.5 * BEAMS as f64)) as usize;
-        let beam = beam.min(BEAMS - 1);
-        let bin = range * self.bins_per_metre;
-        let (low, part) = (bin as usize, bin.fract());
-        let row = |k: usize| {
-            let value = self.beams[end][(k % self.bins) * BEAMS + beam];
-            if (k / self.bins) % 2 == 1 { value * self.wrap_sign } else { value }
-        };
-        // Neighbouring rows differ by half a turn (the middle of the chirp): `new` already took that off.
-        let value = row(low) * (1.0 - part) + row(low + 1) * part;
-        let turns = range * self.turns_per_metre;
-        (value * Complex64::cis(-TAU * (turns - turns.round())), 1.0 / (range * range))
+    /// What each of `count` reflectors at x, one behind the other from `start`, would have left at an end.
+    fn echoes(&self, end: usize, x: f64, start: f64, spacing: f64, count: usize) -> Vec<Echo> {
+        let mut echoes = vec![Echo::default(); count];
+        Simd::best().run(Column { detector: self, end, x, start, spacing, echoes: &mut echoes });
+        echoes
     }
 
     /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
@@ -121,35 +93,40 @@ impl LineDetector {
             .into_par_iter()
             .flat_map_iter(|column| {
                 let x = column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
+                let offsets: [f64; PHASES] = std::array::from_fn(|phase| spacing * phase as f64 / PHASES as f64);
+                let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self, end, x, o, spacing, starts + count)));
+                // The quantile can't exceed the mean of all over the part that lies above it: most starts need no more than that.
+                let mut trials: Vec<Trial> = Vec::with_capacity(PHASES * starts);
+                for (phase, ends) in ends.iter().enumerate() {
+                    trials.extend((0..starts).map(|start| {
+                        let [a, b] = [0, 1].map(|end| ends[end].totals(start, blocks));
+                        let (sum, weight) = (a[0] + b[0], a[1] + b[1]);
+                        let bound = sum / (2 * blocks) as f64 / (1.0 - QUANTILE);
+                        Trial { bound: bound * bound * weight, weight, phase, start }
+                    }));
+                }
+                trials.sort_unstable_by(|a, b| {
+                    b.bound.total_cmp(&a.bound).then((a.phase, a.start).cmp(&(b.phase, b.start)))
+                });
                 let mut best: Vec<LineCandidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
                 let mut gains = Vec::with_capacity(2 * blocks);
-                for phase in 0..PHASES {
-                    let offset = spacing * phase as f64 / PHASES as f64;
-                    let ends = [0, 1].map(|end| Blocks::new(self, end, x, offset, spacing, starts + count));
-                    for start in 0..starts {
-                        let [sum, weight] = [0, 1]
-                            .map(|end| ends[end].totals(start, blocks))
-                            .iter()
-                            .fold([0.0; 2], |total, of_end| [total[0] + of_end[0], total[1] + of_end[1]]);
-                        // The quantile can't exceed the mean of all over the part that lies above it: most starts end here.
-                        let bound = sum / (2 * blocks) as f64 / (1.0 - QUANTILE);
-                        let least = if best.len() < BEST_OF_COLUMN { 0.0 } else { best[BEST_OF_COLUMN - 1].score };
-                        if bound * bound * weight <= least {
-                            continue;
-                        }
-                        gains.clear();
-                        for end in &ends {
-                            gains.extend((0..blocks).map(|b| end.gain[start + b * BLOCK]));
-                        }
-                        let at = (gains.len() as f64 * QUANTILE) as usize;
-                        let gain = *gains.select_nth_unstable_by(at, f64::total_cmp).1;
-                        let score = gain * gain * weight;
-                        if score > least {
-                            let start = offset + start as f64 * spacing;
-                            best.push(LineCandidate { atom: Atom::Line { x, start, spacing, count }, score });
-                            best.sort_by(|a, b| b.score.total_cmp(&a.score));
-                            best.truncate(BEST_OF_COLUMN);
-                        }
+                for Trial { bound, weight, phase, start } in trials {
+                    let least = if best.len() < BEST_OF_COLUMN { 0.0 } else { best[BEST_OF_COLUMN - 1].score };
+                    if bound <= least {
+                        break;
+                    }
+                    gains.clear();
+                    for end in &ends[phase] {
+                        gains.extend((0..blocks).map(|b| end.gain[start + b * BLOCK]));
+                    }
+                    let at = (gains.len() as f64 * QUANTILE) as usize;
+                    let gain = *gains.select_nth_unstable_by(at, f64::total_cmp).1;
+                    let score = gain * gain * weight;
+                    if score > least {
+                        let start = offsets[phase] + start as f64 * spacing;
+                        best.push(LineCandidate { atom: Atom::Line { x, start, spacing, count }, score });
+                        best.sort_by(|a, b| b.score.total_cmp(&a.score));
+                        best.truncate(BEST_OF_COLUMN);
                     }
                 }
                 best
@@ -170,14 +147,16 @@ impl LineDetector {
 
     /// Energy that a line explains when all its points at one end are added with their phases; the sum over both ends.
     pub fn coherent(&self, atom: &Atom) -> f64 {
+        let (x, start, spacing, count) = match *atom {
+            Atom::Line { x, start, spacing, count } => (x, start, spacing, count),
+            Atom::Point { x, y } => (x, y, 0.0, 1),
+        };
         let mut energy = 0.0;
         for end in 0..2 {
             let (mut sum, mut weight) = (Complex64::default(), 0.0);
-            for i in 0..atom.reflectors() {
-                let [x, y] = atom.position(i);
-                let (echo, amplitude) = self.echo(end, x, y);
-                sum += echo * amplitude;
-                weight += amplitude * amplitude;
+            for echo in self.echoes(end, x, start, spacing, count) {
+                sum += echo.weighted;
+                weight += echo.weight;
             }
             energy += sum.norm_sqr() / weight;
         }
@@ -198,6 +177,70 @@ impl LineDetector {
     }
 }
 
+/// A start of the coarse grid and the most that its score can be.
+#[derive(Debug, Clone, Copy)]
+struct Trial {
+    bound: f64,
+    weight: f64,
+    phase: usize,
+    start: usize,
+}
+
+/// What a reflector would have left at an end, its phase taken off.
+#[derive(Debug, Clone, Copy, Default)]
+struct Echo {
+    /// Value times the amplitude 1/R^2.
+    weighted: Complex64,
+    /// Square of the amplitude.
+    weight: f64,
+}
+
+/// Echoes of reflectors at equal x and equal spacing at one end.
+struct Column<'a> {
+    detector: &'a LineDetector,
+    end: usize,
+    x: f64,
+    start: f64,
+    spacing: f64,
+    echoes: &'a mut [Echo],
+}
+
+impl Kernel for Column<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        const W: usize = LANES_F64;
+        let LineDetector { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self.detector;
+        let beams = &self.detector.beams[self.end];
+        let dx = self.x - self.detector.centres[self.end];
+        for (first, echoes) in self.echoes.chunks_mut(W).enumerate() {
+            let y = Lanes::<f64, W>(std::array::from_fn(|i| self.start + (first * W + i) as f64 * self.spacing));
+            let range = (y * y + Lanes::splat(dx * dx)).sqrt().map(|r| if r > 0.05 { r } else { 0.05 });
+            let phase = phasor::<f64, W, FMA>(range * Lanes::splat(-turns_per_metre));
+            let amplitude = range.map(|r| 1.0 / (r * r));
+            for (lane, echo) in echoes.iter_mut().enumerate() {
+                let beam = &beams[beam_of_cos(dx / range.0[lane], BEAMS) * bins..][..bins];
+                let at = range.0[lane] * bins_per_metre;
+                let (low, part) = (at as usize, at.fract());
+                // Neighbouring rows differ by half a turn (the middle of the chirp): `new` already took that off.
+                let row = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
+                let value = row(low) * (1.0 - part) + row(low + 1) * part;
+                let amplitude = amplitude.0[lane];
+                let phase = Complex64::new(phase.re.0[lane], phase.im.0[lane]);
+                *echo = Echo { weighted: value * phase * amplitude, weight: amplitude * amplitude };
+            }
+        }
+    }
+}
+
+/// Row `k` of a beam beyond its last.
+#[cold]
+fn wrapped(beam: &[Complex64], k: usize, wrap_sign: f64) -> Complex64 {
+    let value = beam[k % beam.len()];
+    if (k / beam.len()) % 2 == 1 { value * wrap_sign } else { value }
+}
+
 /// Blocks of neighbouring points in one column of the grid as one end sees them, one for every first point.
 struct Blocks {
     /// Magnitude of each block's gain.
@@ -211,10 +254,9 @@ impl Blocks {
         let (mut sum, mut weight) = (Complex64::default(), 0.0);
         let mut prefix = Vec::with_capacity(points + 1);
         prefix.push((sum, weight));
-        for i in 0..points {
-            let (echo, amplitude) = detector.echo(end, x, offset + i as f64 * spacing);
-            sum += echo * amplitude;
-            weight += amplitude * amplitude;
+        for echo in detector.echoes(end, x, offset, spacing, points) {
+            sum += echo.weighted;
+            weight += echo.weight;
             prefix.push((sum, weight));
         }
         let first = 0..=points.saturating_sub(BLOCK);

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `atom` | the dictionary: one reflector, or a line of them |
 //! | `sensor` | what an atom leaves in the samples, and its derivatives |
+//! | `beams` | each end's plain beams |
 //! | `detect` | strongest cell of a residual, both ends registered |
 //! | `lines` | lines that a residual may hold |
 //! | `place` | one more atom at its best place |
@@ -17,6 +18,7 @@
 //! | `draw` | expected map of the objects found |
 
 mod atom;
+mod beams;
 mod detect;
 mod draw;
 mod finish;
@@ -32,12 +34,11 @@ pub use atom::Atom;
 pub use finish::Found;
 pub use search::{Settings, find};
 
+use super::rendering::silence;
 use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
-use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::{Floor, TwoEnds};
 use draw::{Noise, Weighted, expected_lambda};
-use ndarray::Array2;
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.89;
@@ -84,8 +85,7 @@ impl Found {
     /// The map of what was found, over the floor that `request` names.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
         if self.atoms.is_empty() {
-            let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
-            return Reconstruction { lambda, reflectors: Vec::new() };
+            return silence(radar);
         }
         let objects: Vec<Weighted> = self
             .atoms
@@ -98,7 +98,7 @@ impl Found {
             Floor::Exact => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
             Floor::Snr(_) => Noise::Variance(self.residual_variance),
         };
-        let lambda = expected_lambda(radar, &objects, noise, request.normalisation);
+        let lambda = expected_lambda(radar, &objects, noise, request);
         let reflectors = objects.iter().flat_map(|o| o.atom.object(o.reflectivity / self.scale).reflectors()).collect();
         Reconstruction { lambda, reflectors }
     }

@@ -4,10 +4,12 @@ use super::atom::Atom;
 use super::detect::Detector;
 use super::finish::{Found, finish};
 use super::fit::{Fit, Limits, Problem, Tie, energy};
-use super::place::{Placer, TABLE_SPACINGS_BINS};
+use super::place::{LINE_SHAPES, LineShape, Placer, wrapped};
 use super::sensor::Sensor;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar, hann};
+use crate::reconstruct::conditioning::{noise_variance, unit_gain};
+use crate::reconstruct::steering::{flatten, unflatten};
 use crate::reconstruct::{ReconstructError, Request};
 use crate::scene::Reflector;
 use crate::signal::floor::thesis_noise_variance;
@@ -49,12 +51,8 @@ impl Default for Settings {
 /// [`ReconstructError::Cancelled`] when the request was cancelled.
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
     let sensor = Sensor::new(radar);
-    let peak = ends.first.iter().chain(&ends.last).fold(0.0, |m: f64, v| m.max(v.re.abs().max(v.im.abs())));
-    if peak == 0.0 {
-        return Ok(Found::nothing());
-    }
-    let scale = peak.recip().min(f64::MAX);
-    let samples = sensor.flatten(ends, scale);
+    let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
+    let samples = flatten(&ends);
     let window = hann(radar.samples);
     let windowed: Vec<Complex64> = samples.iter().enumerate().map(|(i, v)| v * window[i % radar.samples]).collect();
     let search = Search {
@@ -95,8 +93,8 @@ impl Search<'_> {
         let mut best = self.problem().solve(&[], Tie::PerEnd);
         let long = self.longest_run() >= LONG_RUN_BINS;
         let points = (!long).then_some(None);
-        for spacing_bins in points.into_iter().chain(TABLE_SPACINGS_BINS.map(Some)) {
-            let trial = self.attempt(spacing_bins)?;
+        for shape in points.into_iter().chain(LINE_SHAPES.map(Some)) {
+            let trial = self.attempt(shape)?;
             if trial.cost < best.cost {
                 best = trial;
             }
@@ -108,42 +106,48 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// Greedy search and second thoughts, with points and lines of one spacing or with points alone.
-    fn attempt(&self, spacing_bins: Option<f64>) -> Result<Fit, ReconstructError> {
+    /// Greedy search and second thoughts, with points and lines of one shape or with points alone.
+    fn attempt(&self, shape: Option<LineShape>) -> Result<Fit, ReconstructError> {
         let start = energy(self.windowed);
-        let mut best = self.greedy(self.problem().solve(&[], Tie::PerEnd), spacing_bins)?;
-        let rounds = if spacing_bins.is_some() { 1 } else { self.settings.rounds };
+        let mut best = self.greedy(self.problem().solve(&[], Tie::PerEnd), shape)?;
+        let rounds = if shape.is_some() { 1 } else { self.settings.rounds };
         for _ in 0..rounds {
             if self.is_explained(&best) || best.cost > 1e-2 * start || best.atoms.is_empty() {
                 break;
             }
-            let pruned = self.pruned(best.clone())?;
-            let mut trial = self.split(&pruned)?;
+            let mut trial = self.straightened(self.pruned(best.clone())?)?;
             if !self.is_explained(&trial) {
-                trial = self.greedy(self.pruned(trial)?, None)?;
+                trial = self.unwrapped(trial)?;
+            }
+            if !self.is_explained(&trial) {
+                trial = self.split(&trial)?;
+            }
+            if !self.is_explained(&trial) {
+                trial = self.greedy(self.pruned(trial)?, shape)?;
             }
             if trial.cost >= 0.5 * best.cost {
                 break;
             }
             best = trial;
         }
-        self.pruned(best)
+        let best = self.pruned(best)?;
+        self.straightened(best)
     }
 
     /// Adds atoms until the residual is the floor, nothing stands out, or there are too many.
-    fn greedy(&self, mut fit: Fit, spacing_bins: Option<f64>) -> Result<Fit, ReconstructError> {
+    fn greedy(&self, mut fit: Fit, shape: Option<LineShape>) -> Result<Fit, ReconstructError> {
         let start = energy(self.windowed);
         let mut lines_missed = 0;
         while !self.is_explained(&fit) && fit.atoms.len() < self.settings.most_atoms {
             self.request.task.check()?;
             let residual = self.unwindowed(&fit);
-            let strongest = self.detector.strongest(self.radar, self.sensor, &residual);
+            let strongest = self.detector.strongest(self.radar, &residual);
             let Some(candidate) = strongest.filter(|c| c.prominence >= self.settings.least_prominence) else { break };
             let placer = Placer { radar: self.radar, problem: Problem { samples: &fit.residual, ..self.problem() } };
             let mut placed = placer.point(&candidate);
             // A point that leaves next to nothing needs no line beside it.
-            if let Some(bins) = spacing_bins.filter(|_| lines_missed < 2 && placed.cost > 0.1 * fit.cost) {
-                let line = placer.line(&residual, bins);
+            if let Some(shape) = shape.filter(|_| lines_missed < 2 && placed.cost > 0.1 * fit.cost) {
+                let line = placer.line(&residual, shape);
                 match line.filter(|line| line.cost < placed.cost) {
                     Some(line) => (placed, lines_missed) = (line, 0),
                     None => lines_missed += 1,
@@ -211,6 +215,56 @@ impl Search<'_> {
         Ok(self.together(best.atoms))
     }
 
+    /// Every line slid once more, now that the other objects are known, and without the points that patch its ends: a line found
+    /// one point too far along leaves a missing and a surplus point, which then are found as points of opposite sign.
+    fn straightened(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        let mut i = 0;
+        while i < fit.atoms.len() {
+            self.request.task.check()?;
+            let on_line: Vec<bool> = fit.atoms.iter().map(|atom| patches(&fit.atoms[i], atom)).collect();
+            if matches!(fit.atoms[i], Atom::Line { .. }) && (on_line.contains(&true) || !self.is_explained(&fit)) {
+                let others = |j: usize| j != i && !on_line[j];
+                let residual = self.residual(&fit, others, self.windowed, self.window);
+                let placer = Placer { radar: self.radar, problem: Problem { samples: &residual, ..self.problem() } };
+                let slid = placer.slid(placer.stretched(fit.atoms[i])).atoms;
+                let kept = |range: std::ops::Range<usize>| range.filter(|j| others(*j)).map(|j| fit.atoms[j]);
+                let atoms: Vec<Atom> = kept(0..i).chain(slid).chain(kept(i + 1..fit.atoms.len())).collect();
+                let place = kept(0..i).count();
+                let trial = self.together(atoms);
+                if self.is_explained(&trial) || trial.cost < fit.cost {
+                    (fit, i) = (trial, place);
+                }
+            }
+            i += 1;
+        }
+        Ok(fit)
+    }
+
+    /// Points tried one wrap of the range further out or nearer, without the points beside them: near the array's axis the ends hardly
+    /// tell the two apart, and several points in the wrong place make up for one in the right.
+    fn unwrapped(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        let mut best = fit.clone();
+        for atom in &fit.atoms {
+            self.request.task.check()?;
+            let Atom::Point { x, y } = *atom else { continue };
+            let range = x.hypot(y);
+            let beside = |other: &Atom| match *other {
+                Atom::Point { x, y } => (x.hypot(y) - range).abs() < BESIDE_METRES,
+                Atom::Line { .. } => false,
+            };
+            let mut atoms: Vec<Atom> = fit.atoms.iter().copied().filter(|other| !beside(other)).collect();
+            atoms.push(wrapped(x, y, self.radar.max_range_metres()));
+            let trial = self.together(atoms);
+            if trial.cost < best.cost {
+                best = trial;
+            }
+            if self.is_explained(&best) {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
     /// Whether the residual is what the floor alone would leave.
     fn is_explained(&self, fit: &Fit) -> bool {
         match self.request.floor {
@@ -222,7 +276,7 @@ impl Search<'_> {
     /// Whether a cell of the residual stands out of it.
     fn stands_out(&self, fit: &Fit) -> bool {
         let residual = self.unwindowed(fit);
-        let strongest = self.detector.strongest(self.radar, self.sensor, &residual);
+        let strongest = self.detector.strongest(self.radar, &residual);
         strongest.is_some_and(|c| c.prominence >= self.settings.least_prominence)
     }
 
@@ -242,34 +296,59 @@ impl Search<'_> {
         rounding + window * End::BOTH.map(of_end).iter().sum::<f64>()
     }
 
-    /// Most neighbouring range bins with an echo at either end, 60 dB below the strongest, ranges evened out by the 1/R^2 law.
+    /// Most neighbouring range bins with an echo at either end: above the noise, and no more than 60 dB below the strongest when
+    /// ranges are evened out by the 1/R^2 law.
     fn longest_run(&self) -> usize {
-        let ends = self.sensor.unflatten(self.samples);
+        let ends = unflatten(self.radar, self.samples);
+        let weights = self.radar.window.weights(self.radar.samples);
+        let window = weights.iter().map(|w| w * w).sum::<f64>() / self.radar.samples as f64;
+        let channels = End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter());
+        let noise = window * self.radar.end_elements as f64 * noise_variance(self.radar, channels);
         let run_of = |end| {
             let profiles = channels_range_transform(self.radar, ends.end(end).view()).profiles;
-            let power = |bin: usize| {
-                let power: f64 = profiles.column(bin).iter().map(Complex64::norm_sqr).sum();
-                power * (bin as f64 + 10.0).powi(4)
-            };
+            let even = |bin: usize| (bin as f64 + 10.0).powi(4);
+            let power = |bin: usize| profiles.column(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
             let powers: Vec<f64> = (0..self.radar.samples).map(power).collect();
-            let least = 1e-6 * powers.iter().copied().fold(0.0, f64::max);
-            powers.split(|p| *p < least).map(<[f64]>::len).max().unwrap_or(0)
+            let strongest = powers.iter().enumerate().map(|(bin, p)| p * even(bin)).fold(0.0, f64::max);
+            let is_echo = |bin: usize| powers[bin] > 4.0 * noise && powers[bin] * even(bin) >= 1e-6 * strongest;
+            let echoes: Vec<bool> = (0..powers.len()).map(is_echo).collect();
+            echoes.split(|echo| !*echo).map(<[bool]>::len).max().unwrap_or(0)
         };
         End::BOTH.map(run_of).into_iter().max().unwrap_or(0)
     }
 
     /// The residual without the window, of the atoms and gains of `fit`.
     fn unwindowed(&self, fit: &Fit) -> Vec<Complex64> {
-        let mut residual = self.samples.to_vec();
-        let ones = vec![1.0; self.radar.samples];
+        self.residual(fit, |_| true, self.samples, &vec![1.0; self.radar.samples])
+    }
+
+    /// `samples` less those atoms of `fit` that are `taken`, each with its gains and times `window`.
+    fn residual(
+        &self,
+        fit: &Fit,
+        taken: impl Fn(usize) -> bool,
+        samples: &[Complex64],
+        window: &[f64],
+    ) -> Vec<Complex64> {
+        let mut residual = samples.to_vec();
         let mut column = vec![Complex64::default(); self.sensor.sample_count()];
-        for (atom, gains) in fit.atoms.iter().zip(&fit.gains) {
-            column.fill(Complex64::default());
-            self.sensor.add_atom(atom, &ones, &mut [&mut column]);
+        for (_, (atom, gains)) in fit.atoms.iter().zip(&fit.gains).enumerate().filter(|(i, _)| taken(*i)) {
+            self.sensor.fill_atom(atom, window, &mut [&mut column]);
             for (i, (r, v)) in residual.iter_mut().zip(&column).enumerate() {
                 *r -= v * gains[i / self.sensor.end_len()];
             }
         }
         residual
     }
+}
+
+/// Points this much nearer or further than another, metres, are beside it.
+const BESIDE_METRES: f64 = 1.0;
+
+/// Whether `atom` is a point on `line` or just beyond its ends.
+fn patches(line: &Atom, atom: &Atom) -> bool {
+    let (Atom::Line { x, start, spacing, count }, Atom::Point { x: point_x, y }) = (*line, *atom) else { return false };
+    let beyond = 10.0 * spacing.abs();
+    let end = start + count as f64 * spacing;
+    (point_x - x).abs() < 0.05 && (start.min(end) - beyond..=start.max(end) + beyond).contains(&y)
 }

@@ -3,16 +3,21 @@
 use super::atom::Atom;
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
-use crate::signal::TwoEnds;
 use crate::signal::phase::EchoModel;
+use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
+use crate::signal::split::{CHUNK, Factors, STRIDE, add_product, fill_factors};
 use num_complex::Complex64;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// Samples whose phasors share one coarse phasor; the fine ones are computed once for a channel.
-const FINE: usize = 16;
 
 /// Nearest a reflector may come to an element in a fit, metres: keeps a wandering step finite.
 const NEAREST_METRES: f64 = 1e-3;
+
+/// Channels evaluated together, one lane each.
+const W: usize = LANES_F64;
+
+/// Reflectors from which on an atom is worth more than one thread.
+const MANY_REFLECTORS: usize = 16;
 
 /// Geometry and constants of both ends. A vector over all samples of both ends is laid out channel by channel, first end first.
 #[derive(Debug, Clone)]
@@ -52,92 +57,121 @@ impl Sensor {
         TAU / self.carrier_radians_per_metre.abs()
     }
 
+    /// Phase of sample `n` for each metre of distance.
+    #[inline(always)]
+    fn radians_per_metre(&self, n: f64) -> f64 {
+        self.carrier_radians_per_metre + self.beat_radians_per_metre * n
+    }
+
     /// Samples of one end.
     pub fn end_len(&self) -> usize {
         self.end_elements * self.samples
     }
 
-    /// Lays the samples out as one vector and scales them by `scale`.
-    pub fn flatten(&self, ends: &TwoEnds, scale: f64) -> Vec<Complex64> {
-        ends.first.iter().chain(ends.last.iter()).map(|v| v * scale).collect()
-    }
-
-    /// The inverse of [`Sensor::flatten`] with scale 1.
-    pub fn unflatten(&self, samples: &[Complex64]) -> TwoEnds {
-        let shape = (self.end_elements, self.samples);
-        let end = |part: &[Complex64]| ndarray::Array2::from_shape_fn(shape, |(c, n)| part[c * self.samples + n]);
-        TwoEnds { first: end(&samples[..self.end_len()]), last: end(&samples[self.end_len()..]) }
-    }
-
     /// What `atom` with gain 1 leaves in every sample, times `window`; and its derivatives by the atom's parameters.
     ///
-    /// `columns` holds 1 slice for the samples alone, or 1 + [`Atom::parameters`] of them, each of [`Sensor::sample_count`] zeros.
-    pub fn add_atom(&self, atom: &Atom, window: &[f64], columns: &mut [&mut [Complex64]]) {
-        let Some((value, derivatives)) = columns.split_first_mut() else { return };
-        for (channel, &element_x) in self.element_x.iter().enumerate() {
-            let rows = channel * self.samples..(channel + 1) * self.samples;
-            if derivatives.is_empty() {
-                self.add_echoes(atom, element_x, &mut value[rows], |s, n, _, _| s * window[n]);
-                continue;
+    /// `columns` holds 1 slice for the samples alone, or 1 + [`Atom::parameters`] of them, each of [`Sensor::sample_count`].
+    /// Derivatives are good to about 1e-6 of their size: they only point the way.
+    pub fn fill_atom(&self, atom: &Atom, window: &[f64], columns: &mut [&mut [Complex64]]) {
+        let mut blocks: Vec<Block> =
+            self.element_x.chunks(W).map(|xs| Block { sensor: self, atom, window, xs, columns: Vec::new() }).collect();
+        for column in columns {
+            for (block, part) in blocks.iter_mut().zip(column.chunks_mut(W * self.samples)) {
+                block.columns.push(part);
             }
-            self.add_echoes(atom, element_x, &mut value[rows.clone()], |s, n, i, to| {
-                let s = s * window[n];
-                let rate = self.carrier_radians_per_metre + self.beat_radians_per_metre * n as f64;
-                let by_distance = s * Complex64::new(-2.0 / to.distance, rate);
-                for (k, d) in derivatives.iter_mut().enumerate() {
-                    let [sx, sy] = atom.share(i, k);
-                    d[rows.start + n] += by_distance * ((to.dx * sx + to.y * sy) / to.distance);
-                }
-                s
-            });
         }
-    }
-
-    /// Adds `atom` with gain `gain` to the samples of one element anywhere on the array.
-    pub fn add_channel(&self, atom: &Atom, gain: f64, element_x: f64, row: &mut [Complex64]) {
-        self.add_echoes(atom, element_x, row, |s, _, _, _| s * gain);
-    }
-
-    /// Adds `of(echo, sample, reflector, direction)` to every sample of one element, reflector by reflector.
-    #[inline(always)]
-    fn add_echoes(
-        &self,
-        atom: &Atom,
-        element_x: f64,
-        row: &mut [Complex64],
-        mut of: impl FnMut(Complex64, usize, usize, Direction) -> Complex64,
-    ) {
-        let mut fine = [Complex64::default(); FINE];
-        for i in 0..atom.reflectors() {
-            let [x, y] = atom.position(i);
-            let dx = x - element_x;
-            let y = if dx.hypot(y) < NEAREST_METRES { NEAREST_METRES } else { y };
-            let echo = self.model.echo(element_x, &Reflector { x_metres: x, y_metres: y, reflectivity: 1.0 });
-            let to = Direction { dx, y, distance: echo.distance_metres };
-            for (b, f) in fine.iter_mut().enumerate() {
-                *f = Complex64::cis(TAU * echo.beat_turns * b as f64);
-            }
-            for (a, part) in row.chunks_mut(FINE).enumerate() {
-                let coarse = Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(a * FINE));
-                for (b, (sample, fine)) in part.iter_mut().zip(&fine).enumerate() {
-                    *sample += of(coarse * fine, a * FINE + b, i, to);
-                }
-            }
+        if atom.reflectors() < MANY_REFLECTORS {
+            blocks.into_iter().for_each(|block| Simd::best().run(block));
+        } else {
+            blocks.into_par_iter().for_each(|block| Simd::best().run(block));
         }
     }
 }
 
-/// Where a reflector lies as seen from an element, metres.
-#[derive(Debug, Clone, Copy)]
+/// An atom at a few neighbouring channels.
+struct Block<'a> {
+    sensor: &'a Sensor,
+    atom: &'a Atom,
+    window: &'a [f64],
+    /// Where the elements stand; at most `W`.
+    xs: &'a [f64],
+    /// Room for the samples and their derivatives, channel by channel.
+    columns: Vec<&'a mut [Complex64]>,
+}
+
+/// Where a reflector lies as seen from each element, metres.
+#[derive(Clone, Copy)]
 struct Direction {
-    dx: f64,
-    y: f64,
-    distance: f64,
+    dx: Lanes<f64, W>,
+    distance: Lanes<f64, W>,
+}
+
+impl Kernel for Block<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(mut self) {
+        let sensor = self.sensor;
+        let last = self.xs.len() - 1;
+        let element_x = Lanes(std::array::from_fn(|lane| self.xs[lane.min(last)]));
+        let mut factors = vec![Factors::<f64, W>::new(sensor.samples); CHUNK.min(self.atom.reflectors())];
+        let rows = factors.first().map_or(0, |f| f.rows.len());
+        let mut sums = vec![vec![ComplexLanes::zero(); rows * STRIDE]; self.columns.len()];
+        let mut plain = vec![vec![ComplexLanes::zero(); rows]; factors.len()];
+        let mut directions = [Direction { dx: Lanes::splat(0.0), distance: Lanes::splat(1.0) }; CHUNK];
+        for first in (0..self.atom.reflectors()).step_by(CHUNK) {
+            let count = CHUNK.min(self.atom.reflectors() - first);
+            let factors = &mut factors[..count];
+            for (i, f) in factors.iter_mut().enumerate() {
+                let [x, y] = self.atom.position(first + i);
+                let dx = Lanes::splat(x) - element_x;
+                let nearest = dx.0.iter().fold(f64::INFINITY, |m, d| m.min(d.abs()));
+                let y = if nearest.hypot(y) < NEAREST_METRES { NEAREST_METRES } else { y };
+                let reflector = Reflector { x_metres: x, y_metres: y, reflectivity: 1.0 };
+                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &reflector, f);
+                directions[i] = Direction { dx, distance: (dx * dx + Lanes::splat(y * y)).sqrt() };
+            }
+            add_product::<f64, W, FMA>(factors, &mut sums[0]);
+            if self.columns.len() == 1 {
+                continue;
+            }
+            for (plain, f) in plain.iter_mut().zip(factors.iter()) {
+                plain.copy_from_slice(&f.rows);
+            }
+            for (k, sum) in sums[1..].iter_mut().enumerate() {
+                for (i, f) in factors.iter_mut().enumerate() {
+                    let to = directions[i];
+                    let [by_x, by_half_square] = self.atom.share(first + i, k);
+                    let along = to.dx * Lanes::splat(by_x) + Lanes::splat(by_half_square);
+                    let along = along.zip(to.distance, |a, b| a / b);
+                    for (a, (row, plain)) in f.rows.iter_mut().zip(&plain[i]).enumerate() {
+                        // By the distance R, an echo changes by j rate - 2/R of itself: `rate` is common to all reflectors and
+                        // comes last, what is left changes little within a row.
+                        let rate = sensor.radians_per_metre((a * STRIDE + STRIDE / 2) as f64);
+                        let decay = to.distance.map(|r| 2.0 / (r * rate));
+                        let change = ComplexLanes { re: along, im: along * decay };
+                        *row = plain.times::<FMA>(change);
+                    }
+                }
+                add_product::<f64, W, FMA>(factors, sum);
+            }
+        }
+        for (k, (sum, column)) in sums.iter().zip(&mut self.columns).enumerate() {
+            for (lane, channel) in column.chunks_mut(sensor.samples).enumerate() {
+                for (n, ((out, v), w)) in channel.iter_mut().zip(sum).zip(self.window).enumerate() {
+                    let (re, im) = (v.re.0[lane] * w, v.im.0[lane] * w);
+                    let rate = sensor.radians_per_metre(n as f64);
+                    *out = if k == 0 { Complex64::new(re, im) } else { Complex64::new(-im * rate, re * rate) };
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reconstruct::steering::{flatten, unflatten};
     use crate::scene::{Line, Object, Scene};
     use crate::signal::exact;
 
@@ -151,13 +185,13 @@ mod tests {
         let mut value = vec![Complex64::default(); sensor.sample_count()];
         let ones = vec![1.0; sensor.samples];
         let atom = Atom::Line { x: 12.0, start: 3.0, spacing: 0.11, count: 7 };
-        sensor.add_atom(&atom, &ones, &mut [&mut value]);
-        let expected = sensor.flatten(&ends, 1.0);
+        sensor.fill_atom(&atom, &ones, &mut [&mut value]);
+        let expected = flatten(&ends);
         let peak = expected.iter().fold(0.0, |m: f64, v| m.max(v.norm()));
         for (a, b) in value.iter().zip(&expected) {
             assert!((a - b).norm() < 1e-13 * peak);
         }
-        assert_eq!(sensor.unflatten(&expected), ends);
+        assert_eq!(unflatten(&radar, &expected), ends);
     }
 
     #[test]
@@ -166,13 +200,13 @@ mod tests {
         let ones = vec![1.0; sensor.samples];
         let value_of = |atom: Atom| {
             let mut v = vec![Complex64::default(); sensor.sample_count()];
-            sensor.add_atom(&atom, &ones, &mut [&mut v]);
+            sensor.fill_atom(&atom, &ones, &mut [&mut v]);
             v
         };
         for atom in [Atom::Point { x: 3.0, y: 8.0 }, Atom::Line { x: -4.0, start: 2.0, spacing: 0.1, count: 5 }] {
             let p = atom.parameters();
             let mut columns = vec![vec![Complex64::default(); sensor.sample_count()]; p + 1];
-            sensor.add_atom(&atom, &ones, &mut columns.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
+            sensor.fill_atom(&atom, &ones, &mut columns.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
             for k in 0..p {
                 let h = 1e-7;
                 let mut step = vec![0.0; p];

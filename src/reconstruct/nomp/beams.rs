@@ -1,0 +1,41 @@
+//! Plain beams of each end over range: where both detectors look first.
+
+use crate::maps::channels_range_transform;
+use crate::radar::{End, Radar};
+use crate::reconstruct::steering::unflatten;
+use ndarray::Array2;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// `count` beams of each end, evenly spaced in cos(theta), of `samples` laid out channel by channel: `[beam, range bin]` for each
+/// end, phases referred to the middle of the end.
+pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<Complex64>; 2] {
+    let ends = unflatten(radar, samples);
+    let radians_per_element =
+        -TAU * radar.carrier.turns_per_wavelength() * radar.element_spacing_metres / radar.wavelength_metres();
+    End::BOTH.map(|end| {
+        let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
+        let middle = (profiles.nrows() as f64 - 1.0) / 2.0;
+        let mut beams = Array2::zeros((count, radar.samples));
+        beams.outer_iter_mut().into_par_iter().enumerate().for_each(|(beam, mut row)| {
+            for (n, profile) in profiles.outer_iter().enumerate() {
+                let steer = Complex64::cis(-radians_per_element * cos_of_beam(beam, count) * (n as f64 - middle));
+                row.zip_mut_with(&profile, |sum, p| *sum += steer * p);
+            }
+        });
+        beams
+    })
+}
+
+/// cos(theta) of the middle of a beam.
+fn cos_of_beam(beam: usize, count: usize) -> f64 {
+    (beam as f64 + 0.5) / count as f64 * 2.0 - 1.0
+}
+
+/// The beam, of `count`, in whose part of cos(theta) this cosine falls.
+#[inline(always)]
+pub fn beam_of_cos(cos: f64, count: usize) -> usize {
+    // A float cast saturates: what lies below -1 is the first beam.
+    (((cos + 1.0) * (0.5 * count as f64)) as usize).min(count - 1)
+}
