@@ -5,8 +5,11 @@
 
 mod arguments;
 mod bench;
+mod bounds;
 mod error;
 mod evaluate;
+mod figure;
+mod layouts;
 mod maps;
 mod open;
 mod output;
@@ -39,7 +42,9 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Bench(bench::Args),
+    Bounds(bounds::Args),
     Evaluate(evaluate::Args),
+    Layouts(layouts::Args),
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
     Scenes(scenes::Args),
@@ -51,7 +56,9 @@ impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
             Command::Bench(args) => args.run(),
+            Command::Bounds(args) => args.run(),
             Command::Evaluate(args) => args.run(),
+            Command::Layouts(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
             Command::Scenes(args) => args.run(),

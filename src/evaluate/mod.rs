@@ -3,8 +3,10 @@
 pub mod campaign;
 pub mod front;
 mod metrics;
+mod placement;
 mod roc;
 pub mod tables;
 
 pub use metrics::{Metrics, TARGET_ETA, detection_rates, squared_error};
+pub use placement::{Placement, placement};
 pub use roc::{Roc, RocPoint};

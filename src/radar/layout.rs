@@ -1,6 +1,7 @@
 //! Where the elements of a line array stand: the whole array, its two ends, random places, or the virtual elements of a MIMO radar.
 
 use super::{End, Radar};
+use ndarray::{Array2, Axis};
 use rand::SeedableRng;
 use rand::seq::index;
 use rand_chacha::ChaCha8Rng;
@@ -61,6 +62,19 @@ impl Layout {
 
     fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
         Layout { x_metres: elements.into_iter().map(|n| radar.element_x_metres(n)).collect() }
+    }
+
+    /// The rows of `samples`, `[elements of radar, samples]`, that this layout hears; `None` where one of its elements stands
+    /// between those of `radar`, or beside them.
+    pub fn samples_of<T: Clone>(&self, radar: &Radar, samples: &Array2<T>) -> Option<Array2<T>> {
+        let spacing = radar.element_spacing_metres;
+        let element = |x: &f64| {
+            let n = (x - radar.element_x_metres(0)) / spacing;
+            let on_grid = (n - n.round()).abs() < 1e-6 && (-0.5..samples.nrows() as f64 - 0.5).contains(&n);
+            on_grid.then_some(n.round() as usize)
+        };
+        let elements: Option<Vec<usize>> = self.x_metres.iter().map(element).collect();
+        Some(samples.select(Axis(0), &elements?))
     }
 
     /// Number of elements.
@@ -163,6 +177,20 @@ mod tests {
         assert_eq!(Layout::random(&radar, 1, 7).unwrap().len(), 1);
         assert!(Layout::random(&radar, 0, 7).unwrap_err().to_string().contains("1 to 1024"));
         assert!(Layout::random(&radar, 1025, 7).is_err());
+    }
+
+    #[test]
+    fn a_layout_hears_its_own_rows() {
+        let radar = Radar::default();
+        let numbered = Array2::from_shape_fn((1024, 2), |(n, _)| n);
+        let heard = Layout::two_ends(&radar).samples_of(&radar, &numbered).unwrap();
+        assert_eq!((heard.dim(), heard[[11, 0]], heard[[12, 1]]), ((24, 2), 11, 1012));
+        assert_eq!(
+            Layout { x_metres: vec![0.0] }.samples_of(&radar, &numbered),
+            None,
+            "the centre lies between elements"
+        );
+        assert_eq!(Layout { x_metres: vec![2.0] }.samples_of(&radar, &numbered), None, "beyond the last");
     }
 
     #[test]

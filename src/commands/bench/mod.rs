@@ -1,6 +1,7 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
 mod chart;
+mod methods;
 
 use super::{CommandError, print};
 use crate::evaluate::front::{self, Front, FrontRequest};
@@ -34,6 +35,15 @@ pub struct Args {
     /// Our NumPy script (benches/numpy_maps.py), run beside; left out where there is no Python with NumPy
     #[arg(long, value_name = "FILE")]
     numpy: Option<PathBuf>,
+
+    /// Measure every reconstruction method instead, run time against squared error, and the hybrid on crowds; draws methods.svg
+    /// and methods.png
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "numpy"])]
+    methods: bool,
+
+    /// Test scenes of each set, with --methods
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "methods", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    count: u32,
 }
 
 #[derive(serde::Serialize)]
@@ -47,6 +57,9 @@ struct Report<'a> {
 impl Args {
     /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
+        if self.methods {
+            return methods::run(self.count, self.json, self.output.as_deref());
+        }
         let request = FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), self.repeats as usize);
         let bar = indicatif::ProgressBar::new(1000);
         let front =

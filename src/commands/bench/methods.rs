@@ -1,0 +1,213 @@
+//! `apertura bench --methods`: run time against squared error of every reconstruction method, and the hybrid's time for crowds.
+
+use super::CommandError;
+use crate::commands::figure::{Drawn, Figure, save};
+use crate::commands::print;
+use crate::evaluate::campaign::Campaign;
+use crate::evaluate::squared_error;
+use crate::evaluate::tables::Estimate;
+use crate::maps::LogMaps;
+use crate::methods;
+use crate::radar::Radar;
+use crate::reconstruct::{Reconstructor, Request, Task};
+use crate::scene::Scene;
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::simulate;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
+
+/// What was measured.
+#[derive(Debug, Serialize)]
+struct Report {
+    threads: usize,
+    /// Test scenes of each set.
+    scenes: u32,
+    methods: Vec<MethodRow>,
+    crowds: Vec<Crowd>,
+}
+
+/// One method over all three sets.
+#[derive(Debug, Serialize)]
+struct MethodRow {
+    method: &'static str,
+    /// By set.
+    squared_error: [Estimate; 3],
+    /// By set.
+    median_milliseconds: [f64; 3],
+}
+
+impl MethodRow {
+    /// Mean over the sets: milliseconds, SE.
+    fn mean(&self) -> (f64, f64) {
+        let error = self.squared_error.iter().map(|e| e.mean).sum::<f64>() / 3.0;
+        (self.median_milliseconds.iter().sum::<f64>() / 3.0, error)
+    }
+}
+
+/// The hybrid on scenes of many reflectors.
+#[derive(Debug, Serialize)]
+struct Crowd {
+    reflectors: usize,
+    what: &'static str,
+    scenes: u32,
+    median_milliseconds: f64,
+    worst_milliseconds: f64,
+    squared_error: Estimate,
+}
+
+/// Measures on `count` test scenes of each set, prints, and draws `methods.svg` and `methods.png` into `output`.
+pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
+    let all = methods::all();
+    let bar = indicatif::ProgressBar::new(u64::from(count) * (3 * all.len() as u64 + 2));
+    let report = Report {
+        threads: rayon::current_num_threads(),
+        scenes: count,
+        methods: method_rows(count, &all.iter().map(AsRef::as_ref).collect::<Vec<_>>(), || bar.inc(1))?,
+        crowds: vec![
+            crowd(count, Kind::Points(10), 10, "points", || bar.inc(1))?,
+            crowd(count, Kind::Mixed(4), 300, "four lines of 75", || bar.inc(1))?,
+        ],
+    };
+    bar.finish_and_clear();
+    if let Some(folder) = output {
+        save(&report, folder, "methods")?;
+    }
+    if json {
+        return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+    }
+    print(&format!(
+        "{count} test scenes a set, {} threads\n{:26} {:>24} {:>24}",
+        report.threads, "method", "SE, set 1 / 2 / 3", "ms a map, set 1 / 2 / 3"
+    ))?;
+    for row in &report.methods {
+        let [a, b, c] = row.squared_error.map(|e| e.mean);
+        let [t, u, v] = row.median_milliseconds;
+        let errors = format!("{a:.0} / {b:.0} / {c:.0}");
+        print(&format!("{:26} {errors:>24} {:>24}", row.method, format!("{t:.0} / {u:.0} / {v:.0}")))?;
+    }
+    for c in &report.crowds {
+        print(&format!(
+            "hybrid, {} reflectors ({}): {:.0} ms a map, {:.0} ms at worst, SE {:.0} ± {:.0} ({} scenes)",
+            c.reflectors,
+            c.what,
+            c.median_milliseconds,
+            c.worst_milliseconds,
+            c.squared_error.mean,
+            c.squared_error.standard_error,
+            c.scenes
+        ))?;
+    }
+    Ok(())
+}
+
+fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {
+    let campaign = Campaign { count, ..Campaign::default() };
+    let [one, two, three] = Kind::TEST_SETS;
+    let run = |kind| campaign.run(kind, methods, &Task::default(), &on_map).map_err(CommandError::failed);
+    let sets = [run(one)?, run(two)?, run(three)?];
+    let row = |(i, method): (usize, &&dyn Reconstructor)| MethodRow {
+        method: method.name(),
+        squared_error: [0, 1, 2].map(|set| sets[set][i].squared_error()),
+        median_milliseconds: [0, 1, 2].map(|set| sets[set][i].median_milliseconds()),
+    };
+    Ok(methods.iter().enumerate().map(row).collect())
+}
+
+/// The hybrid on the first `count` test scenes of `kind` that hold `reflectors` reflectors.
+fn crowd(
+    count: u32,
+    kind: Kind,
+    reflectors: usize,
+    what: &'static str,
+    on_map: impl Fn(),
+) -> Result<Crowd, CommandError> {
+    let hybrid = methods::by_name("hybrid").map_err(CommandError::failed)?;
+    let (radar, request) = (Radar::default(), Request::default());
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
+    let scenes = (0..).map(|number| generator.scene(kind, number)).filter(|s| s.reflector_count() == reflectors);
+    let (mut times, mut errors) = (Vec::new(), Vec::new());
+    for scene in scenes.take(count as usize) {
+        let (milliseconds, error) = timed(&radar, &scene, &*hybrid, &request)?;
+        times.push(milliseconds);
+        errors.push(error);
+        on_map();
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(Crowd {
+        reflectors,
+        what,
+        scenes: count,
+        median_milliseconds: times[times.len() / 2],
+        worst_milliseconds: times[times.len() - 1],
+        squared_error: Estimate::of(&errors),
+    })
+}
+
+/// Milliseconds and SE of one map.
+fn timed(
+    radar: &Radar,
+    scene: &Scene,
+    method: &dyn Reconstructor,
+    request: &Request,
+) -> Result<(f64, f64), CommandError> {
+    let signal = simulate(radar, scene, request.floor, 0).map_err(CommandError::failed)?;
+    let target = LogMaps::of_signal(radar, &signal).full.normalise(request.normalisation);
+    let ends = signal.two_ends(radar);
+    let start = Instant::now();
+    let found = method.reconstruct(radar, &ends, request).map_err(CommandError::failed)?;
+    let milliseconds = 1e3 * start.elapsed().as_secs_f64();
+    Ok((milliseconds, squared_error(&target, &found.lambda)))
+}
+
+/// Height of a name on the chart, pixels.
+const LABEL: i32 = 15;
+
+impl Figure for Report {
+    fn size(&self) -> (u32, u32) {
+        (1000, 640)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+        let dots: Vec<(f64, f64)> = self.methods.iter().map(MethodRow::mean).collect();
+        let span = |values: &mut dyn Iterator<Item = f64>| {
+            let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
+            (low / 1.7, high * 1.7)
+        };
+        let (fast, slow) = span(&mut dots.iter().map(|d| d.0));
+        let (good, bad) = span(&mut dots.iter().map(|d| d.1));
+        let mut chart = ChartBuilder::on(area)
+            .caption("Reconstruction from the two ends: run time against error", ("sans-serif", 22))
+            .margin(14)
+            .margin_right(40)
+            .x_label_area_size(46)
+            .y_label_area_size(70)
+            // Room on the right for the names of the slowest.
+            .build_cartesian_2d((fast..slow * 3.0).log_scale(), (good..bad).log_scale())?;
+        chart
+            .configure_mesh()
+            .x_desc(format!("median time of a map on {} threads, ms", self.threads))
+            .y_desc(format!("SE, mean over the three test sets ({} scenes each)", self.scenes))
+            .x_label_formatter(&|v| format!("{v}"))
+            .y_label_formatter(&|v| format!("{v}"))
+            .draw()?;
+        // Names stand beside their dots, moved down where they would cover one another.
+        let mut rows: Vec<(&str, (f64, f64))> = self.methods.iter().map(|m| m.method).zip(dots).collect();
+        rows.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
+        let mut taken: Vec<(i32, i32)> = Vec::new();
+        for (i, (name, dot)) in rows.into_iter().enumerate() {
+            let colour = Palette99::pick(i).to_rgba();
+            chart.draw_series([Circle::new(dot, 5, colour.filled())])?;
+            let at = chart.backend_coord(&dot);
+            let (left, mut top) = (at.0 + 9, at.1 - LABEL / 2);
+            while taken.iter().any(|(x, y)| (x - left).abs() < 190 && (y - top).abs() < LABEL) {
+                top += LABEL;
+            }
+            taken.push((left, top));
+            area.draw(&Text::new(name, (left, top), ("sans-serif", 14).into_font().color(&colour)))?;
+        }
+        Ok(())
+    }
+}

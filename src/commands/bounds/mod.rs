@@ -1,0 +1,303 @@
+//! `apertura bounds`: what no estimator can beat, for any element layout.
+
+mod chart;
+
+use super::figure::{save, save_bitmap};
+use super::{CommandError, print};
+use crate::bounds::{Ambiguity, Lobes, PositionBound, ambiguity, cramer_rao, cut, lobes, noise_variance};
+use crate::evaluate::{Placement, placement};
+use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
+use crate::reconstruct::Task;
+use crate::scene::Reflector;
+use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Bound the error of any position estimate, and show which places sound alike, for several element layouts
+///
+/// Prints the Cramer-Rao bound of one reflector, alone and with a second one beside it, and the lobes of the ambiguity function along
+/// cos(theta). Angles are in columns of the whole array's map, 1/512 of cos(theta). With -o DIR the bound is drawn to bounds.svg and
+/// the ambiguity function over range and cos(theta) to ambiguity.png; with --monte-carlo the errors that the Newton search makes to
+/// monte-carlo.svg.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Layouts: full, two-ends, one-end, random=N, random=N:SEED, mimo=TxR
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_value = "two-ends,one-end,random=24,mimo=3x4,full"
+    )]
+    layout: Vec<LayoutKind>,
+
+    /// Place of the reflector, metres along the array and ahead of it
+    #[arg(long, value_name = "X,Y", default_value = "5,18", value_parser = place, allow_hyphen_values = true)]
+    at: Place,
+
+    /// Columns from there to the second reflector, at the same range
+    #[arg(long, value_name = "COLUMNS", default_value_t = 8.0, value_parser = apart, allow_hyphen_values = true)]
+    apart: f64,
+
+    /// Signal-to-noise ratios a sample, dB
+    #[arg(long, value_name = "DB,..", value_delimiter = ',', default_value = "-10,-5,0,5,10,20,30,40", value_parser = decibels,
+          allow_hyphen_values = true)]
+    snr: Vec<Decibels>,
+
+    /// Also let the Newton search place the reflector in this many draws of noise at every ratio
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    monte_carlo: Option<u64>,
+
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
+
+    /// Folder for the pictures; made where it is missing
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// A place before the radar.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    x_metres: f64,
+    y_metres: f64,
+}
+
+fn place(text: &str) -> Result<Place, String> {
+    let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    match parsed {
+        Some((x_metres, y_metres)) if f64::is_finite(x_metres) && f64::is_finite(y_metres) && y_metres > 0.0 => {
+            Ok(Place { x_metres, y_metres })
+        }
+        _ => Err("expected X,Y in metres with Y above 0, as in 5,18".to_owned()),
+    }
+}
+
+fn decibels(text: &str) -> Result<Decibels, String> {
+    match text.trim().parse() {
+        Ok(db) if (-200.0..=200.0).contains(&db) => Ok(Decibels(db)),
+        _ => Err("expected decibels between -200 and 200".to_owned()),
+    }
+}
+
+fn apart(text: &str) -> Result<f64, String> {
+    match text.trim().parse() {
+        Ok(columns) if f64::is_finite(columns) && columns != 0.0 => Ok(columns),
+        _ => Err("expected a number of columns other than 0".to_owned()),
+    }
+}
+
+/// Everything the command says; its JSON.
+#[derive(Debug, Serialize)]
+struct Report {
+    x_metres: f64,
+    y_metres: f64,
+    apart_columns: f64,
+    layouts: Vec<LayoutReport>,
+    /// The Newton search on the two ends.
+    monte_carlo: Vec<Placement>,
+}
+
+/// One layout.
+#[derive(Debug, Serialize)]
+struct LayoutReport {
+    layout: String,
+    elements: usize,
+    lobes: Option<Lobes>,
+    bounds: Vec<BoundRow>,
+}
+
+/// Bounds at one signal-to-noise ratio; `None` where the samples don't determine the positions.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct BoundRow {
+    snr_db: f64,
+    alone: Option<Bound>,
+    beside_another: Option<Bound>,
+}
+
+/// Standard deviations that no unbiased estimate can stay below.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Bound {
+    range_millimetres: f64,
+    columns: f64,
+    position_millimetres: f64,
+}
+
+impl Args {
+    /// Computes, prints and draws.
+    pub fn run(self) -> Result<(), CommandError> {
+        let radar = Radar::default();
+        let reflector = Reflector { x_metres: self.at.x_metres, y_metres: self.at.y_metres, reflectivity: 1.0 };
+        let centre = radar.polar_of(self.at.x_metres, self.at.y_metres);
+        let layouts: Vec<(LayoutKind, Layout)> = self
+            .layout
+            .iter()
+            .map(|kind| Ok((*kind, kind.layout(&radar).map_err(CommandError::failed)?)))
+            .collect::<Result<_, CommandError>>()?;
+        let other = self.neighbour(&radar, centre)?;
+        let report = Report {
+            x_metres: reflector.x_metres,
+            y_metres: reflector.y_metres,
+            apart_columns: self.apart,
+            layouts: layouts
+                .iter()
+                .map(|(kind, layout)| self.layout_report(&radar, kind, layout, reflector, other, centre))
+                .collect(),
+            monte_carlo: self.monte_carlo(&radar, reflector)?,
+        };
+        if let Some(folder) = &self.output {
+            save(&BoundsFigure(&report), folder, "bounds")?;
+            let patches: Vec<(String, Ambiguity)> =
+                layouts.iter().map(|(kind, layout)| (kind.to_string(), patch(&radar, layout, centre))).collect();
+            save_bitmap(&AmbiguityFigure { radar: &radar, centre, patches: &patches }, folder, "ambiguity")?;
+            if !report.monte_carlo.is_empty() {
+                save(&PlacementFigure(&report.monte_carlo), folder, "monte-carlo")?;
+            }
+        }
+        if self.json {
+            return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+        }
+        report.print()
+    }
+
+    /// The second reflector.
+    fn neighbour(&self, radar: &Radar, centre: Polar) -> Result<Reflector, CommandError> {
+        let cos = centre.cos_theta + self.apart * columns_to_cos(radar);
+        if cos.abs() >= 1.0 {
+            let columns = self.apart;
+            return Err(CommandError::Usage(format!(
+                "--apart {columns} puts the second reflector beyond the array's axis"
+            )));
+        }
+        Ok(Reflector {
+            x_metres: centre.range_metres * cos,
+            y_metres: centre.range_metres * (1.0 - cos * cos).sqrt(),
+            reflectivity: 1.0,
+        })
+    }
+
+    fn layout_report(
+        &self,
+        radar: &Radar,
+        kind: &LayoutKind,
+        layout: &Layout,
+        reflector: Reflector,
+        other: Reflector,
+        centre: Polar,
+    ) -> LayoutReport {
+        let bound = |reflectors: &[Reflector], snr| {
+            let variance = noise_variance(radar, layout, &reflector, snr);
+            let of_first = |bounds: Vec<PositionBound>| bounds.first().map(|b| Bound::of(radar, b));
+            cramer_rao(radar, layout, reflectors, variance).ok().and_then(of_first)
+        };
+        let rows = self.snr.iter().map(|&snr| BoundRow {
+            snr_db: snr.0,
+            alone: bound(&[reflector], snr),
+            beside_another: bound(&[reflector, other], snr),
+        });
+        let (cosines, likeness) = cut(radar, layout, centre, 4);
+        LayoutReport {
+            layout: kind.to_string(),
+            elements: layout.len(),
+            lobes: lobes(&cosines, &likeness, centre.cos_theta),
+            bounds: rows.collect(),
+        }
+    }
+
+    fn monte_carlo(&self, radar: &Radar, reflector: Reflector) -> Result<Vec<Placement>, CommandError> {
+        let Some(trials) = self.monte_carlo else { return Ok(Vec::new()) };
+        let bar = indicatif::ProgressBar::new(self.snr.len() as u64);
+        let place = |snr: &Decibels| {
+            let placed = placement(radar, reflector, *snr, trials, &Task::default()).map_err(CommandError::failed);
+            bar.inc(1);
+            placed
+        };
+        let placed = self.snr.iter().map(place).collect();
+        bar.finish_and_clear();
+        placed
+    }
+}
+
+/// cos(theta) from one column of the whole array's map to the next.
+fn columns_to_cos(radar: &Radar) -> f64 {
+    (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs()
+}
+
+/// The ambiguity function around `centre`: four range bins and sixteen columns to each side.
+fn patch(radar: &Radar, layout: &Layout, centre: Polar) -> Ambiguity {
+    let bin = radar.range_resolution_metres() / 8.0;
+    let column = columns_to_cos(radar) / 8.0;
+    let ranges: Vec<f64> = (-32..=32).map(|i| centre.range_metres + f64::from(i) * bin).collect();
+    let cosines: Vec<f64> = (-128..=128).map(|i| centre.cos_theta + f64::from(i) * column).collect();
+    ambiguity(radar, layout, centre, &ranges, &cosines)
+}
+
+impl Bound {
+    fn of(radar: &Radar, bound: &PositionBound) -> Self {
+        Bound {
+            range_millimetres: 1e3 * bound.range_metres,
+            columns: bound.cos_theta / columns_to_cos(radar),
+            position_millimetres: 1e3 * bound.position_metres(),
+        }
+    }
+}
+
+impl Report {
+    fn print(&self) -> Result<(), CommandError> {
+        print(&format!(
+            "One reflector at ({}, {}) m, and another {} columns beside it",
+            self.x_metres, self.y_metres, self.apart_columns
+        ))?;
+        print(&format!(
+            "\n{:12} {:>8} {:>16} {:>18} {:>16} {:>16}",
+            "ambiguity", "elements", "main lobe, cols", "side lobe, dB", "at, columns", "rms side, dB"
+        ))?;
+        let radar = Radar::default();
+        let db = |v: f64| format!("{:.2}", 20.0 * v.max(1e-9).log10());
+        for l in &self.layouts {
+            let Some(lobes) = &l.lobes else { continue };
+            let column = columns_to_cos(&radar);
+            print(&format!(
+                "{:12} {:>8} {:>16.2} {:>18} {:>16.2} {:>16}",
+                l.layout,
+                l.elements,
+                lobes.main_lobe_cos / column,
+                db(lobes.highest_side_lobe),
+                lobes.highest_side_lobe_offset / column,
+                db(lobes.side_lobe_rms)
+            ))?;
+        }
+        print(&format!(
+            "\n{:12} {:>7} | {:>10} {:>10} {:>11} | {:>10} {:>10} {:>11}",
+            "bound", "SNR, dB", "range, mm", "columns", "position, mm", "range, mm", "columns", "position, mm"
+        ))?;
+        let cells = |bound: Option<Bound>| match bound {
+            Some(b) => format!("{:>10.4} {:>10.5} {:>11.4}", b.range_millimetres, b.columns, b.position_millimetres),
+            None => format!("{:>10} {:>10} {:>11}", "-", "-", "-"),
+        };
+        for l in &self.layouts {
+            for b in &l.bounds {
+                print(&format!("{:12} {:>7} | {} | {}", l.layout, b.snr_db, cells(b.alone), cells(b.beside_another)))?;
+            }
+        }
+        if !self.monte_carlo.is_empty() {
+            print(&format!(
+                "\n{:7} {:>9} {:>10} {:>10} {:>13} {:>11} {:>11}",
+                "SNR, dB", "trials", "bound, mm", "error, mm", "error / bound", "other tooth", "miscounted"
+            ))?;
+        }
+        for p in &self.monte_carlo {
+            print(&format!(
+                "{:7} {:>9} {:>10.4} {:>10.4} {:>13.3} {:>11} {:>11}",
+                p.snr_db,
+                p.trials,
+                1e3 * p.bound_metres,
+                1e3 * p.error_metres,
+                p.ratio(),
+                p.off_by_a_tooth,
+                p.miscounted
+            ))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,61 @@
+//! Charts as files: every figure is drawn once as SVG and once as PNG.
+
+use super::CommandError;
+use crate::files::write_bytes;
+use crate::picture::{self, encode_png};
+use image::RgbImage;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::path::Path;
+
+/// What a figure's drawing gives back.
+pub type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+
+/// Something that can be drawn on any of plotters' areas.
+pub trait Figure {
+    /// Width and height in pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// Draws it on a white area of that size.
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B>;
+}
+
+/// Writes `STEM.svg` and `STEM.png` into `folder`, which is made where it is missing.
+pub fn save(figure: &impl Figure, folder: &Path, stem: &str) -> Result<(), CommandError> {
+    ready(folder)?;
+    let mut svg = String::new();
+    on_white(figure, SVGBackend::with_string(&mut svg, figure.size())).map_err(|e| undrawn(stem, &e))?;
+    write(folder, stem, "svg", svg.as_bytes())?;
+    save_bitmap(figure, folder, stem)
+}
+
+/// Writes `STEM.png` alone: for figures of so many cells that an SVG would be larger than its pixels.
+pub fn save_bitmap(figure: &impl Figure, folder: &Path, stem: &str) -> Result<(), CommandError> {
+    ready(folder)?;
+    let (width, height) = figure.size();
+    let mut pixels = vec![0; (3 * width * height) as usize];
+    on_white(figure, BitMapBackend::with_buffer(&mut pixels, (width, height))).map_err(|e| undrawn(stem, &e))?;
+    let bitmap = RgbImage::from_raw(width, height, pixels).ok_or_else(|| undrawn(stem, &"its size is out of range"))?;
+    write(folder, stem, "png", &encode_png(&bitmap).map_err(CommandError::failed)?)
+}
+
+fn ready(folder: &Path) -> Result<(), CommandError> {
+    std::fs::create_dir_all(folder).map_err(|source| CommandError::File { path: folder.to_owned(), source })?;
+    picture::register_fonts().map_err(CommandError::failed)
+}
+
+fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> Result<(), CommandError> {
+    let path = folder.join(format!("{stem}.{extension}"));
+    write_bytes(&path, bytes).map_err(|source| CommandError::File { path, source })
+}
+
+fn undrawn(stem: &str, error: &dyn std::fmt::Display) -> CommandError {
+    CommandError::Usage(format!("can't draw {stem}: {error}"))
+}
+
+fn on_white<B: DrawingBackend>(figure: &impl Figure, backend: B) -> Drawn<B> {
+    let area = backend.into_drawing_area();
+    area.fill(&WHITE)?;
+    figure.draw(&area)?;
+    area.present()
+}

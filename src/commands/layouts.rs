@@ -1,0 +1,205 @@
+//! `apertura layouts`: two ends against as many elements at random places, and against others.
+
+use super::figure::{Drawn, Figure, save};
+use super::{CommandError, print};
+use crate::bounds::{Lobes, cut, lobes};
+use crate::evaluate::tables::Estimate;
+use crate::evaluate::{Roc, squared_error};
+use crate::maps::LogMaps;
+use crate::radar::{Layout, LayoutKind, Polar, Radar};
+use crate::reconstruct::{Request, layout_matched_filter};
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::{BeatSignal, simulate};
+use ndarray::Array2;
+use num_complex::Complex64;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Compare element layouts: side lobes of one reflector, and the squared error of the matched filter on random scenes
+///
+/// Every layout is heard over the same scenes and floor, and drawn by the same near-field matched filter. Layouts must stand on the
+/// radar's own half-wavelength grid. P_D is read where the false-alarm rate is 1 %.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Layouts: two-ends, one-end, random=N, random=N:SEED
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_value = "two-ends,random=24:0,random=24:1,random=64:0"
+    )]
+    layout: Vec<LayoutKind>,
+
+    /// Scenes of each test set
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    count: u32,
+
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+
+    /// Folder for the cuts through the ambiguity functions, layouts.svg and layouts.png; made where it is missing
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// False-alarm rate at which P_D is read.
+const FALSE_ALARM: f64 = 0.01;
+
+/// Where the reflector of the side lobes stands: 20 m ahead.
+const CENTRE: Polar = Polar { range_metres: 20.0, cos_theta: 0.0 };
+
+/// Columns to each side of the reflector that are drawn.
+const DRAWN_COLUMNS: f64 = 60.0;
+
+#[derive(Debug, Serialize)]
+struct Row {
+    layout: String,
+    elements: usize,
+    lobes: Option<Lobes>,
+    /// By set.
+    squared_error: Vec<Estimate>,
+    /// P_D by set.
+    detection: Vec<Option<f64>>,
+    #[serde(skip)]
+    cut: (Vec<f64>, Vec<f64>),
+}
+
+impl Args {
+    /// Measures, prints and draws.
+    pub fn run(self) -> Result<(), CommandError> {
+        let radar = Radar::default();
+        let layouts: Vec<Layout> = self
+            .layout
+            .iter()
+            .map(|kind| kind.layout(&radar).map_err(CommandError::failed))
+            .collect::<Result<_, _>>()?;
+        let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, l)| Row::new(&radar, k, l)).collect();
+        let bar = indicatif::ProgressBar::new(u64::from(self.count) * 3 * layouts.len() as u64);
+        let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
+        let request = Request::default();
+        for kind in Kind::TEST_SETS {
+            let mut errors = vec![Vec::new(); layouts.len()];
+            let mut rocs = vec![Roc::default(); layouts.len()];
+            for number in 0..self.count {
+                let scene = generator.scene(kind, number);
+                let signal =
+                    simulate(&radar, &scene, request.floor, u64::from(number)).map_err(CommandError::failed)?;
+                let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
+                for (i, layout) in layouts.iter().enumerate() {
+                    let samples = heard(&radar, &self.layout[i], layout, &signal)?;
+                    let map = layout_matched_filter(&radar, layout, samples.view(), &request)
+                        .map_err(CommandError::failed)?;
+                    errors[i].push(squared_error(&target, &map));
+                    rocs[i].add(&target, &map);
+                    bar.inc(1);
+                }
+            }
+            for ((row, errors), roc) in rows.iter_mut().zip(&errors).zip(&rocs) {
+                row.squared_error.push(Estimate::of(errors));
+                row.detection.push(roc.at_false_alarm(FALSE_ALARM).map(|p| p.detection));
+            }
+        }
+        bar.finish_and_clear();
+        if let Some(folder) = &self.output {
+            save(&CutFigure { radar: &radar, rows: &rows }, folder, "layouts")?;
+        }
+        if self.json {
+            return print(&serde_json::to_string_pretty(&rows).map_err(CommandError::failed)?);
+        }
+        print_table(&radar, self.count, &rows)
+    }
+}
+
+fn print_table(radar: &Radar, count: u32, rows: &[Row]) -> Result<(), CommandError> {
+    print(&format!(
+        "{count} test scenes a set, matched filter; side lobes of a reflector 20 m ahead\n\
+         {:12} {:>8} {:>14} {:>14} {:>13} {:>24} {:>22}",
+        "layout", "elements", "side lobe, dB", "at, columns", "rms side, dB", "SE, set 1 / 2 / 3", "P_D % at P_FA 1 %"
+    ))?;
+    let db = |v: f64| 20.0 * v.max(1e-9).log10();
+    for r in rows {
+        let errors: Vec<String> = r.squared_error.iter().map(|e| format!("{:.0}", e.mean)).collect();
+        let rates: Vec<String> =
+            r.detection.iter().map(|d| d.map_or("-".to_owned(), |d| format!("{:.1}", 100.0 * d))).collect();
+        let lobes = r.lobes.map_or_else(String::new, |l| {
+            let columns = l.highest_side_lobe_offset * radar.elements as f64 / 2.0;
+            format!("{:>14.2} {columns:>14.2} {:>13.2}", db(l.highest_side_lobe), db(l.side_lobe_rms))
+        });
+        print(&format!(
+            "{:12} {:>8} {lobes:43} {:>24} {:>22}",
+            r.layout,
+            r.elements,
+            errors.join(" / "),
+            rates.join(" / ")
+        ))?;
+    }
+    Ok(())
+}
+
+/// What `layout` hears of a signal of the whole array.
+fn heard(
+    radar: &Radar,
+    kind: &LayoutKind,
+    layout: &Layout,
+    signal: &BeatSignal,
+) -> Result<Array2<Complex64>, CommandError> {
+    let samples = layout.samples_of(radar, &signal.samples);
+    let off_grid = || CommandError::Usage(format!("the elements of {kind} don't stand on the radar's own grid"));
+    samples.ok_or_else(off_grid)
+}
+
+impl Row {
+    fn new(radar: &Radar, kind: &LayoutKind, layout: &Layout) -> Self {
+        let cut = cut(radar, layout, CENTRE, 8);
+        Row {
+            layout: kind.to_string(),
+            elements: layout.len(),
+            lobes: lobes(&cut.0, &cut.1, CENTRE.cos_theta),
+            squared_error: Vec::new(),
+            detection: Vec::new(),
+            cut,
+        }
+    }
+}
+
+/// Likeness along cos(theta), a panel a layout (after thesis figures 1-2 and 1-3).
+struct CutFigure<'a> {
+    radar: &'a Radar,
+    rows: &'a [Row],
+}
+
+impl Figure for CutFigure<'_> {
+    fn size(&self) -> (u32, u32) {
+        (1000, 40 + 200 * self.rows.len().max(1) as u32)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+        let area =
+            area.margin(8, 0, 0, 0).titled("Which directions sound like a reflector 20 m ahead", ("sans-serif", 22))?;
+        for (panel, row) in area.split_evenly((self.rows.len(), 1)).into_iter().zip(self.rows) {
+            let mut chart = ChartBuilder::on(&panel)
+                .caption(format!("{} ({} elements)", row.layout, row.elements), ("sans-serif", 15))
+                .margin(4)
+                .margin_right(20)
+                .x_label_area_size(34)
+                .y_label_area_size(60)
+                .build_cartesian_2d(-DRAWN_COLUMNS..DRAWN_COLUMNS, -40f64..0.0)?;
+            chart
+                .configure_mesh()
+                .x_desc("columns of the whole array's map")
+                .y_desc("dB")
+                .light_line_style(WHITE)
+                .draw()?;
+            let per_column = self.radar.elements as f64 / 2.0;
+            let points = row.cut.0.iter().zip(&row.cut.1).map(|(cos, likeness)| {
+                ((cos - CENTRE.cos_theta) * per_column, (20.0 * likeness.max(1e-9).log10()).max(-40.0))
+            });
+            let drawn = points.filter(|(columns, _)| columns.abs() <= DRAWN_COLUMNS);
+            chart.draw_series(LineSeries::new(drawn, RGBColor(30, 100, 200)))?;
+        }
+        Ok(())
+    }
+}

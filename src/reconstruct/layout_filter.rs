@@ -1,0 +1,121 @@
+//! The near-field matched filter for elements that stand anywhere: what other layouts of a few elements make of a scene.
+
+use super::conditioning::noise_variance;
+use super::registered::seen_from;
+use super::rendering::{focused_gain, lambda_of_power};
+use super::{ReconstructError, Request};
+use crate::maps::{RangeAngleMap, Spectrum};
+use crate::radar::{Layout, Radar, hann};
+use ndarray::{Array2, ArrayView2, Axis};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Rows of an element's padded range profile for each range bin: enough for linear interpolation.
+const ROWS_PER_BIN: usize = 8;
+
+/// Lambda of the whole array as the coherent matched filter of a few elements estimates it: every cell of the centre's polar grid
+/// looks up each element's range profile at its own distance and takes off the phase that distance gives.
+///
+/// `samples` is `[elements of layout, samples]`, in the layout's order. Back-projection, as in [`super::MatchedFilter`], which is
+/// this for the two ends with whole-end beams. Random elements keep the main lobe of the whole aperture and pay with side lobes
+/// everywhere (thesis figures 1-2 and 1-3).
+///
+/// # Errors
+/// [`ReconstructError::Shape`] where `samples` don't fit, [`ReconstructError::Cancelled`].
+pub fn layout_matched_filter(
+    radar: &Radar,
+    layout: &Layout,
+    samples: ArrayView2<'_, Complex64>,
+    request: &Request,
+) -> Result<RangeAngleMap, ReconstructError> {
+    let expected = [layout.len(), radar.samples];
+    if samples.shape() != expected {
+        return Err(ReconstructError::Shape {
+            what: "samples of the layout",
+            found: samples.shape().to_vec(),
+            expected: expected.to_vec(),
+        });
+    }
+    let peak = samples.iter().fold(0.0f64, |m, v| m.max(v.norm()));
+    if peak == 0.0 || layout.is_empty() {
+        return Ok(RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) });
+    }
+    let samples = samples.mapv(|v| v / peak);
+    let window = hann(radar.samples);
+    let rows = ROWS_PER_BIN * radar.samples;
+    let spectrum = Spectrum::new(rows);
+    // Referred to the middle of the chirp, so that a profile varies slowly along its rows.
+    let middle = (radar.samples / 2) as f64;
+    let profiles: Vec<Vec<Complex64>> = samples
+        .axis_iter(Axis(0))
+        .into_par_iter()
+        .map(|channel| {
+            let mut profile = spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * w));
+            for (row, v) in profile.iter_mut().enumerate() {
+                *v *= Complex64::cis(TAU * (row as f64 * middle / rows as f64).fract());
+            }
+            profile.push(profile[0]);
+            profile
+        })
+        .collect();
+    request.task.check()?;
+    let turns_per_metre =
+        radar.carrier.turns_per_wavelength() / radar.wavelength_metres() + middle / radar.max_range_metres();
+    let rows_per_metre = rows as f64 / radar.max_range_metres();
+    let scale = focused_gain(radar) / (layout.len() as f64 * window.iter().sum::<f64>());
+    let mut power = Array2::zeros((radar.samples, radar.elements));
+    power.axis_iter_mut(Axis(0)).into_par_iter().enumerate().try_for_each(|(bin, mut cells)| {
+        request.task.check()?;
+        let range = radar.range_of_bin_metres(bin as f64);
+        for (column, cell) in cells.iter_mut().enumerate() {
+            let cos = radar.cos_of_column(column as f64);
+            let mut sum = Complex64::default();
+            for (x, profile) in layout.x_metres.iter().zip(&profiles) {
+                let distance = seen_from(*x, range, cos).range_metres;
+                let row = (distance * rows_per_metre) % rows as f64;
+                let (low, part) = (row as usize, row.fract());
+                let heard = profile[low] * (1.0 - part) + profile[low + 1] * part;
+                sum += heard * Complex64::cis(-TAU * (turns_per_metre * distance).fract());
+            }
+            *cell = (sum * scale).norm_sqr();
+        }
+        Ok::<(), ReconstructError>(())
+    })?;
+    Ok(lambda_of_power(radar, power, noise_variance(radar, samples.outer_iter()), request))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::LayoutKind;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn a_reflector_on_a_cell_is_the_strongest_cell_for_every_layout() {
+        let radar = Radar::default();
+        let (bin, column) = (211usize, 640usize);
+        let (range, cos) = (radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64));
+        let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
+        let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
+        for kind in [LayoutKind::TwoEnds, LayoutKind::Random { elements: 24, seed: 2 }] {
+            let layout = kind.layout(&radar).unwrap();
+            let samples = layout.samples_of(&radar, &signal.samples).unwrap();
+            let map = layout_matched_filter(&radar, &layout, samples.view(), &Request::default()).unwrap();
+            let strongest = map.lambda.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+            assert_eq!(strongest, (bin, column), "{kind}");
+            assert!(map.lambda.iter().all(|v| (0.0..=1.0).contains(v)), "{kind}");
+        }
+    }
+
+    #[test]
+    fn silence_and_samples_of_another_shape() {
+        let radar = Radar::default();
+        let layout = Layout::random(&radar, 3, 0).unwrap();
+        let map =
+            |samples: Array2<Complex64>| layout_matched_filter(&radar, &layout, samples.view(), &Request::default());
+        assert!(map(Array2::zeros((3, 512))).unwrap().lambda.iter().all(|v| *v == 0.0));
+        assert!(map(Array2::zeros((2, 512))).unwrap_err().to_string().contains("[3, 512]"));
+    }
+}
