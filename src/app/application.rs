@@ -309,7 +309,9 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        let began = Instant::now();
+        if let Some(log) = &mut self.frame_log {
+            log.begin_frame();
+        }
         let ctx = ui.ctx().clone();
         let mut messages = self.pipeline.poll();
         messages.extend(self.bounds.poll());
@@ -341,7 +343,7 @@ impl eframe::App for App {
         }
         let (requested, painted) = self.work_done();
         if let Some(log) = &mut self.frame_log
-            && let Err(error) = log.write(began.elapsed(), frame.info().cpu_usage, requested, painted)
+            && let Err(error) = log.write(frame.info().cpu_usage, requested, painted)
         {
             self.frame_log = None;
             self.error(format!("The frame log can't be written: {error}"));
