@@ -1,0 +1,61 @@
+//! `apertura bounds` and `apertura layouts` from outside.
+
+use assert_cmd::Command;
+use predicates::str::contains;
+use serde_json::Value;
+
+fn apertura(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.args(arguments);
+    command
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = apertura(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn bounds_fall_with_the_noise_and_rise_with_a_neighbour() {
+    let report = json(&["bounds", "--layout", "two-ends,full", "--snr", "0,20", "--apart", "1", "--json"]);
+    let bound = |layout: usize, row: usize, which: &str| {
+        report["layouts"][layout]["bounds"][row][which]["position_millimetres"].as_f64().unwrap()
+    };
+    assert!((bound(0, 0, "alone") / bound(0, 1, "alone") - 10.0).abs() < 1e-6, "20 dB are a factor of ten");
+    assert!(bound(1, 0, "alone") < bound(0, 0, "alone"), "1024 elements hear more than 24");
+    assert!(bound(0, 0, "beside_another") > 1.5 * bound(0, 0, "alone"));
+    assert_eq!(report["layouts"][0]["elements"], 24);
+}
+
+#[test]
+fn pictures_are_written_where_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("new");
+    let arguments = ["bounds", "--layout", "two-ends", "--snr", "20,40", "--monte-carlo", "2", "-o"];
+    apertura(&arguments).arg(&out).assert().success().stdout(contains("error / bound"));
+    for name in ["bounds.svg", "bounds.png", "ambiguity.png", "monte-carlo.svg", "monte-carlo.png"] {
+        let bytes = std::fs::read(out.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(bytes.starts_with(if name.ends_with("png") { b"\x89PNG" } else { b"<svg" }), "{name}");
+    }
+}
+
+#[test]
+fn layouts_are_compared_over_the_same_scenes() {
+    let rows = json(&["layouts", "--layout", "two-ends,random=24:3", "--count", "1", "--json"]);
+    for row in rows.as_array().unwrap() {
+        assert_eq!(row["elements"], 24);
+        assert_eq!(row["squared_error"].as_array().unwrap().len(), 3);
+    }
+    let side_lobe = |i: usize| rows[i]["lobes"]["highest_side_lobe"].as_f64().unwrap();
+    assert!(side_lobe(0) > 0.98 && side_lobe(1) < 0.8);
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    apertura(&["bounds", "--layout", "three-ends"]).assert().failure().stderr(contains("three-ends"));
+    apertura(&["bounds", "--at", "5,-1"]).assert().failure().stderr(contains("Y above 0"));
+    apertura(&["bounds", "--apart", "1e6"]).assert().failure().stderr(contains("beyond the array's axis"));
+    apertura(&["bounds", "--layout", "random=2000"]).assert().failure().stderr(contains("1 to 1024"));
+    apertura(&["layouts", "--layout", "mimo=3x3", "--count", "1"]).assert().failure().stderr(contains("own grid"));
+}
