@@ -15,6 +15,7 @@ mod open;
 mod output;
 mod reconstruct;
 mod scenes;
+mod stress;
 #[cfg(feature = "network")]
 mod train;
 
@@ -48,6 +49,7 @@ enum Command {
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
     Scenes(scenes::Args),
+    Stress(stress::Args),
     #[cfg(feature = "network")]
     Train(train::Args),
 }
@@ -62,6 +64,7 @@ impl Command {
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
             Command::Scenes(args) => args.run(),
+            Command::Stress(args) => args.run(),
             #[cfg(feature = "network")]
             Command::Train(args) => args.run(),
         }

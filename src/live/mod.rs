@@ -3,6 +3,8 @@
 //! [`Engine::update`] takes a scene and what is [`Wanted`] and gives a [`Frame`]. Results that did not change are the same
 //! [`Arc`] as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
 
+mod bank;
+mod change;
 mod incremental;
 mod report;
 pub mod worker;

@@ -74,6 +74,16 @@ impl Report {
         self.stages.push(StageReport { stage, took: Duration::ZERO, outcome: Outcome::Skipped(why) });
     }
 
+    /// Adds to what is said of a stage that ran.
+    pub(super) fn remark(&mut self, stage: Stage, remark: &str) {
+        for s in self.stages.iter_mut().filter(|s| s.stage == stage) {
+            if let Outcome::Computed(what) = &mut s.outcome {
+                what.push_str("; ");
+                what.push_str(remark);
+            }
+        }
+    }
+
     /// Whether a stage ran.
     pub fn ran(&self, stage: Stage) -> bool {
         self.stages.iter().any(|s| s.stage == stage && matches!(s.outcome, Outcome::Computed(_)))

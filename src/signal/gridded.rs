@@ -122,6 +122,9 @@ impl<T: Real> Gridding<T> {
     }
 }
 
+/// Reflectors that are added up at a time: sums of sums lose fewer digits than one long sum.
+const CHUNK: usize = 64;
+
 /// Beat signal of `reflectors` at the `W` elements at `element_x` metres, written to `out`, one vector a sample.
 #[inline(always)]
 pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
@@ -134,8 +137,22 @@ pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
 ) {
     let Scratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
-    for r in reflectors {
-        spread::<T, W, FMA>(plan, model, element_x, r, grid);
+    if reflectors.len() > CHUNK {
+        spare.fill(ComplexLanes::zero());
+    }
+    for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
+        if i > 0 {
+            for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
+                *total = *total + *cell;
+                *cell = ComplexLanes::zero();
+            }
+        }
+        for r in chunk {
+            spread::<T, W, FMA>(plan, model, element_x, r, grid);
+        }
+    }
+    if reflectors.len() > CHUNK {
+        grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
     }
     plan.fft.process::<W, FMA>(grid, spare);
     let half = plan.samples / 2;

@@ -1,7 +1,7 @@
 //! Which algorithm, in which precision: written down as a value before anything runs, so that tests can ask what was chosen.
 
 use super::simd::Simd;
-use super::{BeatSignal, Floor, direct, exact};
+use super::{BeatSignal, Floor, closed_form, direct, exact};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -21,11 +21,14 @@ pub enum Algorithm {
     Split,
     /// Spread on a range grid and transformed ([`super::gridded`]).
     Gridded,
+    /// Range profiles from three Dirichlet kernels, on few rows ([`super::closed_form`]). Where samples are asked for, phasor split.
+    ClosedForm,
 }
 
 impl Algorithm {
     /// Every algorithm.
-    pub const ALL: [Algorithm; 4] = [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded];
+    pub const ALL: [Algorithm; 5] =
+        [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded, Algorithm::ClosedForm];
 
     /// Whether it computes in blocks of elements ([`super::synthesis`]), in either precision, as fast as a tolerance allows.
     pub fn is_fast(self) -> bool {
@@ -39,19 +42,20 @@ impl Algorithm {
             Algorithm::Exact => "exact",
             Algorithm::Split => "split",
             Algorithm::Gridded => "gridded",
+            Algorithm::ClosedForm => "closed-form",
         }
     }
 }
 
 impl fmt::Display for Algorithm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        f.pad(self.name())
     }
 }
 
 /// An algorithm's name that is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown algorithm \"{0}\"; expected direct, exact, split or gridded")]
+#[error("unknown algorithm \"{0}\"; expected direct, exact, split, gridded or closed-form")]
 pub struct UnknownAlgorithm(String);
 
 impl FromStr for Algorithm {
@@ -74,7 +78,7 @@ pub enum Precision {
 
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             Precision::F32 => "f32",
             Precision::F64 => "f64",
         })
@@ -102,19 +106,40 @@ const F32_TOLERANCE: f64 = 9e-7;
 const GRIDDED_TOLERANCE: f64 = 1e-14;
 /// From this many reflectors on, spreading is cheaper than summing phasors (`apertura bench` measures it).
 const GRIDDED_FROM: usize = 4;
+/// Cells up to which the closed form is cheaper than making samples and transforming them (`apertura bench` measures it).
+const CLOSED_FORM_CELLS: usize = 600;
 /// f32 holds squares of magnitudes only between these amplitudes.
 const F32_AMPLITUDES: std::ops::Range<f64> = 1e-12..1e12;
+
+/// Most reflectors whose sum in f32 stays within [`F32_TOLERANCE`] even where all roundings agree, as they do for coincident points.
+fn most_in_f32(algorithm: Algorithm) -> usize {
+    match algorithm {
+        // One long sum; the others add up sums of a few.
+        Algorithm::ClosedForm => 60,
+        _ => 1024,
+    }
+}
 
 impl Recipe {
     /// The cheapest way to evaluate `count` reflectors whose amplitudes sum to at most `amplitude`, within `tolerance`.
     pub fn plan(count: usize, amplitude: f64, tolerance: f64) -> Recipe {
-        let single = tolerance >= F32_TOLERANCE && (F32_AMPLITUDES.contains(&amplitude) || amplitude == 0.0);
+        let single = tolerance >= F32_TOLERANCE && holds(amplitude) && count <= most_in_f32(Algorithm::Gridded);
         let gridded = count >= GRIDDED_FROM && tolerance >= GRIDDED_TOLERANCE;
         Recipe {
             algorithm: if gridded { Algorithm::Gridded } else { Algorithm::Split },
             precision: if single { Precision::F32 } else { Precision::F64 },
             tolerance,
             simd: Simd::best(),
+        }
+    }
+
+    /// This recipe for range profiles of `count` reflectors beneath which there is no floor: with few cells above the tolerance, those alone.
+    pub fn on_few_rows(self, radar: &Radar, count: usize) -> Recipe {
+        let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
+        if cells <= CLOSED_FORM_CELLS && closed_form::applies(radar) {
+            self.with_algorithm(Algorithm::ClosedForm)
+        } else {
+            self
         }
     }
 
@@ -136,6 +161,40 @@ pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
         (_, Floor::Exact) => BEST_TOLERANCE,
         _ => GRIDDED_TOLERANCE,
     }
+}
+
+/// What is to be added up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sum {
+    /// By which algorithm.
+    pub algorithm: Algorithm,
+    /// Reflectors.
+    pub reflectors: usize,
+    /// Bound of the sum of their amplitudes ([`amplitude_bound`]).
+    pub amplitude: f64,
+}
+
+/// Why maps of this floor and normalisation must not be made in `precision`, if so.
+///
+/// Without a floor the smallest cells are rounding errors; normalised by them, a map in single precision shows its own rounding and nothing
+/// that the scene has to do with. And f32 can't hold the squares of very large or very small amplitudes, nor very long sums.
+pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Normalisation) -> Option<&'static str> {
+    match (precision, floor, normalisation) {
+        (Precision::F64, ..) => None,
+        (_, Floor::Exact, Normalisation::MinMax) => {
+            Some("f64 although f32 was asked for: without a floor, min-max would show f32's own rounding")
+        }
+        _ if !holds(sum.amplitude) => Some("f64 although f32 was asked for: f32 can't hold such amplitudes"),
+        _ if sum.reflectors > most_in_f32(sum.algorithm) => {
+            Some("f64 although f32 was asked for: f32 loses digits over so many reflectors")
+        }
+        _ => None,
+    }
+}
+
+/// Whether f32 can hold the squares of such amplitudes.
+fn holds(amplitude: f64) -> bool {
+    amplitude == 0.0 || F32_AMPLITUDES.contains(&amplitude)
 }
 
 /// Sum of the largest amplitude each reflector can have at the array: the scale that tolerances refer to.

@@ -2,11 +2,13 @@
 //!
 //! Every block is computed alone and in the same order whatever the number of threads, so results do not depend on it.
 
+use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
 use super::lane_fft::LaneFft;
 use super::phase::EchoModel;
 use super::plan::{Algorithm, Recipe};
+use super::rows::Rows;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
 use crate::radar::Radar;
@@ -25,13 +27,28 @@ pub struct BlockProfiles<T, const W: usize> {
     pub bins: usize,
     /// The profiles, block after block.
     pub cells: Vec<ComplexLanes<T, W>>,
+    /// Range bins that may hold anything but zeros.
+    pub touched: Rows,
 }
 
 impl<T: Real, const W: usize> BlockProfiles<T, W> {
     /// Silence.
     pub fn silence(radar: &Radar) -> Self {
         let bins = radar.samples;
-        BlockProfiles { bins, cells: vec![ComplexLanes::zero(); bins * radar.elements.div_ceil(W)] }
+        BlockProfiles {
+            bins,
+            cells: vec![ComplexLanes::zero(); bins * radar.elements.div_ceil(W)],
+            touched: Rows::none(bins),
+        }
+    }
+
+    /// Makes it silent again.
+    pub fn clear(&mut self) {
+        let bins = self.bins;
+        let runs = std::mem::replace(&mut self.touched, Rows::none(bins)).runs();
+        self.cells.par_chunks_mut(bins).for_each(|cells| {
+            runs.iter().for_each(|run| cells[run.clone()].fill(ComplexLanes::zero()));
+        });
     }
 
     /// Range profile of one element, `[range bins]`; `None` past the last block.
@@ -45,8 +62,12 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
     pub fn add(&mut self, other: &Self, sign: f64) {
         let sign = Lanes::splat(T::of(sign));
         let bins = self.bins;
+        self.touched.extend(&other.touched);
+        let runs = other.touched.runs();
         self.cells.par_chunks_mut(bins).zip(other.cells.par_chunks(bins)).for_each(|(a, b)| {
-            a.iter_mut().zip(b).for_each(|(a, b)| *a = *a + b.scaled(sign));
+            for run in &runs {
+                a[run.clone()].iter_mut().zip(&b[run.clone()]).for_each(|(a, b)| *a = *a + b.scaled(sign));
+            }
         });
     }
 }
@@ -57,9 +78,16 @@ pub struct Synthesis<T: Real, const W: usize> {
     model: EchoModel,
     radar: Radar,
     recipe: Recipe,
-    gridding: Option<Gridding<T>>,
+    method: Method<T>,
     window: Vec<T>,
     fft: LaneFft<T>,
+}
+
+#[derive(Clone)]
+enum Method<T: Real> {
+    Split,
+    Gridded(Gridding<T>),
+    ClosedForm(ClosedForm<T>),
 }
 
 enum Scratch<T, const W: usize> {
@@ -81,15 +109,15 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
         let s = self.synthesis;
         let element_x = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
         let samples = s.radar.samples;
-        match (self.scratch, &s.gridding) {
-            (Scratch::Gridded(scratch, out), Some(gridding)) => {
+        match (self.scratch, &s.method) {
+            (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
                 gridded::block_signal::<T, W, FMA>(gridding, &s.model, element_x, self.reflectors, scratch, out);
                 out
             }
             (Scratch::Split(scratch), _) => {
                 split::block_signal::<T, W, FMA>(&s.model, element_x, self.reflectors, samples, scratch)
             }
-            (Scratch::Gridded(_, out), None) => out,
+            (Scratch::Gridded(_, out), _) => out,
         }
     }
 }
@@ -134,15 +162,41 @@ impl<T: Real, const W: usize> Kernel for ToProfiles<'_, '_, T, W> {
     }
 }
 
+/// Profiles of a block in closed form, added to what is there.
+struct AddProfiles<'a, 'b, T: Real, const W: usize> {
+    synthesis: &'a Synthesis<T, W>,
+    plan: &'a ClosedForm<T>,
+    first_element: usize,
+    reflectors: &'a [Reflector],
+    cells: &'b mut [ComplexLanes<T, W>],
+}
+
+impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let s = self.synthesis;
+        let element_x = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
+        self.plan.add_block::<W, FMA>(&s.model, element_x, self.reflectors, self.cells);
+    }
+}
+
 impl<T: Real, const W: usize> Synthesis<T, W> {
-    /// Prepares `recipe` for `radar`. [`Algorithm::Gridded`] grids; every other algorithm is evaluated by phasor split.
+    /// Prepares `recipe` for `radar`. [`Algorithm::Gridded`] grids and [`Algorithm::ClosedForm`] makes profiles directly; every other
+    /// algorithm is evaluated by phasor split.
     pub fn new(radar: &Radar, recipe: Recipe) -> Self {
         let scale = (radar.samples as f64).sqrt().recip();
         Synthesis {
             model: EchoModel::new(radar),
             radar: radar.clone(),
             recipe,
-            gridding: (recipe.algorithm == Algorithm::Gridded).then(|| Gridding::new(radar, recipe.tolerance)),
+            method: match recipe.algorithm {
+                Algorithm::Gridded => Method::Gridded(Gridding::new(radar, recipe.tolerance)),
+                Algorithm::ClosedForm => {
+                    ClosedForm::new(radar, recipe.tolerance).map_or(Method::Split, Method::ClosedForm)
+                }
+                Algorithm::Direct | Algorithm::Exact | Algorithm::Split => Method::Split,
+            },
             window: radar.window.weights(radar.samples).into_iter().map(|w| T::of(w * scale)).collect(),
             fft: LaneFft::new(radar.samples),
         }
@@ -159,10 +213,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
 
     fn scratch(&self) -> Scratch<T, W> {
         let samples = self.radar.samples;
-        if self.gridding.is_some() {
-            Scratch::Gridded(gridded::Scratch::new(samples), vec![ComplexLanes::zero(); samples])
-        } else {
-            Scratch::Split(split::Scratch::new(samples))
+        match self.method {
+            Method::Gridded(_) => Scratch::Gridded(gridded::Scratch::new(samples), vec![ComplexLanes::zero(); samples]),
+            Method::Split | Method::ClosedForm(_) => Scratch::Split(split::Scratch::new(samples)),
         }
     }
 
@@ -183,11 +236,19 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
 
     /// Windowed range profiles of every element; replaces what `out` held.
     pub fn range_profiles(&self, reflectors: &[Reflector], out: &mut BlockProfiles<T, W>) {
-        if reflectors.is_empty() {
-            out.cells.fill(ComplexLanes::zero());
-            return;
-        }
         let bins = self.radar.samples;
+        if reflectors.is_empty() {
+            return out.clear();
+        }
+        if let Method::ClosedForm(plan) = &self.method {
+            out.clear();
+            out.touched = plan.rows(&self.radar, reflectors, self.radar.elements.next_multiple_of(W));
+            return out.cells.par_chunks_mut(bins).enumerate().for_each(|(block, cells)| {
+                let first_element = block * W;
+                self.simd().run(AddProfiles { synthesis: self, plan, first_element, reflectors, cells });
+            });
+        }
+        out.touched = Rows::all(bins);
         out.cells.par_chunks_mut(bins).enumerate().for_each_init(
             || (self.scratch(), vec![ComplexLanes::zero(); bins]),
             |(scratch, spare), (block, cells)| {
@@ -203,6 +264,7 @@ pub fn unit_noise_profiles<T: Real, const W: usize>(radar: &Radar, seed: u64) ->
     let recipe = Recipe::plan(0, 0.0, super::plan::BEST_TOLERANCE);
     let synthesis = Synthesis::<T, W>::new(radar, recipe);
     let mut out = BlockProfiles::silence(radar);
+    out.touched = Rows::all(radar.samples);
     let bins = radar.samples;
     out.cells.par_chunks_mut(bins).enumerate().for_each_init(
         || vec![ComplexLanes::zero(); bins],

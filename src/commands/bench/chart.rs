@@ -32,6 +32,7 @@ fn colour(entrant: Entrant) -> RGBColor {
         Entrant::Planned => BLACK,
         Entrant::Forced(Algorithm::Split) => RGBColor(30, 100, 200),
         Entrant::Forced(Algorithm::Gridded) => RGBColor(210, 90, 20),
+        Entrant::Forced(Algorithm::ClosedForm) => RGBColor(200, 40, 60),
         Entrant::Forced(Algorithm::Exact) => RGBColor(40, 140, 60),
         Entrant::Forced(Algorithm::Direct) => RGBColor(150, 60, 160),
     }

@@ -4,7 +4,7 @@ mod chart;
 mod methods;
 
 use super::{CommandError, print};
-use crate::evaluate::front::{self, Front, FrontRequest};
+use crate::evaluate::front::{self, Entrant, Front, FrontRequest};
 use crate::files::write_bytes;
 use crate::radar::Radar;
 use std::path::PathBuf;
@@ -27,6 +27,10 @@ pub struct Args {
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "1,10,75,300,1000",
           value_parser = clap::value_parser!(u32).range(1..=10_000))]
     reflectors: Vec<u32>,
+
+    /// Who takes part: plan, or the name of an algorithm; everybody where nobody is named
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    algorithms: Vec<Entrant>,
 
     /// Repeats of every measurement
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -60,7 +64,11 @@ impl Args {
         if self.methods {
             return methods::run(self.count, self.json, self.output.as_deref());
         }
-        let request = FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), self.repeats as usize);
+        let mut request =
+            FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), self.repeats as usize);
+        if !self.algorithms.is_empty() {
+            request.entrants = self.algorithms.clone();
+        }
         let bar = indicatif::ProgressBar::new(1000);
         let front =
             front::measure(&Radar::default(), &request, |part, _| bar.set_position((1e3 * part) as u64), || false)

@@ -7,6 +7,7 @@ use crate::live::{Engine, Forced, Wanted};
 use crate::maps::BareTransform;
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
+use crate::signal::Floor;
 use crate::signal::plan::{self, Precision, Recipe};
 use crate::signal::simd::Simd;
 use std::time::Instant;
@@ -80,7 +81,10 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     let amplitude = plan::amplitude_bound(radar, &reference.reflectors);
     let mut jobs = Vec::new();
     for tolerance in &request.tolerances {
-        let planned = Recipe::plan(count, amplitude, *tolerance);
+        let mut planned = Recipe::plan(count, amplitude, *tolerance);
+        if Convention::for_tolerance(*tolerance).floor == Floor::Exact {
+            planned = planned.on_few_rows(radar, count);
+        }
         for entrant in &request.entrants {
             let (algorithm, precisions): (_, &[Precision]) = match (*entrant, planned.precision) {
                 (Entrant::Planned, _) => (planned.algorithm, &[planned.precision]),
@@ -89,6 +93,11 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
                 (Entrant::Forced(algorithm), Precision::F64) => (algorithm, &[Precision::F64]),
             };
             for precision in precisions {
+                let sum = plan::Sum { algorithm, reflectors: count, amplitude };
+                let Convention { floor, normalisation } = Convention::for_tolerance(*tolerance);
+                if plan::refusal(*precision, &sum, floor, normalisation).is_some() {
+                    continue;
+                }
                 let recipe = Recipe { algorithm, precision: *precision, ..planned };
                 jobs.extend(request.tasks.iter().map(|task| Job {
                     task: *task,

@@ -8,7 +8,7 @@
 //! measured in the same run.
 
 mod measurement;
-mod reference;
+pub(super) mod reference;
 
 pub use measurement::measure;
 
@@ -82,7 +82,7 @@ impl Entrant {
 
 impl fmt::Display for Entrant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        f.pad(self.name())
     }
 }
 
@@ -145,6 +145,8 @@ impl Convention {
     /// Stable whatever the precision: no floor, 100 dB below the peak.
     pub const FIXED_RANGE: Convention =
         Convention { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)) };
+    /// No floor, normalised by the smallest cell: the picture's floor is the last bits of whatever computed it.
+    pub const NO_FLOOR: Convention = Convention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
     /// Both of those that errors are given for.
     pub const BOTH: [Convention; 2] = [Convention::FIXED_RANGE, Convention::THESIS];
 

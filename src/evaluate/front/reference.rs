@@ -8,58 +8,87 @@ use crate::scene::Reflector;
 use crate::signal::{BeatSignal, Floor, exact, floor, judge};
 use ndarray::{Array2, ArrayView2};
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// Elements whose range profiles are compared with the judge's, spread over the array.
 const JUDGED: usize = 4;
 /// Apertures in the order of every triple of maps.
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 /// Picks the floor's noise in every measurement.
-pub(super) const SEED: u64 = 0;
+pub(in crate::evaluate) const SEED: u64 = 0;
 
 /// The truth about one scene.
-pub(super) struct Reference {
+pub(in crate::evaluate) struct Reference {
     /// The scene's reflectors.
     pub reflectors: Vec<Reflector>,
-    /// Judged range profiles, `[judged elements, range bins]`.
-    profiles: Array2<Complex64>,
+    profiles: JudgedProfiles,
     /// The exact path's maps, one triple for each of [`Convention::BOTH`].
     maps: [[RangeAngleMap; 3]; 2],
 }
 
 impl Reference {
     pub fn new(radar: &Radar, reflectors: Vec<Reflector>) -> Self {
-        let judged = elements(radar).flat_map(|n| judge::element_signal(radar, &reflectors, n)).collect();
-        let judged = Array2::from_shape_vec((JUDGED, radar.samples), judged);
-        let judged = judged.unwrap_or_else(|_| unreachable!("the judge gives one value a sample"));
         let signal = exact::beat_signal(radar, &reflectors);
         let maps = Convention::BOTH.map(|convention| plain_maps(radar, &reflectors, &signal, convention));
-        Reference { profiles: channels_range_transform(radar, judged.view()).profiles, maps, reflectors }
+        Reference { profiles: JudgedProfiles::new(radar, &reflectors), maps, reflectors }
     }
 
     /// Largest error of range profiles given by `profile` for an element, relative to the largest judged cell.
     pub fn signal_error(&self, radar: &Radar, profile: impl Fn(usize) -> Option<Vec<Complex64>>) -> f64 {
-        let (mut error, mut peak) = (0.0f64, f64::MIN_POSITIVE);
-        for (element, judged) in elements(radar).zip(self.profiles.outer_iter()) {
-            let found = profile(element).unwrap_or_default();
-            for (bin, judged) in judged.iter().enumerate() {
-                error = error.max((found.get(bin).copied().unwrap_or_default() - judged).norm());
-                peak = peak.max(judged.norm());
-            }
-        }
-        error / peak
+        self.profiles.error(radar, profile, self.profiles.peak())
     }
 
     /// Errors of three maps drawn by `convention`.
     pub fn lambda_error(&self, convention: Convention, maps: [&RangeAngleMap; 3]) -> LambdaError {
         let [fixed_range, thesis] = &self.maps;
         let expected = if convention == Convention::THESIS { thesis } else { fixed_range };
-        let differences = maps
-            .into_iter()
-            .zip(expected)
-            .flat_map(|(a, b)| a.lambda.iter().zip(&b.lambda).map(|(a, b)| f64::from(a - b).abs()));
-        let (max, sum, count) = differences.fold((0.0f64, 0.0, 0u32), |(m, s, n), d| (m.max(d), s + d * d, n + 1));
-        LambdaError { convention, max, rms: (sum / f64::from(count.max(1))).sqrt() }
+        difference(convention, maps, expected.each_ref())
     }
+}
+
+/// Range profiles of a few elements, from the judge's samples.
+pub(in crate::evaluate) struct JudgedProfiles {
+    /// `[judged elements, range bins]`.
+    profiles: Array2<Complex64>,
+}
+
+impl JudgedProfiles {
+    pub fn new(radar: &Radar, reflectors: &[Reflector]) -> Self {
+        let elements: Vec<usize> = elements(radar).collect();
+        let signals: Vec<_> = elements.par_iter().map(|n| judge::element_signal(radar, reflectors, *n)).collect();
+        let judged = Array2::from_shape_fn((JUDGED, radar.samples), |(i, n1)| signals[i][n1]);
+        JudgedProfiles { profiles: channels_range_transform(radar, judged.view()).profiles }
+    }
+
+    /// Largest magnitude of a cell.
+    pub fn peak(&self) -> f64 {
+        self.profiles.iter().fold(0.0, |m: f64, v| m.max(v.norm()))
+    }
+
+    /// Largest error of range profiles given by `profile` for an element, in units of `scale`; infinite where it gives none or NaN.
+    pub fn error(&self, radar: &Radar, profile: impl Fn(usize) -> Option<Vec<Complex64>>, scale: f64) -> f64 {
+        let mut worst = 0.0f64;
+        for (element, judged) in elements(radar).zip(self.profiles.outer_iter()) {
+            let found = profile(element).unwrap_or_default();
+            for (bin, judged) in judged.iter().enumerate() {
+                let error = found.get(bin).map_or(f64::INFINITY, |v| (v - judged).norm());
+                worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            }
+        }
+        if worst == 0.0 { 0.0 } else { worst / scale }
+    }
+}
+
+/// How far two triples of maps, drawn by `convention`, are apart.
+pub(in crate::evaluate) fn difference(
+    convention: Convention,
+    a: [&RangeAngleMap; 3],
+    b: [&RangeAngleMap; 3],
+) -> LambdaError {
+    let differences =
+        a.into_iter().zip(b).flat_map(|(a, b)| a.lambda.iter().zip(&b.lambda).map(|(a, b)| f64::from(a - b).abs()));
+    let (max, sum, count) = differences.fold((0.0f64, 0.0, 0u32), |(m, s, n), d| (m.max(d), s + d * d, n + 1));
+    LambdaError { convention, max, rms: (sum / f64::from(count.max(1))).sqrt() }
 }
 
 fn elements(radar: &Radar) -> impl Iterator<Item = usize> {
@@ -68,7 +97,7 @@ fn elements(radar: &Radar) -> impl Iterator<Item = usize> {
 }
 
 /// Maps of a noiseless `signal` over the floor of `convention`, by the plain transforms in f64.
-pub(super) fn plain_maps(
+pub(in crate::evaluate) fn plain_maps(
     radar: &Radar,
     reflectors: &[Reflector],
     signal: &BeatSignal,
@@ -85,13 +114,17 @@ pub(super) fn plain_maps(
 }
 
 /// Range profile of one channel's samples.
-pub(super) fn profile(radar: &Radar, samples: ArrayView2<'_, Complex64>, element: usize) -> Option<Vec<Complex64>> {
+pub(in crate::evaluate) fn profile(
+    radar: &Radar,
+    samples: ArrayView2<'_, Complex64>,
+    element: usize,
+) -> Option<Vec<Complex64>> {
     let row = samples.slice(ndarray::s![element..element + 1, ..]);
     Some(channels_range_transform(radar, row).profiles.into_iter().collect())
 }
 
 /// The three maps of a frame; `None` if one was not wanted.
-pub(super) fn maps_of(frame: &Frame) -> Option<[&RangeAngleMap; 3]> {
+pub(in crate::evaluate) fn maps_of(frame: &Frame) -> Option<[&RangeAngleMap; 3]> {
     let [a, b, c] = APERTURES.map(|a| frame.map(a).map(|m| m.lambda.as_ref()));
     Some([a?, b?, c?])
 }

@@ -1,10 +1,9 @@
 use super::*;
 use crate::maps::{Aperture, LogMaps};
 use crate::radar::Decibels;
-use crate::scene::{Line, Point};
+use crate::scene::Point;
 use crate::signal;
 use proptest::prelude::*;
-use rand::{RngExt, SeedableRng};
 
 fn small() -> Radar {
     Radar { elements: 64, samples: 32, end_elements: 4, ..Radar::default() }
@@ -76,76 +75,6 @@ fn frames_agree_with_the_plain_path() {
     }
 }
 
-/// Greatest difference of the profiles that two engines hold for the same scene, relative to the peak.
-fn difference(a: &Engine, b: &Engine) -> f64 {
-    let total = |e: &Engine| {
-        let bank = e.double.as_ref().expect("f64 is what these tests ask for");
-        let mut sum = bank.rest.profiles.clone();
-        sum.add(&bank.active.profiles, 1.0);
-        sum
-    };
-    let (a, b) = (total(a), total(b));
-    let parts = |p: &BlockProfiles<f64, LANES_F64>| -> Vec<f64> {
-        p.cells.iter().flat_map(|c| c.re.0.into_iter().chain(c.im.0)).collect()
-    };
-    let (a, b) = (parts(&a), parts(&b));
-    let peak = b.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let off = a.iter().zip(&b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-    if off == 0.0 { 0.0 } else { off / peak }
-}
-
-fn random_object(rng: &mut impl RngExt) -> Object {
-    let mut at = |span: f64| (rng.random::<f64>() - 0.5) * span;
-    let (x_metres, y_metres) = (at(4.0), 1.5 + at(2.0));
-    let reflectivity = 10f64.powf(at(8.0));
-    if at(1.0) < 0.35 {
-        Object::Point(Point { x_metres, y_metres, reflectivity })
-    } else {
-        Object::Line(Line { x_metres, y_start_metres: y_metres, spacing_metres: 0.1, count: 5, reflectivity })
-    }
-}
-
-/// Makes random edits, and compares with an engine that starts afresh now and then. Returns the worst difference.
-fn edit(seed: u64, edits: usize, compare_every: usize) -> f64 {
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
-    let mut engine = Engine::new(small());
-    let mut scene = Scene { objects: (0..12).map(|_| random_object(&mut rng)).collect(), ..Scene::default() };
-    let wanted = Wanted { ends: false, ..Wanted::default() };
-    let (mut worst, mut bytes) = (0.0f64, None);
-    for i in 0..edits {
-        let at = rng.random_range(0..scene.objects.len());
-        match rng.random_range(0..10) {
-            0 if scene.objects.len() < 30 => scene.objects.push(random_object(&mut rng)),
-            1 if scene.objects.len() > 3 => drop(scene.objects.remove(at)),
-            2 => scene.objects.swap(0, at),
-            3 => scene.objects[at] = random_object(&mut rng),
-            _ => scene.objects[at].translate(rng.random::<f64>() * 0.1 - 0.05, rng.random::<f64>() * 0.1 - 0.05),
-        }
-        engine.update(&scene, &wanted).unwrap();
-        if i % compare_every == compare_every - 1 {
-            let mut fresh = Engine::new(small());
-            fresh.update(&scene, &wanted).unwrap();
-            worst = worst.max(difference(&engine, &fresh));
-            // The first frames still fill the pool of buffers.
-            assert_eq!(*bytes.get_or_insert(engine.cache_bytes()), engine.cache_bytes(), "memory after {i} edits");
-        }
-    }
-    worst
-}
-
-#[test]
-fn edits_end_where_a_fresh_build_does() {
-    let worst = edit(1, 300, 20);
-    assert!(worst < 1e-9, "{worst:e}");
-}
-
-#[test]
-#[ignore = "takes a minute"]
-fn ten_thousand_edits_end_where_a_fresh_build_does() {
-    let worst = edit(2, 10_000, 100);
-    assert!(worst < 1e-9, "{worst:e}");
-}
-
 #[test]
 fn taking_away_a_giant_leaves_nothing_of_it() {
     let mut engine = Engine::new(small());
@@ -159,7 +88,8 @@ fn taking_away_a_giant_leaves_nothing_of_it() {
     engine.update(&without, &wanted).unwrap();
     let mut fresh = Engine::new(small());
     fresh.update(&without, &wanted).unwrap();
-    assert!(difference(&engine, &fresh) < 1e-12);
+    let off = engine.profile_difference(&fresh).unwrap();
+    assert!(off < 1e-12, "{off:e}");
 }
 
 #[test]
@@ -176,6 +106,96 @@ fn dragging_evaluates_the_dragged_object_alone() {
         let expected = if step == 0 { "2 of 30" } else { "1 of 30" };
         assert!(what.starts_with(expected), "step {step}: {what}");
     }
+}
+
+/// All three maps of two frames.
+fn worst_lambda(a: &Frame, b: &Frame) -> f32 {
+    let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
+    let maps = |f: &Frame| apertures.map(|aperture| f.map(aperture).unwrap().lambda.clone());
+    let pairs = maps(a).into_iter().zip(maps(b));
+    pairs
+        .flat_map(|(a, b)| a.lambda.iter().zip(&b.lambda).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>())
+        .fold(0.0, f32::max)
+}
+
+fn full_map_rows(frame: &Frame) -> String {
+    let stage = frame.report.stages.iter().find(|s| s.stage == Stage::FullMap).unwrap();
+    match &stage.outcome {
+        Outcome::Computed(what) => what.clone(),
+        Outcome::Skipped(why) => (*why).to_owned(),
+    }
+}
+
+/// Over no floor, a drag recomputes those rows alone in which the dragged reflector is heard, and the maps are those of a fresh build.
+#[test]
+fn only_rows_that_changed_are_recomputed() {
+    let radar = Radar { elements: 128, samples: 512, end_elements: 12, ..Radar::default() };
+    let fixed = Normalisation::DynamicRange(Decibels(100.0));
+    let wanted = Wanted { floor: Floor::Exact, normalisation: fixed, ends: false, ..Wanted::default() };
+    let mut engine = Engine::new(radar.clone());
+    let mut scene = Scene::of_points((0..40).map(|i| (f64::from(i % 7) - 3.0, 4.0 + 0.7 * f64::from(i))));
+    engine.update(&scene, &wanted).unwrap();
+    for step in 0..7 {
+        scene.objects[20].translate(0.03, 0.05);
+        let frame = match step {
+            // A hidden map misses a move, and catches up.
+            2 => {
+                engine.update(&scene, &Wanted { full: false, ..wanted }).unwrap();
+                scene.objects[20].translate(0.3, 0.0);
+                engine.update(&scene, &wanted).unwrap()
+            }
+            // Another floor, and back.
+            4 => {
+                engine.update(&scene, &Wanted { floor: Floor::Thesis, ..wanted }).unwrap();
+                engine.update(&scene, &wanted).unwrap()
+            }
+            _ => engine.update(&scene, &wanted).unwrap(),
+        };
+        let rows = full_map_rows(&frame);
+        match step {
+            // What was dragged over the noise touched every row, and leaves them.
+            4 | 5 => assert_eq!(rows, "512 rows"),
+            _ => assert!(rows.contains("of 512 rows"), "step {step}: {rows}"),
+        }
+        let fresh = Engine::new(radar.clone()).update(&scene, &wanted).unwrap();
+        let worst = worst_lambda(&frame, &fresh);
+        assert!(worst < 0.01, "step {step}: {worst}");
+    }
+    let frame = engine.update(&scene, &Wanted { floor: Floor::Thesis, ..wanted }).unwrap();
+    assert!(full_map_rows(&frame).contains("floor"), "{}", full_map_rows(&frame));
+}
+
+/// f32 with min-max and no floor would draw f32's rounding: nobody gets there, not even by force.
+#[test]
+fn single_precision_is_refused_where_it_would_become_the_picture() {
+    let scene = Scene::of_points([(0.3, 1.0), (-0.2, 1.4)]);
+    let forced = Forced { precision: Some(Precision::F32), tolerance: Some(1e-6), ..Forced::default() };
+    let signal = |engine: &mut Engine, scene: &Scene, floor, normalisation| {
+        let frame = engine.update(scene, &Wanted { floor, normalisation, ..Wanted::default() }).unwrap();
+        match &frame.report.stages.iter().find(|s| s.stage == Stage::Signal).unwrap().outcome {
+            Outcome::Computed(what) => what.clone(),
+            Outcome::Skipped(why) => (*why).to_owned(),
+        }
+    };
+    let fixed = Normalisation::DynamicRange(Decibels(60.0));
+    let mut engine = Engine::new(small());
+    let planned = signal(&mut engine, &scene, Floor::Exact, Normalisation::MinMax);
+    assert!(planned.contains("in f64") && engine.single.is_none(), "{planned}");
+    engine.force(forced);
+    let refused = signal(&mut engine, &scene, Floor::Exact, Normalisation::MinMax);
+    assert!(refused.contains("in f64") && refused.contains("although f32"), "{refused}");
+    assert!(engine.single.is_none());
+    engine.forget();
+    let fine = signal(&mut engine, &scene, Floor::Exact, fixed);
+    assert!(fine.contains("in f32") && !fine.contains("although"), "{fine}");
+    let same_scene = signal(&mut engine, &scene, Floor::Exact, Normalisation::MinMax);
+    assert!(same_scene.contains("in f64"), "maps at hand are no way around it: {same_scene}");
+    let giant = Scene {
+        objects: vec![Object::Point(Point { reflectivity: 1e30, ..Point::new(0.3, 1.0) })],
+        ..Scene::default()
+    };
+    let refused = signal(&mut engine, &giant, Floor::Exact, fixed);
+    assert!(refused.contains("in f64") && refused.contains("amplitudes"), "{refused}");
 }
 
 #[test]

@@ -1,0 +1,80 @@
+//! Many random edits through the incremental engine: where they end, and what they leave in memory.
+
+use crate::files::memory::resident_bytes;
+use crate::live::{Engine, Wanted};
+use crate::radar::Radar;
+use crate::scene::{Line, Object, Point, Scene, SceneError};
+use rand::{RngExt, SeedableRng};
+use serde::Serialize;
+
+/// Compared with a fresh engine so often over a run, at least.
+const COMPARISONS: usize = 20;
+
+/// What a run of random edits came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EditReport {
+    /// Edits made.
+    pub edits: usize,
+    /// Largest difference from an engine that starts afresh, over the run: range cells, relative to the largest cell.
+    pub worst_difference: f64,
+    /// Bytes in the engine's caches after the first twentieth of the edits.
+    pub cache_bytes_early: usize,
+    /// Bytes in the engine's caches in the end.
+    pub cache_bytes: usize,
+    /// Resident bytes of the process after the first twentieth, where the system tells.
+    pub resident_bytes_early: Option<u64>,
+    /// Resident bytes of the process in the end.
+    pub resident_bytes: Option<u64>,
+}
+
+fn random_object(rng: &mut impl RngExt) -> Object {
+    let mut at = |span: f64| (rng.random::<f64>() - 0.5) * span;
+    let (x_metres, y_metres) = (at(4.0), 1.5 + at(2.0));
+    let reflectivity = 10f64.powf(at(8.0));
+    if at(1.0) < 0.35 {
+        Object::Point(Point { x_metres, y_metres, reflectivity })
+    } else {
+        Object::Line(Line { x_metres, y_start_metres: y_metres, spacing_metres: 0.1, count: 5, reflectivity })
+    }
+}
+
+/// Adds, removes, replaces, reorders and moves objects at random (`seed`), in the conventions of `wanted`.
+///
+/// # Errors
+/// [`SceneError`] when a random object happens to lie on an element.
+pub fn random_edits(radar: &Radar, wanted: &Wanted, edits: usize, seed: u64) -> Result<EditReport, SceneError> {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    let mut engine = Engine::new(radar.clone());
+    let mut scene = Scene { objects: (0..12).map(|_| random_object(&mut rng)).collect(), ..Scene::default() };
+    let every = edits.div_ceil(COMPARISONS).max(1);
+    let mut report = EditReport {
+        edits,
+        worst_difference: 0.0,
+        cache_bytes_early: 0,
+        cache_bytes: 0,
+        resident_bytes_early: None,
+        resident_bytes: None,
+    };
+    for edit in 1..=edits {
+        let at = rng.random_range(0..scene.objects.len());
+        match rng.random_range(0..10) {
+            0 if scene.objects.len() < 30 => scene.objects.push(random_object(&mut rng)),
+            1 if scene.objects.len() > 3 => drop(scene.objects.remove(at)),
+            2 => scene.objects.swap(0, at),
+            3 => scene.objects[at] = random_object(&mut rng),
+            _ => scene.objects[at].translate(rng.random::<f64>() * 0.1 - 0.05, rng.random::<f64>() * 0.1 - 0.05),
+        }
+        engine.update(&scene, wanted)?;
+        if edit % every == 0 {
+            let mut fresh = Engine::new(radar.clone());
+            fresh.update(&scene, wanted)?;
+            let difference = engine.profile_difference(&fresh).unwrap_or(f64::INFINITY);
+            report.worst_difference = report.worst_difference.max(difference);
+            (report.cache_bytes, report.resident_bytes) = (engine.cache_bytes(), resident_bytes());
+            if edit == every {
+                (report.cache_bytes_early, report.resident_bytes_early) = (report.cache_bytes, report.resident_bytes);
+            }
+        }
+    }
+    Ok(report)
+}

@@ -1,0 +1,281 @@
+//! The sums the engine keeps, in one precision: range profiles of the objects at rest and of those being edited.
+
+use super::change::Change;
+use super::incremental::STAGES;
+use super::{Report, Stage, Wanted};
+use crate::maps::fast::{Decades, MapMaker, Noise, Sources};
+use crate::radar::Radar;
+use crate::scene::{Object, Reflector, Scene};
+use crate::signal::plan::{self, Algorithm, Recipe};
+use crate::signal::simd::{Lanes, Real, Simd};
+use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
+use crate::signal::{Floor, Rows, floor};
+use num_complex::Complex64;
+use std::time::Instant;
+
+/// One update, as the caches see it.
+pub(super) struct Job<'a> {
+    pub radar: &'a Radar,
+    pub scene: &'a Scene,
+    pub wanted: &'a Wanted,
+    pub recipe: Recipe,
+    pub forced: Option<Algorithm>,
+    pub amplitude: f64,
+    pub missing: [bool; 3],
+}
+
+/// A map's decades as they were last computed.
+pub(super) struct Kept {
+    pub decades: Decades,
+    /// Rows that no longer show what the sums hold.
+    pub stale: Rows,
+    /// Whether noise lies beneath it.
+    over_noise: bool,
+}
+
+impl Kept {
+    fn silence(radar: &Radar) -> Self {
+        Kept { decades: Decades::silence(radar), stale: Rows::all(radar.samples), over_noise: false }
+    }
+}
+
+/// Profiles of some objects, with the variance of their part of the thesis' floor.
+pub(super) struct Group<T, const W: usize> {
+    objects: Vec<Object>,
+    pub(super) profiles: BlockProfiles<T, W>,
+    variance: Vec<f64>,
+}
+
+impl<T: Real, const W: usize> Group<T, W> {
+    fn empty(radar: &Radar) -> Self {
+        Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), variance: vec![0.0; radar.elements] }
+    }
+
+    fn fill(&mut self, synthesis: &Synthesis<T, W>, radar: &Radar, objects: &[Object]) {
+        let reflectors: Vec<Reflector> = objects.iter().flat_map(Object::reflectors).collect();
+        synthesis.range_profiles(&reflectors, &mut self.profiles);
+        self.variance = floor::thesis_noise_variance(radar, &reflectors);
+        self.objects = objects.to_vec();
+    }
+
+    /// Holds nothing any more.
+    fn clear(&mut self) {
+        self.objects.clear();
+        self.profiles.clear();
+        self.variance.fill(0.0);
+    }
+
+    /// Adds (`sign` = 1) or takes away (-1) what another group holds, but for the list of objects.
+    fn add(&mut self, other: &Self, sign: f64) {
+        self.profiles.add(&other.profiles, sign);
+        self.variance.iter_mut().zip(&other.variance).for_each(|(a, b)| *a = (*a + sign * b).max(0.0));
+    }
+}
+
+/// Caches in one precision.
+pub(super) struct Bank<T: Real, const W: usize> {
+    makers: MapMaker<T, W>,
+    syntheses: Vec<Synthesis<T, W>>,
+    /// Objects at rest.
+    pub(super) rest: Group<T, W>,
+    /// Objects being edited.
+    pub(super) active: Group<T, W>,
+    /// Where objects that leave the sum at rest are evaluated.
+    leaving: Group<T, W>,
+    built: Option<Built>,
+    noise: Option<(u64, BlockProfiles<T, W>)>,
+}
+
+/// How the sum at rest was made.
+struct Built {
+    tolerance: f64,
+    forced: Option<Algorithm>,
+    /// Bound of what additions and subtractions have left behind, in units of amplitude.
+    rounding: f64,
+}
+
+impl<T: Real, const W: usize> Bank<T, W> {
+    pub fn new(radar: &Radar) -> Self {
+        Bank {
+            makers: MapMaker::new(radar, Simd::best()),
+            syntheses: Vec::new(),
+            rest: Group::empty(radar),
+            active: Group::empty(radar),
+            leaving: Group::empty(radar),
+            built: None,
+            noise: None,
+        }
+    }
+
+    pub fn forget(&mut self) {
+        self.built = None;
+    }
+
+    pub fn profile(&self, element: usize) -> Option<Vec<Complex64>> {
+        let (rest, active) = (self.rest.profiles.profile(element)?, self.active.profiles.profile(element)?);
+        Some(rest.into_iter().zip(active).map(|(a, b)| a + b).collect())
+    }
+
+    pub fn bytes(&self) -> usize {
+        let one = size_of_val(self.rest.profiles.cells.as_slice());
+        one * (3 + usize::from(self.noise.is_some()))
+    }
+
+    fn synthesis(&mut self, job: &Job<'_>, count: usize) -> usize {
+        let mut recipe = Recipe::plan(count, job.amplitude, job.recipe.tolerance);
+        if job.wanted.floor == Floor::Exact {
+            recipe = recipe.on_few_rows(job.radar, count);
+        }
+        recipe.precision = job.recipe.precision;
+        recipe.algorithm = job.forced.unwrap_or(recipe.algorithm);
+        match self.syntheses.iter().position(|s| *s.recipe() == recipe) {
+            Some(found) => found,
+            None => {
+                if self.syntheses.len() >= 4 {
+                    self.syntheses.remove(0);
+                }
+                self.syntheses.push(Synthesis::new(job.radar, recipe));
+                self.syntheses.len() - 1
+            }
+        }
+    }
+
+    /// Brings those of `maps` that the job misses up to the job's scene, row by row where only few changed.
+    pub fn run(&mut self, job: &Job<'_>, maps: &mut [Option<Kept>; 3], report: &mut Report) {
+        let start = Instant::now();
+        let (what, changed) = self.follow(job);
+        report.computed(Stage::Signal, start.elapsed(), what);
+
+        let start = Instant::now();
+        let deviation = self.deviation(job);
+        match &deviation {
+            Some(_) => report.computed(Stage::Noise, start.elapsed(), format!("{} floor", job.wanted.floor)),
+            None => report.skipped(Stage::Noise, "there is no floor"),
+        }
+
+        let start = Instant::now();
+        let noise = match (&self.noise, &deviation) {
+            (Some((_, unit)), Some(deviation)) => Some(Noise { unit, deviation }),
+            _ => None,
+        };
+        let mut rows = Rows::none(job.radar.samples);
+        for (kept, missing) in maps.iter_mut().zip(job.missing) {
+            if missing {
+                kept.get_or_insert_with(|| Kept::silence(job.radar));
+            }
+            let Some(kept) = kept else { continue };
+            kept.stale.extend(&changed);
+            // The noise's level follows the scene, and with it every row.
+            if noise.is_some() || kept.over_noise {
+                kept.stale = Rows::all(job.radar.samples);
+            }
+            if missing {
+                kept.over_noise = noise.is_some();
+                rows.extend(&std::mem::replace(&mut kept.stale, Rows::none(job.radar.samples)));
+            }
+        }
+        let gain = (job.radar.samples as f64 * job.radar.elements as f64).sqrt();
+        let profiles = [&self.rest.profiles, &self.active.profiles];
+        let mut made = maps.each_mut().map(|kept| kept.as_mut().map(|k| &mut k.decades));
+        for (made, missing) in made.iter_mut().zip(job.missing) {
+            *made = made.take().filter(|_| missing);
+        }
+        self.makers.fill(Sources { profiles: &profiles, noise, bound: job.amplitude * gain }, made, &rows);
+
+        let took = start.elapsed();
+        let count = job.missing.iter().filter(|m| **m).count() as u32;
+        let what = match rows.count() {
+            all if all == job.radar.samples && noise.is_some() => {
+                format!("{all} rows: the floor's level follows the scene")
+            }
+            all if all == job.radar.samples => format!("{all} rows"),
+            some => format!(
+                "{some} of {} rows, the others changed by less than {:.0e} of the peak",
+                job.radar.samples, job.recipe.tolerance
+            ),
+        };
+        for (stage, _) in STAGES.into_iter().zip(job.missing).filter(|(_, missing)| *missing) {
+            report.computed(stage, took / count, what.as_str());
+        }
+    }
+
+    /// Makes the two groups hold the scene; says how, and which rows may have changed.
+    fn follow(&mut self, job: &Job<'_>) -> (String, Rows) {
+        let scene = &job.scene.objects;
+        let total = job.scene.reflector_count();
+        let limit = job.amplitude * (job.recipe.tolerance / 2.0).max(4.0 * T::EPSILON);
+        let usable = self.built.as_ref().filter(|b| b.tolerance <= job.recipe.tolerance && b.forced == job.forced);
+        let change = usable.and_then(|built| {
+            let change = Change::between(&self.rest.objects, &self.active.objects, scene);
+            let more = if change.leaving.is_empty() {
+                0.0
+            } else {
+                // What is taken away was evaluated another way than when it was added.
+                let leaving = amplitude(job.radar, &change.leaving);
+                2.0 * T::EPSILON * (job.amplitude + leaving) + job.recipe.tolerance * leaving
+            };
+            (built.rounding + more <= limit).then_some((change, built.rounding + more))
+        });
+        match change {
+            Some((change, _)) if change.leaving.is_empty() && change.arriving == self.active.objects => {
+                ("as before".to_owned(), Rows::none(job.radar.samples))
+            }
+            Some((change, rounding)) if change.cost() < total.max(1) => {
+                let evaluated = change.cost();
+                let mut changed = self.active.profiles.touched.clone();
+                if !change.leaving.is_empty() {
+                    // Everything comes to rest, then what changed is taken out.
+                    self.rest.add(&self.active, 1.0);
+                    let count = change.leaving.iter().map(Object::reflector_count).sum();
+                    let synthesis = self.synthesis(job, count);
+                    self.leaving.fill(&self.syntheses[synthesis], job.radar, &change.leaving);
+                    self.rest.add(&self.leaving, -1.0);
+                    changed.extend(&self.leaving.profiles.touched);
+                }
+                let count = change.arriving.iter().map(Object::reflector_count).sum();
+                let synthesis = self.synthesis(job, count);
+                self.active.fill(&self.syntheses[synthesis], job.radar, &change.arriving);
+                if let Some(built) = &mut self.built {
+                    built.rounding = rounding;
+                }
+                self.rest.objects = change.staying;
+                changed.extend(&self.active.profiles.touched);
+                let recipe = self.syntheses[synthesis].recipe();
+                let how = format!("{} in {}", recipe.algorithm, T::NAME);
+                (format!("{evaluated} of {total} reflectors, {how}, the others as before"), changed)
+            }
+            _ => {
+                let synthesis = self.synthesis(job, total);
+                let mut changed = self.rest.profiles.touched.clone();
+                changed.extend(&self.active.profiles.touched);
+                self.active.clear();
+                self.rest.fill(&self.syntheses[synthesis], job.radar, scene);
+                changed.extend(&self.rest.profiles.touched);
+                let (tolerance, forced) = (job.recipe.tolerance, job.forced);
+                self.built = Some(Built { tolerance, forced, rounding: 0.0 });
+                let recipe = self.syntheses[synthesis].recipe();
+                (format!("{total} reflectors from scratch, {} in {}", recipe.algorithm, T::NAME), changed)
+            }
+        }
+    }
+
+    /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.
+    fn deviation(&mut self, job: &Job<'_>) -> Option<Vec<Lanes<T, W>>> {
+        let variance: Vec<f64> = match job.wanted.floor {
+            Floor::Exact => return None,
+            Floor::Thesis => self.rest.variance.iter().zip(&self.active.variance).map(|(a, b)| a + b).collect(),
+            Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &job.scene.reflectors(), snr),
+        };
+        let seed = job.wanted.seed;
+        if self.noise.as_ref().is_none_or(|(s, _)| *s != seed) {
+            self.noise = Some((seed, unit_noise_profiles(job.radar, seed)));
+        }
+        let of = |n: usize| T::of(variance.get(n).copied().unwrap_or(0.0).sqrt());
+        let blocks = job.radar.elements.div_ceil(W);
+        Some((0..blocks).map(|b| Lanes(std::array::from_fn(|i| of(b * W + i)))).collect())
+    }
+}
+
+fn amplitude(radar: &Radar, objects: &[Object]) -> f64 {
+    objects.iter().map(|o| plan::amplitude_bound(radar, &o.reflectors())).sum()
+}

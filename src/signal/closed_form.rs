@@ -1,0 +1,302 @@
+//! Range profiles of few reflectors without samples or transform: the windowed transform of a single beat in closed form, evaluated only on
+//! the rows where it exceeds the tolerance.
+//!
+//! The symmetric Hann window is a constant and two cosines, so a reflector's windowed range profile is three Dirichlet kernels, `N/(N-1)`
+//! bins apart. With `d` the distance from its range to the bin in bins, `x = pi d / N` and `a = pi / (N-1)` they add up to
+//!
+//! ```text
+//! Y = A / sqrt(N) * exp(2 pi j c) * (z - 1) / 2j * g,    z = exp(2 pi j d (N-1) / N),
+//! g = cos x / (2 sin x (1 - sin^2 x / sin^2 a))
+//! ```
+//!
+//! where no digits cancel but at the kernels' centres, `d = 0` and `d = +-N/(N-1)`, around which `z - 1` and the small factor of `g` are
+//! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins either side for 1e-3, 110 for 1e-6.
+
+use super::phase::EchoModel;
+use super::rows::Rows;
+use super::simd::{ComplexLanes, Lanes, Real, phasor};
+use crate::radar::{Radar, WindowFunction};
+use crate::scene::Reflector;
+use num_complex::Complex;
+use std::f64::consts::{PI, TAU};
+
+/// Fewest samples for which the centres of the kernels lie apart from their repetitions.
+const MIN_SAMPLES: usize = 8;
+/// Bins around the peak where the kernels' centres lie.
+const NEAR: f64 = 1.5;
+
+/// Bins on either side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak: what is left out adds
+/// up over reflectors, and all in step.
+pub fn reach(tolerance: f64) -> usize {
+    (PI / 4.0 * tolerance.max(1e-18)).cbrt().recip().ceil() as usize + 1
+}
+
+/// Whether `radar` has a closed form: chirps of some length, under the Hann window.
+pub fn applies(radar: &Radar) -> bool {
+    radar.samples >= MIN_SAMPLES && radar.window == WindowFunction::Hann
+}
+
+/// The closed form prepared for one radar and tolerance.
+#[derive(Debug, Clone)]
+pub struct ClosedForm<T> {
+    samples: usize,
+    reach: usize,
+    /// `exp(2 pi j n / samples)`.
+    turns: Vec<Complex<T>>,
+    /// `pi / (samples - 1)`: from the middle kernel to its neighbours.
+    edge: f64,
+}
+
+impl<T: Real> ClosedForm<T> {
+    /// Prepares for `radar`; what is left out stays below `tolerance` times a reflector's peak. `None` where it does not apply ([`applies`]).
+    pub fn new(radar: &Radar, tolerance: f64) -> Option<Self> {
+        let samples = radar.samples;
+        let turn = |n: usize| {
+            let (sin, cos) = (TAU * n as f64 / samples as f64).sin_cos();
+            Complex::new(T::of(cos), T::of(sin))
+        };
+        applies(radar).then(|| ClosedForm {
+            samples,
+            reach: reach(tolerance).min(samples),
+            turns: (0..samples).map(turn).collect(),
+            edge: PI / (samples - 1) as f64,
+        })
+    }
+
+    /// Every row that [`ClosedForm::add_block`] may write to, for elements up to `elements`, in blocks of any width.
+    pub fn rows(&self, radar: &Radar, reflectors: &[Reflector], elements: usize) -> Rows {
+        let mut rows = Rows::none(self.samples);
+        let (left, right) = (radar.element_x_metres(0), radar.element_x_metres(elements));
+        for r in reflectors {
+            let nearest = (r.x_metres.clamp(left, right) - r.x_metres).hypot(r.y_metres);
+            let farthest = (left - r.x_metres).abs().max((right - r.x_metres).abs()).hypot(r.y_metres);
+            let bins = |metres: f64| metres / radar.range_resolution_metres();
+            // The last bits of a very far range may be whole bins.
+            let unsure = 2.0 + bins(farthest) * 1e-15;
+            let margin = self.reach as f64 + unsure;
+            rows.insert_wrapped((bins(nearest) - margin).floor(), (bins(farthest) + margin).ceil());
+        }
+        rows
+    }
+
+    /// Adds the range profiles of `reflectors` at the `W` elements at `element_x` metres to `cells`, `[range bins]`.
+    #[inline(always)]
+    pub fn add_block<const W: usize, const FMA: bool>(
+        &self,
+        model: &EchoModel,
+        element_x: Lanes<f64, W>,
+        reflectors: &[Reflector],
+        cells: &mut [ComplexLanes<T, W>],
+    ) {
+        for r in reflectors {
+            self.add::<W, FMA>(model, element_x, r, cells);
+        }
+    }
+
+    #[inline(always)]
+    fn add<const W: usize, const FMA: bool>(
+        &self,
+        model: &EchoModel,
+        element_x: Lanes<f64, W>,
+        r: &Reflector,
+        cells: &mut [ComplexLanes<T, W>],
+    ) {
+        let of = Lanes::<f64, W>::splat;
+        let bins = self.samples as f64;
+        let echo = model.echo_lanes::<W, FMA>(element_x, r);
+        // Range in bins, on the same side of the wrap as the first lane's, from the bin nearest to that.
+        let position = echo.beat_turns * of(bins);
+        let wraps = ((position - of(position.0[0])) * of(1.0 / bins)).nearest();
+        let position = position - wraps * of(bins);
+        let middle = position.0[0].round();
+        let offset = (position - of(middle)) + echo.beat_turns_low * of(bins);
+
+        let sin_edge = self.edge.sin();
+        let amplitude = echo.amplitude * of(bins.sqrt().recip());
+        let carrier = phasor::<T, W, FMA>(echo.carrier_turns).scaled(amplitude.round_to());
+        // Carrier over 2j, and the factors of g that do not depend on the bin.
+        let still = ComplexLanes { re: carrier.im, im: -carrier.re }.scaled(Lanes::splat(T::of(0.25 / sin_edge)));
+        let turning = still.times::<FMA>(phasor::<T, W, FMA>(offset * of((bins - 1.0) / bins)));
+
+        let lowest = offset.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
+        let highest = offset.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
+        let first = lowest.floor() as isize - self.reach as isize;
+        let last = highest.ceil() as isize + self.reach as isize;
+        let (first, last) = match last - first < self.samples as isize {
+            true => (first, last),
+            // Every bin once.
+            false => (-(self.samples as isize / 2), (self.samples - self.samples / 2) as isize - 1),
+        };
+        let narrow: Lanes<T, W> = offset.round_to();
+        let mut bin = (middle as isize + first).rem_euclid(self.samples as isize) as usize;
+        let mut turn = first.rem_euclid(self.samples as isize) as usize;
+        for j in first..=last {
+            let w = self.turns[turn];
+            let turned = turning.times::<FMA>(ComplexLanes { re: Lanes::splat(w.re), im: Lanes::splat(w.im) });
+            let distance = narrow - Lanes::splat(T::of(j as f64));
+            let mut value = (turned - still).scaled(far::<T, W, FMA>(distance, bins, sin_edge));
+            if (j as f64) > lowest - NEAR && (j as f64) < highest + NEAR {
+                let exact = offset - of(j as f64);
+                let near = self.near::<W, FMA>(exact, carrier);
+                for i in 0..W {
+                    if exact.0[i].abs() < NEAR {
+                        (value.re.0[i], value.im.0[i]) = (near.re.0[i], near.im.0[i]);
+                    }
+                }
+            }
+            cells[bin] = cells[bin] + value;
+            bin = if bin + 1 == self.samples { 0 } else { bin + 1 };
+            turn = if turn + 1 == self.samples { 0 } else { turn + 1 };
+        }
+    }
+
+    /// The profile less than [`NEAR`] bins from the peak: expanded around the nearest of the three kernels' centres.
+    #[inline(always)]
+    fn near<const W: usize, const FMA: bool>(
+        &self,
+        distance: Lanes<f64, W>,
+        carrier: ComplexLanes<T, W>,
+    ) -> ComplexLanes<T, W> {
+        let of = Lanes::<f64, W>::splat;
+        let bins = self.samples as f64;
+        let centre = distance.nearest().map(|v| v.clamp(-1.0, 1.0));
+        // At a centre itself both factors are zero; their ratio is that of any small distance.
+        let rest = (distance - centre * of(bins / (bins - 1.0))).map(|e| if e.abs() < 1e-30 { 1e-30 } else { e });
+        let wave = phasor::<T, W, FMA>(rest * of((bins - 1.0) / (2.0 * bins)));
+        let small = phasor::<T, W, FMA>(rest * of(0.5 / bins));
+        let side: Lanes<T, W> = centre.round_to();
+        let splat = |v: f64| Lanes::splat(T::of(v));
+        // Sine and cosine of a +- x, and the sine of 2a +- x.
+        let toward = side * small.im;
+        let (sin, cos) = self.edge.sin_cos();
+        let (double_sin, double_cos) = (2.0 * self.edge).sin_cos();
+        let outer_sin = small.re * splat(sin) + toward * splat(cos);
+        let outer_cos = small.re * splat(cos) - toward * splat(sin);
+        let other_sin = small.re * splat(double_sin) + toward * splat(double_cos);
+        let square = splat(sin * sin);
+        let middle = square * small.re;
+        let middle_below = square - small.im * small.im;
+        let outer = -(square * outer_cos);
+        let outer_below = outer_sin * other_sin;
+        let mut factor = Lanes::splat(T::default());
+        for i in 0..W {
+            let ratio = wave.im.0[i] / small.im.0[i];
+            let at_middle = side.0[i] == T::default();
+            let (above, below) = match at_middle {
+                true => (middle.0[i], middle_below.0[i]),
+                false => (outer.0[i], outer_below.0[i]),
+            };
+            factor.0[i] = ratio * above / below;
+        }
+        carrier.times::<FMA>(wave).scaled(factor * splat(0.5))
+    }
+}
+
+/// `cos x / (q (1 - q^2))` with `q = sin x / sin a`, away from the kernels' centres.
+#[inline(always)]
+fn far<T: Real, const W: usize, const FMA: bool>(distance: Lanes<T, W>, bins: f64, sin_edge: f64) -> Lanes<T, W> {
+    let splat = |v: f64| Lanes::<T, W>::splat(T::of(v));
+    let turns = distance * splat(0.5 / bins);
+    let square = turns * turns;
+    let horner = |terms: &[f64]| {
+        let mut value = splat(terms[terms.len() - 1]);
+        for term in terms[..terms.len() - 1].iter().rev() {
+            value = value.mul_add::<FMA>(square, splat(*term));
+        }
+        value
+    };
+    let cos = horner(T::COS);
+    let q = turns * horner(T::SIN) * splat(1.0 / sin_edge);
+    let below = q - q * q * q;
+    cos.zip(below, |a, b| a / b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::exact;
+    use super::super::plan::{Algorithm, Precision, Recipe};
+    use super::super::simd::{LANES_F32, LANES_F64, Simd};
+    use super::super::synthesis::{BlockProfiles, Synthesis};
+    use super::*;
+    use crate::maps::range_transform;
+    use crate::scene::Scene;
+
+    /// Largest error of a cell relative to the largest cell, by either precision.
+    fn error(radar: &Radar, reflectors: &[Reflector], recipe: Recipe) -> f64 {
+        let expected = range_transform(radar, &exact::beat_signal(radar, reflectors)).profiles;
+        let peak = expected.iter().fold(0.0f64, |m, v| m.max(v.norm()));
+        let worst = |profile: &dyn Fn(usize) -> Vec<num_complex::Complex64>| {
+            let of = |n: usize| profile(n).iter().zip(expected.row(n)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            (0..radar.elements).map(of).fold(0.0, f64::max) / peak
+        };
+        match recipe.precision {
+            Precision::F32 => {
+                let mut out = BlockProfiles::silence(radar);
+                Synthesis::<f32, LANES_F32>::new(radar, recipe).range_profiles(reflectors, &mut out);
+                worst(&|n| out.profile(n).unwrap())
+            }
+            Precision::F64 => {
+                let mut out = BlockProfiles::silence(radar);
+                Synthesis::<f64, LANES_F64>::new(radar, recipe).range_profiles(reflectors, &mut out);
+                worst(&|n| out.profile(n).unwrap())
+            }
+        }
+    }
+
+    fn recipe(tolerance: f64, simd: Simd) -> Recipe {
+        Recipe { simd, ..Recipe::plan(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
+    }
+
+    #[test]
+    fn profiles_equal_the_windowed_transform_of_samples() {
+        let radar = Radar { elements: 90, ..Radar::default() };
+        let max = radar.max_range_metres();
+        for (x, y) in [(0.5, 9.0), (-20.0, 3.0), (0.02, 0.001), (3.0, max - 0.01), (0.1, -4.0), (1e5, 1e4)] {
+            let reflectors = Scene::of_points([(x, y)]).reflectors();
+            for simd in Simd::available() {
+                for tolerance in [1e-3, 1e-6, 1e-9, 1e-14] {
+                    let e = error(&radar, &reflectors, recipe(tolerance, simd));
+                    assert!(e < tolerance, "({x}, {y}) at {tolerance:e} with {simd:?}: {e:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_at_and_beside_the_kernels_centres_keep_every_digit() {
+        // Elements as good as in one place, so that all see the same range: whole bins, and the centres of the outer kernels.
+        let radar =
+            Radar { elements: 8, end_elements: 3, element_spacing_metres: 1e-9, samples: 64, ..Radar::default() };
+        let bin = radar.range_resolution_metres();
+        for offset in [0.0, 1e-14, 1e-9, 1e-4, -1e-12, 0.5, 64.0 / 63.0 - 1.0, 1.0 - 64.0 / 63.0, 0.499_999_99] {
+            let reflectors = Scene::of_points([(0.0, (20.0 + offset) * bin)]).reflectors();
+            let e = error(&radar, &reflectors, recipe(1e-15, Simd::best()));
+            assert!(e < 3e-15, "{offset}: {e:e}");
+        }
+    }
+
+    #[test]
+    fn other_windows_have_none() {
+        let radar = Radar { window: WindowFunction::Blackman, elements: 16, end_elements: 3, ..Radar::default() };
+        let reflectors = Scene::of_points([(0.5, 9.0)]).reflectors();
+        assert_eq!(Recipe::plan(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
+        let e = error(&radar, &reflectors, recipe(1e-3, Simd::best()));
+        assert!(e < 1e-6, "forced, it is evaluated by phasor split: {e:e}");
+    }
+
+    #[test]
+    fn only_the_rows_that_matter_are_touched() {
+        let radar = Radar::default();
+        let reflectors = Scene::of_points([(0.0, 15.0)]).reflectors();
+        let mut out = BlockProfiles::<f64, LANES_F64>::silence(&radar);
+        for (tolerance, most) in [(1e-3, 36), (1e-6, 236), (1e-12, 512)] {
+            Synthesis::new(&radar, recipe(tolerance, Simd::best())).range_profiles(&reflectors, &mut out);
+            assert!(out.touched.count() <= most, "{tolerance:e}: {}", out.touched.count());
+            for element in [0, 500, 1023] {
+                for (bin, cell) in out.profile(element).unwrap().iter().enumerate() {
+                    assert!(out.touched.contains(bin) || cell.norm() == 0.0, "element {element}, bin {bin}: {cell}");
+                }
+            }
+        }
+    }
+}
