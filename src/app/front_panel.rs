@@ -171,6 +171,7 @@ fn colour(entrant: Entrant, dark: bool) -> Color32 {
         Entrant::Planned => Color32::from_rgb(40, 46, 58),
         Entrant::Forced(Algorithm::Split) => Color32::from_rgb(64, 146, 246),
         Entrant::Forced(Algorithm::Gridded) => Color32::from_rgb(240, 130, 40),
+        Entrant::Forced(Algorithm::ClosedForm) => Color32::from_rgb(230, 70, 90),
         Entrant::Forced(Algorithm::Exact) => Color32::from_rgb(60, 170, 90),
         Entrant::Forced(Algorithm::Direct) => Color32::from_rgb(180, 90, 200),
     }
