@@ -50,6 +50,7 @@ def thesis(folder):
     with torch.no_grad():
         out = model(x)
     save_file(model.state_dict(), f"{folder}/thesis_reference_weights.safetensors")
+    torch.save(model.state_dict(), f"{folder}/thesis_reference_weights.pt")
     save_file({"input": x, "output": out}, f"{folder}/thesis_reference.safetensors")
 
 

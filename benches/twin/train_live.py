@@ -21,16 +21,13 @@ import math
 import os
 import time
 
-import numpy as np
 import torch
 import torch.multiprocessing as mp
 
 import features as ft
 import scenes as sc
+from common import export, figures, save, unit, validation_scenes
 from live import Live, normalise
-
-P_FA = {1: 0.0037, 2: 0.0056, 3: 0.0102}
-
 
 def make_entry(points, rng, with_mirror, snr_share=0.0):
     snr = rng.uniform(20, 60) if rng.random() < snr_share else None
@@ -45,14 +42,13 @@ def make_entry(points, rng, with_mirror, snr_share=0.0):
     return out
 
 
+def plain_entry(points, rng):
+    return make_entry(points, rng, False)
+
+
 def batch_of(entries):
     fine, coarse, rows, scalars, target = (torch.stack(t).float() for t in zip(*entries))
     return (fine, coarse, rows, scalars), target
-
-
-def unit(target):
-    lo, hi = target.amin((1, 2), keepdim=True), target.amax((1, 2), keepdim=True)
-    return (target - lo) / (hi - lo)
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -66,52 +62,12 @@ def loss_of(log, minimum, target, edge_weight):
     return loss
 
 
-@torch.no_grad()
-def validate(model, sets):
-    """SE, and P_D with its threshold at the thesis' P_FA, for each set; `eta` is where the mean P_FA is the thesis' mean."""
-    etas = np.linspace(0.5, 1.0, 251)
-    report, alarms = {}, []
-    for k, entries in sets.items():
-        se, pd, pfa = [], [], []
-        for i in range(0, len(entries), 4):
-            inputs, target = batch_of(entries[i : i + 4])
-            log, minimum = model(*inputs)
-            out = normalise(log, minimum).clamp(0, 1)
-            truth = unit(target)
-            for o, t in zip(out, truth):
-                se.append(float(((o - t) ** 2).sum()))
-                mask = t > 0.9
-                on, off = np.sort(o[mask].numpy()), np.sort(o[~mask].numpy())
-                pd.append(1 - np.searchsorted(on, etas, "right") / on.size)
-                pfa.append(1 - np.searchsorted(off, etas, "right") / off.size)
-        pd, pfa = np.mean(pd, 0), np.mean(pfa, 0)
-        alarms.append(pfa)
-        j = int(np.argmax(pfa <= P_FA[k]))
-        report[str(k)] = {"se": float(np.mean(se)), "pd": float(pd[j]) * 100, "eta": float(etas[j])}
-    mean = sum(P_FA.values()) / len(P_FA)
-    report["eta"] = float(etas[int(np.argmax(np.mean(alarms, 0) <= mean))])
-    return report
-
-
-def validation_scenes(seed, count):
-    sets = {}
-    for k in (1, 2, 3):
-        sets[k] = []
-        for i in range(count):
-            rng = sc.rng_for("validation", seed, 10_000 * k + i)
-            sets[k] += make_entry(sc.GENERATORS[k](rng), rng, False)
-    return sets
-
-
-def save(path, state):
-    torch.save(state, path + ".part")
-    os.replace(path + ".part", path)
-
-
-def export(model_state, path, meta):
-    from safetensors.torch import save_file
-    save_file({k: v.contiguous() for k, v in model_state.items()}, path + ".part", metadata=meta)
-    os.replace(path + ".part", path)
+def estimate_with(model):
+    """For `common.figures`: Lambda of output and target."""
+    def estimate(entries):
+        inputs, target = batch_of(entries)
+        return normalise(*model(*inputs)).clamp(0, 1), unit(target)
+    return estimate
 
 
 def main():
@@ -160,15 +116,11 @@ def main():
         model.load_state_dict({**own, **fit})
         average.load_state_dict(model.state_dict())
     if args.export:
-        report = validate(average, validation_scenes(args.seed, args.validation))
+        report = figures(estimate_with(average), validation_scenes(args.seed, args.validation, plain_entry))
         meta = {"network": "live", "recipe": "live", "trainer": "benches/twin/train_live.py (PyTorch)", "seed": str(args.seed),
                 "steps": str(step), "scenes_simulated": str(drawn), "maps_seen": str(step * args.batch),
-                "minutes": f"{elapsed / 60:.0f}", "eta": f"{report['eta']:.3f}",
-                "validation": f"{args.validation} scenes a set: " + "; ".join(
-                    f"set {k}: SE {report[k]['se']:.0f}, P_D {report[k]['pd']:.2f} % at P_FA {100 * P_FA[int(k)]:.2f} %"
-                    for k in "123")}
-        print(json.dumps(meta, indent=1))
-        export(average.state_dict(), args.export, meta)
+                "minutes": f"{elapsed / 60:.0f}"}
+        export(average.state_dict(), args.export, meta, report, args.validation)
         return
     model.share_memory()
     counter = torch.tensor([step, drawn], dtype=torch.int64).share_memory_()
@@ -177,7 +129,7 @@ def main():
     for h in helpers:
         h.start()
 
-    sets = validation_scenes(args.seed, args.validation)
+    sets = validation_scenes(args.seed, args.validation, plain_entry)
     clock = {"save": time.time(), "validate": time.time(), "report": best}
 
     def after(step, drawn, running, elapsed, optimizer, pick):
@@ -187,7 +139,7 @@ def main():
                 a.lerp_(p, 1 - decay)
         done = elapsed > args.minutes * 60
         if time.time() - clock["validate"] > args.validate_every * 60 or done:
-            clock["report"] = validate(average, sets)
+            clock["report"] = figures(estimate_with(average), sets)
             clock["validate"] = time.time()
             with open(log_path, "a") as f:
                 line = {"step": step, "drawn": drawn, "elapsed": elapsed, "loss": running, **clock["report"]}

@@ -1,10 +1,10 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values.
 
 use super::arguments::{self, FloorArgs, TestSet};
+use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
-use crate::methods;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::{Reconstructor, Task};
 use crate::scene::generate::Reading;
@@ -35,6 +35,9 @@ pub struct Args {
     /// Seed of the scenes
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
+
+    #[command(flatten)]
+    network: NetworkArgs,
 
     #[command(flatten)]
     floor: FloorArgs,
@@ -99,12 +102,7 @@ struct OperatingPoint {
 impl Args {
     /// Runs every method over every set and prints the tables.
     pub fn run(self) -> Result<(), CommandError> {
-        let methods = self
-            .method
-            .iter()
-            .map(|name| methods::by_name(name.trim()))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(CommandError::failed)?;
+        let methods = self.network.methods(&self.method)?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let campaign = Campaign {
             radar: Radar { carrier: self.carrier, ..Radar::default() },

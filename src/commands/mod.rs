@@ -11,6 +11,7 @@ mod evaluate;
 mod figure;
 mod layouts;
 mod maps;
+mod network_args;
 mod open;
 mod output;
 mod reconstruct;

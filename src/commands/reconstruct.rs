@@ -1,13 +1,13 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
+use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::files::npz::{Npz, write_npz};
-use crate::methods;
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Request};
+use crate::reconstruct::Request;
 use crate::signal::TwoEnds;
-use ndarray::{Array2, Ix2, arr0};
+use ndarray::{Ix2, arr0};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -30,6 +30,9 @@ pub struct Args {
     method: String,
 
     #[command(flatten)]
+    network: NetworkArgs,
+
+    #[command(flatten)]
     floor: FloorArgs,
 }
 
@@ -39,13 +42,14 @@ impl Args {
         let radar = Radar::default();
         let mut archive = Npz::open(&self.input).map_err(CommandError::on(&self.input))?;
         let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
-        let method = methods::by_name(&self.method).map_err(CommandError::failed)?;
+        let methods = self.network.methods(std::slice::from_ref(&self.method))?;
+        let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
         let started;
         let lambda = if ready_made {
             let input =
                 archive.reals::<ndarray::Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
             started = Instant::now();
-            from_mag_phase(&self.method, &radar, &input).map_err(CommandError::on(&self.input))?
+            method.reconstruct_mag_phase(&radar, &input).map_err(CommandError::on(&self.input))?.lambda
         } else {
             let [first, last] = ["sub0", "sub1"]
                 .map(|key| archive.complexes::<Ix2>(key).map(|a| a.reversed_axes().as_standard_layout().into_owned()));
@@ -66,17 +70,4 @@ impl Args {
         .map_err(CommandError::on(&self.output))?;
         print(&format!("wrote {} ({}, {milliseconds:.1} ms)", self.output.display(), method.name()))
     }
-}
-
-#[cfg(feature = "network")]
-fn from_mag_phase(method: &str, radar: &Radar, input: &ndarray::Array3<f64>) -> Result<Array2<f32>, ReconstructError> {
-    crate::network::from_mag_phase(method, radar, input)
-}
-
-#[cfg(not(feature = "network"))]
-fn from_mag_phase(_: &str, _: &Radar, _: &ndarray::Array3<f64>) -> Result<Array2<f32>, ReconstructError> {
-    Err(ReconstructError::Unusable {
-        method: "thesis",
-        reason: "polar_partial_mag_phase is the input of the thesis' networks, which this build doesn't have".into(),
-    })
 }

@@ -2,88 +2,93 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`features`] | raw samples of the two ends to the live network's tensors |
-//! | [`live`] | the live network as a burn module |
-//! | [`engine`], [`kernel`], [`fastmath`] | the same without a framework, for speed |
-//! | [`live_method`] | the live network as a reconstruction method |
+//! | [`live`] | the live network: features, burn module, an engine without a framework |
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`unet`] | the thesis' failing U-Net |
 //! | [`recipe`], [`losses`], [`students`], [`train`] | training: what, towards what, from what, and how |
+//! | [`checkpoint`], [`validation`] | going on with a run; what the trained network is worth, and its weight file |
 //! | [`backend`] | which of burn's backends computes |
-//! | [`weights`] | weight files: checking, loading, what they say about themselves |
+//! | [`weights`], [`pytorch`] | weight files: checking, loading, what they say about themselves |
 
 pub mod backend;
-pub mod engine;
-pub mod fastmath;
-pub mod features;
-pub mod kernel;
+pub mod checkpoint;
 pub mod live;
-pub mod live_method;
 pub mod losses;
+pub mod pytorch;
 pub mod recipe;
 pub mod students;
 pub mod thesis;
 pub mod thesis_method;
 pub mod train;
 pub mod unet;
+pub mod validation;
 pub mod weights;
 
-use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstructor};
+use crate::reconstruct::Reconstructor;
 use backend::Backend;
-use live_method::LiveMethod;
-use ndarray::{Array2, Array3};
+use live::{Live, LiveMethod};
+use pytorch::read_weights;
+use std::path::Path;
 use std::sync::{Arc, LazyLock};
+use students::Student;
+use thesis::Thesis;
 use thesis_method::{ThesisMethod, UnetMethod};
-use weights::WeightsError;
+use unet::Unet;
+use weights::{WeightFile, WeightsError};
 
-/// The networks whose weights are part of the program.
-struct Shipped {
-    live: Option<Arc<LiveMethod>>,
-    thesis: Vec<Arc<ThesisMethod>>,
-    unet: Option<Arc<UnetMethod>>,
-}
-
-static SHIPPED: LazyLock<Shipped> = LazyLock::new(|| Shipped {
-    live: usable(LiveMethod::from_bytes(
-        "assets/weights/live.safetensors",
-        include_bytes!("../../assets/weights/live.safetensors"),
-    )),
-    thesis: Vec::new(),
-    unet: usable(UnetMethod::from_bytes(
-        "assets/weights/unet.safetensors",
-        include_bytes!("../../assets/weights/unet.safetensors"),
-        unet::UnetConfig::default(),
-        Backend::default(),
-    )),
-});
+static SHIPPED: LazyLock<Vec<Arc<dyn Reconstructor>>> = LazyLock::new(|| load_shipped(Backend::default()));
 
 /// The networks whose weights are part of the program. One whose weights can't be used is left out, with a warning in the log.
 pub fn shipped() -> Vec<Arc<dyn Reconstructor>> {
-    let Shipped { live, thesis, unet } = &*SHIPPED;
-    let live = live.iter().cloned().map(|m| m as Arc<dyn Reconstructor>);
-    let thesis = thesis.iter().cloned().map(|m| m as Arc<dyn Reconstructor>);
-    let unet = unet.iter().cloned().map(|m| m as Arc<dyn Reconstructor>);
-    live.chain(thesis).chain(unet).collect()
+    SHIPPED.clone()
 }
 
-/// Estimates Lambda with the thesis network called `method` from its own input, `[4, range bins, columns]`.
+/// The same, with what burn computes of them computed by `backend`; `live` has an engine of its own.
+pub fn shipped_on(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
+    if backend == Backend::default() { shipped() } else { load_shipped(backend) }
+}
+
+fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
+    let live: &[u8] = include_bytes!("../../assets/weights/live.safetensors");
+    let unet: &[u8] = include_bytes!("../../assets/weights/unet.safetensors");
+    [("assets/weights/live.safetensors", live), ("assets/weights/unet.safetensors", unet)]
+        .into_iter()
+        .filter_map(|(name, bytes)| usable(WeightFile::parse(name, bytes).and_then(|file| method_of(file, backend))))
+        .collect()
+}
+
+/// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' network.
 ///
 /// # Errors
-/// [`ReconstructError`] when there is no such network or the input has another shape.
-pub fn from_mag_phase(method: &str, radar: &Radar, input: &Array3<f64>) -> Result<Array2<f32>, ReconstructError> {
-    let Some(network) = SHIPPED.thesis.iter().find(|m| m.name() == method) else {
-        let reason = format!(
-            "polar_partial_mag_phase is the input of the thesis' networks; \"{method}\" needs sub0 and sub1 instead"
-        );
-        return Err(ReconstructError::Unusable { method: "reconstruct", reason });
-    };
-    network.from_mag_phase(radar, input).map(|map| map.lambda)
+/// [`WeightsError`] when the file can't be read, is damaged, or belongs to no network of ours.
+pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
+    let bytes = read_weights(path)?;
+    method_of(WeightFile::parse(&path.display().to_string(), &bytes)?, backend)
 }
 
-fn usable<M>(method: Result<M, WeightsError>) -> Option<Arc<M>> {
+fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
+    Ok(match file.network() {
+        Live::NAME => Arc::new(LiveMethod::new(file)?),
+        Unet::NAME => Arc::new(UnetMethod::new(file, backend)?),
+        Thesis::NAME => {
+            let (name, description) = match file.provenance.get("recipe") {
+                "experiment-1-small" => {
+                    ("thesis-1", "the thesis' network at a quarter of its width, trained on points")
+                }
+                "experiment-2-small" => {
+                    ("thesis", "the thesis' network at a quarter of its width, trained on points and lines")
+                }
+                _ => ("thesis", "the thesis' network with weights from a file"),
+            };
+            Arc::new(ThesisMethod::new(name, description, file, backend)?)
+        }
+        other => return Err(file.foreign(other, "live, thesis or unet")),
+    })
+}
+
+fn usable<M>(method: Result<M, WeightsError>) -> Option<M> {
     match method {
-        Ok(method) => Some(Arc::new(method)),
+        Ok(method) => Some(method),
         Err(error) => {
             tracing::warn!("a network is missing: {error}");
             None

@@ -1,6 +1,6 @@
 //! What each network learns from a scene: its input, its target, and the map it estimates.
 
-use super::features::{COLUMNS, FeatureExtractor, LiveInput, ROWS};
+use super::live::features::{COLUMNS, FeatureExtractor, LiveInput, ROWS};
 use super::live::{Live, LiveBatch, LiveConfig};
 use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};
@@ -13,6 +13,7 @@ use crate::reconstruct::ReconstructError;
 use crate::signal::{BeatSignal, TwoEnds};
 use burn::module::Module;
 use burn::tensor::{Device, Tensor, TensorData};
+use ndarray::Array2;
 
 /// A network that can be trained.
 pub trait Student: Module + Clone {
@@ -50,6 +51,11 @@ pub trait Student: Module + Clone {
 
     /// Estimates the maps of a batch, `[batch, rows, columns]`.
     fn estimate(&self, inputs: &[Self::Input], device: &Device) -> Tensor<3>;
+
+    /// The map that is judged: an estimate with every cell in [0, 1].
+    fn finish(estimate: Array2<f32>) -> RangeAngleMap {
+        RangeAngleMap { lambda: estimate.mapv(|v| v.clamp(0.0, 1.0)) }
+    }
 }
 
 /// Equally shaped arrays as one tensor with a batch dimension.
@@ -99,6 +105,11 @@ impl Student for Thesis {
         let x = Tensor::<4>::from_data(TensorData::new(values, vec![inputs.len(), 4, rows, columns]), device);
         self.forward(x).reshape([inputs.len(), rows, columns])
     }
+
+    /// Stretched to [0, 1], as the thesis does before it is thresholded.
+    fn finish(estimate: Array2<f32>) -> RangeAngleMap {
+        RangeAngleMap::stretched(estimate)
+    }
 }
 
 /// Lambda above the target threshold on the scene's own coordinates, 1 or 0, `[rows, 2 rows]` row-major.
@@ -140,8 +151,7 @@ impl Student for Unet {
     fn target(config: &UnetConfig, radar: &Radar, signal: &BeatSignal) -> RangeAngleMap {
         let full = LogMaps::of_signal(radar, signal).full.normalise(Normalisation::MinMax);
         let bright = thresholded_cartesian(radar, &full, config.rows);
-        let lambda =
-            ndarray::Array2::from_shape_fn((config.rows, 2 * config.rows), |(i, j)| bright[i * 2 * config.rows + j]);
+        let lambda = Array2::from_shape_fn((config.rows, 2 * config.rows), |(i, j)| bright[i * 2 * config.rows + j]);
         RangeAngleMap { lambda }
     }
 

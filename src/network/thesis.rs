@@ -13,6 +13,9 @@ use burn::tensor::ops::MaxPoolOptions;
 use burn::tensor::{Device, Tensor};
 use serde::{Deserialize, Serialize};
 
+/// What the author's program calls the tower of 3x3 convolutions.
+const FIRST_TOWER: &str = "down.layer3x3";
+
 /// Dilation of every convolution of the towers.
 const DILATION: usize = 2;
 
@@ -99,8 +102,28 @@ impl Thesis {
         }
     }
 
-    /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()` as safetensors
-    /// (`safetensors.torch.save_file(torch.load("trained_model.pt")...)`).
+    /// Width and depth of the network that `file` holds weights of.
+    ///
+    /// # Errors
+    /// [`WeightsError::Tensor`] when it lacks the first convolution.
+    pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
+        let stage = |level: usize| {
+            let ours = file.shape(&format!("down.layer3x3.{level}.conv.weight"));
+            ours.or_else(|| file.shape(&format!("{FIRST_TOWER}.{level}.0.weight")))
+        };
+        match stage(0) {
+            Some(&[filters, ..]) => {
+                Ok(ThesisConfig { filters, levels: (0..).take_while(|level| stage(*level).is_some()).count() })
+            }
+            _ => Err(WeightsError::Tensor {
+                file: file.name().to_owned(),
+                tensor: format!("{FIRST_TOWER}.0.0.weight"),
+                problem: "is missing; expected the state of the thesis' network".into(),
+            }),
+        }
+    }
+
+    /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
     ///
     /// # Errors
     /// [`WeightsError`] when they don't fit.

@@ -12,6 +12,9 @@ use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
 
+/// The thesis' own threshold, for weights that name none.
+const THESIS_ETA: f32 = 0.7;
+
 /// The thesis' encoder-decoder with weights; its output is stretched to [0, 1] as the thesis does before it is thresholded.
 #[derive(Debug)]
 pub struct ThesisMethod {
@@ -26,48 +29,27 @@ pub struct ThesisMethod {
 }
 
 impl ThesisMethod {
-    /// The network with the weights in `bytes`, a safetensors file called `file`, computed by `backend`.
+    /// The network with the weights of `file`, whose tensors decide its width and depth, computed by `backend`.
     ///
     /// # Errors
-    /// [`WeightsError`] when the file is damaged or belongs to another network.
-    pub fn from_bytes(
+    /// [`WeightsError`] when the file belongs to another network.
+    pub fn new(
         name: &'static str,
         description: &'static str,
-        file: &str,
-        bytes: &[u8],
-        config: ThesisConfig,
+        file: WeightFile,
         backend: Backend,
     ) -> Result<Self, WeightsError> {
-        let file = WeightFile::parse(file, bytes)?;
-        file.expect_network(Thesis::NAME)?;
         let device = backend.device();
+        let config = Thesis::config_of(&file)?;
         Ok(ThesisMethod {
             network: Thesis::load(&file, &config, &device)?.folded(),
             config,
             device,
-            eta: file.provenance.eta().unwrap_or(0.7),
+            eta: file.provenance.eta().unwrap_or(THESIS_ETA),
             name,
             description,
             provenance: file.provenance,
         })
-    }
-}
-
-impl ThesisMethod {
-    /// Estimates Lambda from the network's own input, `[4, range bins, columns]`.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Shape`] unless it has the radar's shape.
-    pub fn from_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
-        let size = [radar.samples, radar.elements];
-        let expected = vec![4, size[0], size[1]];
-        if input.shape() != expected {
-            let what = "polar_partial_mag_phase";
-            return Err(ReconstructError::Shape { what, found: input.shape().to_vec(), expected });
-        }
-        Thesis::tables(&self.config, radar)?;
-        let input = ThesisInput { values: input.iter().map(|v| *v as f32).collect(), size };
-        estimate(&self.network, self.name, input, size, &self.device).map(RangeAngleMap::stretched)
     }
 }
 
@@ -98,6 +80,18 @@ impl Reconstructor for ThesisMethod {
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         Ok(Reconstruction { lambda: RangeAngleMap::stretched(map), reflectors: Vec::new() })
     }
+
+    fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+        let size = [radar.samples, radar.elements];
+        let expected = vec![4, size[0], size[1]];
+        if input.shape() != expected {
+            let what = "polar_partial_mag_phase";
+            return Err(ReconstructError::Shape { what, found: input.shape().to_vec(), expected });
+        }
+        Thesis::tables(&self.config, radar)?;
+        let input = ThesisInput { values: input.iter().map(|v| *v as f32).collect(), size };
+        estimate(&self.network, self.name, input, size, &self.device).map(RangeAngleMap::stretched)
+    }
 }
 
 /// The failing U-Net: its Cartesian answer, drawn back onto range and angle.
@@ -111,14 +105,13 @@ pub struct UnetMethod {
 }
 
 impl UnetMethod {
-    /// The network with the weights in `bytes`, a safetensors file called `file`, computed by `backend`.
+    /// The shipped architecture with the weights of `file`, computed by `backend`.
     ///
     /// # Errors
-    /// [`WeightsError`] when the file is damaged or belongs to another network.
-    pub fn from_bytes(file: &str, bytes: &[u8], config: UnetConfig, backend: Backend) -> Result<Self, WeightsError> {
-        let file = WeightFile::parse(file, bytes)?;
-        file.expect_network(Unet::NAME)?;
+    /// [`WeightsError`] when the file belongs to another network.
+    pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
         let device = backend.device();
+        let config = UnetConfig::default();
         let mut network = Unet::new(&config, &device);
         file.load_into(&mut network, |_| false)?;
         Ok(UnetMethod { network, config, device, provenance: file.provenance })

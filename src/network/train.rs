@@ -1,9 +1,9 @@
 //! Training: scenes simulated as they are needed, checkpoints that a run goes on from as if it had never stopped.
 
+use super::checkpoint;
 use super::recipe::{Optimizer, Recipe, RecipeError};
 use super::students::Student;
-use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
-use crate::evaluate::{Metrics, Roc, TARGET_ETA};
+use super::validation::{export, validate};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
@@ -12,9 +12,7 @@ use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::{Floor, simulate};
 use burn::optim::momentum::MomentumConfig;
 use burn::optim::{AdamWConfig, GradientsParams, ModuleOptimizer, SgdConfig};
-use burn::store::{BurnToPyTorchAdapter, BurnpackStore, ModuleSnapshot, SafetensorsStore};
 use burn::tensor::{Device, Tensor, TensorData};
-use ndarray::Array2;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -59,24 +57,6 @@ pub struct Progress {
     pub seconds: f64,
     /// Smoothed loss.
     pub loss: f64,
-}
-
-/// Figures on the validation scenes of one set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SetFigures {
-    /// SE.
-    pub squared_error: f64,
-    /// P_D at the thesis' P_FA, where a threshold reaches it.
-    pub detection: Option<f64>,
-}
-
-/// What validation found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Validation {
-    /// One entry a set.
-    pub sets: Vec<SetFigures>,
-    /// Threshold at which the mean P_FA over the sets is the thesis' mean.
-    pub eta: f32,
 }
 
 /// Why training stopped early or could not start.
@@ -125,12 +105,6 @@ pub enum TrainError {
     Input(#[from] ReconstructError),
 }
 
-/// Names inside a checkpoint.
-const MODEL: &str = "model.bpk";
-const OPTIMIZER: &str = "optimizer.bpk";
-const PROGRESS: &str = "progress.toml";
-const RECIPE: &str = "recipe.toml";
-
 /// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
 ///
 /// # Errors
@@ -147,10 +121,10 @@ pub fn train<S: Student>(
     let mut network = S::fresh(config, &device);
     let mut optimizer = optimizer_of(&recipe.optimizer);
     let mut progress = Progress::default();
-    let checkpoint = run.folder.join("checkpoint");
+    let at = run.folder.join("checkpoint");
     if resume {
-        progress = load_checkpoint(&checkpoint, recipe, &mut network, &mut optimizer)?;
-    } else if checkpoint.exists() {
+        progress = checkpoint::load(&at, recipe, &mut network, &mut optimizer)?;
+    } else if at.exists() {
         return Err(TrainError::Occupied { folder: run.folder.clone() });
     }
     fs::create_dir_all(&run.folder).map_err(file(&run.folder))?;
@@ -192,20 +166,21 @@ pub fn train<S: Student>(
             log.line(&progress, value, recipe.learning_rate(progress.epoch))?;
             watch(&progress);
             if saved.elapsed() >= run.checkpoint_every {
-                save_checkpoint(&checkpoint, recipe, &network, &optimizer, &progress)?;
+                checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
                 saved = Instant::now();
             }
         }
         progress.epoch += 1;
         progress.step_of_epoch = 0;
     }
-    save_checkpoint(&checkpoint, recipe, &network, &optimizer, &progress)?;
+    checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
     let validation = validate::<S>(&network.valid(), recipe, config, run)?;
     export::<S>(&network.valid(), recipe, run, &progress, &validation)?;
     Ok(progress)
 }
 
-fn optimizer_of(optimizer: &Optimizer) -> ModuleOptimizer {
+/// A fresh optimizer.
+pub(super) fn optimizer_of(optimizer: &Optimizer) -> ModuleOptimizer {
     match optimizer {
         Optimizer::Sgd { momentum, .. } => {
             SgdConfig::new().with_momentum(Some(MomentumConfig::new().with_momentum(*momentum))).init()
@@ -223,7 +198,8 @@ fn epoch_order(recipe: &Recipe, epoch: u32) -> Vec<(Kind, u32)> {
     order
 }
 
-fn lesson<S: Student>(
+/// Input and target of one scene.
+pub(super) fn lesson<S: Student>(
     tables: &S::Tables,
     config: &S::Config,
     run: &Run,
@@ -242,143 +218,8 @@ fn target_tensor(targets: &[RangeAngleMap], device: &Device) -> Tensor<3> {
     Tensor::from_data(TensorData::new(values, vec![targets.len(), rows, columns]), device)
 }
 
-/// Figures on validation scenes, which share no random stream with training or test scenes.
-fn validate<S: Student>(network: &S, recipe: &Recipe, config: &S::Config, run: &Run) -> Result<Validation, TrainError> {
-    let tables = S::tables(config, &run.radar)?;
-    let generator = Generator::new(&run.radar, Reading::Program, Purpose::Validation, recipe.seed);
-    let mut sets = Vec::new();
-    let mut rocs = Vec::new();
-    for (kind, printed) in Kind::TEST_SETS.into_iter().zip(PRINTED_EXPERIMENT_2) {
-        let (mut roc, mut error) = (Roc::default(), 0.0);
-        for number in 0..recipe.validation_scenes {
-            let (input, target) = lesson::<S>(&tables, config, run, &generator, kind, number)?;
-            let estimate = network.estimate(&[input], &run.device);
-            let values = estimate.into_data().try_into_vec::<f32>().unwrap_or_default();
-            let lambda = Array2::from_shape_vec(target.lambda.dim(), values)
-                .unwrap_or_else(|_| Array2::zeros(target.lambda.dim()));
-            // The thesis network's output is stretched to [0, 1] before it is judged; the others are there already.
-            let out = if S::NAME == "thesis" {
-                RangeAngleMap::stretched(lambda)
-            } else {
-                RangeAngleMap { lambda: lambda.mapv(|v| v.clamp(0.0, 1.0)) }
-            };
-            error += Metrics::of(&target, &out, TARGET_ETA).squared_error / f64::from(recipe.validation_scenes);
-            roc.add(&target, &out);
-        }
-        let detection = roc.at_false_alarm(printed.false_alarm).map(|point| point.detection);
-        sets.push(SetFigures { squared_error: error, detection });
-        rocs.push(roc);
-    }
-    let sets_count = rocs.len() as f64;
-    let wanted = PRINTED_EXPERIMENT_2.iter().map(|p| p.false_alarm).sum::<f64>() / sets_count;
-    let mut alarms: Vec<(f32, f64)> = Vec::new();
-    for roc in &rocs {
-        for (i, point) in roc.points().enumerate() {
-            match alarms.get_mut(i) {
-                Some(sum) => sum.1 += point.false_alarm / sets_count,
-                None => alarms.push((point.eta, point.false_alarm / sets_count)),
-            }
-        }
-    }
-    let eta = alarms.iter().filter(|a| a.1 <= wanted).map(|a| a.0).fold(1.0, f32::min);
-    Ok(Validation { sets, eta })
-}
-
-/// Writes `weights.safetensors`, with its record, into the run's folder.
-fn export<S: Student>(
-    network: &S,
-    recipe: &Recipe,
-    run: &Run,
-    progress: &Progress,
-    validation: &Validation,
-) -> Result<(), TrainError> {
-    let path = run.folder.join("weights.safetensors");
-    let figures: Vec<String> = validation
-        .sets
-        .iter()
-        .enumerate()
-        .map(|(i, set)| {
-            let detection = set.detection.map_or("-".into(), |d| format!("{:.2} %", 100.0 * d));
-            format!("set {}: SE {:.0}, P_D {detection} at the thesis' P_FA", i + 1, set.squared_error)
-        })
-        .collect();
-    let mut store = SafetensorsStore::from_file(&path)
-        .overwrite(true)
-        .with_to_adapter(BurnToPyTorchAdapter)
-        .metadata("network", S::NAME)
-        .metadata("recipe", &recipe.name)
-        .metadata("trainer", "apertura train")
-        .metadata("seed", recipe.seed.to_string())
-        .metadata("steps", progress.step.to_string())
-        .metadata("maps_seen", progress.maps.to_string())
-        .metadata("minutes", format!("{:.0}", progress.seconds / 60.0))
-        .metadata("loss", format!("{:.6}", progress.loss))
-        .metadata("commit", &run.commit)
-        .metadata("eta", format!("{:.4}", validation.eta))
-        .metadata("validation", format!("{} scenes a set: {}", recipe.validation_scenes, figures.join("; ")));
-    network.save_into(&mut store).map_err(|e| TrainError::Checkpoint { path, reason: e.to_string() })
-}
-
-fn save_checkpoint<S: Student>(
-    folder: &Path,
-    recipe: &Recipe,
-    network: &S,
-    optimizer: &ModuleOptimizer,
-    progress: &Progress,
-) -> Result<(), TrainError> {
-    let next = folder.with_extension("next");
-    if next.exists() {
-        fs::remove_dir_all(&next).map_err(file(&next))?;
-    }
-    fs::create_dir_all(&next).map_err(file(&next))?;
-    let bad = |reason: String| TrainError::Checkpoint { path: next.clone(), reason };
-    let mut store = BurnpackStore::from_file(next.join(MODEL)).overwrite(true);
-    network.save_into(&mut store).map_err(|e| bad(e.to_string()))?;
-    optimizer.save(next.join(OPTIMIZER)).map_err(|e| bad(e.to_string()))?;
-    for (name, text) in [
-        (PROGRESS, toml::to_string(progress).map_err(|e| bad(e.to_string()))?),
-        (RECIPE, toml::to_string(recipe).map_err(|e| bad(e.to_string()))?),
-    ] {
-        let path = next.join(name);
-        fs::write(&path, text).map_err(file(&path))?;
-    }
-    // Two renames: a run that is stopped between them finds the older checkpoint under its second name.
-    let old = folder.with_extension("old");
-    if old.exists() && folder.exists() {
-        fs::remove_dir_all(&old).map_err(file(&old))?;
-    }
-    if folder.exists() {
-        fs::rename(folder, &old).map_err(file(folder))?;
-    }
-    fs::rename(&next, folder).map_err(file(&next))
-}
-
-fn load_checkpoint<S: Student>(
-    folder: &Path,
-    recipe: &Recipe,
-    network: &mut S,
-    optimizer: &mut ModuleOptimizer,
-) -> Result<Progress, TrainError> {
-    let old = folder.with_extension("old");
-    let folder = if !folder.exists() && old.exists() { &old } else { folder };
-    let bad = |reason: String| TrainError::Checkpoint { path: folder.to_owned(), reason };
-    let read = |name: &str| {
-        let path = folder.join(name);
-        fs::read_to_string(&path).map_err(file(&path))
-    };
-    if Recipe::parse(RECIPE, &read(RECIPE)?)? != *recipe {
-        return Err(bad("it belongs to another recipe; resume with the recipe it was started with".into()));
-    }
-    let progress = toml::from_str(&read(PROGRESS)?).map_err(|e| bad(format!("{PROGRESS}: {e}")))?;
-    let mut store = BurnpackStore::from_file(folder.join(MODEL));
-    network.load_from(&mut store).map_err(|e| bad(format!("{MODEL}: {e}")))?;
-    *optimizer =
-        optimizer_of(&recipe.optimizer).load(folder.join(OPTIMIZER)).map_err(|e| bad(format!("{OPTIMIZER}: {e}")))?;
-    Ok(progress)
-}
-
 /// For `map_err`: an error about the file `path`.
-fn file(path: &Path) -> impl FnOnce(std::io::Error) -> TrainError {
+pub(super) fn file(path: &Path) -> impl FnOnce(std::io::Error) -> TrainError {
     let path = path.to_owned();
     move |source| TrainError::File { path, source }
 }
@@ -476,7 +317,7 @@ mod tests {
         let error = train::<Thesis>(&recipe, &config, &run, false, |_| {}).unwrap_err();
         let TrainError::NotFinite { step, .. } = error else { panic!("{error}") };
         assert!(step >= 1);
-        assert!(folder.path().join("checkpoint").join(MODEL).exists());
+        assert!(folder.path().join("checkpoint").join(checkpoint::MODEL).exists());
     }
 
     #[test]

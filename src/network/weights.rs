@@ -3,6 +3,8 @@
 //! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
+use super::students::Student;
+use super::thesis::Thesis;
 use burn::module::Module;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
 use serde::{Deserialize, Serialize};
@@ -30,12 +32,28 @@ impl Provenance {
 /// Why a weight file can't be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WeightsError {
+    /// The file could not be read.
+    #[error("{file}: {reason}")]
+    File {
+        /// Name of the file.
+        file: String,
+        /// What the system said.
+        reason: String,
+    },
     /// The file is not safetensors at all.
     #[error("{file} is not a safetensors file: {reason}")]
     NotSafetensors {
         /// Name of the file.
         file: String,
         /// What its first bytes lack.
+        reason: String,
+    },
+    /// The file looks like a PyTorch checkpoint and can't be read as one.
+    #[error("{file} is not a PyTorch checkpoint that can be read: {reason}")]
+    NotPytorch {
+        /// Name of the file.
+        file: String,
+        /// What the reader said.
         reason: String,
     },
     /// The file ends early or goes on too long.
@@ -134,6 +152,19 @@ impl<'a> WeightFile<'a> {
         Ok(WeightFile { name: name.to_owned(), bytes, data, tensors, provenance })
     }
 
+    /// Shape of the tensor called `name`, if the file has it.
+    pub fn shape(&self, name: &str) -> Option<&[usize]> {
+        self.tensors.get(name).map(|tensor| tensor.shape.as_slice())
+    }
+
+    /// Name of the network that the weights belong to: what the file says, or "thesis" for a file of its author's, which says nothing.
+    pub fn network(&self) -> &str {
+        match self.provenance.get("network") {
+            "" if Thesis::config_of(self).is_ok() => Thesis::NAME,
+            named => named,
+        }
+    }
+
     /// Name of the file, for messages.
     pub fn name(&self) -> &str {
         &self.name
@@ -161,17 +192,21 @@ impl<'a> WeightFile<'a> {
         self.data.as_chunks::<4>().0.iter().map(|v| f32::from_le_bytes(*v)).collect()
     }
 
-    /// Checks that the file says it holds `network`.
+    /// Checks that the file holds weights of `network`.
     ///
     /// # Errors
     /// [`WeightsError::Foreign`] otherwise.
     pub fn expect_network(&self, network: &str) -> Result<(), WeightsError> {
-        let found = self.provenance.get("network");
-        if found == network {
-            return Ok(());
+        match self.network() {
+            found if found == network => Ok(()),
+            found => Err(self.foreign(found, network)),
         }
+    }
+
+    /// The error of a file that holds weights of `found` where `expected` is wanted.
+    pub fn foreign(&self, found: &str, expected: &str) -> WeightsError {
         let found = if found.is_empty() { "no named network" } else { found }.to_owned();
-        Err(WeightsError::Foreign { file: self.name.clone(), found, expected: network.to_owned() })
+        WeightsError::Foreign { file: self.name.clone(), found, expected: expected.to_owned() }
     }
 
     /// The values of one tensor.

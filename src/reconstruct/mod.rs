@@ -44,6 +44,7 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::scene::Reflector;
 use crate::signal::{Floor, TwoEnds};
+use ndarray::Array3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -164,6 +165,17 @@ pub trait Reconstructor: Send + Sync {
     /// [`ReconstructError`], on samples of the wrong shape or not finite, when cancelled, or as the method says.
     fn reconstruct(&self, radar: &Radar, ends: &TwoEnds, request: &Request)
     -> Result<Reconstruction, ReconstructError>;
+
+    /// Estimates the whole array's map from the thesis networks' own input, `[4, range bins, columns]`
+    /// ([`mag_phase`](crate::maps::network_input::mag_phase)).
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] from every method that needs the samples themselves; [`ReconstructError::Shape`].
+    fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+        let reason =
+            "it needs sub0 and sub1; polar_partial_mag_phase is the input of the thesis' networks alone".into();
+        Err(ReconstructError::Unusable { method: self.name(), reason })
+    }
 }
 
 /// Checks that both ends have the radar's shape and hold finite samples only.

@@ -1,19 +1,10 @@
-//! The live network: 24 elements in, the whole array's log-magnitude out, in milliseconds.
-//!
-//! A U-Net on 512 x 64 cells whose decoder knows what a reflector's picture is made of. Its two fine heads say how strong each
-//! of the 512 x 1024 cells is by itself and how strong a *source of side lobes in range* it is; a coarse head says the same for
-//! side lobes in angle. Two learned circular kernels, started as the tails of a Hann window (1/k^3), carry those sources along the columns and
-//! the rows, so that the bright cross that every reflector draws through the whole map costs two matrix products. The parts
-//! add up as amplitudes together with the noise floor.
-//!
-//! Angles wrap around (column 0 follows column 1023), ranges do not. Row and column means mix at the two coarsest levels.
-//!
-//! `benches/twin/live.py` is this module in PyTorch, with the same names and shapes.
+//! The live network as a burn module.
 
 use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
+use super::layers::{Block, WrapConv, blocks, small, through, zeroed};
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
-use burn::nn::{Linear, LinearConfig, PaddingConfig2d};
+use burn::nn::{Linear, LinearConfig};
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 use std::f64::consts::LN_10;
@@ -45,87 +36,7 @@ impl Default for LiveConfig {
     }
 }
 
-/// 3x3 convolution, circular in angle, zero-padded in range.
-#[derive(Module, Debug)]
-pub struct WrapConv {
-    conv: Conv2d,
-}
-
-impl WrapConv {
-    fn new(input: usize, output: usize, device: &Device) -> Self {
-        let conv = Conv2dConfig::new([input, output], [3, 3]).with_padding(PaddingConfig2d::Explicit(1, 0, 1, 0));
-        WrapConv { conv: conv.init(device) }
-    }
-
-    fn zeroed(mut self) -> Self {
-        self.conv.weight = self.conv.weight.map(|w| w.zeros_like());
-        self.conv.bias = self.conv.bias.map(|b| b.map(|b| b.zeros_like()));
-        self
-    }
-
-    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let columns = x.dims()[3];
-        let wrapped = Tensor::cat(vec![x.clone().narrow(3, columns - 1, 1), x.clone(), x.narrow(3, 0, 1)], 3);
-        self.conv.forward(wrapped)
-    }
-}
-
-/// Means and maxima of rows and of columns, mixed and added to every cell.
-#[derive(Module, Debug)]
-pub struct Context {
-    row: Conv2d,
-    col: Conv2d,
-}
-
-impl Context {
-    fn new(channels: usize, device: &Device) -> Self {
-        let mix = || Conv2dConfig::new([2 * channels, channels], [1, 1]).init(device);
-        Context { row: mix(), col: mix() }
-    }
-
-    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let pooled = |dim: usize| Tensor::cat(vec![x.clone().mean_dim(dim), x.clone().max_dim(dim)], 1);
-        let row = relu(self.row.forward(pooled(3)));
-        let col = relu(self.col.forward(pooled(2)));
-        x + row + col
-    }
-}
-
-/// Residual block of two convolutions, with row and column context where it has any.
-#[derive(Module, Debug)]
-pub struct Block {
-    conv1: WrapConv,
-    conv2: WrapConv,
-    context: Option<Context>,
-}
-
-impl Block {
-    fn new(channels: usize, context: bool, device: &Device) -> Self {
-        Block {
-            conv1: WrapConv::new(channels, channels, device),
-            conv2: WrapConv::new(channels, channels, device).zeroed(),
-            context: context.then(|| Context::new(channels, device)),
-        }
-    }
-
-    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let mut h = self.conv1.forward(relu(x.clone()));
-        if let Some(context) = &self.context {
-            h = context.forward(h);
-        }
-        x + self.conv2.forward(relu(h))
-    }
-}
-
-fn blocks(count: usize, channels: usize, context: bool, device: &Device) -> Vec<Block> {
-    (0..count).map(|_| Block::new(channels, context, device)).collect()
-}
-
-fn through(blocks: &[Block], x: Tensor<4>) -> Tensor<4> {
-    blocks.iter().fold(x, |x, block| block.forward(x))
-}
-
-/// The live network. See the [module](self) for what it is made of.
+/// The live network. See the [room](super) for what it is made of.
 #[derive(Module, Debug)]
 pub struct Live {
     stem: WrapConv,
@@ -271,19 +182,6 @@ impl Live {
     }
 }
 
-/// The network's head starts quiet: small weights, three decades below its middle.
-fn small(mut conv: Conv2d) -> Conv2d {
-    conv.weight = conv.weight.map(|w| w * 0.3);
-    conv.bias = conv.bias.map(|b| b.map(|b| b.full_like(-1.0)));
-    conv
-}
-
-fn zeroed(mut linear: Linear) -> Linear {
-    linear.weight = linear.weight.map(|w| w.zeros_like());
-    linear.bias = linear.bias.map(|b| b.map(|b| b.zeros_like()));
-    linear
-}
-
 /// Decades as the network sees them: about -4 to 2.
 fn decades_in<const D: usize>(x: Tensor<D>) -> Tensor<D> {
     ((x + 3.0) / 3.0).clamp(-4.0, 2.0)
@@ -345,16 +243,16 @@ fn circulant(kernel: Tensor<1>, n: usize) -> Tensor<2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::engine::{LiveEngine, Scratch};
-    use crate::network::features::FeatureExtractor;
+    use crate::network::live::engine::{LiveEngine, Scratch};
+    use crate::network::live::features::FeatureExtractor;
     use crate::network::weights::WeightFile;
     use crate::radar::Radar;
     use crate::scene::Reflector;
     use crate::signal::exact;
 
     /// Written by `benches/twin/reference.py`: a tiny network, three reflectors, and what PyTorch makes of them.
-    const REFERENCE: &[u8] = include_bytes!("../../tests/data/live_reference.safetensors");
-    const WEIGHTS: &[u8] = include_bytes!("../../tests/data/live_reference_weights.safetensors");
+    const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
+    const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
 
     fn tiny() -> LiveConfig {
         LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 }

@@ -2,9 +2,9 @@
 
 use super::engine::{Decades, LiveEngine, Scratch};
 use super::features::{COLUMNS, FeatureExtractor, ROWS};
-use super::live::LiveConfig;
-use super::weights::{Provenance, WeightFile, WeightsError};
+use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends, silence, unit_gain};
 use crate::signal::TwoEnds;
@@ -26,13 +26,11 @@ pub struct LiveMethod {
 }
 
 impl LiveMethod {
-    /// The shipped architecture with the weights in `bytes`, a safetensors file called `name`.
+    /// The shipped architecture with the weights of `file`.
     ///
     /// # Errors
-    /// [`WeightsError`] when the file is damaged or belongs to another network.
-    pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, WeightsError> {
-        let file = WeightFile::parse(name, bytes)?;
-        file.expect_network(NAME)?;
+    /// [`WeightsError`] when the file belongs to another network.
+    pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
         Ok(LiveMethod {
             engine: LiveEngine::new(&file, &LiveConfig::default())?,
             extractor: OnceLock::new(),

@@ -1,12 +1,13 @@
-//! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::live`].
+//! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::module`].
 //!
-//! [`super::live`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
+//! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
 use super::fastmath::{exp10, log10};
 use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{LANES, Packed, convolve, padded, product};
-use super::live::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
-use super::weights::{WeightFile, WeightsError};
+use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
+use super::planes::{Block, Context, Plane, apply, fill_halo, pooled_mix, with_halo};
+use crate::network::weights::{WeightFile, WeightsError};
 use rayon::prelude::*;
 
 /// Fine columns in a coarse one, and map columns in a fine one.
@@ -20,19 +21,6 @@ pub struct Decades {
     pub map: Vec<f32>,
     /// The smallest cell that the true map is expected to have.
     pub minimum: f32,
-}
-
-#[derive(Debug)]
-struct Context {
-    row: Packed,
-    col: Packed,
-}
-
-#[derive(Debug)]
-struct Block {
-    conv1: Packed,
-    conv2: Packed,
-    context: Option<Context>,
 }
 
 /// The live network's weights, packed for [`super::kernel`].
@@ -54,22 +42,6 @@ pub struct LiveEngine {
     scalar1: Packed,
     scalar2: Packed,
     channels: [usize; 4],
-}
-
-/// Channels-last picture: `[h, w, c]`.
-#[derive(Debug, Clone, Default)]
-struct Plane {
-    h: usize,
-    w: usize,
-    c: usize,
-    data: Vec<f32>,
-}
-
-impl Plane {
-    fn reset(&mut self, h: usize, w: usize, c: usize) {
-        (self.h, self.w, self.c) = (h, w, c);
-        self.data.resize(h * w * c, 0.0);
-    }
 }
 
 /// Buffers of one forward pass; keep them between calls.
@@ -258,109 +230,11 @@ impl LiveEngine {
     }
 }
 
-/// 1x1 convolution of means and maxima, each padded to whole vectors.
-fn pooled_mix(file: &WeightFile, name: &str, c: usize) -> Result<Packed, WeightsError> {
-    let weights = file.tensor(&format!("{name}.weight"), &[c, 2 * c, 1, 1])?;
-    let bias = file.tensor(&format!("{name}.bias"), &[c])?;
-    let lanes = padded(c);
-    let mut spread = vec![0.0; c * 2 * lanes];
-    for (out, row) in spread.chunks_exact_mut(2 * lanes).zip(weights.chunks_exact(2 * c)) {
-        out[..c].copy_from_slice(&row[..c]);
-        out[lanes..lanes + c].copy_from_slice(&row[c..]);
-    }
-    Ok(Packed::new(&spread, &bias, 2 * lanes, 2 * lanes, 1, 1))
-}
-
-impl Block {
-    fn forward(
-        &self,
-        x: &mut Plane,
-        halo: &mut Vec<f32>,
-        hidden: &mut Plane,
-        delta: &mut Plane,
-        pool: &mut Vec<f32>,
-        mixed: &mut Vec<f32>,
-    ) {
-        with_halo(x, true, halo);
-        apply(&self.conv1, halo, x.h, x.w, hidden);
-        if let Some(context) = &self.context {
-            context.forward(hidden, pool, mixed);
-        }
-        with_halo(hidden, true, halo);
-        apply(&self.conv2, halo, x.h, x.w, delta);
-        x.data.par_iter_mut().with_min_len(1 << 15).zip(&delta.data).for_each(|(a, b)| *a += b);
-    }
-}
-
-impl Context {
-    fn forward(&self, x: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
-        let (h, w, c) = (x.h, x.w, x.c);
-        pool.clear();
-        pool.resize((h + w) * 2 * c, 0.0);
-        let (row_pool, col_pool) = pool.split_at_mut(h * 2 * c);
-        for pooled in row_pool.chunks_exact_mut(2 * c).chain(col_pool.chunks_exact_mut(2 * c)) {
-            pooled[c..].fill(f32::NEG_INFINITY);
-        }
-        for (y, line) in x.data.chunks_exact(w * c).enumerate() {
-            let row = &mut row_pool[y * 2 * c..(y + 1) * 2 * c];
-            for (cell, col) in line.chunks_exact(c).zip(col_pool.chunks_exact_mut(2 * c)) {
-                for (i, v) in cell.iter().enumerate() {
-                    row[i] += v / w as f32;
-                    row[c + i] = row[c + i].max(*v);
-                    col[i] += v / h as f32;
-                    col[c + i] = col[c + i].max(*v);
-                }
-            }
-        }
-        mixed.resize((h + w) * c, 0.0);
-        let (rows, cols) = mixed.split_at_mut(h * c);
-        convolve(&self.row, row_pool, h, h, rows);
-        convolve(&self.col, col_pool, w, w, cols);
-        mixed.iter_mut().for_each(|v| *v = v.max(0.0));
-        let (rows, cols) = mixed.split_at(h * c);
-        for (line, row) in x.data.chunks_exact_mut(w * c).zip(rows.chunks_exact(c)) {
-            for (cell, col) in line.chunks_exact_mut(c).zip(cols.chunks_exact(c)) {
-                for ((v, r), k) in cell.iter_mut().zip(row).zip(col) {
-                    *v += r + k;
-                }
-            }
-        }
-    }
-}
-
-/// Convolves a picture that has its halo.
-fn apply(weights: &Packed, halo: &[f32], h: usize, w: usize, out: &mut Plane) {
-    out.reset(h, w, weights.output());
-    convolve(weights, halo, w + 2, w, &mut out.data);
-}
-
-/// Copies `x`, through ReLU if asked, into `[h + 2, w + 2, c]`: angles wrap around, ranges end in zeros.
-fn with_halo(x: &Plane, relu: bool, halo: &mut Vec<f32>) {
-    let least = if relu { 0.0 } else { f32::NEG_INFINITY };
-    fill_halo(x.h, x.w, x.c, halo, |y, line| {
-        let from = &x.data[y * x.w * x.c..(y + 1) * x.w * x.c];
-        line.iter_mut().zip(from).for_each(|(a, b)| *a = b.max(least));
-    });
-}
-
-/// Fills a picture with a halo line by line.
-fn fill_halo(h: usize, w: usize, c: usize, halo: &mut Vec<f32>, fill: impl Fn(usize, &mut [f32]) + Sync) {
-    let line = (w + 2) * c;
-    halo.resize((h + 2) * line, 0.0);
-    halo[..line].fill(0.0);
-    halo[(h + 1) * line..].fill(0.0);
-    halo[line..(h + 1) * line].par_chunks_mut(line).with_min_len(8).enumerate().for_each(|(y, line)| {
-        fill(y, &mut line[c..(w + 1) * c]);
-        line.copy_within(w * c..(w + 1) * c, 0);
-        line.copy_within(c..2 * c, (w + 1) * c);
-    });
-}
-
 fn decades_in(v: f32) -> f32 {
     ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
-/// The first convolution's input, with its halo; channels in the order of [`super::live::Live::forward`].
+/// The first convolution's input, with its halo; channels in the order of [`super::module::Live::forward`].
 fn fill_input(input: &LiveInput, scalars: &[f32; SCALARS], halo: &mut Vec<f32>) {
     fill_halo(ROWS, COARSE, INPUT_CHANNELS, halo, |row, line| {
         let half = (COARSE / 2) as f32;

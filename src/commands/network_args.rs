@@ -1,0 +1,59 @@
+//! Arguments that choose a network's weights and what computes it.
+
+use super::CommandError;
+use crate::methods;
+use crate::reconstruct::Reconstructor;
+use std::sync::Arc;
+
+/// Which weights the networks have, and what computes them.
+#[derive(Debug, Clone, clap::Args)]
+pub struct NetworkArgs {
+    /// Weights to use in place of the shipped ones: safetensors, or a PyTorch checkpoint (.pt) of the thesis' network
+    #[cfg(feature = "network")]
+    #[arg(long, value_name = "FILE")]
+    weights: Option<std::path::PathBuf>,
+
+    /// What computes the thesis' networks (live has an engine of its own)
+    #[cfg(feature = "network")]
+    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", crate::network::backend::Backend::NAMES.join(", ")))]
+    backend: crate::network::backend::Backend,
+}
+
+impl NetworkArgs {
+    /// The methods called `names`, networks with the chosen weights and backend.
+    ///
+    /// # Errors
+    /// [`CommandError`] for an unknown name, and for weights that can't be used or that no method of `names` uses.
+    pub fn methods(&self, names: &[String]) -> Result<Vec<Arc<dyn Reconstructor>>, CommandError> {
+        let own = self.networks(names)?;
+        names
+            .iter()
+            .map(|name| match own.iter().find(|method| method.name() == name.trim()) {
+                Some(method) => Ok(method.clone()),
+                None => methods::by_name(name.trim()).map_err(CommandError::failed),
+            })
+            .collect()
+    }
+
+    #[cfg(feature = "network")]
+    fn networks(&self, names: &[String]) -> Result<Vec<Arc<dyn Reconstructor>>, CommandError> {
+        let mut own = Vec::new();
+        if let Some(path) = &self.weights {
+            let method = crate::network::from_file(path, self.backend).map_err(CommandError::failed)?;
+            if !names.iter().any(|name| name.trim() == method.name()) {
+                let (file, name) = (path.display(), method.name());
+                let message =
+                    format!("{file} holds weights of \"{name}\", which --method doesn't name; add --method {name}");
+                return Err(CommandError::Usage(message));
+            }
+            own.push(method);
+        }
+        own.extend(crate::network::shipped_on(self.backend));
+        Ok(own)
+    }
+
+    #[cfg(not(feature = "network"))]
+    fn networks(&self, _: &[String]) -> Result<Vec<Arc<dyn Reconstructor>>, CommandError> {
+        Ok(Vec::new())
+    }
+}

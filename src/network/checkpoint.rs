@@ -1,0 +1,83 @@
+//! Checkpoints: a run goes on from one as if it had never stopped.
+
+use super::recipe::Recipe;
+use super::students::Student;
+use super::train::{Progress, TrainError, file, optimizer_of};
+use burn::optim::ModuleOptimizer;
+use burn::store::{BurnpackStore, ModuleSnapshot};
+use std::fs;
+use std::path::Path;
+
+/// Names inside a checkpoint.
+pub(super) const MODEL: &str = "model.bpk";
+const OPTIMIZER: &str = "optimizer.bpk";
+const PROGRESS: &str = "progress.toml";
+const RECIPE: &str = "recipe.toml";
+
+/// Replaces the checkpoint at `folder` in one step.
+///
+/// # Errors
+/// [`TrainError`] when it can't be written; the older one is still there then.
+pub fn save<S: Student>(
+    folder: &Path,
+    recipe: &Recipe,
+    network: &S,
+    optimizer: &ModuleOptimizer,
+    progress: &Progress,
+) -> Result<(), TrainError> {
+    let next = folder.with_extension("next");
+    if next.exists() {
+        fs::remove_dir_all(&next).map_err(file(&next))?;
+    }
+    fs::create_dir_all(&next).map_err(file(&next))?;
+    let bad = |reason: String| TrainError::Checkpoint { path: next.clone(), reason };
+    let mut store = BurnpackStore::from_file(next.join(MODEL)).overwrite(true);
+    // A batch norm holds its newest running statistics back until they are asked for; this asks, and they are in what is saved.
+    let _ = network.valid();
+    network.save_into(&mut store).map_err(|e| bad(e.to_string()))?;
+    optimizer.save(next.join(OPTIMIZER)).map_err(|e| bad(e.to_string()))?;
+    for (name, text) in [
+        (PROGRESS, toml::to_string(progress).map_err(|e| bad(e.to_string()))?),
+        (RECIPE, toml::to_string(recipe).map_err(|e| bad(e.to_string()))?),
+    ] {
+        let path = next.join(name);
+        fs::write(&path, text).map_err(file(&path))?;
+    }
+    // Two renames: a run that is stopped between them finds the older checkpoint under its second name.
+    let old = folder.with_extension("old");
+    if old.exists() && folder.exists() {
+        fs::remove_dir_all(&old).map_err(file(&old))?;
+    }
+    if folder.exists() {
+        fs::rename(folder, &old).map_err(file(folder))?;
+    }
+    fs::rename(&next, folder).map_err(file(&next))
+}
+
+/// Loads the checkpoint at `folder` into network and optimizer and says where the run stands.
+///
+/// # Errors
+/// [`TrainError`] when it is missing, damaged, or of another recipe.
+pub fn load<S: Student>(
+    folder: &Path,
+    recipe: &Recipe,
+    network: &mut S,
+    optimizer: &mut ModuleOptimizer,
+) -> Result<Progress, TrainError> {
+    let old = folder.with_extension("old");
+    let folder = if !folder.exists() && old.exists() { &old } else { folder };
+    let bad = |reason: String| TrainError::Checkpoint { path: folder.to_owned(), reason };
+    let read = |name: &str| {
+        let path = folder.join(name);
+        fs::read_to_string(&path).map_err(file(&path))
+    };
+    if Recipe::parse(RECIPE, &read(RECIPE)?)? != *recipe {
+        return Err(bad("it belongs to another recipe; resume with the recipe it was started with".into()));
+    }
+    let progress = toml::from_str(&read(PROGRESS)?).map_err(|e| bad(format!("{PROGRESS}: {e}")))?;
+    let mut store = BurnpackStore::from_file(folder.join(MODEL));
+    network.load_from(&mut store).map_err(|e| bad(format!("{MODEL}: {e}")))?;
+    *optimizer =
+        optimizer_of(&recipe.optimizer).load(folder.join(OPTIMIZER)).map_err(|e| bad(format!("{OPTIMIZER}: {e}")))?;
+    Ok(progress)
+}

@@ -1,0 +1,30 @@
+//! The live network: 24 elements in, the whole array's log-magnitude out, in milliseconds.
+//!
+//! A U-Net on 512 x 64 cells whose decoder knows what a reflector's picture is made of. Its two fine heads say how strong each
+//! of the 512 x 1024 cells is by itself and how strong a *source of side lobes in range* it is; a coarse head says the same for
+//! side lobes in angle. Two learned circular kernels, started as the tails of a Hann window (1/k^3), carry those sources along the columns and
+//! the rows, so that the bright cross that every reflector draws through the whole map costs two matrix products. The parts
+//! add up as amplitudes together with the noise floor.
+//!
+//! Angles wrap around (column 0 follows column 1023), ranges do not. Row and column means mix at the two coarsest levels.
+//!
+//! `benches/twin/live.py` is this module in PyTorch, with the same names and shapes.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`features`] | raw samples of the two ends to the network's tensors |
+//! | [`module`], `layers` | the network as a burn module: what trains |
+//! | [`engine`], `planes`, [`kernel`], [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
+//! | [`method`] | the network as a reconstruction method |
+
+pub mod engine;
+pub mod fastmath;
+pub mod features;
+pub mod kernel;
+mod layers;
+pub mod method;
+pub mod module;
+mod planes;
+
+pub use method::LiveMethod;
+pub use module::{Live, LiveBatch, LiveConfig};

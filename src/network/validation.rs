@@ -1,0 +1,111 @@
+//! What a trained network is worth on validation scenes, and its weight file, which says so.
+
+use super::recipe::Recipe;
+use super::students::Student;
+use super::train::{Progress, Run, TrainError, lesson};
+use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
+use crate::evaluate::{Metrics, Roc, TARGET_ETA};
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
+use ndarray::Array2;
+
+/// Figures on the validation scenes of one set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetFigures {
+    /// SE.
+    pub squared_error: f64,
+    /// P_D at the thesis' P_FA, where a threshold reaches it.
+    pub detection: Option<f64>,
+}
+
+/// What validation found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validation {
+    /// One entry a set.
+    pub sets: Vec<SetFigures>,
+    /// Threshold at which the mean P_FA over the sets is the thesis' mean.
+    pub eta: f32,
+}
+
+/// Figures on validation scenes, which share no random stream with training or test scenes.
+///
+/// # Errors
+/// [`TrainError`] when a scene can't be simulated or the network can't use it.
+pub fn validate<S: Student>(
+    network: &S,
+    recipe: &Recipe,
+    config: &S::Config,
+    run: &Run,
+) -> Result<Validation, TrainError> {
+    let tables = S::tables(config, &run.radar)?;
+    let generator = Generator::new(&run.radar, Reading::Program, Purpose::Validation, recipe.seed);
+    let mut sets = Vec::new();
+    let mut rocs = Vec::new();
+    for (kind, printed) in Kind::TEST_SETS.into_iter().zip(PRINTED_EXPERIMENT_2) {
+        let (mut roc, mut error) = (Roc::default(), 0.0);
+        for number in 0..recipe.validation_scenes {
+            let (input, target) = lesson::<S>(&tables, config, run, &generator, kind, number)?;
+            let estimate = network.estimate(&[input], &run.device);
+            let values = estimate.into_data().try_into_vec::<f32>().unwrap_or_default();
+            let lambda = Array2::from_shape_vec(target.lambda.dim(), values)
+                .unwrap_or_else(|_| Array2::zeros(target.lambda.dim()));
+            let out = S::finish(lambda);
+            error += Metrics::of(&target, &out, TARGET_ETA).squared_error / f64::from(recipe.validation_scenes);
+            roc.add(&target, &out);
+        }
+        let detection = roc.at_false_alarm(printed.false_alarm).map(|point| point.detection);
+        sets.push(SetFigures { squared_error: error, detection });
+        rocs.push(roc);
+    }
+    let sets_count = rocs.len() as f64;
+    let wanted = PRINTED_EXPERIMENT_2.iter().map(|p| p.false_alarm).sum::<f64>() / sets_count;
+    let mut alarms: Vec<(f32, f64)> = Vec::new();
+    for roc in &rocs {
+        for (i, point) in roc.points().enumerate() {
+            match alarms.get_mut(i) {
+                Some(sum) => sum.1 += point.false_alarm / sets_count,
+                None => alarms.push((point.eta, point.false_alarm / sets_count)),
+            }
+        }
+    }
+    let eta = alarms.iter().filter(|a| a.1 <= wanted).map(|a| a.0).fold(1.0, f32::min);
+    Ok(Validation { sets, eta })
+}
+
+/// Writes `weights.safetensors`, with its record, into the run's folder.
+///
+/// # Errors
+/// [`TrainError::Checkpoint`] when it can't be written.
+pub fn export<S: Student>(
+    network: &S,
+    recipe: &Recipe,
+    run: &Run,
+    progress: &Progress,
+    validation: &Validation,
+) -> Result<(), TrainError> {
+    let path = run.folder.join("weights.safetensors");
+    let figures: Vec<String> = validation
+        .sets
+        .iter()
+        .enumerate()
+        .map(|(i, set)| {
+            let detection = set.detection.map_or("-".into(), |d| format!("{:.2} %", 100.0 * d));
+            format!("set {}: SE {:.0}, P_D {detection} at the thesis' P_FA", i + 1, set.squared_error)
+        })
+        .collect();
+    let mut store = SafetensorsStore::from_file(&path)
+        .overwrite(true)
+        .with_to_adapter(BurnToPyTorchAdapter)
+        .metadata("network", S::NAME)
+        .metadata("recipe", &recipe.name)
+        .metadata("trainer", "apertura train")
+        .metadata("seed", recipe.seed.to_string())
+        .metadata("steps", progress.step.to_string())
+        .metadata("maps_seen", progress.maps.to_string())
+        .metadata("minutes", format!("{:.0}", progress.seconds / 60.0))
+        .metadata("loss", format!("{:.6}", progress.loss))
+        .metadata("commit", &run.commit)
+        .metadata("eta", format!("{:.4}", validation.eta))
+        .metadata("validation", format!("{} scenes a set: {}", recipe.validation_scenes, figures.join("; ")));
+    network.save_into(&mut store).map_err(|e| TrainError::Checkpoint { path, reason: e.to_string() })
+}
