@@ -58,6 +58,34 @@ fn unsuitable_input_is_told() {
 }
 
 #[test]
+fn weights_from_a_file_are_used_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
+    let mut npz = NpzWriter::new(File::create(&input).unwrap());
+    let ramp = Array3::from_shape_fn((4, 512, 1024), |(c, i, j)| ((c + i + j) % 16) as f64 / 16.0);
+    npz.add_array("polar_partial_mag_phase", &ramp).unwrap();
+    npz.finish().unwrap();
+    let run = |method: &str, weights: &Path| {
+        let mut command = apertura();
+        command.arg("reconstruct").arg(&input).arg("-o").arg(&output).args(["--method", method]);
+        command.arg("--weights").arg(weights).assert()
+    };
+    // A small network of the author's layout, as PyTorch's own checkpoint and as safetensors: the same map.
+    let maps = ["pt", "safetensors"].map(|kind| {
+        run("thesis", Path::new(&format!("tests/data/thesis_reference_weights.{kind}"))).success();
+        let mut npz = NpzReader::new(File::open(&output).unwrap()).unwrap();
+        npz.by_name::<ndarray::OwnedRepr<f32>, ndarray::Ix2>("net_output").unwrap()
+    });
+    assert_eq!(maps[0], maps[1]);
+    assert!(maps[0].iter().any(|v| *v > 0.5));
+    run("live", Path::new("tests/data/thesis_reference_weights.pt")).failure().stderr(contains("add --method thesis"));
+    let missing = folder.path().join("missing.pt");
+    run("thesis", &missing).failure().stderr(contains("missing.pt"));
+    std::fs::write(&missing, b"PK\x03\x04 cut short").unwrap();
+    run("thesis", &missing).failure().stderr(contains("is not a PyTorch checkpoint"));
+}
+
+#[test]
 fn recipes_are_listed_and_unknown_ones_refused() {
     apertura().args(["train", "--list"]).assert().success().stdout(contains("experiment-2-small"));
     apertura().args(["train", "no-such"]).assert().failure().stderr(contains("neither a file nor a shipped recipe"));
