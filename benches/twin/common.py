@@ -53,10 +53,13 @@ def figures(estimate, sets):
 
 
 def commit():
-    """The commit that the program runs from, with a mark where files differ from it."""
+    """The commit that the programs of this folder run from, with a mark where they differ from it."""
     here = os.path.dirname(os.path.abspath(__file__))
-    asked = subprocess.run(["git", "-C", here, "describe", "--always", "--dirty"], capture_output=True, text=True)
-    return asked.stdout.strip() or "unknown"
+
+    def git(*command):
+        return subprocess.run(["git", "-C", here, *command], capture_output=True, text=True).stdout.strip()
+
+    return (git("rev-parse", "--short=12", "HEAD") or "unknown") + ("-changed" if git("status", "--porcelain", ".") else "")
 
 
 def save(path, state):
