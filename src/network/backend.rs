@@ -33,6 +33,7 @@ impl Backend {
     ];
 
     /// The backend's device.
+    #[cfg_attr(feature = "backend-ndarray", expect(deprecated, reason = "burn's past backend stays for comparison"))]
     pub fn device(self) -> Device {
         match self {
             Backend::Flex => Device::flex(),
