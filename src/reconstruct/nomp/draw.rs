@@ -77,7 +77,12 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
     let peak = strongest.max(noise_peak);
     let range = match request.normalisation {
         Normalisation::DynamicRange(db) => db.amplitude_decades(),
-        Normalisation::MinMax => expected_range(peak, rate),
+        Normalisation::MinMax => {
+            // Under a window whose side lobes don't fall to the noise the smallest cell is an echo's own.
+            let weakest = decades.iter().copied().fold(f64::INFINITY, f64::min);
+            let noisy = rate * 10f64.powf(2.0 * weakest) > 1.0;
+            if noisy { expected_range(peak, rate) } else { (peak - weakest).max(1e-3) }
+        }
     };
     let mut lambda = Array2::zeros(decades.dim());
     Zip::from(&mut lambda)
