@@ -30,7 +30,7 @@ pub struct Fista {
 
 impl Default for Fista {
     fn default() -> Self {
-        Fista { penalty: 0.02, candidates: 1024, iterations: 150 }
+        Fista { penalty: 0.1, candidates: 1024, iterations: 150 }
     }
 }
 
@@ -230,7 +230,7 @@ mod tests {
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let conditioned = condition(&radar, &ends).unwrap().unwrap();
-        let settings = Fista { candidates: 300, ..Fista::default() };
+        let settings = Fista { penalty: 0.02, candidates: 300, ..Fista::default() };
         let request = Request::default();
         let problem = Problem::new(&radar, &conditioned, &settings, &request).unwrap();
         let mut objectives = vec![0.0];
