@@ -10,12 +10,13 @@ cores is enough to learn something:
 
 * A batch holds crops of 128 range rows from the newest 64 scenes, of which one is new in every step.
 * The last batch norm starts at 0.45 +- 0.15, about where the targets lie. From PyTorch's 0 +- 1 half of the cells start below zero,
-  where the ReLU behind it lets no gradient through, and the network answered nothing for the first hour.
+  where the ReLU behind it lets no gradient through, and 240 steps did not bring them back.
+* The exported statistics of the batch norms are those of 32 whole training maps.
 * The thesis multiplies its learning rate by 0.8 every ten of a hundred epochs; here it falls at the same parts of `--minutes` of
   wall-clock time, counted over all parts of a run, so that a run of any length ends as the thesis' does.
 
-A checkpoint holds weights, optimizer, time and the number
-of scenes drawn. Training and validation scenes come from generators with different keys.
+A checkpoint holds weights, optimizer, time and the number of steps. Training and validation scenes come from generators with
+different keys.
 """
 import argparse
 import os
@@ -94,6 +95,18 @@ def estimate_with(model):
     return estimate
 
 
+@torch.no_grad()
+def settle(model, experiment):
+    """Takes the statistics of every batch norm from whole maps of training scenes in place of a moving average over crops."""
+    norms = [m for m in model.modules() if isinstance(m, torch.nn.BatchNorm2d)]
+    for norm in norms:
+        norm.reset_running_stats()
+        norm.momentum = None
+    model.train()
+    for first in range(0, 32, 4):
+        model(batch_of([e for i in range(first, first + 4) for e in entry(*scene(experiment, i))])[0])
+
+
 def main():
     ap = argparse.ArgumentParser()
     ap.add_argument("--experiment", type=int, choices=[1, 2], required=True)
@@ -119,6 +132,7 @@ def main():
         step, elapsed = state["step"], state["elapsed"]
     sets = validation_scenes(args.experiment, args.validation, entry)
     if args.export:
+        settle(model, args.experiment)
         report = figures(estimate_with(model), sets)
         meta = {"network": "thesis", "recipe": f"experiment-{args.experiment}-small", "seed": str(args.experiment),
                 "trainer": "benches/twin/train_thesis.py (PyTorch)", "steps": str(step), "scenes_seen": str(step), "crops_seen": str(step * BATCH),

@@ -51,10 +51,17 @@ pub fn shipped_on(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
 fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     let live: &[u8] = include_bytes!("../../assets/weights/live.safetensors");
     let unet: &[u8] = include_bytes!("../../assets/weights/unet.safetensors");
-    [("assets/weights/live.safetensors", live), ("assets/weights/unet.safetensors", unet)]
-        .into_iter()
-        .filter_map(|(name, bytes)| usable(WeightFile::parse(name, bytes).and_then(|file| method_of(file, backend))))
-        .collect()
+    let thesis: &[u8] = include_bytes!("../../assets/weights/thesis.safetensors");
+    let thesis_1: &[u8] = include_bytes!("../../assets/weights/thesis-1.safetensors");
+    [
+        ("assets/weights/live.safetensors", live),
+        ("assets/weights/thesis.safetensors", thesis),
+        ("assets/weights/thesis-1.safetensors", thesis_1),
+        ("assets/weights/unet.safetensors", unet),
+    ]
+    .into_iter()
+    .filter_map(|(name, bytes)| usable(WeightFile::parse(name, bytes).and_then(|file| method_of(file, backend))))
+    .collect()
 }
 
 /// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' network.

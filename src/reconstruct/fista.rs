@@ -187,7 +187,7 @@ impl Reconstructor for Fista {
     }
 
     fn eta(&self) -> f32 {
-        0.897 // by tests/choose_eta.rs
+        0.818 // by tests/choose_eta.rs
     }
 
     fn reconstruct(

@@ -254,9 +254,10 @@ impl Search<'_> {
             };
             let mut atoms: Vec<Atom> = fit.atoms.iter().copied().filter(|other| !beside(other)).collect();
             atoms.push(wrapped(x, y, self.radar.max_range_metres()));
-            let trial = self.together(atoms);
+            let moving = vec![true; atoms.len()];
+            let trial = self.problem().refine(atoms, Tie::PerEnd, &moving, GLANCE);
             if trial.cost < best.cost {
-                best = trial;
+                best = self.together(trial.atoms);
             }
             if self.is_explained(&best) {
                 break;
