@@ -41,7 +41,7 @@ use crate::signal::{Floor, TwoEnds};
 use draw::{Noise, Weighted, expected_lambda};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
-pub(super) const ETA: f32 = 0.89;
+pub(super) const ETA: f32 = 0.885;
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]
