@@ -5,6 +5,7 @@
 Anything that is not installed is skipped with a message. All times are medians of 15 runs on two threads, without the features
 (which only apertura computes inside its time).
 """
+import copy
 import os
 import subprocess
 import sys
@@ -42,9 +43,9 @@ def main():
     model.load_state_dict(load_file(WEIGHTS))
     model.eval()
     inputs = (torch.randn(1, 4, 512, 256), torch.randn(1, 8, 512, 64), torch.randn(1, 6, 512), torch.tensor([[-11.6, -5.4]]))
-    with torch.inference_mode():
+    with torch.no_grad():
         print(f"PyTorch {torch.__version__}: {median(lambda: model(*inputs)):.1f} ms")
-        fast = model.to(memory_format=torch.channels_last)
+        fast = copy.deepcopy(model).to(memory_format=torch.channels_last)
         print(f"PyTorch, channels last: {median(lambda: fast(*inputs)):.1f} ms")
     try:
         import onnx  # noqa: F401

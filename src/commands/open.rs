@@ -38,6 +38,7 @@ impl Args {
             #[cfg(feature = "app")]
             Err(WindowError::Failed(error)) => return Err(CommandError::failed(error)),
         };
+        let reason = without_source_place(&reason);
         eprintln!("apertura: {reason}; drawing the scene's panels to a picture instead");
         draw_instead(&file)
     }
@@ -62,6 +63,16 @@ impl Args {
     fn open_window(self, _: Instant) -> Result<(), WindowError> {
         Err(WindowError::NoWindow("this build has no app".to_owned()))
     }
+}
+
+/// The window library's message without the place in its own source that it names.
+fn without_source_place(message: &str) -> String {
+    let plain = message.split_once("os error at ").and_then(|(before, after)| {
+        let (_, place_and_reason) = after.split_once(".rs:")?;
+        let (_, reason) = place_and_reason.split_once(": ")?;
+        Some(format!("{before}{reason}"))
+    });
+    plain.as_deref().unwrap_or(message).trim_end_matches('.').to_owned()
 }
 
 /// Why the app did not open.
@@ -101,6 +112,13 @@ fn free_name(folder: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn messages_name_no_source_file() {
+        let message = "no window: winit EventLoopError: os error at /somewhere/linux/mod.rs:765: DISPLAY is not set.";
+        assert_eq!(without_source_place(message), "no window: winit EventLoopError: DISPLAY is not set");
+        assert_eq!(without_source_place("this build has no app"), "this build has no app");
+    }
 
     #[test]
     fn a_picture_of_somebody_else_keeps_its_name() {

@@ -165,6 +165,21 @@ fn timed(
 /// Height of a name on the chart, pixels.
 const LABEL: i32 = 15;
 
+/// Where a name stands on the chart, pixels; [`LABEL`] high.
+#[derive(Clone, Copy)]
+struct Spot {
+    x: i32,
+    y: i32,
+    width: i32,
+}
+
+impl Spot {
+    fn overlaps(&self, other: &Spot) -> bool {
+        let across = self.x < other.x + other.width && other.x < self.x + self.width;
+        across && (self.y - other.y).abs() < LABEL
+    }
+}
+
 impl Figure for Report {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
@@ -193,20 +208,23 @@ impl Figure for Report {
             .x_label_formatter(&|v| format!("{v}"))
             .y_label_formatter(&|v| format!("{v}"))
             .draw()?;
-        // Names stand beside their dots, moved down where they would cover one another.
-        let mut rows: Vec<(&str, (f64, f64))> = self.methods.iter().map(|m| m.method).zip(dots).collect();
-        rows.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
-        let mut taken: Vec<(i32, i32)> = Vec::new();
-        for (i, (name, dot)) in rows.into_iter().enumerate() {
-            let colour = Palette99::pick(i).to_rgba();
-            chart.draw_series([Circle::new(dot, 5, colour.filled())])?;
-            let at = chart.backend_coord(&dot);
-            let (left, mut top) = (at.0 + 9, at.1 - LABEL / 2);
-            while taken.iter().any(|(x, y)| (x - left).abs() < 190 && (y - top).abs() < LABEL) {
-                top += LABEL;
+        let rows: Vec<(&str, (f64, f64))> = self.methods.iter().map(|m| m.method).zip(dots).collect();
+        let places: Vec<(i32, i32)> = rows.iter().map(|(_, dot)| chart.backend_coord(dot)).collect();
+        // Names stand beside their dots, moved up or down, with a line to the dot, where they would cover a name or a dot.
+        let mut taken: Vec<Spot> = places.iter().map(|(x, y)| Spot { x: x - 6, y: y - LABEL / 2, width: 12 }).collect();
+        for (i, ((name, dot), (x, y))) in rows.iter().zip(&places).enumerate() {
+            let hue = HSLColor(i as f64 / rows.len() as f64, 0.75, 0.4);
+            let beside = Spot { x: x + 10, y: y - LABEL / 2, width: 8 * name.len() as i32 };
+            let steps = (0..40).map(|k| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 });
+            let moved = steps.map(|k| Spot { y: beside.y + k * LABEL, ..beside });
+            let spot = moved.into_iter().find(|s| !taken.iter().any(|t| t.overlaps(s))).unwrap_or(beside);
+            if spot.y != beside.y {
+                let line = vec![(*x, *y), (spot.x - 2, spot.y + LABEL / 2)];
+                area.draw(&PathElement::new(line, BLACK.mix(0.35)))?;
             }
-            taken.push((left, top));
-            area.draw(&Text::new(name, (left, top), ("sans-serif", 14).into_font().color(&colour)))?;
+            chart.draw_series([Circle::new(*dot, 5, hue.filled())])?;
+            area.draw(&Text::new(*name, (spot.x, spot.y), ("sans-serif", 14).into_font().color(&BLACK.mix(0.85))))?;
+            taken.push(spot);
         }
         Ok(())
     }
