@@ -1,4 +1,4 @@
-"""The live network: PyTorch twin of `src/network/live.rs`, with the same layer names and shapes."""
+"""The live network: PyTorch twin of `src/network/live/module.rs`, with the same layer names and shapes."""
 import math
 
 import torch
