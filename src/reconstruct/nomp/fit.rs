@@ -45,6 +45,13 @@ pub struct Fit {
     pub cost: f64,
 }
 
+impl Fit {
+    /// This fit, or `other` if it leaves less.
+    pub fn or_better(self, other: Fit) -> Fit {
+        if other.cost < self.cost { other } else { self }
+    }
+}
+
 /// Everything known about one set of atoms.
 struct State {
     fit: Fit,

@@ -58,8 +58,8 @@ impl Placer<'_> {
     /// The candidate moved to its best place, at its own range or one wrap nearer or further out: ranges repeat, curvature does not.
     pub fn point(&self, candidate: &Candidate) -> Fit {
         let other = wrapped(candidate.x, candidate.y, self.radar.max_range_metres());
-        let own = self.refined(Atom::Point { x: candidate.x, y: candidate.y }, ALONE);
-        let wrapped = self.refined(other, ALONE);
+        let own = Atom::Point { x: candidate.x, y: candidate.y };
+        let (own, wrapped) = rayon::join(|| self.refined(own, ALONE), || self.refined(other, ALONE));
         // The nearer one unless the other is clearly better.
         let is_near = candidate.x.hypot(candidate.y) <= self.radar.max_range_metres();
         let (near, far) = if is_near { (own, wrapped) } else { (wrapped, own) };

@@ -15,9 +15,13 @@ use crate::scene::Reflector;
 use crate::signal::floor::thesis_noise_variance;
 use crate::signal::{Floor, TwoEnds};
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// Of a refinement of all atoms: many small steps are worth it, close pairs share a long narrow valley.
 const TOGETHER: Limits = Limits { iterations: 100, least_gain: 1e-5 };
+
+/// Of a refinement of all atoms while more are to come.
+const GROWING: Limits = Limits { iterations: 100, least_gain: 1e-2 };
 
 /// Of a refinement that only tells good starts from bad ones.
 pub(super) const GLANCE: Limits = Limits { iterations: 12, least_gain: 1e-2 };
@@ -41,7 +45,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { most_atoms: 12, least_prominence: 60.0, rounds: 3 }
+        Settings { most_atoms: 12, least_prominence: 60.0, rounds: 2 }
     }
 }
 
@@ -116,16 +120,16 @@ impl Search<'_> {
                 break;
             }
             let mut trial = self.straightened(self.pruned(best.clone())?)?;
-            if !self.is_explained(&trial) {
-                trial = self.unwrapped(trial)?;
-            }
-            if !self.is_explained(&trial) {
-                trial = self.split(&trial)?;
+            for again in [Self::tied, Self::unwrapped, Self::split] {
+                if !self.is_explained(&trial) {
+                    self.request.task.check()?;
+                    trial = again(self, trial);
+                }
             }
             if !self.is_explained(&trial) {
                 trial = self.greedy(self.pruned(trial)?, shape)?;
             }
-            if trial.cost >= 0.5 * best.cost {
+            if trial.cost >= 0.1 * best.cost {
                 break;
             }
             best = trial;
@@ -155,7 +159,7 @@ impl Search<'_> {
             }
             let mut atoms = fit.atoms.clone();
             atoms.extend(placed.atoms);
-            let grown = self.together(atoms);
+            let grown = self.together(atoms, GROWING);
             if grown.cost >= 0.999 * fit.cost {
                 break;
             }
@@ -166,9 +170,18 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    fn together(&self, atoms: Vec<Atom>) -> Fit {
+    fn together(&self, atoms: Vec<Atom>, limits: Limits) -> Fit {
         let moving = vec![true; atoms.len()];
-        self.problem().refine(atoms, Tie::PerEnd, &moving, TOGETHER)
+        self.problem().refine(atoms, Tie::PerEnd, &moving, limits)
+    }
+
+    /// All atoms moved with one gain for both ends: reflectors too close for one end's beam are told apart by both ends together.
+    fn tied(&self, fit: Fit) -> Fit {
+        let moving = vec![true; fit.atoms.len()];
+        let tied = self.problem().refine(fit.atoms.clone(), Tie::Both, &moving, TOGETHER);
+        // Gains that need not agree leave no more than gains that must.
+        let loosened = self.problem().solve(&tied.atoms, Tie::PerEnd);
+        if self.is_explained(&loosened) { loosened } else { self.together(loosened.atoms, TOGETHER).or_better(fit) }
     }
 
     /// Without the atoms that explain nothing the others could not, or that ran away.
@@ -188,31 +201,40 @@ impl Search<'_> {
                 i += 1;
             }
         }
-        Ok(if fit.atoms.len() < before { self.together(fit.atoms) } else { fit })
+        Ok(if fit.atoms.len() < before { self.together(fit.atoms, TOGETHER) } else { fit })
     }
 
     /// The best of replacing one atom by two beside each other: two reflectors closer than a beam are first found as one.
-    fn split(&self, fit: &Fit) -> Result<Fit, ReconstructError> {
-        let mut best = fit.clone();
-        for i in 0..fit.atoms.len() {
-            let Atom::Point { x, y } = fit.atoms[i] else { continue };
-            for radians in [0.01, 0.04, 0.12] {
-                self.request.task.check()?;
-                let turned = |angle: f64| {
-                    let (sin, cos) = angle.sin_cos();
-                    Atom::Point { x: x * cos - y * sin, y: (x * sin + y * cos).abs() }
-                };
+    fn split(&self, fit: Fit) -> Fit {
+        let pairs = |i: usize| {
+            let Atom::Point { x, y } = fit.atoms[i] else { return Vec::new() };
+            let turned = |radians: f64| {
+                let (sin, cos) = radians.sin_cos();
+                Atom::Point { x: x * cos - y * sin, y: (x * sin + y * cos).abs() }
+            };
+            let halves = [0.01, 0.04, 0.12].map(|radians| [turned(radians), turned(-radians)]);
+            let start = |halves: [Atom; 2]| {
                 let mut atoms = fit.atoms.clone();
-                atoms[i] = turned(radians);
-                atoms.push(turned(-radians));
-                let moving = vec![true; atoms.len()];
-                let trial = self.problem().refine(atoms, Tie::PerEnd, &moving, GLANCE);
-                if trial.cost < best.cost {
-                    best = trial;
-                }
-            }
+                atoms[i] = halves[0];
+                atoms.push(halves[1]);
+                Start { atoms, range_metres: x.hypot(y) }
+            };
+            halves.into_iter().map(start).collect()
+        };
+        self.best_of((0..fit.atoms.len()).flat_map(pairs).collect(), fit)
+    }
+
+    /// The fit to the best of other starts, or `fit` if none is better.
+    fn best_of(&self, starts: Vec<Start>, fit: Fit) -> Fit {
+        let glance = |start: Start| {
+            let moving = self.beside(&start.atoms, start.range_metres);
+            self.problem().refine(start.atoms, Tie::PerEnd, &moving, GLANCE)
+        };
+        let best = starts.into_par_iter().map(glance).min_by(|a, b| a.cost.total_cmp(&b.cost));
+        match best.filter(|best| best.cost < fit.cost) {
+            Some(best) => self.together(best.atoms, TOGETHER),
+            None => fit,
         }
-        Ok(self.together(best.atoms))
     }
 
     /// Every line slid once more, now that the other objects are known, and without the points that patch its ends: a line found
@@ -230,7 +252,7 @@ impl Search<'_> {
                 let kept = |range: std::ops::Range<usize>| range.filter(|j| others(*j)).map(|j| fit.atoms[j]);
                 let atoms: Vec<Atom> = kept(0..i).chain(slid).chain(kept(i + 1..fit.atoms.len())).collect();
                 let place = kept(0..i).count();
-                let trial = self.together(atoms);
+                let trial = self.together(atoms, TOGETHER);
                 if self.is_explained(&trial) || trial.cost < fit.cost {
                     (fit, i) = (trial, place);
                 }
@@ -240,30 +262,30 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// Points tried one wrap of the range further out or nearer, without the points beside them: near the array's axis the ends hardly
-    /// tell the two apart, and several points in the wrong place make up for one in the right.
-    fn unwrapped(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut best = fit.clone();
-        for atom in &fit.atoms {
-            self.request.task.check()?;
-            let Atom::Point { x, y } = *atom else { continue };
-            let range = x.hypot(y);
-            let beside = |other: &Atom| match *other {
-                Atom::Point { x, y } => (x.hypot(y) - range).abs() < BESIDE_METRES,
-                Atom::Line { .. } => false,
-            };
-            let mut atoms: Vec<Atom> = fit.atoms.iter().copied().filter(|other| !beside(other)).collect();
+    /// The best of trying a point one wrap of the range further out or nearer, without the points beside it: near the array's axis the
+    /// ends hardly tell the two apart, and several points in the wrong place make up for one in the right.
+    fn unwrapped(&self, fit: Fit) -> Fit {
+        let without = |atom: &Atom| {
+            let Atom::Point { x, y } = *atom else { return None };
+            let beside = self.beside(&fit.atoms, x.hypot(y));
+            let mut atoms: Vec<Atom> = fit.atoms.iter().zip(beside).filter(|(_, b)| !b).map(|(a, _)| *a).collect();
             atoms.push(wrapped(x, y, self.radar.max_range_metres()));
-            let moving = vec![true; atoms.len()];
-            let trial = self.problem().refine(atoms, Tie::PerEnd, &moving, GLANCE);
-            if trial.cost < best.cost {
-                best = self.together(trial.atoms);
+            Some(Start { atoms, range_metres: x.hypot(y) })
+        };
+        self.best_of(fit.atoms.iter().filter_map(without).collect(), fit)
+    }
+
+    /// Which of `atoms` are points as far away as `range`, wraps of the range aside.
+    fn beside(&self, atoms: &[Atom], range: f64) -> Vec<bool> {
+        let wrap = self.radar.max_range_metres();
+        let is_beside = |atom: &Atom| match *atom {
+            Atom::Point { x, y } => {
+                let apart = (x.hypot(y) - range).rem_euclid(wrap);
+                apart.min(wrap - apart) < BESIDE_METRES
             }
-            if self.is_explained(&best) {
-                break;
-            }
-        }
-        Ok(best)
+            Atom::Line { .. } => false,
+        };
+        atoms.iter().map(is_beside).collect()
     }
 
     /// Whether the residual is what the floor alone would leave.
@@ -341,6 +363,13 @@ impl Search<'_> {
         }
         residual
     }
+}
+
+/// Atoms to try instead of those of a fit.
+struct Start {
+    atoms: Vec<Atom>,
+    /// Only the points this far away move at first.
+    range_metres: f64,
 }
 
 /// Points this much nearer or further than another, metres, are beside it.
