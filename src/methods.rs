@@ -2,7 +2,7 @@
 
 use crate::reconstruct::nomp::Nomp;
 use crate::reconstruct::{
-    Bartlett, Baseline, Capon, Fista, Hybrid, LinearPrediction, MatchedFilter, Music, Omp, Reconstructor, RootMusic,
+    BARTLETT, Baseline, CAPON, Fista, Hybrid, LINEAR_PREDICTION, MUSIC, MatchedFilter, Omp, ROOT_MUSIC, Reconstructor,
 };
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
     let fallback = live.unwrap_or_else(|| Arc::new(MatchedFilter::Incoherent));
     let mut methods: Vec<Arc<dyn Reconstructor>> = vec![
         Arc::new(Baseline),
-        Arc::new(Bartlett),
+        Arc::new(BARTLETT),
         Arc::new(MatchedFilter::Coherent),
         Arc::new(MatchedFilter::Incoherent),
-        Arc::new(Capon),
-        Arc::new(Music),
-        Arc::new(RootMusic),
-        Arc::new(LinearPrediction),
+        Arc::new(CAPON),
+        Arc::new(MUSIC),
+        Arc::new(ROOT_MUSIC),
+        Arc::new(LINEAR_PREDICTION),
         Arc::new(Fista::default()),
         Arc::new(Omp::default()),
         Arc::new(Nomp::default()),

@@ -35,7 +35,7 @@ fn weights(folder: &Path) -> Vec<f32> {
 
 #[test]
 fn a_run_in_two_parts_ends_where_a_whole_one_does() {
-    let config = ThesisConfig { filters: 2, levels: 2 };
+    let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
     let recipe = Recipe {
         name: "tiny".into(),
         description: String::new(),

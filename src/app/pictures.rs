@@ -138,10 +138,10 @@ impl Painter {
         let pixels = match subject.projection {
             Projection::RangeAngle => colour(subject, &subject.map, subject.minus.as_deref()),
             Projection::Cartesian => {
-                if !self.projector.as_ref().is_some_and(|p| p.fits(radar, rows)) {
-                    self.projector = Some(cartesian::Projector::new(radar, rows));
-                }
-                let Some(projector) = &self.projector else { unreachable!("made above") };
+                let projector = match &mut self.projector {
+                    Some(projector) if projector.fits(radar, rows) => projector,
+                    slot => slot.insert(cartesian::Projector::new(radar, rows)),
+                };
                 let flat = |map: &RangeAngleMap| RangeAngleMap { lambda: projector.project(map).lambda };
                 let (map, minus) = (flat(&subject.map), subject.minus.as_deref().map(flat));
                 colour(subject, &map, minus.as_ref())

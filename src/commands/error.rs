@@ -33,8 +33,8 @@ pub enum CommandError {
 
 impl CommandError {
     /// An error of another room.
-    pub fn failed(source: impl Error + Send + Sync + 'static) -> Self {
-        CommandError::Failed(Box::new(source))
+    pub fn failed(source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        CommandError::Failed(source.into())
     }
 
     /// For `map_err`: an error of another room, about the file `path`.

@@ -43,32 +43,40 @@ impl Kept {
 pub(super) struct Group<T, const W: usize> {
     objects: Vec<Object>,
     pub(super) profiles: BlockProfiles<T, W>,
-    variance: Vec<f64>,
+    /// `None` until somebody asks.
+    variance: Option<Vec<f64>>,
 }
 
 impl<T: Real, const W: usize> Group<T, W> {
     fn empty(radar: &Radar) -> Self {
-        Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), variance: vec![0.0; radar.elements] }
+        Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), variance: None }
     }
 
-    fn fill(&mut self, synthesis: &Synthesis<T, W>, radar: &Radar, objects: &[Object]) {
-        let reflectors: Vec<Reflector> = objects.iter().flat_map(Object::reflectors).collect();
-        synthesis.range_profiles(&reflectors, &mut self.profiles);
-        self.variance = floor::thesis_noise_variance(radar, &reflectors);
+    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Object]) {
+        synthesis.range_profiles(&reflectors(objects), &mut self.profiles);
+        self.variance = None;
         self.objects = objects.to_vec();
+    }
+
+    /// Variance of the thesis' floor beneath these objects, at every element.
+    fn variance(&mut self, radar: &Radar) -> &[f64] {
+        self.variance.get_or_insert_with(|| floor::thesis_noise_variance(radar, &reflectors(&self.objects)))
     }
 
     /// Holds nothing any more.
     fn clear(&mut self) {
         self.objects.clear();
         self.profiles.clear();
-        self.variance.fill(0.0);
+        self.variance = None;
     }
 
     /// Adds (`sign` = 1) or takes away (-1) what another group holds, but for the list of objects.
     fn add(&mut self, other: &Self, sign: f64) {
         self.profiles.add(&other.profiles, sign);
-        self.variance.iter_mut().zip(&other.variance).for_each(|(a, b)| *a = (*a + sign * b).max(0.0));
+        match (&mut self.variance, &other.variance) {
+            (Some(own), Some(other)) => own.iter_mut().zip(other).for_each(|(a, b)| *a = (*a + sign * b).max(0.0)),
+            (own, _) => *own = None,
+        }
     }
 }
 
@@ -207,7 +215,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let usable = self.built.as_ref().filter(|b| b.tolerance <= job.recipe.tolerance && b.forced == job.forced);
         let change = usable.and_then(|built| {
             let change = Change::between(&self.rest.objects, &self.active.objects, scene);
-            let more = if change.leaving.is_empty() {
+            let more = if !change.settles {
                 0.0
             } else {
                 // What is taken away was evaluated another way than when it was added.
@@ -217,24 +225,25 @@ impl<T: Real, const W: usize> Bank<T, W> {
             (built.rounding + more <= limit).then_some((change, built.rounding + more))
         });
         match change {
-            Some((change, _)) if change.leaving.is_empty() && change.arriving == self.active.objects => {
+            Some((change, _)) if !change.settles && change.arriving == self.active.objects => {
                 ("as before".to_owned(), Rows::none(job.radar.samples))
             }
             Some((change, rounding)) if change.cost() < total.max(1) => {
                 let evaluated = change.cost();
                 let mut changed = self.active.profiles.touched.clone();
-                if !change.leaving.is_empty() {
-                    // Everything comes to rest, then what changed is taken out.
+                if change.settles {
                     self.rest.add(&self.active, 1.0);
+                }
+                if !change.leaving.is_empty() {
                     let count = change.leaving.iter().map(Object::reflector_count).sum();
                     let synthesis = self.synthesis(job, count);
-                    self.leaving.fill(&self.syntheses[synthesis], job.radar, &change.leaving);
+                    self.leaving.fill(&self.syntheses[synthesis], &change.leaving);
                     self.rest.add(&self.leaving, -1.0);
                     changed.extend(&self.leaving.profiles.touched);
                 }
                 let count = change.arriving.iter().map(Object::reflector_count).sum();
                 let synthesis = self.synthesis(job, count);
-                self.active.fill(&self.syntheses[synthesis], job.radar, &change.arriving);
+                self.active.fill(&self.syntheses[synthesis], &change.arriving);
                 if let Some(built) = &mut self.built {
                     built.rounding = rounding;
                 }
@@ -249,7 +258,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let mut changed = self.rest.profiles.touched.clone();
                 changed.extend(&self.active.profiles.touched);
                 self.active.clear();
-                self.rest.fill(&self.syntheses[synthesis], job.radar, scene);
+                self.rest.fill(&self.syntheses[synthesis], scene);
                 changed.extend(&self.rest.profiles.touched);
                 let (tolerance, forced) = (job.recipe.tolerance, job.forced);
                 self.built = Some(Built { tolerance, forced, rounding: 0.0 });
@@ -263,7 +272,10 @@ impl<T: Real, const W: usize> Bank<T, W> {
     fn deviation(&mut self, job: &Job<'_>) -> Option<Vec<Lanes<T, W>>> {
         let variance: Vec<f64> = match job.wanted.floor {
             Floor::Exact => return None,
-            Floor::Thesis => self.rest.variance.iter().zip(&self.active.variance).map(|(a, b)| a + b).collect(),
+            Floor::Thesis => {
+                let (rest, active) = (self.rest.variance(job.radar), self.active.variance(job.radar));
+                rest.iter().zip(active).map(|(a, b)| a + b).collect()
+            }
             Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &job.scene.reflectors(), snr),
         };
         let seed = job.wanted.seed;
@@ -274,6 +286,10 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let blocks = job.radar.elements.div_ceil(W);
         Some((0..blocks).map(|b| Lanes(std::array::from_fn(|i| of(b * W + i)))).collect())
     }
+}
+
+fn reflectors(objects: &[Object]) -> Vec<Reflector> {
+    objects.iter().flat_map(Object::reflectors).collect()
 }
 
 fn amplitude(radar: &Radar, objects: &[Object]) -> f64 {

@@ -4,9 +4,11 @@ use crate::scene::Object;
 
 /// What has to be done so that two groups of objects become a scene.
 pub(super) struct Change {
+    /// Whether the active ones are added to the sum at rest first.
+    pub settles: bool,
     /// Stay in the sum at rest.
     pub staying: Vec<Object>,
-    /// Are evaluated and taken out of the sum at rest, after the active ones were added to it. Empty if the active ones alone changed.
+    /// Are evaluated and taken out of the sum at rest.
     pub leaving: Vec<Object>,
     /// Are evaluated and become the active ones.
     pub arriving: Vec<Object>,
@@ -40,22 +42,74 @@ impl Change {
             }
         }
         unmatched.extend(old);
-        if unmatched.is_empty() {
-            return Change { staying, leaving: Vec::new(), arriving };
+        let stirring = Change { settles: false, staying, leaving: Vec::new(), arriving };
+        let at_rest = unmatched.is_empty();
+        if at_rest && (stirring.arriving == active || count(&stirring.arriving) <= 1) {
+            return stirring;
         }
-        // Something at rest changed: the active ones come to rest first, and those of them that are gone or changed leave too.
-        let mut leaving: Vec<Object> = unmatched.into_iter().cloned().collect();
+        // The active ones come to rest first, and those of them that are gone or changed leave too.
+        let mut settling = Change {
+            settles: true,
+            staying: stirring.staying.clone(),
+            leaving: unmatched.into_iter().cloned().collect(),
+            arriving: stirring.arriving.clone(),
+        };
         for object in active {
-            match arriving.iter().position(|o| o == object) {
-                Some(at) => staying.push(arriving.remove(at)),
-                None => leaving.push(object.clone()),
+            match settling.arriving.iter().position(|o| o == object) {
+                Some(at) => settling.staying.push(settling.arriving.remove(at)),
+                None => settling.leaving.push(object.clone()),
             }
         }
-        Change { staying, leaving, arriving }
+        // As long as the active ones alone change, evaluating them again leaves the sum at rest without new rounding errors.
+        if at_rest && stirring.cost() <= settling.cost() { stirring } else { settling }
     }
 
     /// Reflectors to evaluate.
     pub fn cost(&self) -> usize {
-        self.leaving.iter().chain(&self.arriving).map(Object::reflector_count).sum()
+        count(&self.leaving) + count(&self.arriving)
+    }
+}
+
+fn count(objects: &[Object]) -> usize {
+    objects.iter().map(Object::reflector_count).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn points(x: impl IntoIterator<Item = f64>) -> Vec<Object> {
+        Scene::of_points(x.into_iter().map(|x| (x, 5.0))).objects
+    }
+
+    #[test]
+    fn the_one_that_is_dragged_is_evaluated_alone() {
+        let change = Change::between(&points([1.0, 2.0]), &points([3.0]), &points([1.0, 2.0, 3.1]));
+        assert!(!change.settles && change.leaving.is_empty());
+        assert_eq!((change.staying, change.arriving), (points([1.0, 2.0]), points([3.1])));
+    }
+
+    #[test]
+    fn one_of_many_active_ones_moves_and_the_others_come_to_rest() {
+        let change = Change::between(&points([1.0]), &points([2.0, 3.0, 4.0]), &points([1.0, 2.0, 3.1, 4.0]));
+        assert!(change.settles);
+        assert_eq!(change.staying, points([1.0, 2.0, 4.0]));
+        assert_eq!((change.leaving, change.arriving), (points([3.0]), points([3.1])));
+    }
+
+    #[test]
+    fn what_is_added_beside_active_ones_is_evaluated_alone() {
+        let change = Change::between(&points([1.0]), &points([2.0, 3.0]), &points([1.0, 2.0, 3.0, 4.0]));
+        assert!(change.settles && change.leaving.is_empty());
+        assert_eq!((change.staying, change.arriving), (points([1.0, 2.0, 3.0]), points([4.0])));
+    }
+
+    #[test]
+    fn a_change_at_rest_settles_the_active_ones() {
+        let change = Change::between(&points([1.0, 2.0]), &points([3.0]), &points([1.5, 2.0, 3.0]));
+        assert!(change.settles);
+        assert_eq!(change.staying, points([2.0, 3.0]));
+        assert_eq!((change.leaving, change.arriving), (points([1.0]), points([1.5])));
     }
 }

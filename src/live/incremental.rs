@@ -71,9 +71,11 @@ impl Engine {
         self.forget();
     }
 
-    /// Drops everything that was computed of the last scene: the next update starts from scratch.
+    /// Forgets everything that was computed of the last scene, but keeps the memory it lay in: the next update starts from scratch.
     pub fn forget(&mut self) {
-        self.shown = None;
+        if let Some(shown) = &mut self.shown {
+            shown.forget(&self.radar);
+        }
         if let Some(bank) = &mut self.single {
             bank.forget();
         }
@@ -223,6 +225,14 @@ impl Shown {
             maps: [None, None, None],
             spare,
         }
+    }
+
+    /// Holds nothing of any scene any more but buffers.
+    fn forget(&mut self, radar: &Radar) {
+        self.ends = None;
+        self.current = [false; 3];
+        self.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
+        self.spare.extend(self.maps.iter_mut().filter_map(Option::take).map(|m| m.lambda));
     }
 
     /// Lambda of every visible map that is new or normalised another way than before.

@@ -27,12 +27,19 @@ pub struct ThesisConfig {
     pub filters: usize,
     /// Halvings of the map, 5 in the thesis.
     pub levels: usize,
+    /// Whether training starts with the last batch norm at [`ALIVE`], about where the targets lie, instead of at 0 +- 1 as in the author's
+    /// program. From there, half of the cells start below zero, where the final ReLU lets no gradient through.
+    #[serde(default)]
+    pub alive_output: bool,
 }
+
+/// Mean and standard deviation of the output where training starts, if that is asked for.
+const ALIVE: [f64; 2] = [0.45, 0.15];
 
 impl Default for ThesisConfig {
     /// The thesis' width and depth.
     fn default() -> Self {
-        ThesisConfig { filters: 64, levels: 5 }
+        ThesisConfig { filters: 64, levels: 5, alive_output: false }
     }
 }
 
@@ -73,7 +80,7 @@ pub struct Thesis {
 impl Thesis {
     /// A network with random weights.
     pub fn new(config: &ThesisConfig, device: &Device) -> Self {
-        let ThesisConfig { filters, levels } = *config;
+        let ThesisConfig { filters, levels, alive_output } = *config;
         let norm = |c: usize| Some(BatchNormConfig::new(c).init(device));
         let tower = |kernel: usize| {
             let stage = |i: usize| DownStage {
@@ -86,14 +93,20 @@ impl Thesis {
             (0..levels).map(stage).collect()
         };
         let up = |i: usize| {
-            let out = if i + 1 == levels { 1 } else { 2 * filters };
+            let is_last = i + 1 == levels;
+            let out = if is_last { 1 } else { 2 * filters };
+            let mut norm = BatchNormConfig::new(out).init(device);
+            if is_last && alive_output {
+                norm.beta = Param::from_tensor(Tensor::full([out], ALIVE[0], device));
+                norm.gamma = Param::from_tensor(Tensor::full([out], ALIVE[1], device));
+            }
             UpStage {
                 conv: ConvTranspose2dConfig::new([2 * filters, out], [4, 4])
                     .with_stride([2, 2])
                     .with_padding([1, 1])
                     .with_bias(false)
                     .init(device),
-                norm: norm(out),
+                norm: Some(norm),
             }
         };
         Thesis {
@@ -113,7 +126,8 @@ impl Thesis {
         };
         match stage(0) {
             Some(&[filters, ..]) => {
-                Ok(ThesisConfig { filters, levels: (0..).take_while(|level| stage(*level).is_some()).count() })
+                let levels = (0..).take_while(|level| stage(*level).is_some()).count();
+                Ok(ThesisConfig { filters, levels, alive_output: false })
             }
             _ => Err(WeightsError::Tensor {
                 file: file.name().to_owned(),
@@ -231,7 +245,7 @@ mod tests {
     #[test]
     fn reproduces_pytorch() {
         let device = Device::flex();
-        let config = ThesisConfig { filters: 3, levels: 3 };
+        let config = ThesisConfig { filters: 3, levels: 3, alive_output: false };
         let file = WeightFile::parse("weights", WEIGHTS).unwrap();
         let network = Thesis::load(&file, &config, &device).unwrap();
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
@@ -244,6 +258,21 @@ mod tests {
             assert!(worst < 1e-4, "{name}: {worst}");
         }
         assert!(expected.iter().any(|v| *v > 0.1), "a reference of zeros would prove nothing");
+    }
+
+    #[test]
+    fn an_alive_output_starts_above_zero_almost_everywhere() {
+        // Batch norms take the batch's own statistics where gradients are recorded.
+        let device = Device::flex().autodiff();
+        device.seed(1);
+        let positive = |alive_output: bool| {
+            let network = Thesis::new(&ThesisConfig { filters: 2, levels: 2, alive_output }, &device);
+            let input = Tensor::<4>::random([1, 4, 32, 32], burn::tensor::Distribution::Normal(0.0, 1.0), &device);
+            let output = network.forward(input).into_data().try_into_vec::<f32>().unwrap();
+            output.iter().filter(|v| **v > 0.0).count() as f64 / output.len() as f64
+        };
+        assert!(positive(false) < 0.7, "as in the author's program, half of the cells are dead");
+        assert!(positive(true) > 0.95);
     }
 
     #[test]

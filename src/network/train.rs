@@ -266,7 +266,7 @@ mod tests {
     }
 
     fn recipe() -> (Recipe, ThesisConfig) {
-        let config = ThesisConfig { filters: 2, levels: 2 };
+        let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
         let recipe = Recipe {
             name: "tiny".into(),
             description: String::new(),

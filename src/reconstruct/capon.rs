@@ -1,10 +1,7 @@
 //! Capon's minimum-variance beamformer.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len};
-use super::rows::{Row, reconstruct_rows};
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::radar::Radar;
-use crate::signal::TwoEnds;
+use super::rows::{Row, RowMethod};
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
 use num_complex::Complex64;
@@ -13,8 +10,12 @@ use num_complex::Complex64;
 ///
 /// J. Capon, "High-resolution frequency-wavenumber spectrum analysis", Proc. IEEE 57, 1969; with spatial smoothing and diagonal
 /// loading, since one row of one chirp gives one snapshot.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Capon;
+pub const CAPON: RowMethod = RowMethod {
+    name: "capon",
+    description: "minimum-variance beams of each end and range row, with spatial smoothing",
+    eta: 0.851, // by tests/choose_eta.rs
+    estimate: spectrum,
+};
 
 /// Added to the covariance's diagonal, as a part of its mean: what the twelve elements' small departures from a plane wave need.
 const LOADING: f64 = 1e-6;
@@ -28,27 +29,4 @@ fn spectrum(row: &Row) -> Option<Vec<f64>> {
     let loaded = Mat::from_fn(n, n, |i, j| covariance[(i, j)] + Complex64::from(if i == j { loading } else { 0.0 }));
     let inverse = Llt::new(loaded.as_ref(), Side::Lower).ok()?.inverse();
     Some(quadratic_form(&inverse, row.spectrum).into_iter().map(|v| 1.0 / v.max(f64::MIN_POSITIVE)).collect())
-}
-
-impl Reconstructor for Capon {
-    fn name(&self) -> &'static str {
-        "capon"
-    }
-
-    fn description(&self) -> &'static str {
-        "minimum-variance beams of each end and range row, with spatial smoothing"
-    }
-
-    fn eta(&self) -> f32 {
-        0.851 // by tests/choose_eta.rs
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        reconstruct_rows(radar, ends, request, spectrum)
-    }
 }

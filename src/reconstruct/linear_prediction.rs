@@ -1,9 +1,6 @@
 //! Linear prediction: each element as a combination of its neighbours.
 
-use super::rows::{Row, reconstruct_rows};
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::radar::Radar;
-use crate::signal::TwoEnds;
+use super::rows::{Row, RowMethod};
 use faer::Mat;
 use num_complex::Complex64;
 
@@ -12,8 +9,12 @@ use num_complex::Complex64;
 ///
 /// D. W. Tufts and R. Kumaresan, "Estimation of frequencies of multiple sinusoids: making linear prediction perform like maximum
 /// likelihood", Proc. IEEE 70, 1982.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct LinearPrediction;
+pub const LINEAR_PREDICTION: RowMethod = RowMethod {
+    name: "linear-prediction",
+    description: "nulls of the prediction error over angle, for each end and range row",
+    eta: 0.863, // by tests/choose_eta.rs
+    estimate: spectrum,
+};
 
 /// Singular values below this part of the largest are no signals; amplitudes, so the root of MUSIC's part.
 const SIGNAL_PART: f64 = 1e-2;
@@ -52,29 +53,6 @@ fn spectrum(row: &Row) -> Option<Vec<f64>> {
     let error_filter = std::iter::once(Complex64::from(1.0)).chain(predictor.into_iter().map(|a| -a));
     let nulls: Vec<f64> = row.spectrum.of(error_filter).into_iter().map(|v| v.norm_sqr()).collect();
     Some(row.power_of_nulls(&nulls))
-}
-
-impl Reconstructor for LinearPrediction {
-    fn name(&self) -> &'static str {
-        "linear-prediction"
-    }
-
-    fn description(&self) -> &'static str {
-        "nulls of the prediction error over angle, for each end and range row"
-    }
-
-    fn eta(&self) -> f32 {
-        0.863 // by tests/choose_eta.rs
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        reconstruct_rows(radar, ends, request, spectrum)
-    }
 }
 
 #[cfg(test)]

@@ -23,17 +23,18 @@ mod root_music;
 mod rows;
 pub(crate) mod steering;
 
-pub use bartlett::Bartlett;
+pub use bartlett::BARTLETT;
 pub use baseline::Baseline;
-pub use capon::Capon;
+pub use capon::CAPON;
 pub use fista::Fista;
 pub use hybrid::Hybrid;
 pub use layout_filter::layout_matched_filter;
-pub use linear_prediction::LinearPrediction;
+pub use linear_prediction::LINEAR_PREDICTION;
 pub use matched_filter::MatchedFilter;
-pub use music::Music;
+pub use music::MUSIC;
 pub use omp::Omp;
-pub use root_music::RootMusic;
+pub use root_music::ROOT_MUSIC;
+pub use rows::RowMethod;
 
 #[cfg(feature = "network")]
 pub(crate) use conditioning::unit_gain;

@@ -1,45 +1,23 @@
 //! MUSIC: directions orthogonal to the noise subspace.
 
 use super::covariance::{noise_subspace, quadratic_form, smoothed, subarray_len};
-use super::rows::{Row, reconstruct_rows};
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::radar::Radar;
-use crate::signal::TwoEnds;
+use super::rows::{Row, RowMethod};
 
 /// The pseudo-spectrum of each end and range row, with spatial smoothing.
 ///
 /// R. O. Schmidt, "Multiple emitter location and signal parameter estimation", IEEE Trans. Antennas Propag. 34, 1986.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Music;
+pub const MUSIC: RowMethod = RowMethod {
+    name: "music",
+    description: "subspace pseudo-spectrum of each end and range row, with spatial smoothing",
+    eta: 0.842, // by tests/choose_eta.rs
+    estimate: spectrum,
+};
 
 /// MUSIC's pseudo-spectrum for one row, as power.
 fn spectrum(row: &Row) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
     let noise = noise_subspace(&covariance, row.noise_variance)?;
     Some(row.power_of_nulls(&quadratic_form(&noise.projector, row.spectrum)))
-}
-
-impl Reconstructor for Music {
-    fn name(&self) -> &'static str {
-        "music"
-    }
-
-    fn description(&self) -> &'static str {
-        "subspace pseudo-spectrum of each end and range row, with spatial smoothing"
-    }
-
-    fn eta(&self) -> f32 {
-        0.842 // by tests/choose_eta.rs
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        reconstruct_rows(radar, ends, request, spectrum)
-    }
 }
 
 #[cfg(test)]

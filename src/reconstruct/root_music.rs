@@ -1,10 +1,8 @@
 //! root-MUSIC: the directions as roots of a polynomial, then the array continued from them.
 
 use super::covariance::{diagonal_sums, noise_subspace, smoothed, subarray_len};
-use super::rows::{Row, reconstruct_rows};
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::radar::{Radar, hann};
-use crate::signal::TwoEnds;
+use super::rows::{Row, RowMethod};
+use crate::radar::hann;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
@@ -13,8 +11,12 @@ use num_complex::Complex64;
 /// as the whole array would see those waves.
 ///
 /// A. J. Barabell, "Improving the resolution performance of eigenstructure-based direction-finding algorithms", ICASSP 1983.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct RootMusic;
+pub const ROOT_MUSIC: RowMethod = RowMethod {
+    name: "root-music",
+    description: "directions of each end and range row as polynomial roots, and the array continued from them",
+    eta: 0.665, // by tests/choose_eta.rs
+    estimate: continued,
+};
 
 /// Turns an element of each wave: the roots inside the unit circle that are nearest to it.
 fn directions(row: &Row) -> Option<Vec<f64>> {
@@ -70,29 +72,6 @@ fn continued(row: &Row) -> Option<Vec<f64>> {
     let total: f64 = window.iter().sum();
     let windowed = array.into_iter().zip(&window).map(|(v, w)| v * w / total);
     Some(row.spectrum.of(windowed).into_iter().map(|v| v.norm_sqr()).collect())
-}
-
-impl Reconstructor for RootMusic {
-    fn name(&self) -> &'static str {
-        "root-music"
-    }
-
-    fn description(&self) -> &'static str {
-        "directions of each end and range row as polynomial roots, and the array continued from them"
-    }
-
-    fn eta(&self) -> f32 {
-        0.665 // by tests/choose_eta.rs
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        reconstruct_rows(radar, ends, request, continued)
-    }
 }
 
 #[cfg(test)]

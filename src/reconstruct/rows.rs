@@ -1,4 +1,4 @@
-//! The frame of the methods that work on one end and one range row at a time.
+//! The methods that work on one end and one range row at a time.
 //!
 //! Each end's samples become range profiles; each range row is a snapshot of twelve elements from which a method estimates power
 //! over angle. Both ends' estimates are laid onto the centre's grid and their geometric mean is taken: what only one end
@@ -7,7 +7,7 @@
 use super::conditioning::{Conditioned, condition};
 use super::registered::register;
 use super::rendering::{of_power, silence};
-use super::{ReconstructError, Reconstruction, Request};
+use super::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::maps::{Spectrum, range_transform};
 use crate::radar::{End, Radar};
 use crate::signal::{BeatSignal, TwoEnds};
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const ACTIVE_ROW: f64 = 1e-12;
 
 /// One end's snapshot at one range row, and its surroundings.
-pub(super) struct Row<'a> {
+pub struct Row<'a> {
     /// Range profiles of the elements at the rows before, at and after this one; the middle is the row itself.
     pub snapshots: [&'a [Complex64]; 3],
     /// Variance of the noise of each value.
@@ -51,66 +51,87 @@ impl Row<'_> {
     }
 }
 
-/// Runs `estimate` on every active row of both ends. It returns power over angle, one value a column in the order of the
-/// transform, or `None` to leave the row to plain beamforming.
-///
-/// # Errors
-/// As [`condition`], and [`ReconstructError::Cancelled`].
-pub(super) fn reconstruct_rows(
-    radar: &Radar,
-    ends: &TwoEnds,
-    request: &Request,
-    estimate: impl Fn(&Row) -> Option<Vec<f64>> + Sync,
-) -> Result<Reconstruction, ReconstructError> {
-    let Some(conditioned) = condition(radar, ends)? else { return Ok(silence(radar)) };
-    let [first, last] = End::BOTH.map(|end| {
-        let map = end_power(radar, &conditioned, end, request, &estimate)?;
-        Ok(register(radar, radar.end_centre_metres(end), &map))
-    });
-    let (mut power, last): (Array2<f64>, Array2<f64>) = (first?, last?);
-    Zip::from(&mut power).and(&last).par_for_each(|a, b| *a = (*a * b).sqrt());
-    Ok(of_power(radar, power, conditioned.noise_variance, request))
+/// A method that estimates power over angle of one end and one range row at a time.
+#[derive(Debug, Clone, Copy)]
+pub struct RowMethod {
+    pub(super) name: &'static str,
+    pub(super) description: &'static str,
+    pub(super) eta: f32,
+    /// Power over angle, one value a column in the order of the transform, or `None` to leave the row to plain beamforming.
+    pub(super) estimate: fn(&Row<'_>) -> Option<Vec<f64>>,
 }
 
-/// Power over range and angle of one end on its own grid, in the scale of the whole array's map.
-fn end_power(
-    radar: &Radar,
-    conditioned: &Conditioned,
-    end: End,
-    request: &Request,
-    estimate: &(impl Fn(&Row) -> Option<Vec<f64>> + Sync),
-) -> Result<Array2<f64>, ReconstructError> {
-    let signal = BeatSignal { samples: conditioned.ends.end(end).clone() };
-    // One row a range bin, so that a snapshot is a slice.
-    let snapshots = range_transform(radar, &signal).profiles.t().as_standard_layout().into_owned();
-    let (bins, columns, elements) = (radar.samples, radar.elements, radar.end_elements);
-    let values = snapshots.as_slice().unwrap_or_default();
-    let snapshot = |bin: usize| values.get(bin * elements..(bin + 1) * elements).unwrap_or_default();
-    let row_power = |bin: usize| snapshot(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
-    let strongest = (0..bins).map(row_power).fold(0.0, f64::max);
-    let window_power = radar.window.weights(bins).iter().map(|w| w * w).sum::<f64>() / bins as f64;
-    let noise_variance = conditioned.noise_variance * window_power;
-    let quiet = (strongest * ACTIVE_ROW).max(2.0 * elements as f64 * noise_variance);
+impl Reconstructor for RowMethod {
+    fn name(&self) -> &'static str {
+        self.name
+    }
 
-    let spectrum = Spectrum::new(columns);
-    let angle_gain = (radar.window.weights(columns).iter().sum::<f64>()).powi(2) / columns as f64;
-    let done = AtomicUsize::new(0);
-    let mut power = Array2::zeros((bins, columns));
-    power.axis_iter_mut(Axis(0)).into_par_iter().enumerate().try_for_each(|(bin, mut out)| {
-        request.task.check()?;
-        let row = Row {
-            snapshots: [snapshot((bin + bins - 1) % bins), snapshot(bin), snapshot((bin + 1) % bins)],
-            noise_variance,
-            spectrum: &spectrum,
-        };
-        let estimated = if row_power(bin) > quiet { estimate(&row) } else { None };
-        for (k, p) in estimated.unwrap_or_else(|| row.bartlett()).into_iter().enumerate() {
-            out[(k + columns / 2) % columns] = p * angle_gain;
-        }
-        let half = if end == End::First { 0.0 } else { 0.5 };
-        let part = done.fetch_add(1, Ordering::Relaxed) as f32 / bins as f32;
-        request.task.set_progress(half + part / 2.0);
-        Ok(())
-    })?;
-    Ok(power)
+    fn description(&self) -> &'static str {
+        self.description
+    }
+
+    fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        let Some(conditioned) = condition(radar, ends)? else { return Ok(silence(radar)) };
+        let [first, last] = End::BOTH.map(|end| {
+            let map = self.end_power(radar, &conditioned, end, request)?;
+            Ok(register(radar, radar.end_centre_metres(end), &map))
+        });
+        let (mut power, last): (Array2<f64>, Array2<f64>) = (first?, last?);
+        Zip::from(&mut power).and(&last).par_for_each(|a, b| *a = (*a * b).sqrt());
+        Ok(of_power(radar, power, conditioned.noise_variance, request))
+    }
+}
+
+impl RowMethod {
+    /// Power over range and angle of one end on its own grid, in the scale of the whole array's map.
+    fn end_power(
+        &self,
+        radar: &Radar,
+        conditioned: &Conditioned,
+        end: End,
+        request: &Request,
+    ) -> Result<Array2<f64>, ReconstructError> {
+        let signal = BeatSignal { samples: conditioned.ends.end(end).clone() };
+        // One row a range bin, so that a snapshot is a slice.
+        let snapshots = range_transform(radar, &signal).profiles.t().as_standard_layout().into_owned();
+        let (bins, columns, elements) = (radar.samples, radar.elements, radar.end_elements);
+        let values = snapshots.as_slice().unwrap_or_default();
+        let snapshot = |bin: usize| values.get(bin * elements..(bin + 1) * elements).unwrap_or_default();
+        let row_power = |bin: usize| snapshot(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
+        let strongest = (0..bins).map(row_power).fold(0.0, f64::max);
+        let window_power = radar.window.weights(bins).iter().map(|w| w * w).sum::<f64>() / bins as f64;
+        let noise_variance = conditioned.noise_variance * window_power;
+        let quiet = (strongest * ACTIVE_ROW).max(2.0 * elements as f64 * noise_variance);
+
+        let spectrum = Spectrum::new(columns);
+        let angle_gain = (radar.window.weights(columns).iter().sum::<f64>()).powi(2) / columns as f64;
+        let done = AtomicUsize::new(0);
+        let mut power = Array2::zeros((bins, columns));
+        power.axis_iter_mut(Axis(0)).into_par_iter().enumerate().try_for_each(|(bin, mut out)| {
+            request.task.check()?;
+            let row = Row {
+                snapshots: [snapshot((bin + bins - 1) % bins), snapshot(bin), snapshot((bin + 1) % bins)],
+                noise_variance,
+                spectrum: &spectrum,
+            };
+            let estimated = if row_power(bin) > quiet { (self.estimate)(&row) } else { None };
+            for (k, p) in estimated.unwrap_or_else(|| row.bartlett()).into_iter().enumerate() {
+                out[(k + columns / 2) % columns] = p * angle_gain;
+            }
+            let half = if end == End::First { 0.0 } else { 0.5 };
+            let part = done.fetch_add(1, Ordering::Relaxed) as f32 / bins as f32;
+            request.task.set_progress(half + part / 2.0);
+            Ok(())
+        })?;
+        Ok(power)
+    }
 }

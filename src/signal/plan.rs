@@ -107,7 +107,7 @@ const GRIDDED_TOLERANCE: f64 = 1e-14;
 /// From this many reflectors on, spreading is cheaper than summing phasors (`apertura bench` measures it).
 const GRIDDED_FROM: usize = 4;
 /// Cells up to which the closed form is cheaper than making samples and transforming them (`apertura bench` measures it).
-const CLOSED_FORM_CELLS: usize = 600;
+const CLOSED_FORM_CELLS: usize = 3300;
 /// f32 holds squares of magnitudes only between these amplitudes.
 const F32_AMPLITUDES: std::ops::Range<f64> = 1e-12..1e12;
 
@@ -136,7 +136,8 @@ impl Recipe {
     /// This recipe for range profiles of `count` reflectors beneath which there is no floor: with few cells above the tolerance, those alone.
     pub fn on_few_rows(self, radar: &Radar, count: usize) -> Recipe {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
-        if cells <= CLOSED_FORM_CELLS && closed_form::applies(radar) {
+        let holds = self.precision == Precision::F64 || count <= most_in_f32(Algorithm::ClosedForm);
+        if cells <= CLOSED_FORM_CELLS && holds && closed_form::applies(radar) {
             self.with_algorithm(Algorithm::ClosedForm)
         } else {
             self

@@ -2,6 +2,7 @@
 
 mod chart;
 mod methods;
+mod mouse;
 
 use super::{CommandError, print};
 use crate::evaluate::front::{self, Entrant, Front, FrontRequest};
@@ -54,6 +55,8 @@ pub struct Args {
 struct Report<'a> {
     #[serde(flatten)]
     front: &'a Front,
+    /// One reflector dragged, from the pointer's move to three maps.
+    mouse: Vec<mouse::MouseRow>,
     /// Reflectors to median milliseconds of the NumPy script; none if it could not run.
     numpy_ms: Option<serde_json::Value>,
 }
@@ -75,7 +78,7 @@ impl Args {
                 .map_err(CommandError::failed)?;
         bar.finish_and_clear();
         let numpy_ms = self.numpy.as_ref().and_then(|script| self.run_numpy(script));
-        let report = Report { front: &front, numpy_ms };
+        let report = Report { front: &front, mouse: mouse::measure()?, numpy_ms };
         let json = serde_json::to_string_pretty(&report).map_err(CommandError::failed)?;
         if let Some(folder) = &self.output {
             chart::draw(folder, &front)?;
@@ -126,6 +129,9 @@ impl Args {
                 r.signal_error,
                 lambda.collect::<String>(),
             ))?;
+        }
+        for row in &report.mouse {
+            print(&row.line(front.bare_fft_ms))?;
         }
         match &report.numpy_ms {
             Some(ms) => print(&format!("NumPy, one exp per reflector, median ms by reflectors: {ms}")),

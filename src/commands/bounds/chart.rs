@@ -7,7 +7,10 @@ use crate::evaluate::Placement;
 use crate::picture::ColourMap;
 use crate::radar::{Polar, Radar};
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
+use std::ops::Range;
 
 const COLOURS: [RGBColor; 7] = [
     RGBColor(210, 90, 20),
@@ -18,6 +21,48 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(170, 130, 0),
     RGBColor(0, 150, 160),
 ];
+
+/// Position error over signal-to-noise ratio.
+type ErrorChart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, LogCoord<f64>>>;
+
+/// What stands beside the axes of an [`ErrorChart`], and what they span.
+struct ErrorAxes {
+    caption: &'static str,
+    snr_db: Range<f64>,
+    millimetres: Range<f64>,
+    vertical: &'static str,
+}
+
+impl ErrorAxes {
+    fn draw<'a, B: DrawingBackend>(
+        self,
+        area: &'a DrawingArea<B, Shift>,
+    ) -> Result<ErrorChart<'a, B>, DrawingAreaErrorKind<B::ErrorType>> {
+        let millimetres = self.millimetres.start / 1.5..self.millimetres.end * 1.5;
+        let mut chart = ChartBuilder::on(area)
+            .caption(self.caption, ("sans-serif", 22))
+            .margin(14)
+            .x_label_area_size(46)
+            .y_label_area_size(80)
+            .build_cartesian_2d(self.snr_db, millimetres.log_scale())?;
+        chart
+            .configure_mesh()
+            .x_desc("signal-to-noise ratio of a sample, dB")
+            .y_desc(self.vertical)
+            .y_label_formatter(&|v| format!("{v}"))
+            .draw()?;
+        Ok(chart)
+    }
+}
+
+fn legend<'a, B: DrawingBackend + 'a>(chart: &mut ErrorChart<'a, B>) -> Drawn<B> {
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.85))
+        .border_style(BLACK.mix(0.3))
+        .draw()
+}
 
 /// Bound over signal-to-noise ratio, a line a layout.
 pub struct BoundsFigure<'a>(pub &'a Report);
@@ -33,18 +78,13 @@ impl Figure for BoundsFigure<'_> {
         let values = rows().flat_map(|b| [b.alone, b.beside_another]).flatten().map(|b| b.position_millimetres);
         let (low, high) = span(values);
         let (from, to) = span_of_snr(rows().map(|b| b.snr_db));
-        let mut chart = ChartBuilder::on(area)
-            .caption("No unbiased estimate places a reflector better than this", ("sans-serif", 22))
-            .margin(14)
-            .x_label_area_size(46)
-            .y_label_area_size(80)
-            .build_cartesian_2d(from..to, (low / 1.5..high * 1.5).log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc("signal-to-noise ratio of a sample, dB")
-            .y_desc("position error, mm (pale: with a neighbour)")
-            .y_label_formatter(&|v| format!("{v}"))
-            .draw()?;
+        let axes = ErrorAxes {
+            caption: "No unbiased estimate places a reflector better than this",
+            snr_db: from..to,
+            millimetres: low..high,
+            vertical: "position error, mm (pale: with a neighbour)",
+        };
+        let mut chart = axes.draw(area)?;
         for (layout, colour) in report.layouts.iter().zip(COLOURS.iter().cycle()) {
             let line = |bound: fn(&super::BoundRow) -> Option<super::Bound>| {
                 layout.bounds.iter().filter_map(move |b| Some((b.snr_db, bound(b)?.position_millimetres)))
@@ -57,12 +97,7 @@ impl Figure for BoundsFigure<'_> {
                 .label(format!("{} ({} elements)", layout.layout, layout.elements))
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(BLACK.mix(0.3))
-            .draw()
+        legend(&mut chart)
     }
 }
 
@@ -79,18 +114,13 @@ impl Figure for PlacementFigure<'_> {
         let (low, high) = span(errors.chain(self.0.iter().map(|p| 1e3 * p.bound_metres)));
         let (from, to) = span_of_snr(self.0.iter().map(|p| p.snr_db));
         let trials = self.0.first().map_or(0, |p| p.trials);
-        let mut chart = ChartBuilder::on(area)
-            .caption("One reflector from the two ends: the Newton search against the bound", ("sans-serif", 22))
-            .margin(14)
-            .x_label_area_size(46)
-            .y_label_area_size(80)
-            .build_cartesian_2d(from..to, (low / 1.5..high * 1.5).log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc("signal-to-noise ratio of a sample, dB")
-            .y_desc("position error, mm (root mean square)")
-            .y_label_formatter(&|v| format!("{v}"))
-            .draw()?;
+        let axes = ErrorAxes {
+            caption: "One reflector from the two ends: the Newton search against the bound",
+            snr_db: from..to,
+            millimetres: low..high,
+            vertical: "position error, mm (root mean square)",
+        };
+        let mut chart = axes.draw(area)?;
         let (ink, hot) = (COLOURS[4], COLOURS[0]);
         chart
             .draw_series(LineSeries::new(self.0.iter().map(|p| (p.snr_db, 1e3 * p.bound_metres)), ink.stroke_width(2)))?
@@ -101,12 +131,7 @@ impl Figure for PlacementFigure<'_> {
             .draw_series(found.map(|p| Circle::new((p.snr_db, 1e3 * p.error_metres), 5, hot.filled())))?
             .label(format!("Newton search, {trials} draws of noise each"))
             .legend(move |(x, y)| Circle::new((x + 9, y), 5, hot.filled()));
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(BLACK.mix(0.3))
-            .draw()
+        legend(&mut chart)
     }
 }
 

@@ -70,8 +70,8 @@ pub fn measure(
     Ok(front)
 }
 
-/// Reflectors on a lattice in front of the array, the same as in `benches/numpy_maps.py`.
-fn scattered(count: usize) -> Scene {
+/// `count` reflectors on a lattice in front of the array, the same as in `benches/numpy_maps.py`.
+pub fn scattered(count: usize) -> Scene {
     let lattice = |i: usize, step: usize, span: usize| (i * step % span) as f64;
     Scene::of_points((0..count).map(|i| (lattice(i, 37, 61) - 30.0, 2.37 + lattice(i, 53, 33))))
 }

@@ -10,7 +10,7 @@
 mod measurement;
 pub(super) mod reference;
 
-pub use measurement::measure;
+pub use measurement::{measure, scattered};
 
 use crate::maps::Normalisation;
 use crate::signal::simd::Simd;

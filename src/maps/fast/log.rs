@@ -50,24 +50,22 @@ fn log10<const FMA: bool>(v: f32) -> f32 {
     fused(exponent as f32, std::f32::consts::LOG10_2, s * series * (2.0 * std::f32::consts::LOG10_E))
 }
 
+/// Smallest and largest value seen by each lane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Extremes {
-    min: Lanes<f32, 8>,
-    max: Lanes<f32, 8>,
+pub(super) struct Extremes<const W: usize> {
+    min: Lanes<f32, W>,
+    max: Lanes<f32, W>,
 }
 
-impl Extremes {
+impl<const W: usize> Extremes<W> {
     pub(super) fn new() -> Self {
         Extremes { min: Lanes::splat(f32::INFINITY), max: Lanes::splat(f32::NEG_INFINITY) }
     }
 
     #[inline(always)]
-    pub(super) fn take<const W: usize>(&mut self, v: Lanes<f32, W>) {
-        for (i, v) in v.0.iter().enumerate() {
-            let i = i % 8;
-            self.min.0[i] = if *v < self.min.0[i] { *v } else { self.min.0[i] };
-            self.max.0[i] = if *v > self.max.0[i] { *v } else { self.max.0[i] };
-        }
+    pub(super) fn take(&mut self, v: Lanes<f32, W>) {
+        self.min = v.zip(self.min, |v, min| if v < min { v } else { min });
+        self.max = v.zip(self.max, |v, max| if v > max { v } else { max });
     }
 
     pub(super) fn reduce(self) -> (f32, f32) {
@@ -81,7 +79,7 @@ pub(super) fn log_rolled<T: Real, const W: usize, const FMA: bool>(
     row: &[Complex<T>],
     log: &LogScale,
     out: &mut [f32],
-    extremes: &mut Extremes,
+    extremes: &mut Extremes<W>,
 ) {
     let half = row.len() / 2;
     let (low, high) = out.split_at_mut(half);

@@ -59,7 +59,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
         inputs: &[Complex<T>],
         log: &LogScale,
         out: &mut [f32],
-        extremes: &mut Extremes,
+        extremes: &mut Extremes<W>,
     ) {
         if let Some((window, fft)) = &self.plain {
             let mut row = vec![Complex::default(); self.columns];

@@ -1,0 +1,130 @@
+//! One reflector dragged with the mouse: from the pointer's move, through the editor and the worker's thread, until three Lambda maps
+//! are back.
+
+use crate::commands::CommandError;
+use crate::evaluate::front::{Convention, scattered};
+use crate::interact::{Editor, Place, Snap};
+use crate::live::worker::{Reply, Worker};
+use crate::live::{Engine, Frame, Wanted};
+use crate::radar::Radar;
+use crate::scene::{Scene, SceneError};
+use serde::Serialize;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Instant;
+
+/// Reflectors of the scenes.
+const REFLECTORS: [usize; 2] = [10, 300];
+/// Moves that are timed.
+const MOVES: usize = 100;
+/// Moves before those: the reflector leaves the sum at rest.
+const WARM_UP: usize = 4;
+/// Metres of scene beneath a point of the view, as in a canvas of some 600 points.
+const METRES_PER_POINT: f64 = 0.1;
+
+/// One scene.
+#[derive(Debug, Serialize)]
+pub struct MouseRow {
+    reflectors: usize,
+    #[serde(flatten)]
+    convention: Convention,
+    moves: usize,
+    median_ms: f64,
+    worst_ms: f64,
+}
+
+impl MouseRow {
+    /// A line of the table, times also as multiples of `bare_fft_ms`.
+    pub fn line(&self, bare_fft_ms: f64) -> String {
+        format!(
+            "dragging one of {:>3} by mouse, {}: {:.2} ms from the move to three maps ({:.1} x bare), {:.2} ms at worst of {}",
+            self.reflectors,
+            self.convention,
+            self.median_ms,
+            self.median_ms / bare_fft_ms,
+            self.worst_ms,
+            self.moves
+        )
+    }
+}
+
+type Asked = (Arc<Scene>, Wanted);
+type Answer = Result<Frame, SceneError>;
+
+/// Drags in small and large scenes, over no floor and over the thesis'.
+pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
+    let radar = Radar::default();
+    let (wake, woken) = channel();
+    let of_engine = radar.clone();
+    let worker: Worker<Asked, Answer> = Worker::spawn(
+        "maps",
+        move || Engine::new(of_engine.clone()),
+        |engine, (scene, wanted): Asked, _| engine.update(&scene, &wanted),
+        // Nobody listens any more once all is measured.
+        move || wake.send(()).unwrap_or_default(),
+    )
+    .map_err(CommandError::failed)?;
+    let mut rows = Vec::new();
+    for reflectors in REFLECTORS {
+        for convention in Convention::BOTH {
+            rows.push(drag(&radar, &worker, &woken, reflectors, convention)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn drag(
+    radar: &Radar,
+    worker: &Worker<Asked, Answer>,
+    woken: &Receiver<()>,
+    reflectors: usize,
+    convention: Convention,
+) -> Result<MouseRow, CommandError> {
+    let wanted =
+        Wanted { floor: convention.floor, normalisation: convention.normalisation, ends: false, ..Wanted::default() };
+    let mut editor = Editor::new(scattered(reflectors));
+    let shown = || -> Result<(), CommandError> {
+        woken.recv().map_err(CommandError::failed)?;
+        for reply in worker.replies() {
+            match reply {
+                Reply::Done { result, .. } => drop(result.map_err(CommandError::failed)?),
+                Reply::Panicked { message, .. } => return Err(CommandError::failed(message)),
+            }
+        }
+        Ok(())
+    };
+    worker.request((editor.scene().clone(), wanted));
+    shown()?;
+    let start = editor.scene().objects.first().map(|o| Place::from(o.centre_metres()));
+    let hit = start.and_then(|start| Some((start, editor.hit(start, METRES_PER_POINT)?)));
+    let Some((start, hit)) = hit else { return Err(CommandError::failed("the scene has nothing to drag")) };
+    editor.begin_drag(hit, start);
+    let mut times = Vec::new();
+    for step in 1..=WARM_UP + MOVES {
+        let pointer = Place::new(start.x_metres + 0.01 * step as f64, start.y_metres + 0.005 * step as f64);
+        let begin = Instant::now();
+        editor.drag_to(pointer, Snap::Off, radar);
+        worker.request((editor.scene().clone(), wanted));
+        shown()?;
+        if step > WARM_UP {
+            times.push(1e3 * begin.elapsed().as_secs_f64());
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(MouseRow { reflectors, convention, moves: MOVES, median_ms: times[MOVES / 2], worst_ms: times[MOVES - 1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_is_dragged_and_timed() {
+        let rows = measure().unwrap();
+        assert_eq!(rows.len(), 4);
+        for row in rows {
+            assert!(row.median_ms > 0.0 && row.median_ms <= row.worst_ms, "{row:?}");
+            assert!(row.line(1.0).contains(&format!("one of {:>3}", row.reflectors)));
+        }
+    }
+}

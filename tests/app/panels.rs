@@ -1,0 +1,139 @@
+//! What is shown, what is computed for it and what is not.
+
+use crate::session::Session;
+use apertura::app::{Command, MapKind, Panel};
+use apertura::live::Stage;
+use apertura::maps::Normalisation;
+use apertura::radar::{Carrier, Decibels, WindowFunction};
+use apertura::scene::Object;
+use apertura::signal::Floor;
+use eframe::egui::{Event, Key, Modifiers, vec2};
+use egui_kittest::kittest::Queryable;
+
+#[test]
+fn all_maps_are_there_soon_after_the_start_and_idling_computes_nothing() {
+    let mut s = Session::start();
+    use MapKind::*;
+    let first = [Input0, Input1, Target, Output, TargetAbove, OutputAbove];
+    assert_eq!(s.state().pictures(), first, "the difference is behind another tab");
+    let before = s.state().work_done();
+    s.app.run_steps(40);
+    assert_eq!(s.state().work_done(), before);
+}
+
+#[test]
+fn another_normalisation_computes_no_signal_and_no_map() {
+    let mut s = Session::start();
+    for normalisation in [
+        Normalisation::DynamicRange(Decibels(60.0)),
+        Normalisation::DynamicRange(Decibels(100.0)),
+        Normalisation::MinMax,
+    ] {
+        let (_, painted) = s.state().work_done();
+        s.ask(Command::Normalise(normalisation));
+        assert_eq!(s.state().settings().normalisation, normalisation);
+        assert!(s.state().work_done().1 >= painted + 6, "every map was painted again");
+        let report = s.state().report().unwrap();
+        for stage in [Stage::Signal, Stage::FirstMap, Stage::LastMap, Stage::FullMap] {
+            assert!(!report.ran(stage), "{stage}");
+        }
+    }
+    s.ask(Command::SetFloor(Floor::Exact));
+    assert_eq!(s.state().settings().floor, Floor::Exact);
+}
+
+#[test]
+fn hidden_panels_are_not_computed() {
+    let mut s = Session::start();
+    // The tabs behind the two output maps need the output too.
+    for kind in [MapKind::Input1, MapKind::Output, MapKind::OutputAbove, MapKind::Difference] {
+        s.ask(Command::ClosePanel(Panel::Map(kind)));
+    }
+    s.ask(Command::ClosePanel(Panel::Roc));
+    assert_eq!(s.state().pictures(), [MapKind::Input0, MapKind::Target, MapKind::TargetAbove]);
+    s.ask(Command::RandomScene(2));
+    let report = s.state().report().unwrap();
+    assert!(report.ran(Stage::FirstMap) && report.ran(Stage::FullMap));
+    assert!(!report.ran(Stage::LastMap) && !report.ran(Stage::Ends), "nobody looks at input 1 or an output");
+    s.ask(Command::TogglePanel(Panel::Map(MapKind::Input1)));
+    assert!(s.state().pictures().contains(&MapKind::Input1));
+}
+
+#[test]
+fn a_maximised_map_is_the_only_one_computed() {
+    let mut s = Session::start();
+    s.ask(Command::Maximise(Panel::Map(MapKind::Input0)));
+    assert_eq!(s.state().pictures(), [MapKind::Input0]);
+    s.ask(Command::RandomScene(1));
+    let report = s.state().report().unwrap();
+    assert!(report.ran(Stage::FirstMap) && !report.ran(Stage::FullMap) && !report.ran(Stage::LastMap));
+    s.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(s.state().pictures().len(), 6);
+}
+
+#[test]
+fn the_palette_runs_a_command_by_name() {
+    let mut s = Session::start();
+    s.press(Modifiers::COMMAND, Key::K);
+    s.app.event(Event::Text("add line".to_owned()));
+    s.settle();
+    s.press(Modifiers::NONE, Key::Enter);
+    let objects = &s.state().editor().scene().objects;
+    assert!(matches!(objects.last(), Some(Object::Line(_))), "{objects:?}");
+    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
+}
+
+#[test]
+fn messages_can_be_closed() {
+    let mut s = Session::start();
+    s.ask(Command::OpenPath(s.folder.path().join("missing.toml")));
+    assert_eq!(s.state().messages(), 1);
+    s.app.get_by_label("Close this message").click();
+    s.settle();
+    assert_eq!(s.state().messages(), 0);
+}
+
+#[test]
+fn the_window_reaches_the_maps_and_comes_back() {
+    let mut s = Session::start();
+    let (requests, painted) = s.state().work_done();
+    s.app.get_by_label("hamming").scroll_to_me();
+    s.settle();
+    s.app.get_by_label("hamming").click();
+    s.settle();
+    assert_eq!(s.state().settings().window, WindowFunction::Hamming);
+    let after = s.state().work_done();
+    assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
+    s.ask(Command::SetWindow(WindowFunction::Hann));
+    assert_eq!(s.state().settings().window, WindowFunction::Hann);
+}
+
+#[test]
+fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
+    let mut s = Session::start();
+    assert_eq!(s.state().bounds_asked(), 0);
+    s.ask(Command::OpenPanel(Panel::Bounds));
+    let before = s.state().position_bound().expect("of the first reflector");
+    let at = s.handle("point 2: move");
+    s.drag(at, vec2(0.0, 20.0), 4);
+    let after = s.state().position_bound().unwrap();
+    assert_ne!(before, after);
+    s.ask(Command::TogglePanel(Panel::Bounds));
+    let asked = s.state().bounds_asked();
+    let at = s.handle("point 2: move");
+    s.drag(at, vec2(0.0, 20.0), 4);
+    assert_eq!(s.state().bounds_asked(), asked);
+}
+
+#[test]
+fn every_button_of_the_guide_leaves_a_working_app() {
+    let mut s = Session::start();
+    s.ask(Command::Maximise(Panel::Guide));
+    s.app.get_by_label("Two-way").scroll_to_me();
+    s.settle();
+    s.app.get_by_label("Two-way").click();
+    s.settle();
+    assert_eq!(s.state().settings().carrier, Carrier::TwoWay);
+    assert_eq!(s.state().editor().scene().name, "Four reflectors");
+    assert_eq!(s.state().messages(), 0);
+}

@@ -1,0 +1,106 @@
+//! The app in a folder of its own, with a small radar.
+
+use apertura::app::{App, Command, Options};
+use apertura::reconstruct::{Baseline, Reconstructor};
+use eframe::egui::{self, Key, Modifiers, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A radar small enough that its maps take a moment only, and two points.
+const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
+                     [[object]]\nkind = \"point\"\nx_metres = 0.0\ny_metres = 20.0\n\n\
+                     [[object]]\nkind = \"point\"\nx_metres = 8.0\ny_metres = 12.0\n";
+
+pub struct Session {
+    pub app: Harness<'static, App>,
+    pub folder: TempDir,
+}
+
+impl Session {
+    pub fn start() -> Session {
+        Session::with_methods(vec![Arc::new(Baseline)])
+    }
+
+    pub fn with_methods(methods: Vec<Arc<dyn Reconstructor>>) -> Session {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+        let app = harness(folder.path(), Some("scene.toml"), methods);
+        let mut session = Session { app, folder };
+        session.settle();
+        session
+    }
+
+    pub fn state(&self) -> &App {
+        self.app.state()
+    }
+
+    /// Steps until the workers have nothing to do and what they made has been taken in.
+    pub fn settle(&mut self) {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        let mut quiet = 0;
+        while quiet < 4 {
+            assert!(Instant::now() < deadline, "the workers never came to rest");
+            self.app.step();
+            quiet = if self.state().is_busy() { 0 } else { quiet + 1 };
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    pub fn ask(&mut self, command: Command) {
+        self.app.state_mut().ask(command);
+        self.settle();
+    }
+
+    pub fn press(&mut self, modifiers: Modifiers, key: Key) {
+        self.app.key_press_modifiers(modifiers, key);
+        self.settle();
+    }
+
+    pub fn place(&self, object: usize) -> [f64; 2] {
+        self.state().editor().scene().objects[object].centre_metres()
+    }
+
+    pub fn handle(&self, label: &str) -> Pos2 {
+        self.app.get_by_label(label).rect().center()
+    }
+
+    pub fn drag(&mut self, from: Pos2, by: egui::Vec2, steps: u32) {
+        self.app.hover_at(from);
+        self.app.step();
+        self.app.drag_at(from);
+        self.app.step();
+        for i in 1..=steps {
+            self.app.hover_at(from + by * (i as f32 / steps as f32));
+            self.app.step();
+        }
+        self.app.drop_at(from + by);
+        self.settle();
+    }
+}
+
+pub fn harness(folder: &Path, scene: Option<&str>, methods: Vec<Arc<dyn Reconstructor>>) -> Harness<'static, App> {
+    let options = Options {
+        scene: scene.map(|s| folder.join(s)),
+        methods,
+        data_folder: Some(folder.join("data")),
+        ..Options::default()
+    };
+    Harness::builder()
+        .with_size([1440.0, 900.0])
+        .with_step_dt(1.0 / 60.0)
+        .build_eframe(|creation| App::new(creation, options).unwrap())
+}
+
+/// Steps until `done`, without waiting for everything to rest.
+pub fn step_until(s: &mut Session, what: &str, done: impl Fn(&Session) -> bool) {
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !done(s) {
+        assert!(Instant::now() < deadline, "{what}");
+        s.app.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
