@@ -10,7 +10,7 @@ use crate::picture::ColourMap;
 use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::signal::Floor;
 use eframe::egui;
-use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, SliderClamping, Ui};
 
 /// Draws the panel.
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
@@ -67,7 +67,7 @@ fn reconstruction(app: &mut App, ui: &mut Ui) {
         let mut eta = app.output_eta();
         row(ui, "η", "Cells of the output above this count as detections", |ui| {
             ui.horizontal(|ui| {
-                let slider = ui.add(Slider::new(&mut eta, 0.0..=1.0).fixed_decimals(2));
+                let slider = ui.add(threshold(&mut eta));
                 if slider.changed() {
                     app.settings.method_eta.insert(method.name().to_owned(), eta);
                 }
@@ -81,10 +81,15 @@ fn reconstruction(app: &mut App, ui: &mut Ui) {
             .inner
         });
         row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
-            ui.add(Slider::new(&mut app.settings.target_eta, 0.0..=1.0).fixed_decimals(2))
+            ui.add(threshold(&mut app.settings.target_eta))
         });
     });
     figures(app, ui);
+}
+
+/// A slider that shows two decimals; what nobody moves keeps all of its own.
+fn threshold(eta: &mut f32) -> Slider<'_> {
+    Slider::new(eta, 0.0..=1.0).fixed_decimals(2).clamping(SliderClamping::Edits)
 }
 
 /// P_D, P_FA and SE, or why there are none.

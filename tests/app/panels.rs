@@ -5,10 +5,12 @@ use apertura::app::{Command, MapKind, Panel};
 use apertura::live::Stage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
+use apertura::reconstruct::{CAPON, Reconstructor};
 use apertura::scene::Object;
 use apertura::signal::Floor;
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
 
 #[test]
 fn all_maps_are_there_soon_after_the_start_and_idling_computes_nothing() {
@@ -136,4 +138,11 @@ fn every_button_of_the_guide_leaves_a_working_app() {
     assert_eq!(s.state().settings().carrier, Carrier::TwoWay);
     assert_eq!(s.state().editor().scene().name, "Four reflectors");
     assert_eq!(s.state().messages(), 0);
+}
+
+#[test]
+fn nobody_but_the_user_moves_a_threshold() {
+    let s = Session::with_methods(vec![Arc::new(CAPON)]);
+    assert_eq!(CAPON.eta(), 0.851, "more decimals than the slider shows");
+    assert!(s.state().settings().method_eta.is_empty());
 }
