@@ -6,8 +6,10 @@ use crate::interact::Place;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::scene::presets;
 use crate::signal::Floor;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// A kind of object to add.
@@ -100,6 +102,8 @@ pub enum Command {
     ToggleReflectors,
     /// Draw the ends' fields of view or not.
     ToggleFieldsOfView,
+    /// Reconstruct with the method of this name.
+    Method(&'static str),
     /// The next reconstruction method.
     NextMethod,
     /// Stop the reconstruction that runs.
@@ -121,10 +125,10 @@ pub enum Command {
 }
 
 /// Name, explanation and key of a command.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Spec {
     /// Name in menus and the palette.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// One sentence for tooltips.
     pub tooltip: &'static str,
     /// The key that runs it, if one does.
@@ -144,7 +148,8 @@ const fn command_shift(key: Key) -> Option<KeyboardShortcut> {
 }
 
 impl Command {
-    /// The commands that need nothing more than to be chosen, in the order the palette lists them.
+    /// The commands that need nothing more than to be chosen, in the order the palette lists them. The methods are not among them: they
+    /// are the app's.
     pub fn all() -> Vec<Command> {
         use Command::*;
         let mut all = vec![
@@ -201,19 +206,24 @@ impl Command {
         all.extend(ColourMap::ALL.map(Colours));
         all.extend(Panel::all().into_iter().map(TogglePanel));
         all.extend(Panel::all().into_iter().map(Maximise));
+        all.extend((0..presets::ALL.len()).map(Preset));
         all
     }
 
     /// Name, explanation and key.
     pub fn spec(&self) -> Spec {
         use Command::*;
-        let spec = |name, tooltip, shortcut| Spec { name, tooltip, shortcut };
+        let spec = |name: &'static str, tooltip, shortcut| Spec { name: name.into(), tooltip, shortcut };
+        let named = |name: String, tooltip, shortcut| Spec { name: name.into(), tooltip, shortcut };
         match self {
             New => spec("New scene", "Start with an empty scene; undo brings this one back", command(Key::N)),
             Open | OpenPath(_) => spec("Open…", "Open a scene (.toml or .npz)", command(Key::O)),
             Save => spec("Save", "Save the scene as TOML", command(Key::S)),
             SaveAs => spec("Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S)),
-            Preset(_) => spec("Preset", "Open a scene the thesis talks about", None),
+            Preset(index) => {
+                let id = presets::ALL.get(*index).map_or("", |preset| preset.id);
+                named(format!("Preset: {}", id.replace('-', " ")), "Open a scene the thesis talks about", None)
+            }
             RandomScene(1) => spec("Random scene: one point", "A scene of test set 1", key(Key::Num1)),
             RandomScene(2) => spec("Random scene: 3 to 6 points", "A scene of test set 2", key(Key::Num2)),
             RandomScene(_) => spec("Random scene: points and lines", "A scene of test set 3", key(Key::Num3)),
@@ -236,9 +246,9 @@ impl Command {
             FitScene => spec("Fit scene", "Show the whole scene", key(Key::F)),
             ResetMaps => spec("Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
             TogglePanel(panel) | OpenPanel(panel) | ClosePanel(panel) => {
-                spec(panel_name(*panel, "Show or hide"), panel.describe(), panel_key(*panel))
+                named(format!("Show or hide: {}", panel.title()), panel.describe(), panel_key(*panel))
             }
-            Maximise(panel) => spec(panel_name(*panel, "Maximise"), panel.describe(), None),
+            Maximise(panel) => named(format!("Maximise: {}", panel.title()), panel.describe(), None),
             ResetLayout => spec("Reset layout", "Put all panels where they were at first", None),
             ToggleProjection => {
                 spec("Cartesian / range-angle", "Draw maps over x and y, or over cos θ and range", key(Key::C))
@@ -275,6 +285,7 @@ impl Command {
             }
             ToggleReflectors => spec("Mark true reflectors", "Draw the scene's reflectors over the maps", key(Key::R)),
             ToggleFieldsOfView => spec("Fields of view", "Draw what each end can see in the scene", key(Key::V)),
+            Method(name) => named(format!("Method: {name}"), "Reconstruct with this method", None),
             NextMethod => spec("Next method", "Reconstruct with the next method", key(Key::N)),
             CancelMethod => spec("Cancel reconstruction", "Stop the reconstruction that runs", None),
             CloseMessages => spec("Close messages", "Close every message in the corner", None),
@@ -304,41 +315,6 @@ fn panel_key(panel: Panel) -> Option<KeyboardShortcut> {
     }
 }
 
-/// Names must be `&'static`; there are few enough panels to list them.
-fn panel_name(panel: Panel, verb: &str) -> &'static str {
-    use super::pictures::MapKind::*;
-    macro_rules! names {
-        ($($pattern:pat => $name:literal),* $(,)?) => {
-            match (panel, verb == "Maximise") {
-                $(
-                    ($pattern, true) => concat!("Maximise: ", $name),
-                    ($pattern, false) => concat!("Show or hide: ", $name),
-                )*
-            }
-        };
-    }
-    names! {
-        Panel::Scene => "Scene",
-        Panel::Controls => "Settings",
-        Panel::Inspector => "Inspector",
-        Panel::Map(Input0) => "Input 0",
-        Panel::Map(Input1) => "Input 1",
-        Panel::Map(Target) => "Target",
-        Panel::Map(Output) => "Output",
-        Panel::Map(TargetAbove) => "Target > η'",
-        Panel::Map(OutputAbove) => "Output > η",
-        Panel::Map(Difference) => "Difference",
-        Panel::Cuts => "Cuts",
-        Panel::Roc => "ROC",
-        Panel::Timing => "Timing",
-        Panel::Bounds => "Bounds",
-        Panel::Evaluation => "Evaluation",
-        Panel::Front => "Run time",
-        Panel::Training => "Training",
-        Panel::Guide => "Guide",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -349,7 +325,7 @@ mod tests {
         let (mut keys, mut names) = (BTreeMap::new(), BTreeMap::new());
         for command in Command::all() {
             let spec = command.spec();
-            assert!(names.insert(spec.name, ()).is_none(), "{} twice", spec.name);
+            assert!(names.insert(spec.name.clone(), ()).is_none(), "{} twice", spec.name);
             assert!(!spec.tooltip.is_empty());
             if let Some(shortcut) = spec.shortcut {
                 let text = format!("{shortcut:?}");

@@ -106,6 +106,9 @@ fn figures(app: &mut App, ui: &mut Ui) {
         ui.weak("Show an output panel to reconstruct.");
     }
     let Some(scores) = app.pipeline.result.as_ref().and_then(|r| r.scores) else { return };
+    if let (0, Some(method)) = (scores.output_blobs, app.method()) {
+        ui.weak(format!("Nothing exceeds η. {}: {}.", method.name(), method.description()));
+    }
     let m = scores.metrics;
     Grid::new("figures").num_columns(6).spacing([8.0, 2.0]).show(ui, |ui| {
         let detection = m.detection.map_or("–".to_owned(), percent);

@@ -204,6 +204,7 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
         }
         Command::ToggleReflectors => app.settings.show_reflectors ^= true,
         Command::ToggleFieldsOfView => app.settings.show_fields_of_view ^= true,
+        Command::Method(name) => app.settings.method = name.to_owned(),
         Command::NextMethod => next_method(app),
         Command::CancelMethod => app.pipeline.cancel_method(),
         Command::CloseMessages => app.messages.clear(),

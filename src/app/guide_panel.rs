@@ -70,12 +70,23 @@ const CHAPTERS: &[&[Step]] = &[
         Step { label: "ROC", commands: || vec![Command::OpenPanel(Panel::Roc)] },
         Step { label: "Tables", commands: || vec![Command::OpenPanel(Panel::Evaluation)] },
     ],
+    &[
+        Step { label: "The failing U-Net", commands: || output_by("unet") },
+        Step { label: "The thesis' network", commands: || output_by("thesis") },
+        Step { label: "The live network", commands: || output_by("live") },
+        Step { label: "A search for reflectors", commands: || output_by("hybrid") },
+    ],
 ];
 
 /// Opens a preset, then does the rest.
 fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
     let preset = presets::ALL.iter().position(|p| p.id == id).map(Command::Preset);
     preset.into_iter().chain(then).collect()
+}
+
+/// A method, its map in sight.
+fn output_by(method: &'static str) -> Vec<Command> {
+    vec![Command::OpenPanel(Panel::Map(MapKind::Output)), Command::Method(method)]
 }
 
 /// The thesis' conventions.

@@ -60,6 +60,11 @@ impl App {
         self.bounds.result.as_ref().and_then(|r| r.bound.ok())
     }
 
+    /// Name of the method whose output is on screen, if there is one.
+    pub fn shown_method(&self) -> Option<&'static str> {
+        self.pipeline.output.as_ref().map(|output| output.method)
+    }
+
     /// Rows that the run-time panel has measured.
     pub fn front_rows(&self) -> usize {
         self.front.rows().len()

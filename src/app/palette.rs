@@ -39,9 +39,11 @@ pub(super) fn show(app: &mut App, ctx: &Context) {
     }
     let mut run = None;
     let mut close = false;
+    let methods = app.pipeline.methods.iter().map(|m| Command::Method(m.name()));
     let found: Vec<Command> = Command::all()
         .into_iter()
-        .filter(|c| *c != Command::Palette && matches(c.spec().name, &app.palette.text))
+        .chain(methods)
+        .filter(|c| *c != Command::Palette && matches(&c.spec().name, &app.palette.text))
         .collect();
     let palette = &mut app.palette;
     let (up, down, enter, escape) = ctx.input_mut(|i| {

@@ -5,7 +5,7 @@ use apertura::app::{Command, MapKind, Panel};
 use apertura::live::Stage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
-use apertura::reconstruct::{CAPON, Reconstructor};
+use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Object;
 use apertura::signal::Floor;
 use eframe::egui::{Event, Key, Modifiers, vec2};
@@ -83,6 +83,22 @@ fn the_palette_runs_a_command_by_name() {
     let objects = &s.state().editor().scene().objects;
     assert!(matches!(objects.last(), Some(Object::Line(_))), "{objects:?}");
     let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
+}
+
+#[test]
+fn the_palette_knows_every_preset_and_every_method() {
+    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)]);
+    let by_palette = |s: &mut Session, text: &str| {
+        s.press(Modifiers::COMMAND, Key::K);
+        s.app.event(Event::Text(text.to_owned()));
+        s.settle();
+        s.press(Modifiers::NONE, Key::Enter);
+    };
+    assert_eq!(s.state().shown_method(), Some("baseline"));
+    by_palette(&mut s, "method capon");
+    assert_eq!(s.state().shown_method(), Some("capon"));
+    by_palette(&mut s, "preset two close");
+    assert_eq!(s.state().editor().scene().objects.len(), 2);
 }
 
 #[test]

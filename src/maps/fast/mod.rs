@@ -179,7 +179,10 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
         let (bins, columns) = (maker.radar.samples, maker.radar.elements);
         let first = group * ROWS;
         let here = first..bins.min(first + ROWS);
-        let heard = |bin: usize| sources.noise.is_some() || sources.profiles.iter().any(|p| p.touched.contains(bin));
+        let touches = |p: &BlockProfiles<T, W>| here.clone().any(|bin| p.touched.contains(bin));
+        let profiles: Vec<&BlockProfiles<T, W>> = sources.profiles.iter().copied().filter(|p| touches(p)).collect();
+        let sources = Sources { profiles: &profiles, ..sources };
+        let heard = |bin: usize| sources.noise.is_some() || profiles.iter().any(|p| p.touched.contains(bin));
         let sounding = std::array::from_fn(|i| rows.contains(first + i) && heard(first + i));
         gather::<T, W, FMA>(&sources, bins, first, &sounding, columns, &mut scratch.rows);
         let log = LogScale::new(sources.bound);
@@ -245,8 +248,14 @@ fn gather<T: Real, const W: usize, const FMA: bool>(
             }
             let begin = block * W;
             let end = columns.min(begin + W);
-            for (lane, v) in out[i * columns + begin..i * columns + end].iter_mut().enumerate() {
-                *v = Complex::new(sum.re.0[lane], sum.im.0[lane]);
+            let out = &mut out[i * columns + begin..i * columns + end];
+            let mut cells = [Complex::<T>::default(); W];
+            for (lane, cell) in cells.iter_mut().enumerate() {
+                *cell = Complex::new(sum.re.0[lane], sum.im.0[lane]);
+            }
+            match out.first_chunk_mut::<W>() {
+                Some(out) => *out = cells,
+                None => out.copy_from_slice(&cells[..end - begin]),
             }
         }
     }

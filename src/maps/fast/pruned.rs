@@ -70,21 +70,25 @@ impl<T: Real, const W: usize> Pruned<T, W> {
             return log_rolled::<T, W, FMA>(&row, log, out, extremes);
         }
         let stride = self.columns / self.points;
+        // A copy that may live in registers.
+        let mut seen = *extremes;
         let mut data = [ComplexLanes::<T, W>::zero(); MAX_POINTS];
         let mut spare = [ComplexLanes::<T, W>::zero(); MAX_POINTS];
         for (chunk, twiddles) in self.twiddles.iter().enumerate() {
-            for ((d, x), t) in data.iter_mut().zip(inputs).zip(twiddles) {
+            for (n, x) in inputs.iter().enumerate() {
+                // Indexed, not zipped: the loop over inputs must not look as if it could be done in vectors, or it is, with gathers.
                 let x = ComplexLanes { re: Lanes::splat(x.re), im: Lanes::splat(x.im) };
-                *d = t.times::<FMA>(x);
+                data[n] = twiddles[n].times::<FMA>(x);
             }
             data[inputs.len()..self.points].fill(ComplexLanes::zero());
             self.small.process::<W, FMA>(&mut data[..self.points], &mut spare[..self.points]);
             for (p, v) in data[..self.points].iter().enumerate() {
                 let column = (stride * p + chunk * W + self.columns / 2) % self.columns;
                 let d = log.decades::<T, W, FMA>(*v);
-                extremes.take(d);
+                seen.take(d);
                 out[column..column + W].copy_from_slice(&d.0);
             }
         }
+        *extremes = seen;
     }
 }
