@@ -329,7 +329,7 @@ mod tests {
             assert!(!spec.tooltip.is_empty());
             if let Some(shortcut) = spec.shortcut {
                 let text = format!("{shortcut:?}");
-                assert!(keys.insert(text, spec.name).is_none(), "{} shares its key", spec.name);
+                assert!(keys.insert(text, spec.name.clone()).is_none(), "{} shares its key", spec.name);
             }
         }
     }

@@ -6,6 +6,7 @@
 
 use super::bank::{Bank, Job, Kept};
 use super::{Frame, LiveMap, Report, Stage, Wanted};
+use crate::maps::fast::{Decades, normalise_into};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Reflector, Scene, SceneError};
@@ -242,22 +243,24 @@ impl Shown {
             self.spare.extend(self.maps.iter_mut().filter_map(Option::take).map(|m| m.lambda));
             self.normalisation = normalisation;
         }
-        let mut count = 0;
+        let mut made: Vec<(usize, &Decades, Arc<RangeAngleMap>)> = Vec::new();
         for i in 0..3 {
             let Some(Kept { decades, .. }) = self.decades[i].as_ref().filter(|_| visible[i]) else { continue };
             if self.maps[i].is_some() && !missing[i] {
                 continue;
             }
             let free = self.spare.iter_mut().position(|a| Arc::get_mut(a).is_some());
-            let mut lambda = match free {
+            let lambda = match free {
                 Some(free) => self.spare.swap_remove(free),
                 None => Arc::new(RangeAngleMap { lambda: Array2::zeros(decades.cells.raw_dim()) }),
             };
-            if let Some(lambda) = Arc::get_mut(&mut lambda) {
-                decades.normalise_into(normalisation, lambda);
-            }
+            made.push((i, decades, lambda));
+        }
+        let pairs = made.iter_mut().filter_map(|(_, decades, lambda)| Some((*decades, Arc::get_mut(lambda)?)));
+        normalise_into(pairs.collect(), normalisation);
+        let count = made.len();
+        for (i, decades, lambda) in made {
             self.maps[i] = Some(LiveMap { lambda, scale: decades.scale(normalisation) });
-            count += 1;
         }
         match count {
             0 => report.skipped(Stage::Normalise, "unchanged"),

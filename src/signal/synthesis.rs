@@ -241,9 +241,10 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             return out.clear();
         }
         if let Method::ClosedForm(plan) = &self.method {
-            out.clear();
-            out.touched = plan.rows(&self.radar, reflectors, self.radar.elements.next_multiple_of(W));
+            let rows = plan.rows(&self.radar, reflectors, self.radar.elements.next_multiple_of(W));
+            let before = std::mem::replace(&mut out.touched, rows).runs();
             return out.cells.par_chunks_mut(bins).enumerate().for_each(|(block, cells)| {
+                before.iter().for_each(|run| cells[run.clone()].fill(ComplexLanes::zero()));
                 let first_element = block * W;
                 self.simd().run(AddProfiles { synthesis: self, plan, first_element, reflectors, cells });
             });

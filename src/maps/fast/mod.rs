@@ -5,9 +5,12 @@
 //! Decades are kept in f32 (an error of at most 4e-6 decades); [`super::LogMap`] keeps them in f64.
 
 mod log;
+mod normalise;
 mod pruned;
 
-use super::lambda::{LambdaScale, Normalisation, RangeAngleMap};
+pub use normalise::normalise_into;
+
+use super::lambda::{LambdaScale, Normalisation};
 use super::log_map::LOG_GUARD;
 use crate::radar::{End, Radar};
 use crate::signal::Rows;
@@ -52,20 +55,6 @@ impl Decades {
     /// How the decades become Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         LambdaScale::new(f64::from(self.min), f64::from(self.max), normalisation)
-    }
-
-    /// Writes Lambda of every cell to `out`, which has the same shape.
-    pub fn normalise_into(&self, normalisation: Normalisation, out: &mut RangeAngleMap) {
-        let scale = self.scale(normalisation);
-        let range = (scale.peak - scale.floor) as f32;
-        let (floor, slope) = (scale.floor as f32, if range > 0.0 { 1.0 / range } else { 0.0 });
-        if let (Some(cells), Some(lambda)) = (self.cells.as_slice(), out.lambda.as_slice_mut()) {
-            cells.par_chunks(1 << 15).zip(lambda.par_chunks_mut(1 << 15)).for_each(|(cells, lambda)| {
-                for (c, l) in cells.iter().zip(lambda) {
-                    *l = ((c - floor) * slope).clamp(0.0, 1.0);
-                }
-            });
-        }
     }
 }
 
