@@ -87,10 +87,9 @@ pub(super) fn show(app: &mut App, ctx: &Context) {
             egui::ScrollArea::vertical().auto_shrink([false, false]).max_height(300.0).show(ui, |ui| {
                 for (index, command) in found.iter().enumerate() {
                     let spec = command.spec();
-                    let mut button = Button::selectable(index == palette.chosen, spec.name);
-                    if let Some(shortcut) = &spec.shortcut {
-                        button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
-                    }
+                    // An empty key, too, pushes the name to the left.
+                    let key = spec.shortcut.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default();
+                    let button = Button::selectable(index == palette.chosen, spec.name).shortcut_text(key);
                     let response = ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(spec.tooltip);
                     if index == palette.chosen && (up || down) {
                         response.scroll_to_me(None);
