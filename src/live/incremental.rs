@@ -228,12 +228,10 @@ impl Shown {
         }
     }
 
-    /// Holds nothing of any scene any more but buffers.
+    /// Holds nothing of any scene any more but buffers: no update is content with this tolerance.
     fn forget(&mut self, radar: &Radar) {
-        self.ends = None;
-        self.current = [false; 3];
+        self.tolerance = f64::INFINITY;
         self.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
-        self.spare.extend(self.maps.iter_mut().filter_map(Option::take).map(|m| m.lambda));
     }
 
     /// Lambda of every visible map that is new or normalised another way than before.

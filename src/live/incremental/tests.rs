@@ -28,6 +28,20 @@ fn unchanged_results_are_the_same_arc() {
 }
 
 #[test]
+fn what_is_forgotten_vouches_for_no_precision() {
+    let scene = Scene::of_points([(0.3, 1.0), (-0.4, 1.7)]);
+    let precise = Wanted::default();
+    let coarse = Wanted { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..precise };
+    let mut engine = Engine::new(small());
+    let first = engine.update(&scene, &precise).unwrap();
+    engine.forget();
+    engine.update(&scene, &coarse).unwrap();
+    let again = engine.update(&scene, &precise).unwrap();
+    assert!(again.report.ran(Stage::Signal), "the coarse maps are not good enough");
+    assert_eq!(lambda(&first), lambda(&again));
+}
+
+#[test]
 fn hidden_maps_are_not_computed() {
     let mut engine = Engine::new(small());
     let wanted = Wanted { first: false, full: false, ends: false, ..Wanted::default() };
