@@ -44,6 +44,7 @@
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
 //! | [`bounds`] | a layout and a noise level | how well any estimator can do |
 //! | [`evaluate`] | target and output | SE, P_D, P_FA, ROC, the thesis' tables |
+//! | [`benchmark`] | scenes of any size | run time against error, and whether numerics hold |
 //! | [`live`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
 //! | [`picture`] | a scene and its maps | colours and panels, without a display |
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |
@@ -51,6 +52,7 @@
 
 #[cfg(feature = "app")]
 pub mod app;
+pub mod benchmark;
 pub mod bounds;
 pub mod commands;
 pub mod evaluate;

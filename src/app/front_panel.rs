@@ -2,7 +2,7 @@
 
 use super::application::App;
 use super::jobs;
-use crate::evaluate::front::{Entrant, Front, FrontRequest, FrontRow, FrontTask, measure};
+use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow, FrontTask, measure};
 use crate::live::worker::{Reply, Worker};
 use crate::radar::Radar;
 use crate::reconstruct::Task;

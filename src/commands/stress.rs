@@ -1,7 +1,7 @@
 //! `apertura stress`: scenes built to break numerics, and many random edits.
 
 use super::{CommandError, print};
-use crate::evaluate::stress::{self, StressReport, StressRequest};
+use crate::benchmark::stress::{self, StressReport, StressRequest};
 use crate::radar::Radar;
 
 /// Try scenes built to break numerics by every algorithm, and many random edits

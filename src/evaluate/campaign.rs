@@ -125,7 +125,7 @@ impl Campaign {
 
     fn trial(&self, generator: &Generator, kind: Kind, number: u32) -> Result<Trial, CampaignError> {
         let scene = generator.scene(kind, number);
-        let noise_seed = self.seed.wrapping_add(u64::from(number));
+        let noise_seed = generator.noise_seed(kind, number);
         let signal = signal::simulate(&self.radar, &scene, self.floor, noise_seed)
             .map_err(|source| CampaignError::Scene { kind, number, source })?;
         let profiles = maps::range_transform(&self.radar, &signal);

@@ -3,7 +3,6 @@
 //! Every map is `[range bin, column]`, row `k1` at `k1 * c / 2B`, column `k2` at cos(theta) = `(k2 - N_a/2) / (N_a/2)`
 //! (half-wavelength spacing). Transforms are orthonormal: `1/sqrt(N_r)` over range, `1/sqrt(N_a)` over the elements.
 
-mod bare;
 pub mod cartesian;
 pub mod fast;
 mod lambda;
@@ -12,7 +11,6 @@ pub mod network_input;
 mod spectra;
 mod transform;
 
-pub use bare::BareTransform;
 pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};
 pub use log_map::{LOG_GUARD, LogMap};
 pub use spectra::{Spectrum, centred_spectrum};

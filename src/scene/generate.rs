@@ -1,7 +1,7 @@
 //! Seeded random scenes: the thesis' test sets and the training scenes of its two experiments (sections 3.2, 4.1, 5.1).
 //!
 //! Every scene comes from its own random stream, named by purpose, kind and number: training, validation and test scenes can't
-//! meet, and scene 7 is the same whether or not scenes 0 to 6 were made.
+//! meet, and scene 7 is the same whether or not scenes 0 to 6 were made. So does the noise beneath it ([`Generator::noise_seed`]).
 
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;
@@ -98,6 +98,15 @@ impl Generator {
         rng
     }
 
+    /// Seed of the noise beneath scene `number` of a kind, below 2^53: each scene of each purpose has its own, so that no method meets in a
+    /// test the noise it was fitted to.
+    pub fn noise_seed(&self, kind: Kind, number: u32) -> u64 {
+        let mut rng = self.rng(kind, number);
+        // Far beyond what the scene itself draws from the stream.
+        rng.set_word_pos(1 << 40);
+        rng.random::<u64>() >> 11
+    }
+
     /// Scene `number` of a kind.
     pub fn scene(&self, kind: Kind, number: u32) -> Scene {
         let rng = &mut self.rng(kind, number);
@@ -190,6 +199,21 @@ mod tests {
             generator(Purpose::Training).scene(Kind::Set1, 0).objects,
             "purposes must not share scenes"
         );
+    }
+
+    #[test]
+    fn every_scene_of_every_purpose_has_its_own_noise() {
+        let mut seeds = std::collections::HashSet::new();
+        for purpose in [Purpose::Training, Purpose::Validation, Purpose::Test] {
+            for kind in Kind::TEST_SETS.into_iter().chain([Kind::Points(2), Kind::Mixed(2)]) {
+                for number in 0..100 {
+                    let seed = generator(purpose).noise_seed(kind, number);
+                    assert!(seed < 1 << 53 && seeds.insert(seed), "{purpose:?} {kind:?} {number}");
+                }
+            }
+        }
+        let g = generator(Purpose::Test);
+        assert_eq!(g.noise_seed(Kind::Set2, 9), g.noise_seed(Kind::Set2, 9));
     }
 
     #[test]

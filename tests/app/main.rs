@@ -2,6 +2,7 @@
 #![cfg(feature = "app")]
 
 mod panels;
+mod pictures;
 mod scene;
 mod session;
 mod work;

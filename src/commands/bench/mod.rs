@@ -5,7 +5,7 @@ mod methods;
 mod mouse;
 
 use super::{CommandError, print};
-use crate::evaluate::front::{self, Entrant, Front, FrontRequest};
+use crate::benchmark::front::{self, Entrant, Front, FrontRequest};
 use crate::files::write_bytes;
 use crate::radar::Radar;
 use std::path::PathBuf;

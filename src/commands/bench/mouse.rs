@@ -1,8 +1,8 @@
 //! One reflector dragged with the mouse: from the pointer's move, through the editor and the worker's thread, until three Lambda maps
 //! are back.
 
+use crate::benchmark::front::{Convention, scattered};
 use crate::commands::CommandError;
-use crate::evaluate::front::{Convention, scattered};
 use crate::interact::{Editor, Place, Snap};
 use crate::live::worker::{Reply, Worker};
 use crate::live::{Engine, Frame, Wanted};

@@ -1,5 +1,4 @@
 //! The shipped live network on fresh scenes.
-#![cfg(feature = "network")]
 
 use apertura::evaluate::Metrics;
 use apertura::evaluate::tables::Tally;
@@ -18,7 +17,8 @@ fn tally(kind: Kind, scenes: u32) -> Tally {
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 77);
     let mut tally = Tally::default();
     for number in 0..scenes {
-        let signal = simulate(&radar, &generator.scene(kind, number), Floor::Thesis, 0).unwrap();
+        let scene = generator.scene(kind, number);
+        let signal = simulate(&radar, &scene, Floor::Thesis, generator.noise_seed(kind, number)).unwrap();
         let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax);
         let start = Instant::now();
         let out = live.reconstruct(&radar, &signal.two_ends(&radar), &Request::default()).unwrap();

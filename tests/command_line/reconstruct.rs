@@ -1,5 +1,4 @@
 //! `apertura reconstruct` and `apertura train` as a user runs them.
-#![cfg(feature = "network")]
 
 use assert_cmd::Command;
 use ndarray::{Array2, Array3, Ix0};

@@ -15,10 +15,10 @@ const JUDGED: usize = 4;
 /// Apertures in the order of every triple of maps.
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 /// Picks the floor's noise in every measurement.
-pub(in crate::evaluate) const SEED: u64 = 0;
+pub(in crate::benchmark) const SEED: u64 = 0;
 
 /// The truth about one scene.
-pub(in crate::evaluate) struct Reference {
+pub(in crate::benchmark) struct Reference {
     /// The scene's reflectors.
     pub reflectors: Vec<Reflector>,
     profiles: JudgedProfiles,
@@ -47,7 +47,7 @@ impl Reference {
 }
 
 /// Range profiles of a few elements, from the judge's samples.
-pub(in crate::evaluate) struct JudgedProfiles {
+pub(in crate::benchmark) struct JudgedProfiles {
     /// `[judged elements, range bins]`.
     profiles: Array2<Complex64>,
 }
@@ -80,7 +80,7 @@ impl JudgedProfiles {
 }
 
 /// How far two triples of maps, drawn by `convention`, are apart.
-pub(in crate::evaluate) fn difference(
+pub(in crate::benchmark) fn difference(
     convention: Convention,
     a: [&RangeAngleMap; 3],
     b: [&RangeAngleMap; 3],
@@ -97,7 +97,7 @@ fn elements(radar: &Radar) -> impl Iterator<Item = usize> {
 }
 
 /// Maps of a noiseless `signal` over the floor of `convention`, by the plain transforms in f64.
-pub(in crate::evaluate) fn plain_maps(
+pub(in crate::benchmark) fn plain_maps(
     radar: &Radar,
     reflectors: &[Reflector],
     signal: &BeatSignal,
@@ -114,7 +114,7 @@ pub(in crate::evaluate) fn plain_maps(
 }
 
 /// Range profile of one channel's samples.
-pub(in crate::evaluate) fn profile(
+pub(in crate::benchmark) fn profile(
     radar: &Radar,
     samples: ArrayView2<'_, Complex64>,
     element: usize,
@@ -124,7 +124,7 @@ pub(in crate::evaluate) fn profile(
 }
 
 /// The three maps of a frame; `None` if one was not wanted.
-pub(in crate::evaluate) fn maps_of(frame: &Frame) -> Option<[&RangeAngleMap; 3]> {
+pub(in crate::benchmark) fn maps_of(frame: &Frame) -> Option<[&RangeAngleMap; 3]> {
     let [a, b, c] = APERTURES.map(|a| frame.map(a).map(|m| m.lambda.as_ref()));
     Some([a?, b?, c?])
 }

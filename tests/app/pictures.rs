@@ -1,6 +1,5 @@
 //! The app's panels as pictures, compared with those in `tests/snapshots`. Needs a Vulkan driver (lavapipe will do) and is skipped
-//! without one. After a change that is meant to be seen: `UPDATE_SNAPSHOTS=1 cargo test --test app_pictures`.
-#![cfg(feature = "app")]
+//! without one. After a change that is meant to be seen: `UPDATE_SNAPSHOTS=1 cargo test --test app pictures`.
 
 use apertura::app::{App, Command, Options, Panel};
 use apertura::reconstruct::Baseline;

@@ -1,6 +1,6 @@
 //! Numerical stress: scenes built to break numerics, by every algorithm in both precisions, and thousands of random edits.
 //!
-//! Behind `apertura stress` and `tests/stress.rs`. Nothing may be infinite or NaN, every algorithm must keep the error it promises, and
+//! Behind `apertura stress` and `tests/library/stress.rs`. Nothing may be infinite or NaN, every algorithm must keep the error it promises, and
 //! incremental sums must end where a fresh build does; [`StressReport::verdict`] says whether all of that holds.
 
 mod edits;

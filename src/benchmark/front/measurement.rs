@@ -1,10 +1,10 @@
 //! Measuring a front, row by row.
 
+use super::super::BareTransform;
 use super::reference::{Reference, SEED, maps_of, plain_maps, profile};
 use super::{Convention, Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError};
 use crate::files::memory::{peak_resident_bytes, reset_peak_resident};
 use crate::live::{Engine, Forced, Wanted};
-use crate::maps::BareTransform;
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
 use crate::signal::Floor;

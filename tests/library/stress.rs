@@ -1,6 +1,6 @@
 //! Scenes built to break numerics: nothing infinite, every promise kept, incremental sums where a fresh build ends.
 
-use apertura::evaluate::stress::{self, StressRequest, StressScene, random_edits, scene_cases};
+use apertura::benchmark::stress::{self, StressRequest, StressScene, random_edits, scene_cases};
 use apertura::live::Wanted;
 use apertura::maps::Normalisation;
 use apertura::radar::{Decibels, Radar};

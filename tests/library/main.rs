@@ -1,0 +1,9 @@
+//! The library as other programs use it.
+
+mod accuracy;
+mod baseline_tables;
+mod conventions;
+#[cfg(feature = "network")]
+mod live_network;
+mod methods;
+mod stress;
