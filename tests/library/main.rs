@@ -3,6 +3,7 @@
 mod accuracy;
 mod baseline_tables;
 mod conventions;
+mod house;
 #[cfg(feature = "network")]
 mod live_network;
 mod methods;

@@ -1,0 +1,144 @@
+//! Holds the house to its plan: ARCHITECTURE.md's table of rooms, no import circle, no long function.
+//!
+//! `cargo test --test library house -- --nocapture` prints the rooms and what each imports.
+
+mod imports;
+mod source;
+
+use imports::{House, circles, rust_files};
+use source::Source;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Longest a function may be, lines.
+const LONGEST_FUNCTION: usize = 60;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// ARCHITECTURE.md's rooms in order, and what each may use.
+fn table() -> Vec<(String, BTreeSet<String>)> {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let mut rooms: Vec<(String, BTreeSet<String>)> = Vec::new();
+    for line in text.lines().skip_while(|l| *l != "## Rooms").skip(1).take_while(|l| !l.starts_with("## ")) {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let [_, room, _, uses, _] = cells.as_slice() else { continue };
+        let Some(room) = room.strip_prefix('`').and_then(|r| r.strip_suffix('`')) else { continue };
+        let above = || rooms.iter().map(|(name, _)| name.clone());
+        let allowed: BTreeSet<String> = match *uses {
+            "nothing here" => BTreeSet::new(),
+            "everything above" => above().collect(),
+            list => list.split(',').map(|name| name.trim().to_owned()).collect(),
+        };
+        let unknown: Vec<&String> = allowed.iter().filter(|a| !above().any(|name| name == **a)).collect();
+        assert!(unknown.is_empty(), "{room} may use {unknown:?}, which don't stand above it in the table");
+        rooms.push((room.to_owned(), allowed));
+    }
+    rooms
+}
+
+fn listed<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
+    let names: Vec<String> = names.into_iter().map(|n| n.to_string()).collect();
+    if names.is_empty() { "nothing".into() } else { names.join(", ") }
+}
+
+/// A room uses only rooms that stand above it in the table, so no circle can be among them. Tests inside the rooms count.
+#[test]
+#[ignore = "the house is being put in order"]
+fn every_room_uses_only_what_the_table_says() {
+    let rooms = House::read(&root().join("src"), true).rooms();
+    let mut wrong = Vec::new();
+    let table = table();
+    for (room, allowed) in &table {
+        let Some(used) = rooms.get(room) else {
+            wrong.push(format!("{room} stands in the table, but not in src"));
+            continue;
+        };
+        println!("{room:12} uses {}", listed(used));
+        let more: Vec<&String> = used.difference(allowed).collect();
+        if !more.is_empty() {
+            wrong.push(format!("{room} uses {}, which the table doesn't allow", listed(more)));
+        }
+    }
+    let missing = rooms.keys().filter(|room| !table.iter().any(|(name, _)| name == *room));
+    wrong.extend(missing.map(|room| format!("{room} doesn't stand in the table")));
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+#[ignore = "the house is being put in order"]
+fn no_files_import_each_other_in_a_circle() {
+    let imports = House::read(&root().join("src"), false).imports();
+    assert!(imports.values().map(BTreeSet::len).sum::<usize>() > 300, "imports must have been found");
+    let found = circles(&imports);
+    for circle in &found {
+        println!("in a circle:");
+        for file in circle {
+            let inside = imports[file].intersection(circle).map(|p| p.display());
+            println!("    {} imports {}", file.display(), listed(inside));
+        }
+    }
+    assert!(found.is_empty(), "{} circles", found.len());
+}
+
+#[test]
+#[ignore = "the house is being put in order"]
+fn no_function_is_long() {
+    let mut long = Vec::new();
+    for folder in ["src", "tests", "examples"] {
+        for path in rust_files(&root().join(folder)) {
+            let functions = Source::new(&std::fs::read_to_string(&path).unwrap()).functions();
+            let name = path.strip_prefix(root()).unwrap().display();
+            long.extend(
+                functions
+                    .into_iter()
+                    .filter(|(_, lines)| *lines > LONGEST_FUNCTION)
+                    .map(|(function, lines)| format!("{name}: {function} has {lines} lines")),
+            );
+        }
+    }
+    assert!(long.is_empty(), "more than {LONGEST_FUNCTION} lines:\n{}", long.join("\n"));
+}
+
+#[test]
+fn circles_are_found() {
+    let graph = |edges: &[(&'static str, &'static str)]| {
+        let mut graph: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for (from, to) in edges {
+            graph.entry(from).or_default().insert(to);
+            graph.entry(to).or_default();
+        }
+        graph
+    };
+    assert!(circles(&graph(&[("a", "b"), ("b", "c"), ("a", "c")])).is_empty());
+    let circle = circles(&graph(&[("a", "b"), ("b", "c"), ("c", "b"), ("c", "d")]));
+    assert_eq!(circle, [BTreeSet::from(["b", "c"])]);
+}
+
+/// Paths are followed through `pub use`, `super`, renamed modules and inline test modules.
+#[test]
+fn imports_are_resolved() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    };
+    write("lib.rs", "pub mod a;\npub mod b;\n");
+    write("a/mod.rs", "mod inner;\npub use inner::Thing;\npub struct Own;\n");
+    write(
+        "a/inner.rs",
+        "pub struct Thing;\n#[cfg(test)]\nmod tests {\n    use super::super::Own;\n    use crate::b::C;\n}\n",
+    );
+    write("b.rs", "use crate::a::{self as other, Thing as T};\nfn f() {\n    other::Own;\n    std::mem::drop(1);\n}\n");
+    let named = |with_tests: bool| {
+        let imports = House::read(folder.path(), with_tests).imports();
+        let named = |p: &Path| p.display().to_string();
+        imports.iter().flat_map(|(f, to)| to.iter().map(|t| format!("{} {}", named(f), named(t)))).collect::<Vec<_>>()
+    };
+    assert_eq!(named(false), ["b.rs a/inner.rs", "b.rs a/mod.rs"]);
+    assert_eq!(named(true), ["a/inner.rs a/mod.rs", "a/inner.rs b.rs", "b.rs a/inner.rs", "b.rs a/mod.rs"]);
+    let rooms = House::read(folder.path(), true).rooms();
+    assert_eq!(rooms["b"], BTreeSet::from(["a".to_owned()]));
+}
