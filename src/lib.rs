@@ -39,6 +39,7 @@
 //! |---|---|---|
 //! | [`radar`] | | every constant of the radar, validated |
 //! | [`scene`] | files, presets, seeds | objects, and the reflectors they stand for |
+//! | [`recording`] | what a radar measured | samples of its elements |
 //! | [`signal`] | reflectors | the sampled beat signal, over a named floor |
 //! | [`maps`] | the beat signal | range-angle maps, Lambda, masks, Cartesian views |
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
@@ -66,5 +67,6 @@ pub mod network;
 pub mod picture;
 pub mod radar;
 pub mod reconstruct;
+pub mod recording;
 pub mod scene;
 pub mod signal;

@@ -129,7 +129,7 @@ impl Radar {
     ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
-    /// (4 to 65536 samples and elements; each end between 3 elements and half the array).
+    /// (1 to 65536 samples, 6 to 65536 elements; each end between 3 elements and half the array).
     pub fn validate(&self) -> Result<(), RadarError> {
         for (field, value) in [
             ("transmit_power_watts", self.transmit_power_watts),
@@ -142,7 +142,7 @@ impl Radar {
             }
         }
         for (field, value, min, max) in [
-            ("samples", self.samples, 4, 65536),
+            ("samples", self.samples, 1, 65536),
             ("elements", self.elements, 6, 65536),
             ("end_elements", self.end_elements, 3, self.elements / 2),
         ] {

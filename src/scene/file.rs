@@ -288,7 +288,7 @@ impl Spans {
 }
 
 impl SceneTextError {
-    fn at(text: &str, offset: usize, message: String) -> Self {
+    pub(crate) fn at(text: &str, offset: usize, message: String) -> Self {
         let before = text.get(..offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |i| i + 1);
         SceneTextError {

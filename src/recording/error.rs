@@ -1,0 +1,89 @@
+//! What is wrong with a recording, and in which of its files.
+
+use super::{AxesError, CalibrationError, CaptureError, MatError, NumpyError, ProfileError};
+use crate::radar::RadarError;
+use crate::scene::file::SceneTextError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a recording could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {fault}", path.display())]
+pub struct RecordingError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub fault: Fault,
+}
+
+/// What can be wrong with one of a recording's files.
+#[derive(Debug, thiserror::Error)]
+pub enum Fault {
+    /// The system could not read it.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// The TOML can't be understood.
+    #[error("{0}")]
+    Text(#[from] SceneTextError),
+    /// A key says something that can't be.
+    #[error("{key} {found}; expected {expected}")]
+    Key {
+        /// The key.
+        key: String,
+        /// What it says, or that it is missing.
+        found: String,
+        /// What would do.
+        expected: String,
+    },
+    /// The radar can't be.
+    #[error("{0}")]
+    Radar(#[from] RadarError),
+    /// The array can't be read.
+    #[error("{0}")]
+    Numpy(#[from] NumpyError),
+    /// The array can't be read.
+    #[error("{0}")]
+    Mat(#[from] MatError),
+    /// The capture can't be read.
+    #[error("{0}")]
+    Capture(#[from] CaptureError),
+    /// The `.cfg` can't be read.
+    #[error("{0}")]
+    Profile(#[from] ProfileError),
+    /// The array is not what its axes say.
+    #[error("{0}")]
+    Axes(#[from] AxesError),
+    /// The calibration fits no array.
+    #[error("{0}")]
+    Calibration(#[from] CalibrationError),
+    /// Elements or samples are not as many as the radar's.
+    #[error("holds {found} {what}; expected {expected}")]
+    Count {
+        /// "elements" or "samples".
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be, and why.
+        expected: String,
+    },
+    /// A sample is NaN or infinite.
+    #[error("sample {sample} of element {element} is not finite; expected finite numbers only")]
+    NotFinite {
+        /// Element of the file.
+        element: usize,
+        /// Sample of the chirp.
+        sample: usize,
+    },
+}
+
+impl Fault {
+    /// A key that can't be used.
+    pub(super) fn key(key: &str, found: impl Into<String>, expected: impl Into<String>) -> Fault {
+        Fault::Key { key: key.to_owned(), found: found.into(), expected: expected.into() }
+    }
+
+    /// The error about the file `path`.
+    pub(super) fn of(self, path: &Path) -> RecordingError {
+        RecordingError { path: path.to_owned(), fault: self }
+    }
+}

@@ -1,0 +1,378 @@
+//! The TOML of a recording.
+//!
+//! ```toml
+//! name = "A post and a wall"
+//! notes = "Where it was measured, and what to look for."
+//!
+//! [radar]                             # all of these are needed; a recording borrows none of table 3.1
+//! carrier_hz = 77e9
+//! bandwidth_hz = 3.07e9               # over the samples; not needed for a snapshot (samples = 1)
+//! element_spacing_metres = 0.001947
+//! elements = 8
+//! end_elements = 3
+//! samples = 128
+//!
+//! [recording]
+//! file = "post.npz"                   # .npz, .npy, .mat or .bin, beside this file
+//! array = "samples"                   # its name in an .npz or .mat; or first and last, where the two ends have arrays of their own
+//! axes = ["chirp", "element", "sample"] # or "transmitter" and "receiver"; "iq" where real and imaginary part have an axis
+//! chirp = 0                           # or "mean"
+//! elements = "all"                    # or "ends": first the elements of the first end, then those of the last
+//! missing = [17]                      # elements of the whole array that measured nothing
+//! range_metres = 15.0                 # of a snapshot
+//! conjugate = false                   # the phase falls where the program's rises
+//! reverse_elements = false            # the file's first element is the array's last
+//!
+//! [recording.calibration]             # taken off the elements of the file
+//! gain_db = []
+//! phase_degrees = []
+//!
+//! [recording.capture]                 # for a .bin: a raw capture and the .cfg that set the radar up
+//! config = "profile.cfg"              # says carrier_hz, bandwidth_hz and samples of [radar]
+//! lanes = 2                           # or 4
+//! receivers = "one-after-another"     # or "interleaved"
+//! chirps = [0, 2]                     # the chirps of a loop that form the line of elements
+//! frame = 0
+//! loop = 0
+//! ```
+
+use super::axes::arrange;
+use super::numbers::Numbers;
+use super::numpy::{read_npy, read_npz};
+use super::{AxisKind, Calibration, Capture, Chirp, Fault, RadarProfile, Recorded, Recording, RecordingError, matlab};
+use crate::radar::{End, Radar};
+use crate::scene::file::SceneTextError;
+use crate::signal::{BeatSignal, TwoEnds};
+use ndarray::{Array2, Axis, concatenate};
+use num_complex::Complex64;
+use serde::Deserialize;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek};
+use std::path::Path;
+
+/// Longest text that is read, bytes.
+const MAX_TEXT_BYTES: u64 = 1 << 20;
+
+/// Something to read a data file from.
+pub(super) trait Source: Read + Seek {}
+
+impl<T: Read + Seek> Source for T {}
+
+/// Opens a data file by the name that the TOML gives it.
+pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(default)]
+    name: String,
+    #[serde(default)]
+    notes: String,
+    radar: toml::Table,
+    recording: Table,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    file: String,
+    array: Option<String>,
+    first: Option<String>,
+    last: Option<String>,
+    axes: Option<Vec<AxisKind>>,
+    chirp: Option<Chirp>,
+    #[serde(default)]
+    elements: Covers,
+    #[serde(default)]
+    missing: Vec<usize>,
+    range_metres: Option<f64>,
+    #[serde(default)]
+    conjugate: bool,
+    #[serde(default)]
+    reverse_elements: bool,
+    #[serde(default)]
+    calibration: Calibration,
+    capture: Option<Capture>,
+}
+
+/// Whose samples a file holds.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Covers {
+    #[default]
+    All,
+    Ends,
+}
+
+/// Whether a TOML is that of a recording: whether it has a table `[recording]`.
+pub fn is_recording(text: &str) -> bool {
+    toml::de::DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("recording"))
+}
+
+/// Reads a recording: the TOML `path`, and what it names beside it.
+///
+/// # Errors
+/// [`RecordingError`] names the file, the key or the array, and what was expected of it.
+pub fn load(path: &Path) -> Result<Recording, RecordingError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
+    from_parts(&text, path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
+}
+
+fn open_file(path: &Path) -> io::Result<File> {
+    let file = File::open(path)?;
+    if file.metadata()?.is_file() {
+        Ok(file)
+    } else {
+        Err(io::Error::new(io::ErrorKind::InvalidInput, "is a folder, device or pipe; expected a file"))
+    }
+}
+
+fn read_text(file: impl Read) -> Result<String, Fault> {
+    let mut text = Vec::new();
+    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut text)?;
+    if text.len() as u64 > MAX_TEXT_BYTES {
+        return Err(Fault::key(
+            "the text",
+            "is longer than 1 MiB",
+            "a description; samples stand in a file of their own",
+        ));
+    }
+    String::from_utf8(text).map_err(|_| Fault::key("the text", "is not UTF-8", "text in UTF-8"))
+}
+
+/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
+pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
+    let document: Document = toml::from_str(text).map_err(|error| {
+        let start = error.span().map_or(0, |span| span.start);
+        Fault::Text(SceneTextError::at(text, start, error.message().lines().collect::<Vec<_>>().join(", "))).of(path)
+    })?;
+    let table = document.recording;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let profile = match &table.capture {
+        None => None,
+        Some(capture) => {
+            let beside = folder.join(&capture.config);
+            let read =
+                || -> Result<RadarProfile, Fault> { Ok(RadarProfile::parse(&read_text(open(&capture.config)?)?)?) };
+            Some(read().map_err(|fault| fault.of(&beside))?)
+        }
+    };
+    let radar = radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
+    table.check(&radar).map_err(|fault| fault.of(path))?;
+    let data = folder.join(&table.file);
+    let rows = table.read(open, profile.as_ref()).map_err(|fault| fault.of(&data))?;
+    let samples = table.sorted(&radar, rows).map_err(|fault| fault.of(&data))?;
+    let Table { mut missing, range_metres, .. } = table;
+    missing.sort_unstable();
+    Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres })
+}
+
+/// The radar of a recording, which must say what it is.
+fn radar(mut table: toml::Table, profile: Option<&RadarProfile>) -> Result<Radar, Fault> {
+    if let Some(profile) = profile {
+        for (key, value) in [("carrier_hz", profile.carrier_hz()), ("bandwidth_hz", profile.bandwidth_hz())] {
+            let said = table.entry(key).or_insert(value.into());
+            let number = said.as_float().or(said.as_integer().map(|v| v as f64));
+            if number.is_none_or(|n| ((n - value) / value).abs() > 1e-4) {
+                return Err(Fault::key(
+                    &format!("radar.{key}"),
+                    format!("is {said}"),
+                    format!("{value}, as the .cfg says, or no such key"),
+                ));
+            }
+        }
+        let said = table.entry("samples").or_insert((profile.samples as i64).into());
+        if said.as_integer() != Some(profile.samples as i64) {
+            return Err(Fault::key(
+                "radar.samples",
+                format!("is {said}"),
+                format!("{}, as the .cfg says, or no such key", profile.samples),
+            ));
+        }
+    }
+    let snapshot = table.get("samples").and_then(toml::Value::as_integer) == Some(1);
+    let needed = ["carrier_hz", "bandwidth_hz", "element_spacing_metres", "elements", "end_elements", "samples"];
+    if let Some(key) = needed.iter().find(|key| !table.contains_key(**key) && !(snapshot && **key == "bandwidth_hz")) {
+        return Err(Fault::key(&format!("radar.{key}"), "is missing", "it: a recording says which radar measured it"));
+    }
+    let radar: Radar = table.try_into().map_err(|e: toml::de::Error| {
+        Fault::key("[radar]", format!("can't be read ({})", e.message().trim_end()), "the radar's numbers")
+    })?;
+    radar.validate()?;
+    Ok(radar)
+}
+
+impl Table {
+    /// What the TOML says must make sense by itself.
+    fn check(&self, radar: &Radar) -> Result<(), Fault> {
+        match (radar.samples, self.range_metres) {
+            (1, Some(range)) if range.is_finite() && range > 0.0 => {}
+            (1, Some(range)) => {
+                return Err(Fault::key("recording.range_metres", format!("is {range}"), "a number above 0"));
+            }
+            (1, None) => {
+                let why = "the range of the snapshot in metres: one sample cannot tell it";
+                return Err(Fault::key("recording.range_metres", "is missing", why));
+            }
+            (_, None) => {}
+            (_, Some(_)) => {
+                let why = "it only where radar.samples is 1: several samples tell ranges";
+                return Err(Fault::key("recording.range_metres", "is there", why));
+            }
+        }
+        let covered = self.covered(radar);
+        for (place, element) in self.missing.iter().enumerate() {
+            if !covered.contains(element) || self.missing[..place].contains(element) {
+                let expected = format!("elements that the file is to hold, each once, below {}", radar.elements);
+                return Err(Fault::key("recording.missing", format!("names element {element}"), expected));
+            }
+        }
+        Ok(())
+    }
+
+    /// Elements of the whole array that the file is to hold, in its order.
+    fn covered(&self, radar: &Radar) -> Vec<usize> {
+        match self.covers() {
+            Covers::All => (0..radar.elements).collect(),
+            Covers::Ends => End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect(),
+        }
+    }
+
+    fn covers(&self) -> Covers {
+        if self.first.is_some() { Covers::Ends } else { self.elements }
+    }
+
+    /// The file's samples as `[elements, samples]`, with all that was said of them done.
+    fn read(&self, open: Open<'_>, profile: Option<&RadarProfile>) -> Result<Array2<Complex64>, Fault> {
+        let mut rows = match profile.zip(self.capture.as_ref()) {
+            Some((profile, capture)) => self.read_capture(open, capture, profile)?,
+            None => self.read_arrays(open)?,
+        };
+        if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
+            return Err(Fault::NotFinite { element, sample });
+        }
+        self.calibration.take_off(&mut rows)?;
+        if self.conjugate {
+            rows.mapv_inplace(|v| v.conj());
+        }
+        if self.reverse_elements {
+            rows.invert_axis(Axis(0));
+        }
+        Ok(rows)
+    }
+
+    fn read_capture(
+        &self,
+        open: Open<'_>,
+        capture: &Capture,
+        profile: &RadarProfile,
+    ) -> Result<Array2<Complex64>, Fault> {
+        if self.extension() != "bin" {
+            return Err(Fault::key("[recording.capture]", "is there", "it only beside a .bin file"));
+        }
+        let arrays = [("array", self.array.is_some()), ("first", self.first.is_some()), ("last", self.last.is_some())];
+        let others = [("axes", self.axes.is_some()), ("chirp", self.chirp.is_some())];
+        if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, said)| *said) {
+            return Err(Fault::key(
+                &format!("recording.{key}"),
+                "is there",
+                "it not beside a .bin file: [recording.capture] says it all",
+            ));
+        }
+        let loops = capture.read(open(&self.file)?, profile)?;
+        let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
+        Ok(arrange(Numbers::Complex(loops.into_dyn()), &kinds, None)?)
+    }
+
+    fn read_arrays(&self, open: Open<'_>) -> Result<Array2<Complex64>, Fault> {
+        let Some(axes) = &self.axes else {
+            let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
+            return Err(Fault::key("recording.axes", "is missing", kinds));
+        };
+        let array = |key: Option<&str>| Ok::<_, Fault>(arrange(self.numbers(open, key)?, axes, self.chirp)?);
+        match (&self.array, &self.first, &self.last) {
+            (array_key, None, None) => array(array_key.as_deref()),
+            (None, Some(first), Some(last)) => {
+                let (first, last) = (array(Some(first))?, array(Some(last))?);
+                if first.dim() != last.dim() {
+                    let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
+                    return Err(Fault::Count { what: "numbers in \"last\"", found: last.len(), expected });
+                }
+                // Equal shapes join.
+                concatenate(Axis(0), &[first.view(), last.view()])
+                    .map_err(|e| Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\""))
+            }
+            _ => {
+                Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last"))
+            }
+        }
+    }
+
+    fn numbers(&self, open: Open<'_>, key: Option<&str>) -> Result<Numbers, Fault> {
+        let extension = self.extension();
+        let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
+        match extension.as_str() {
+            "npz" => Ok(read_npz(open(&self.file)?, named()?)?),
+            "mat" => Ok(matlab::read_mat(open(&self.file)?, named()?)?),
+            "npy" if key.is_some() => {
+                Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
+            }
+            "npy" => Ok(read_npy(open(&self.file)?)?),
+            "bin" => Err(Fault::key("[recording.capture]", "is missing", "it beside a .bin file")),
+            _ => Err(Fault::key(
+                "recording.file",
+                format!("is \"{}\"", self.file),
+                "a name ending in .npz, .npy, .mat or .bin",
+            )),
+        }
+    }
+
+    fn extension(&self) -> String {
+        Path::new(&self.file).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
+    }
+
+    /// The rows of the file in their places of the array.
+    fn sorted(&self, radar: &Radar, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
+        if rows.ncols() != radar.samples {
+            let expected = format!("{} as radar.samples says", radar.samples);
+            return Err(Fault::Count { what: "samples", found: rows.ncols(), expected });
+        }
+        let covered = self.covered(radar);
+        let present: Vec<usize> = covered.iter().copied().filter(|n| !self.missing.contains(n)).collect();
+        let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
+            let without = if present.len() < covered.len() {
+                format!(", or {} without the missing ones", present.len())
+            } else {
+                String::new()
+            };
+            let whose = if self.covers() == Covers::All {
+                "radar.elements says"
+            } else {
+                "radar.end_elements says for two ends"
+            };
+            Fault::Count {
+                what: "elements",
+                found: rows.nrows(),
+                expected: format!("{} as {whose}{without}", covered.len()),
+            }
+        })?;
+        let mut samples = Array2::zeros((radar.elements, radar.samples));
+        for (element, row) in
+            places.iter().zip(rows.outer_iter()).filter(|(element, _)| !self.missing.contains(element))
+        {
+            samples.row_mut(*element).assign(&row);
+        }
+        let signal = BeatSignal { samples };
+        Ok(match self.covers() {
+            Covers::All => Recorded::All(signal),
+            Covers::Ends => {
+                let TwoEnds { first, last } = signal.two_ends(radar);
+                Recorded::Ends(TwoEnds { first, last })
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,104 @@
+//! Recordings: samples that a radar measured, with the radar that measured them.
+//!
+//! A recording is a data file and a TOML beside it that says what the data are; nothing about them is guessed.
+//!
+//! | file | what it reads |
+//! |---|---|
+//! | [`file`] | the TOML: `[radar]` and `[recording]` |
+//! | `numpy` | `.npy` and `.npz` |
+//! | `matlab` | `.mat`, versions 5 and 7 |
+//! | `capture`, `profile` | int16 samples of a capture card, and the `.cfg` that set the radar up |
+//! | `axes` | an array of any shape to `[elements, samples]` |
+//! | `calibration` | what is taken off each element |
+//!
+//! [`presets`] come with the program.
+
+mod axes;
+mod calibration;
+mod capture;
+mod error;
+pub mod file;
+mod matlab;
+mod numbers;
+mod numpy;
+pub mod presets;
+mod profile;
+
+pub use axes::{AxesError, AxisKind, Chirp};
+pub use calibration::{Calibration, CalibrationError};
+pub use capture::{Capture, CaptureError};
+pub use error::{Fault, RecordingError};
+pub use matlab::MatError;
+pub use numbers::MAX_NUMBERS;
+pub use numpy::NumpyError;
+pub use profile::{ProfileError, RadarProfile};
+
+use crate::radar::{End, Radar};
+use crate::signal::{BeatSignal, TwoEnds};
+
+/// Samples of a radar's elements, and the radar.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// What it is called, if it has a name.
+    pub name: String,
+    /// Where it comes from and what to look for.
+    pub notes: String,
+    /// The radar that measured it.
+    pub radar: Radar,
+    /// What its elements measured.
+    pub samples: Recorded,
+    /// Elements of the whole array that measured nothing, in rising order; their samples are silence.
+    pub missing: Vec<usize>,
+    /// Range of everything in a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
+    pub range_metres: Option<f64>,
+}
+
+/// Whose samples a recording holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Recorded {
+    /// Those of every element: the whole array's map is known.
+    All(BeatSignal),
+    /// Those of the two ends alone.
+    Ends(TwoEnds),
+}
+
+impl Recording {
+    /// The samples of the two ends: what a reconstruction may look at.
+    pub fn two_ends(&self) -> TwoEnds {
+        match &self.samples {
+            Recorded::All(signal) => signal.two_ends(&self.radar),
+            Recorded::Ends(ends) => ends.clone(),
+        }
+    }
+
+    /// The samples of all elements, `[elements, samples]`, where they were recorded.
+    pub fn signal(&self) -> Option<&BeatSignal> {
+        match &self.samples {
+            Recorded::All(signal) => Some(signal),
+            Recorded::Ends(_) => None,
+        }
+    }
+
+    /// Whether it is one snapshot of the array at one range: a single sample an element.
+    pub fn is_snapshot(&self) -> bool {
+        self.radar.samples == 1
+    }
+
+    /// A recording of `signal`, as if `radar` had measured it.
+    pub fn of_signal(radar: Radar, signal: BeatSignal) -> Self {
+        Recording {
+            name: String::new(),
+            notes: String::new(),
+            radar,
+            samples: Recorded::All(signal),
+            missing: Vec::new(),
+            range_metres: None,
+        }
+    }
+
+    /// How many elements of the two ends measured something.
+    pub fn heard_end_elements(&self) -> usize {
+        let missing = |n: &usize| self.missing.contains(n);
+        End::BOTH.into_iter().flat_map(|end| self.radar.end_range(end)).filter(|n| !missing(n)).count()
+    }
+}

@@ -1,0 +1,231 @@
+//! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
+
+use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
+use ndarray::ArrayD;
+use ndarray_npy::npy::header::Header;
+use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
+use num_complex::{Complex32, Complex64};
+use std::io::{self, Cursor, Read, Seek};
+use zip::ZipArchive;
+
+/// Longest header that is read, bytes; NumPy's own have some 120.
+const MAX_HEADER_BYTES: usize = 4096;
+
+/// Most brackets in a header: each nests the parser once.
+const MAX_BRACKETS: usize = 16;
+
+/// Why an array could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum NumpyError {
+    /// The system could not read.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// Not a zip archive, or one that was cut off.
+    #[error("not a whole .npz archive ({0}); expected one written by numpy.savez")]
+    Archive(String),
+    /// The archive lacks a key.
+    #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
+    Missing {
+        /// The key asked for.
+        key: String,
+        /// The keys the archive has.
+        found: String,
+    },
+    /// The header is none of NumPy's.
+    #[error("{what} can't be read: {reason}; expected what numpy.save writes")]
+    Damaged {
+        /// Which array.
+        what: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// More numbers than are read.
+    #[error("{what} has shape {shape:?}; expected at most {MAX_NUMBERS} numbers")]
+    TooLarge {
+        /// Which array.
+        what: String,
+        /// Its shape.
+        shape: Vec<usize>,
+    },
+    /// Numbers of another type.
+    #[error("{what} holds {found}; expected complex or real numbers, or integers of 16 or more bits")]
+    Type {
+        /// Which array.
+        what: String,
+        /// NumPy's name of the type.
+        found: String,
+    },
+}
+
+/// Reads the array `key` of an archive.
+///
+/// # Errors
+/// [`NumpyError`] names the key, and what was expected of it.
+pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, NumpyError> {
+    let mut archive = ZipArchive::new(file).map_err(|e| NumpyError::Archive(e.to_string()))?;
+    let name = format!("{key}.npy");
+    if archive.index_for_name(&name).is_none() {
+        let mut keys: Vec<&str> = archive.file_names().map(|n| n.strip_suffix(".npy").unwrap_or(n)).collect();
+        keys.sort_unstable();
+        let found = if keys.is_empty() { "nothing".to_owned() } else { keys.join(", ") };
+        return Err(NumpyError::Missing { key: key.to_owned(), found });
+    }
+    let what = format!("array \"{key}\"");
+    let damaged = |e: zip::result::ZipError| NumpyError::Damaged { what: what.clone(), reason: e.to_string() };
+    let entry = archive.by_name(&name).map_err(damaged)?;
+    read_array(entry, &what)
+}
+
+/// Reads the one array of an `.npy` file.
+///
+/// # Errors
+/// [`NumpyError`].
+pub(super) fn read_npy(file: impl Read) -> Result<Numbers, NumpyError> {
+    read_array(file, "the array")
+}
+
+fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
+    let damaged = |reason: String| NumpyError::Damaged { what: what.to_owned(), reason };
+    let header_bytes = header_bytes(&mut file).map_err(|e| damaged(e.to_string()))?;
+    let header = Header::from_reader(&mut header_bytes.as_slice()).map_err(|e| damaged(e.to_string()))?;
+    if bounded_count(&header.shape).is_none() {
+        return Err(NumpyError::TooLarge { what: what.to_owned(), shape: header.shape });
+    }
+    let found = header.type_descriptor.to_string();
+    let whole = Cursor::new(header_bytes).chain(file);
+    let numbers = match found.trim_matches(['\'', '"']) {
+        "<c16" | ">c16" => Numbers::Complex(array::<Complex64>(whole).map_err(|e| damaged(e.to_string()))?),
+        "<c8" | ">c8" => {
+            let values = array::<Complex32>(whole).map_err(|e| damaged(e.to_string()))?;
+            Numbers::Complex(values.mapv(|v| Complex64::new(v.re.into(), v.im.into())))
+        }
+        "<f8" | ">f8" => Numbers::Real(array::<f64>(whole).map_err(|e| damaged(e.to_string()))?),
+        "<f4" | ">f4" => Numbers::Real(array::<f32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
+        "<i2" | ">i2" => Numbers::Real(array::<i16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
+        "<i4" | ">i4" => Numbers::Real(array::<i32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
+        "<i8" | ">i8" => Numbers::Real(array::<i64>(whole).map_err(|e| damaged(e.to_string()))?.mapv(|v| v as f64)),
+        _ => return Err(NumpyError::Type { what: what.to_owned(), found }),
+    };
+    Ok(numbers)
+}
+
+fn array<T: ReadableElement>(file: impl Read) -> Result<ArrayD<T>, ReadNpyError> {
+    ArrayD::<T>::read_npy(file)
+}
+
+/// Magic number, version and dictionary, so long and so nested as NumPy would write them.
+fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
+    let invalid = |message: &str| io::Error::new(io::ErrorKind::InvalidData, message.to_owned());
+    let mut bytes = vec![0; 8];
+    file.read_exact(&mut bytes)?;
+    if !bytes.starts_with(b"\x93NUMPY") {
+        return Err(invalid("it does not begin with NumPy's magic number"));
+    }
+    let width = if bytes[6] == 1 { 2 } else { 4 };
+    let mut length = [0; 4];
+    file.read_exact(&mut length[..width])?;
+    bytes.extend_from_slice(&length[..width]);
+    let length = u32::from_le_bytes(length) as usize;
+    if length > MAX_HEADER_BYTES {
+        return Err(invalid("its header is longer than 4096 bytes"));
+    }
+    let start = bytes.len();
+    bytes.resize(start + length, 0);
+    file.read_exact(&mut bytes[start..])?;
+    if bytes[start..].iter().filter(|b| b"([{".contains(b)).count() > MAX_BRACKETS {
+        return Err(invalid("its header is nested too deep"));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array, Dimension, array};
+    use ndarray_npy::{NpzWriter, WritableElement, WriteNpyExt};
+    use proptest::prelude::*;
+
+    fn npy<T: WritableElement, D: Dimension>(values: &Array<T, D>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        values.write_npy(&mut bytes).unwrap();
+        bytes
+    }
+
+    fn npz() -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut writer = NpzWriter::new_compressed(&mut bytes);
+        writer.add_array("a", &array![[Complex32::new(1.0, -2.0)]]).unwrap();
+        writer.add_array("text", &array![1u8]).unwrap();
+        writer.finish().unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn every_width_is_read() {
+        let complex = Numbers::Complex(array![[Complex64::new(1.0, -2.0)]].into_dyn());
+        assert_eq!(read_npz(Cursor::new(npz()), "a").unwrap(), complex);
+        assert_eq!(read_npy(npy(&array![[Complex64::new(1.0, -2.0)]]).as_slice()).unwrap(), complex);
+        let real = Numbers::Real(array![1.0, -2.0].into_dyn());
+        for bytes in [
+            npy(&array![1i16, -2]),
+            npy(&array![1i32, -2]),
+            npy(&array![1i64, -2]),
+            npy(&array![1f32, -2.0]),
+            npy(&array![1f64, -2.0]),
+        ] {
+            assert_eq!(read_npy(bytes.as_slice()).unwrap(), real);
+        }
+        let turned = array![[1.0, 2.0], [3.0, 4.0]].reversed_axes();
+        assert_eq!(read_npy(npy(&turned).as_slice()).unwrap(), Numbers::Real(turned.into_dyn()), "Fortran order");
+    }
+
+    #[test]
+    fn faults_name_the_key_and_what_was_expected() {
+        let error = |key: &str| read_npz(Cursor::new(npz()), key).unwrap_err().to_string();
+        assert!(error("b").contains("\"b\"") && error("b").contains("a, text"), "{}", error("b"));
+        assert!(error("text").contains("|u1") && error("text").contains("complex"), "{}", error("text"));
+        let message = read_npz(Cursor::new(b"PK no".to_vec()), "a").unwrap_err().to_string();
+        assert!(message.contains("numpy.savez"), "{message}");
+        let message = read_npy(&b"no array at all"[..]).unwrap_err().to_string();
+        assert!(message.contains("magic number") && message.contains("numpy.save"), "{message}");
+    }
+
+    /// An `.npy` with this dictionary and no data.
+    fn with_header(dictionary: &str) -> Vec<u8> {
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend_from_slice(&(dictionary.len() as u16 + 1).to_le_bytes());
+        bytes.extend_from_slice(dictionary.as_bytes());
+        bytes.push(b'\n');
+        bytes
+    }
+
+    #[test]
+    fn a_header_may_not_ask_for_the_world() {
+        let huge = with_header("{'descr': '<c16', 'fortran_order': False, 'shape': (1000000, 1000000), }");
+        let message = read_npy(huge.as_slice()).unwrap_err().to_string();
+        assert!(message.contains("[1000000, 1000000]") && message.contains("at most"), "{message}");
+        let nested = with_header(&"(".repeat(3000));
+        assert!(read_npy(nested.as_slice()).unwrap_err().to_string().contains("nested"));
+        let mut long = b"\x93NUMPY\x02\x00".to_vec();
+        long.extend_from_slice(&u32::MAX.to_le_bytes());
+        assert!(read_npy(long.as_slice()).unwrap_err().to_string().contains("4096"));
+        let cut = with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }");
+        assert!(read_npy(cut.as_slice()).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn mutated_files_are_read_or_refused(at in 0usize..400, byte: u8, cut in 0usize..400) {
+            for whole in [npz(), npy(&array![[Complex64::new(1.0, -2.0), Complex64::new(0.5, 3.0)]])] {
+                let mut bytes = whole;
+                let length = bytes.len();
+                bytes[at % length] = byte;
+                bytes.truncate(length - cut % 8);
+                let _read_or_refused = read_npz(Cursor::new(bytes.clone()), "a");
+                if let Ok(Numbers::Complex(values)) = read_npy(bytes.as_slice()) {
+                    prop_assert!(values.len() <= 2, "no more numbers than there are bytes for");
+                }
+            }
+        }
+    }
+}
