@@ -6,6 +6,7 @@ use crate::interact::Place;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::scene::generate::Kind;
 use crate::scene::presets;
 use crate::signal::Floor;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
@@ -38,8 +39,8 @@ pub enum Command {
     SaveAs,
     /// Open a scene that comes with the program.
     Preset(usize),
-    /// Make a random scene of test set 1, 2 or 3.
-    RandomScene(u8),
+    /// Make a random test scene.
+    RandomScene(Kind),
     /// Ask for the log of a training and watch it.
     OpenLog,
     /// Save the window as a picture, or the scene's panels as a drawing.
@@ -160,9 +161,6 @@ impl Command {
             Open,
             Save,
             SaveAs,
-            RandomScene(1),
-            RandomScene(2),
-            RandomScene(3),
             OpenLog,
             ExportPicture,
             ExportMaps,
@@ -202,6 +200,7 @@ impl Command {
             Palette,
             Quit,
         ];
+        all.extend(Kind::all().map(RandomScene));
         all.extend(WindowFunction::ALL.map(SetWindow));
         all.extend(ColourMap::ALL.map(Colours));
         all.extend(Panel::all().into_iter().map(TogglePanel));
@@ -224,9 +223,14 @@ impl Command {
                 let id = presets::ALL.get(*index).map_or("", |preset| preset.id);
                 named(format!("Preset: {}", id.replace('-', " ")), "Open a scene the thesis talks about", None)
             }
-            RandomScene(1) => spec("Random scene: one point", "A scene of test set 1", key(Key::Num1)),
-            RandomScene(2) => spec("Random scene: 3 to 6 points", "A scene of test set 2", key(Key::Num2)),
-            RandomScene(_) => spec("Random scene: points and lines", "A scene of test set 3", key(Key::Num3)),
+            RandomScene(kind) => {
+                let keys = [Key::Num1, Key::Num2, Key::Num3];
+                let (tooltip, shortcut) = match kind.test_set() {
+                    Some(set) => ("A scene of this test set of the thesis", key(keys[set - 1])),
+                    None => ("A scene of a kind that the thesis' sets leave out", None),
+                };
+                named(format!("Random scene: {}", kind.description()), tooltip, shortcut)
+            }
             OpenLog => spec("Open training log…", "Watch the loss of a training (its log.csv)", None),
             ExportPicture => spec("Export picture…", "Save the window as PNG, or all panels as SVG", command(Key::E)),
             ExportMaps => spec("Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),

@@ -144,7 +144,7 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
         },
         Command::SaveAs => ask_file(app, ctx, Purpose::SaveScene),
         Command::Preset(index) => preset(app, index),
-        Command::RandomScene(set) => random_scene(app, set),
+        Command::RandomScene(kind) => random_scene(app, kind),
         Command::OpenLog => ask_file(app, ctx, Purpose::OpenLog),
         Command::ExportPicture => ask_file(app, ctx, Purpose::ExportPicture),
         Command::ExportMaps => ask_file(app, ctx, Purpose::ExportMaps),
@@ -250,12 +250,7 @@ fn preset(app: &mut App, index: usize) {
     }
 }
 
-fn random_scene(app: &mut App, set: u8) {
-    let kind = match set {
-        1 => Kind::Set1,
-        2 => Kind::Set2,
-        _ => Kind::Set3,
-    };
+fn random_scene(app: &mut App, kind: Kind) {
     let seed = app.settings.random_seed;
     let scene = Generator::new(&app.radar, Reading::Program, ScenePurpose::Test, seed).scene(kind, 0);
     app.settings.random_seed = seed.wrapping_add(1);
@@ -278,7 +273,7 @@ fn add(app: &mut App, kind: NewObject, place: Option<Place>) {
         NewObject::Line => {
             let (count, spacing_metres) = (75, 1.5 * bin);
             let y_start_metres = (y_metres - spacing_metres * (count - 1) as f64 / 2.0).max(bin);
-            Object::Line(Line { x_metres, y_start_metres, spacing_metres, count, reflectivity: 1.0 })
+            Object::Line(Line::vertical(x_metres, y_start_metres, spacing_metres, count))
         }
         NewObject::Cluster => Object::Gaussian(GaussianCluster {
             x_metres,

@@ -85,6 +85,16 @@ const REFLECTIVITY: Field = Field {
     digits: 3,
 };
 
+const DIRECTION: Field = Field {
+    name: "direction",
+    tooltip: "Where the line leads from its first reflector: 0° along the array, 90° straight ahead",
+    unit: "°",
+    speed: 0.5,
+    low: -360.0,
+    high: 360.0,
+    digits: 2,
+};
+
 fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
     let label = ui.label(field.name).on_hover_text(field.tooltip);
     let drag = DragValue::new(value)
@@ -137,11 +147,12 @@ fn fields(ui: &mut Ui, object: &mut Object) {
             number(ui, &REFLECTIVITY, &mut p.reflectivity);
         }
         Object::Line(l) => {
-            number(ui, &metres("x", "Along the array"), &mut l.x_metres);
-            number(ui, &metres("y of the nearest", "Ahead of the array"), &mut l.y_start_metres);
+            number(ui, &metres("x of the first", "Along the array"), &mut l.x_metres);
+            number(ui, &metres("y of the first", "Ahead of the array"), &mut l.y_start_metres);
             let spacing =
                 Field { speed: 0.001, low: 1e-3, high: 100.0, digits: 4, ..metres("spacing", "Between neighbours") };
             number(ui, &spacing, &mut l.spacing_metres);
+            number(ui, &DIRECTION, &mut l.direction_degrees);
             count(ui, &mut l.count);
             number(ui, &REFLECTIVITY, &mut l.reflectivity);
         }

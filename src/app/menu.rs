@@ -5,6 +5,7 @@ use super::command::{Command, NewObject};
 use super::layout::Panel;
 use super::settings::Projection;
 use crate::picture::ColourMap;
+use crate::scene::generate::Kind;
 use crate::scene::presets;
 use eframe::egui;
 use eframe::egui::{Button, Ui};
@@ -144,8 +145,8 @@ fn scene(app: &mut App, ui: &mut Ui) {
         }
     });
     ui.separator();
-    for set in 1..=3 {
-        entry(app, ui, Command::RandomScene(set), true);
+    for kind in Kind::all() {
+        entry(app, ui, Command::RandomScene(kind), true);
     }
     ui.horizontal(|ui| {
         let label = ui.label("Seed of the next random scene");

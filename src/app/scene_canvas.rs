@@ -117,8 +117,7 @@ pub(super) fn object(app: &App, ui: &Ui, painter: &Painter, rect: Rect, index: u
             }
         }
         Object::Line(l) => {
-            let last = l.y_start_metres + l.spacing_metres * l.count.saturating_sub(1) as f64;
-            let (a, b) = (at(Place::new(l.x_metres, l.y_start_metres)), at(Place::new(l.x_metres, last)));
+            let (a, b) = (at(Place::new(l.x_metres, l.y_start_metres)), at(l.end_metres().into()));
             painter.line_segment([a, b], Stroke::new(9.0, halo));
             painter.line_segment([a, b], Stroke::new(1.0, colour.gamma_multiply(0.6)));
             dots(painter, object, 1.8, colour, at);

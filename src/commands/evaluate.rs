@@ -1,22 +1,22 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values.
 
-use super::arguments::{self, FloorArgs, TestSet};
+use super::arguments::{self, FloorArgs};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::{Reconstructor, Task};
-use crate::scene::generate::Reading;
+use crate::scene::generate::{Kind, Reading};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::fmt::Write;
 
 /// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
 ///
-/// With --json one object is printed: count, seed, floor, carrier, and sets, each with its number, what the thesis prints
-/// (baseline, experiment_1, experiment_2) and methods, each with name, eta, squared_error, detection and false_alarm (mean and
-/// standard_error), detection_at_printed_false_alarm (false_alarm, detection, eta; the printed rate is experiment 2's) and
+/// With --json one object is printed: count, seed, floor, carrier, and sets, each with its name (set), what the thesis prints
+/// where it does (printed: baseline, experiment_1, experiment_2), the false_alarm rate of the comparison and methods, each with name, eta, squared_error, detection and false_alarm (mean and
+/// standard_error), detection_at_false_alarm (false_alarm, detection, eta) and
 /// median_milliseconds. Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -24,9 +24,9 @@ pub struct Args {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
     method: Vec<String>,
 
-    /// Test sets, separated by commas
-    #[arg(long, value_name = "1,2,3", value_delimiter = ',', default_value = "1,2,3")]
-    set: Vec<TestSet>,
+    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near), separated by commas
+    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
+    set: Vec<Kind>,
 
     /// Scenes of each set
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -67,8 +67,13 @@ struct Report {
 
 #[derive(Debug, Serialize)]
 struct SetReport {
-    set: usize,
-    printed: PrintedColumns,
+    set: String,
+    #[serde(skip)]
+    kind: Kind,
+    /// Of the thesis, for its own sets.
+    printed: Option<PrintedColumns>,
+    /// The false-alarm rate at which methods are compared: experiment 2's where the thesis prints it, 1 % elsewhere.
+    false_alarm: f64,
     methods: Vec<MethodReport>,
 }
 
@@ -86,9 +91,12 @@ struct MethodReport {
     squared_error: Estimate,
     detection: Estimate,
     false_alarm: Estimate,
-    detection_at_printed_false_alarm: Option<OperatingPoint>,
+    detection_at_false_alarm: Option<OperatingPoint>,
     median_milliseconds: f64,
 }
+
+/// False-alarm rate of the comparison for scenes that the thesis has no table of.
+const ELSEWHERE_FALSE_ALARM: f64 = 0.01;
 
 /// A point of the ROC.
 #[derive(Debug, Serialize)]
@@ -117,11 +125,10 @@ impl Args {
         let bar = ProgressBar::new(maps).with_style(bar_style());
         let mut sets = Vec::new();
         for set in &self.set {
-            bar.set_message(format!("set {}", set.number()));
+            bar.set_message(format!("set {set}"));
             let tallies =
-                campaign.run(set.kind(), &methods, &Task::default(), || bar.inc(1)).map_err(CommandError::failed)?;
-            let reports = methods.iter().zip(&tallies).map(|(m, t)| MethodReport::of(*m, t, set.number())).collect();
-            sets.push(SetReport { set: set.number(), printed: PrintedColumns::of_set(set.number()), methods: reports });
+                campaign.run(*set, &methods, &Task::default(), || bar.inc(1)).map_err(CommandError::failed)?;
+            sets.push(SetReport::of(*set, methods.iter().zip(&tallies)));
         }
         bar.finish_and_clear();
         let report = Report {
@@ -155,8 +162,7 @@ impl PrintedColumns {
 }
 
 impl MethodReport {
-    fn of(method: &dyn Reconstructor, tally: &Tally, set: usize) -> Self {
-        let false_alarm = PRINTED_EXPERIMENT_2[set - 1].false_alarm;
+    fn of(method: &dyn Reconstructor, tally: &Tally, false_alarm: f64) -> Self {
         let operating_point = tally.roc().at_false_alarm(false_alarm).map(|point| OperatingPoint {
             false_alarm,
             detection: point.detection,
@@ -168,7 +174,7 @@ impl MethodReport {
             squared_error: tally.squared_error(),
             detection: tally.detection(),
             false_alarm: tally.false_alarm(),
-            detection_at_printed_false_alarm: operating_point,
+            detection_at_false_alarm: operating_point,
             median_milliseconds: tally.median_milliseconds(),
         }
     }
@@ -193,18 +199,31 @@ impl Report {
 }
 
 impl SetReport {
-    /// Writes table 4.`set`. Writing to a string can't fail.
+    fn of<'a>(kind: Kind, found: impl Iterator<Item = (&'a &'a dyn Reconstructor, &'a Tally)>) -> Self {
+        let printed = kind.test_set().map(PrintedColumns::of_set);
+        let false_alarm = printed.as_ref().map_or(ELSEWHERE_FALSE_ALARM, |p| p.experiment_2.false_alarm);
+        let methods = found.map(|(method, tally)| MethodReport::of(*method, tally, false_alarm)).collect();
+        SetReport { set: kind.to_string(), kind, printed, false_alarm, methods }
+    }
+
+    /// Writes table 4.1, 4.2 or 4.3, or one like them. Writing to a string can't fail.
     fn write(&self, text: &mut String) {
-        let what = ["one point", "3 to 6 points", "3 to 6 points and lines"][self.set - 1];
-        let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.printed.experiment_2.false_alarm);
-        let _ = writeln!(text, "\nTable 4.{}: test set {}, {what}", self.set, self.set);
+        let what = self.kind.description();
+        let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
+        let _ = match self.kind.test_set() {
+            Some(set) => writeln!(text, "\nTable 4.{set}: test set {set}, {what}"),
+            None => writeln!(text, "\n{}: {what}", self.set),
+        };
         let _ =
             writeln!(text, "{:<26} {:>20} {:>16} {:>16} {:>22} {:>9}", "", "SE", "P_D %", "P_FA %", rate, "ms a map");
-        for (name, printed) in [
-            ("printed: baseline", &self.printed.baseline),
-            ("printed: experiment 1", &self.printed.experiment_1),
-            ("printed: experiment 2", &self.printed.experiment_2),
-        ] {
+        let columns = self.printed.iter().flat_map(|p| {
+            [
+                ("printed: baseline", &p.baseline),
+                ("printed: experiment 1", &p.experiment_1),
+                ("printed: experiment 2", &p.experiment_2),
+            ]
+        });
+        for (name, printed) in columns {
             let _ = writeln!(
                 text,
                 "{name:<26} {:>20.2} {:>16.2} {:>16.2}",
@@ -216,7 +235,7 @@ impl SetReport {
         for method in &self.methods {
             let percent = |e: Estimate| format!("{:.2} \u{b1} {:.3}", 100.0 * e.mean, 100.0 * e.standard_error);
             let at = method
-                .detection_at_printed_false_alarm
+                .detection_at_false_alarm
                 .as_ref()
                 .map_or_else(|| "-".to_owned(), |p| format!("{:.2} (eta {:.3})", 100.0 * p.detection, p.eta));
             let _ = writeln!(
@@ -228,8 +247,7 @@ impl SetReport {
                 percent(method.false_alarm),
                 method.median_milliseconds
             );
-            if method.name == "baseline" {
-                let printed = &self.printed.baseline;
+            if let ("baseline", Some(PrintedColumns { baseline: printed, .. })) = (method.name, &self.printed) {
                 let off = |e: Estimate, printed: f64, rounding: f64| match e.standard_error {
                     0.0 => "-".to_owned(),
                     _ => format!("{:+.2} s.e.", e.deviation_from(printed, rounding)),

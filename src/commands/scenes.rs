@@ -1,18 +1,17 @@
-//! `apertura scenes`: scenes of a test set as files.
+//! `apertura scenes`: test scenes as files.
 
-use super::arguments::TestSet;
 use super::{CommandError, print};
 use crate::radar::Radar;
 use crate::scene::file::{self, SceneFile};
-use crate::scene::generate::{Generator, Purpose, Reading};
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use std::path::PathBuf;
 
-/// Write scenes of a test set to a folder
+/// Write random test scenes of one kind to a folder
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Test set: 1 (one point), 2 (3 to 6 points), 3 (3 to 6 points and lines)
-    #[arg(long, value_name = "1|2|3")]
-    set: TestSet,
+    /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic, near
+    #[arg(long, value_name = "1|2|3|KIND")]
+    set: Kind,
 
     /// Number of scenes
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -44,7 +43,7 @@ enum FileFormat {
 }
 
 impl Args {
-    /// Writes `set1-seed0-0000.toml` and so on.
+    /// Writes `set1-seed0-0000.toml`, `walls-seed0-0000.toml` and so on.
     pub fn run(self) -> Result<(), CommandError> {
         std::fs::create_dir_all(&self.output)
             .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
@@ -55,12 +54,13 @@ impl Args {
             FileFormat::Toml => "toml",
             FileFormat::Npz => "npz",
         };
+        let (prefix, what) = if self.set.test_set().is_some() { ("set", "set ") } else { ("", "") };
         for number in 0..self.count {
-            let name = format!("set{}-seed{}-{number:04}.{extension}", self.set.number(), self.seed);
-            let scene = generator.scene(self.set.kind(), number);
+            let name = format!("{prefix}{}-seed{}-{number:04}.{extension}", self.set, self.seed);
+            let scene = generator.scene(self.set, number);
             let file = SceneFile { scene, radar: radar.clone() };
             file::save(&self.output.join(name), &file).map_err(CommandError::failed)?;
         }
-        print(&format!("wrote {} scenes of set {} to {}", self.count, self.set.number(), self.output.display()))
+        print(&format!("wrote {} scenes of {what}{} to {}", self.count, self.set, self.output.display()))
     }
 }

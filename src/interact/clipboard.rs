@@ -46,7 +46,7 @@ mod tests {
     fn every_kind_round_trips() {
         let objects = vec![
             Object::Point(Point { x_metres: 0.1, y_metres: 1.0 / 3.0, reflectivity: 2.0 }),
-            Object::Line(Line { x_metres: 2.0, y_start_metres: 5.0, spacing_metres: 0.1, count: 3, reflectivity: 0.5 }),
+            Object::Line(Line { reflectivity: 0.5, ..Line::vertical(2.0, 5.0, 0.1, 3) }),
             Object::Gaussian(GaussianCluster {
                 x_metres: 0.0,
                 y_metres: 10.0,

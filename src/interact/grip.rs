@@ -1,7 +1,7 @@
 //! The parts of an object that can be grabbed, and what dragging each of them means.
 //!
 //! ```text
-//!     o  far end: more or fewer reflectors, spacing kept
+//!     o  far end: more or fewer reflectors, spacing kept; the line turns with it
 //!     :
 //!     :◇ spacing: reflectors move apart, their number kept            ┌───────┐
 //!     ●  body: moves the whole line                                   │   ●   ◇ spread in x
@@ -10,7 +10,7 @@
 //! ```
 
 use super::Place;
-use crate::scene::{Object, Scene};
+use crate::scene::{Line, Object, Scene};
 
 /// Most reflectors a line can be stretched to by hand.
 pub const MAX_LINE_COUNT: usize = 2000;
@@ -65,12 +65,15 @@ pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
     match object {
         Object::Point(_) => vec![body],
         Object::Line(l) => {
-            let length = l.spacing_metres * l.count.saturating_sub(1) as f64;
-            let beside = l.x_metres + SPACING_GRIP_OFFSET_POINTS * metres_per_point;
+            let [x, y] = l.end_metres();
+            let [spread_x, spread_y] = l.place_metres(0.75 * l.count.saturating_sub(1) as f64);
+            // To the right of the line as it leads.
+            let (sin, cos) = (l.direction_degrees - 90.0).to_radians().sin_cos();
+            let beside = SPACING_GRIP_OFFSET_POINTS * metres_per_point;
             vec![
                 at(Grip::NearEnd, l.x_metres, l.y_start_metres),
-                at(Grip::FarEnd, l.x_metres, l.y_start_metres + length),
-                at(Grip::Spacing, beside, l.y_start_metres + 0.75 * length),
+                at(Grip::FarEnd, x, y),
+                at(Grip::Spacing, spread_x + beside * cos, spread_y + beside * sin),
                 body,
             ]
         }
@@ -91,22 +94,37 @@ pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
             after.translate(to.x_metres - centre.x_metres, to.y_metres - centre.y_metres);
         }
         (Object::Line(l), Grip::NearEnd) => {
-            let far = l.y_start_metres + l.spacing_metres * l.count.saturating_sub(1) as f64;
-            l.count = count_over(far - to.y_metres, l.spacing_metres).unwrap_or(l.count);
-            l.y_start_metres = far - l.spacing_metres * (l.count - 1) as f64;
+            let far = Place::from(l.end_metres());
+            lead(l, to, far);
+            let [dx, dy] = l.step_metres();
+            let steps = l.count.saturating_sub(1) as f64;
+            (l.x_metres, l.y_start_metres) = (far.x_metres - steps * dx, far.y_metres - steps * dy);
         }
-        (Object::Line(l), Grip::FarEnd) => {
-            l.count = count_over(to.y_metres - l.y_start_metres, l.spacing_metres).unwrap_or(l.count);
-        }
+        (Object::Line(l), Grip::FarEnd) => lead(l, Place::new(l.x_metres, l.y_start_metres), to),
         (Object::Line(l), Grip::Spacing) => {
             let steps = 0.75 * l.count.saturating_sub(1).max(1) as f64;
-            l.spacing_metres = ((to.y_metres - l.y_start_metres) / steps).max(1e-3);
+            let (sin, cos) = (l.direction_degrees - 90.0).to_radians().sin_cos();
+            let along = (to.y_metres - l.y_start_metres) * cos - (to.x_metres - l.x_metres) * sin;
+            l.spacing_metres = (along / steps).max(1e-3);
         }
         (Object::Gaussian(g), Grip::SpreadX) => g.x_std_metres = (to.x_metres - g.x_metres).abs(),
         (Object::Gaussian(g), Grip::SpreadY) => g.y_std_metres = (to.y_metres - g.y_metres).abs(),
         _ => {}
     }
     after
+}
+
+/// Turns `line` so that it leads from `from` to `to`, with as many reflectors as fit between them. Its start stays.
+fn lead(line: &mut Line, from: Place, to: Place) {
+    let (dx, dy) = (to.x_metres - from.x_metres, to.y_metres - from.y_metres);
+    if let Some(count) = count_over(dx.hypot(dy), line.spacing_metres.abs()) {
+        line.count = count;
+        if count > 1 {
+            // Counted from straight ahead, so that a vertical line stays exactly vertical.
+            line.direction_degrees = 90.0 + (-dx).atan2(dy).to_degrees();
+            line.spacing_metres = line.spacing_metres.abs();
+        }
+    }
 }
 
 /// How many reflectors fit a length; `None` where the spacing says nothing.
@@ -132,22 +150,34 @@ pub(super) fn bounds(scene: &Scene) -> Option<(Place, Place)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{GaussianCluster, Line};
+    use crate::scene::GaussianCluster;
 
     fn line() -> Object {
-        Object::Line(Line { x_metres: 1.0, y_start_metres: 10.0, spacing_metres: 0.5, count: 11, reflectivity: 1.0 })
+        Object::Line(Line::vertical(1.0, 10.0, 0.5, 11))
     }
 
     #[test]
     fn ends_change_the_count_and_the_other_end_stays() {
-        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(9.0, 20.1)) else { panic!() };
+        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(1.0, 20.1)) else { panic!() };
         assert_eq!((l.count, l.y_start_metres, l.x_metres), (21, 10.0, 1.0));
         let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(1.0, 12.6)) else { panic!() };
         assert_eq!((l.count, l.y_start_metres), (6, 12.5));
-        let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(1.0, 99.0)) else { panic!() };
+        let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(1.0, 15.1)) else { panic!() };
         assert_eq!((l.count, l.y_start_metres), (1, 15.0), "a line keeps one reflector");
         let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(1.0, 1e9)) else { panic!() };
         assert_eq!(l.count, MAX_LINE_COUNT);
+    }
+
+    #[test]
+    fn an_end_turns_the_line_and_the_other_end_stays() {
+        let close = |[x, y]: [f64; 2], a: f64, b: f64| (x - a).hypot(y - b) < 1e-9;
+        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(4.0, 14.0)) else { panic!() };
+        assert_eq!((l.count, l.x_metres, l.y_start_metres), (11, 1.0, 10.0));
+        assert!(close(l.end_metres(), 4.0, 14.0), "{l:?}");
+        let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(-4.0, 15.0)) else { panic!() };
+        assert!(close([l.x_metres, l.y_start_metres], -4.0, 15.0) && close(l.end_metres(), 1.0, 15.0), "{l:?}");
+        let Object::Line(spread) = move_grip(&Object::Line(l), Grip::Spacing, Place::new(3.5, 9.0)) else { panic!() };
+        assert!((spread.spacing_metres - 1.0).abs() < 1e-12, "{spread:?}");
     }
 
     #[test]

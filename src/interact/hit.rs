@@ -47,9 +47,11 @@ fn body_distance(object: &Object, at: Place) -> f64 {
     match object {
         Object::Point(_) => centre.distance_metres(at),
         Object::Line(l) => {
-            let half = (l.spacing_metres * l.count.saturating_sub(1) as f64 / 2.0).abs();
-            let beyond = ((at.y_metres - centre.y_metres).abs() - half).max(0.0);
-            (at.x_metres - centre.x_metres).hypot(beyond)
+            let [a, b] = [Place::new(l.x_metres, l.y_start_metres), l.end_metres().into()];
+            let (dx, dy) = (b.x_metres - a.x_metres, b.y_metres - a.y_metres);
+            let along = ((at.x_metres - a.x_metres) * dx + (at.y_metres - a.y_metres) * dy) / (dx * dx + dy * dy);
+            let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
+            Place::new(a.x_metres + along * dx, a.y_metres + along * dy).distance_metres(at)
         }
         Object::Gaussian(g) => {
             let out_x = ((at.x_metres - g.x_metres).abs() - g.x_std_metres).max(0.0);
@@ -78,13 +80,7 @@ mod tests {
 
     fn scene() -> Scene {
         let mut scene = Scene::of_points([(0.0, 10.0), (3.0, 10.0)]);
-        scene.objects.push(Object::Line(Line {
-            x_metres: -5.0,
-            y_start_metres: 5.0,
-            spacing_metres: 0.5,
-            count: 21,
-            reflectivity: 1.0,
-        }));
+        scene.objects.push(Object::Line(Line::vertical(-5.0, 5.0, 0.5, 21)));
         scene
     }
 
@@ -103,6 +99,14 @@ mod tests {
         assert_eq!((body.object, body.grip, body.place), (2, Grip::Body, Place::new(-5.0, 10.0)));
         let grip = test(&scene(), &Selection::of([2]), end, 0.05).unwrap();
         assert_eq!((grip.object, grip.grip), (2, Grip::FarEnd));
+    }
+
+    #[test]
+    fn a_slanted_line_is_hit_where_it_lies() {
+        let mut scene = Scene::default();
+        scene.objects.push(Object::Line(Line { direction_degrees: 0.0, ..Line::vertical(-5.0, 8.0, 0.5, 21) }));
+        let hit = |x, y| test(&scene, &Selection::default(), Place::new(x, y), 0.05).is_some();
+        assert!(hit(4.9, 8.0) && hit(-2.0, 8.1) && !hit(-5.0, 13.0) && !hit(6.0, 8.0));
     }
 
     #[test]

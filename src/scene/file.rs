@@ -320,13 +320,7 @@ mod tests {
     fn scene() -> SceneFile {
         let objects = vec![
             Object::Point(Point { x_metres: 0.1 + 0.2, y_metres: 1e-300, reflectivity: -2.5 }),
-            Object::Line(Line {
-                x_metres: 1.0,
-                y_start_metres: 2.0,
-                spacing_metres: 0.1,
-                count: 75,
-                reflectivity: 1.0,
-            }),
+            Object::Line(Line { direction_degrees: 30.0, ..Line::vertical(1.0, 2.0, 0.1, 75) }),
             Object::Gaussian(GaussianCluster {
                 x_metres: -5.0,
                 y_metres: 20.0,
@@ -346,6 +340,15 @@ mod tests {
         let text = to_toml(&scene()).unwrap();
         assert!(text.contains("carrier = \"two-way\"") && !text.contains("bandwidth"), "{text}");
         assert_eq!(from_toml(&text).unwrap(), scene());
+    }
+
+    #[test]
+    fn a_line_without_a_direction_leads_straight_ahead() {
+        let text = "[[object]]\nkind = \"line\"\nx_metres = 1\ny_start_metres = 2\nspacing_metres = 0.5\ncount = 3\n";
+        let line = Object::Line(Line::vertical(1.0, 2.0, 0.5, 3));
+        let file = from_toml(text).unwrap();
+        assert_eq!(file.scene.objects, [line]);
+        assert!(!to_toml(&file).unwrap().contains("direction"));
     }
 
     #[test]

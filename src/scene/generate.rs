@@ -1,10 +1,17 @@
-//! Seeded random scenes: the thesis' test sets and the training scenes of its two experiments (sections 3.2, 4.1, 5.1).
+//! Seeded random scenes: the thesis' test sets, the training scenes of its two experiments (sections 3.2, 4.1, 5.1), and named
+//! kinds that cover the whole field.
 //!
 //! Every scene comes from its own random stream, named by purpose, kind and number: training, validation and test scenes can't
 //! meet, and scene 7 is the same whether or not scenes 0 to 6 were made. So does the noise beneath it ([`Generator::noise_seed`]).
 
+mod field;
+mod kind;
+
+pub use kind::Kind;
+
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;
+use field::Field;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -32,37 +39,6 @@ pub enum Purpose {
     Validation,
     /// Reported figures only.
     Test,
-}
-
-/// A kind of random scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// One point.
-    Set1,
-    /// 3 to 6 points.
-    Set2,
-    /// 3 to 6 objects: always a line and a point near its range, the others points or lines.
-    Set3,
-    /// Experiment 1: this many points (1 to 4).
-    Points(u8),
-    /// Experiment 2: this many objects (1 to 4), each a point or a line with equal chance.
-    Mixed(u8),
-}
-
-impl Kind {
-    /// The three test sets, in order.
-    pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
-
-    fn stream(self) -> u64 {
-        match self {
-            Kind::Set1 => 1,
-            Kind::Set2 => 2,
-            Kind::Set3 => 3,
-            Kind::Points(n) => 0x100 + u64::from(n),
-            Kind::Mixed(n) => 0x200 + u64::from(n),
-        }
-    }
 }
 
 /// Makes random scenes for one radar.
@@ -121,6 +97,9 @@ impl Generator {
             }
             Kind::Points(count) => (0..count).map(|_| self.point(rng)).collect(),
             Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
+            Kind::Clusters | Kind::Walls | Kind::Spacings | Kind::Corner | Kind::Crowd | Kind::Dynamic | Kind::Near => {
+                Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
+            }
         };
         Scene { name: format!("{kind:?} {number}, seed {}", self.seed), notes: String::new(), objects }
     }
@@ -154,13 +133,7 @@ impl Generator {
             Reading::Text => (self.bin, y),
         };
         let edge = 0.8 * self.max_range;
-        Object::Line(Line {
-            x_metres: x.clamp(-edge, edge),
-            y_start_metres,
-            spacing_metres,
-            count: LINE_POINTS,
-            reflectivity: 1.0,
-        })
+        Object::Line(Line::vertical(x.clamp(-edge, edge), y_start_metres, spacing_metres, LINE_POINTS))
     }
 
     /// Set 3's first two objects: a line, and a point up to 50 bins behind the range of the line's start.
@@ -245,5 +218,76 @@ mod tests {
         let g = Generator::new(&radar, Reading::Text, Purpose::Test, 1);
         let Object::Line(line) = &g.scene(Kind::Set3, 0).objects[0] else { panic!("set 3 starts with a line") };
         assert_eq!((line.count, line.spacing_metres), (75, radar.range_resolution_metres()));
+    }
+
+    /// The objects of 40 test scenes of a kind.
+    fn scenes(kind: Kind) -> Vec<Vec<Object>> {
+        (0..40).map(|number| generator(Purpose::Test).scene(kind, number).objects).collect()
+    }
+
+    fn lines(objects: &[Object]) -> Vec<Line> {
+        objects.iter().filter_map(|o| if let Object::Line(l) = o { Some(l.clone()) } else { None }).collect()
+    }
+
+    #[test]
+    fn named_kinds_keep_to_the_field() {
+        let radar = Radar::default();
+        for kind in Kind::BEYOND {
+            for (number, objects) in scenes(kind).into_iter().enumerate() {
+                let scene = Scene { objects, ..Scene::default() };
+                scene.validate(&radar).unwrap();
+                for object in scene.objects.iter().filter(|o| !matches!(o, Object::Gaussian(_))) {
+                    for r in object.reflectors() {
+                        let range = r.x_metres.hypot(r.y_metres);
+                        assert!((0.3..=0.9501 * radar.max_range_metres()).contains(&range), "{kind} {number}: {range}");
+                        assert!(r.y_metres > 0.05, "{kind} {number}: {r:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn walls_have_any_slant_and_spacings_none() {
+        let bin = Radar::default().range_resolution_metres();
+        let slanted: Vec<Line> = scenes(Kind::Walls).iter().flat_map(|s| lines(s)).collect();
+        let quadrant = |q: f64| slanted.iter().filter(|l| (l.direction_degrees / 90.0).floor() == q).count();
+        assert!((0..4).all(|q| quadrant(f64::from(q)) > 5), "every quadrant gets its walls");
+        let other: Vec<Line> = scenes(Kind::Spacings).iter().flat_map(|s| lines(s)).collect();
+        assert!(other.iter().all(|l| l.direction_degrees == 90.0 && (l.spacing_metres / bin - 1.5).abs() > 0.09));
+        for l in slanted.iter().chain(&other) {
+            assert!((20..=100).contains(&l.count) && (0.5..=3.0).contains(&(l.spacing_metres / bin)), "{l:?}");
+        }
+    }
+
+    #[test]
+    fn corners_are_right_angles_that_share_an_end() {
+        for objects in scenes(Kind::Corner) {
+            let [a, b] = &lines(&objects)[..] else { panic!("two walls") };
+            assert_eq!((a.x_metres, a.y_start_metres), (b.x_metres, b.y_start_metres));
+            let ([ax, ay], [bx, by]) = (a.step_metres(), b.step_metres());
+            assert!((ax * bx + ay * by).abs() < 1e-12);
+            assert!(matches!(objects[2..], [Object::Gaussian(_), Object::Point(_)]));
+        }
+    }
+
+    #[test]
+    fn counts_and_reflectivities_are_as_described() {
+        assert!(scenes(Kind::Crowd).iter().all(|s| (12..=40).contains(&s.len())));
+        for objects in scenes(Kind::Dynamic) {
+            let sigma: Vec<f64> = objects.iter().flat_map(Object::reflectors).map(|r| r.reflectivity).collect();
+            assert!(sigma.len() == 5 && sigma[0] == 1.0 && sigma.iter().all(|s| (0.01..=1.0).contains(s)), "{sigma:?}");
+        }
+        let near: Vec<f64> = scenes(Kind::Near)
+            .iter()
+            .flatten()
+            .flat_map(Object::reflectors)
+            .map(|r| r.x_metres.hypot(r.y_metres))
+            .collect();
+        assert!(near.iter().all(|r| (0.3..=8.0).contains(r)) && near.iter().any(|&r| r < 0.6), "{near:?}");
+        for objects in scenes(Kind::Clusters) {
+            let clusters = objects.iter().filter(|o| matches!(o, Object::Gaussian(g) if (15..=40).contains(&g.count)));
+            assert!((1..=3).contains(&clusters.count()));
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The objects a person places: a point, a vertical line of points, a Gaussian cluster of points.
+//! The objects a person places: a point, a line of points, a Gaussian cluster of points.
 
 use super::{Reflector, SceneError};
 use rand::SeedableRng;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub enum Object {
     /// One reflector.
     Point(Point),
-    /// Reflectors one behind the other, parallel to the y axis.
+    /// Reflectors one behind the other, on a straight line.
     Line(Line),
     /// Reflectors scattered around a centre (thesis figure 5-5).
     Gaussian(GaussianCluster),
@@ -31,16 +31,19 @@ pub struct Point {
     pub reflectivity: f64,
 }
 
-/// Reflectors at equal spacing along y: the thesis' vertical line (section 3.2).
+/// Reflectors at equal spacing on a straight line: the thesis' vertical line (section 3.2), or one at any slant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
-    /// Position along the array's axis, metres.
+    /// x of the first reflector, along the array's axis, metres.
     pub x_metres: f64,
-    /// y of the first (nearest) reflector, metres.
+    /// y of the first reflector, metres.
     pub y_start_metres: f64,
     /// Distance between neighbouring reflectors, metres.
     pub spacing_metres: f64,
+    /// Where the line leads from its first reflector: 0 along +x, 90 straight ahead (+y), as where nothing is said.
+    #[serde(default = "straight_ahead", skip_serializing_if = "is_straight_ahead")]
+    pub direction_degrees: f64,
     /// Number of reflectors.
     pub count: usize,
     /// Reflectivity sigma of each reflector.
@@ -72,6 +75,41 @@ pub struct GaussianCluster {
 
 fn one() -> f64 {
     1.0
+}
+
+fn straight_ahead() -> f64 {
+    90.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_straight_ahead(direction_degrees: &f64) -> bool {
+    *direction_degrees == straight_ahead()
+}
+
+impl Line {
+    /// A line straight ahead from (`x_metres`, `y_start_metres`), of reflectivity 1.
+    pub fn vertical(x_metres: f64, y_start_metres: f64, spacing_metres: f64, count: usize) -> Self {
+        let direction_degrees = straight_ahead();
+        Line { x_metres, y_start_metres, spacing_metres, direction_degrees, count, reflectivity: 1.0 }
+    }
+
+    /// From one reflector to the next, (x, y) in metres. Exactly (0, spacing) straight ahead.
+    pub fn step_metres(&self) -> [f64; 2] {
+        // Counted from straight ahead, where sine and cosine are exact.
+        let (sin, cos) = (self.direction_degrees - straight_ahead()).to_radians().sin_cos();
+        [-self.spacing_metres * sin, self.spacing_metres * cos]
+    }
+
+    /// Reflector `index` of the line, (x, y) in metres.
+    pub fn place_metres(&self, index: f64) -> [f64; 2] {
+        let [dx, dy] = self.step_metres();
+        [self.x_metres + index * dx, index * dy + self.y_start_metres]
+    }
+
+    /// The last reflector, (x, y) in metres; the first one's place for an empty line.
+    pub fn end_metres(&self) -> [f64; 2] {
+        self.place_metres(self.count.saturating_sub(1) as f64)
+    }
 }
 
 impl Point {
@@ -107,10 +145,9 @@ impl Object {
                 vec![Reflector { x_metres: p.x_metres, y_metres: p.y_metres, reflectivity: p.reflectivity }]
             }
             Object::Line(l) => (0..l.count)
-                .map(|i| Reflector {
-                    x_metres: l.x_metres,
-                    y_metres: i as f64 * l.spacing_metres + l.y_start_metres,
-                    reflectivity: l.reflectivity,
+                .map(|i| {
+                    let [x_metres, y_metres] = l.place_metres(i as f64);
+                    Reflector { x_metres, y_metres, reflectivity: l.reflectivity }
                 })
                 .collect(),
             Object::Gaussian(g) => {
@@ -142,9 +179,7 @@ impl Object {
     pub fn centre_metres(&self) -> [f64; 2] {
         match self {
             Object::Point(p) => [p.x_metres, p.y_metres],
-            Object::Line(l) => {
-                [l.x_metres, l.y_start_metres + l.spacing_metres * l.count.saturating_sub(1) as f64 / 2.0]
-            }
+            Object::Line(l) => l.place_metres(l.count.saturating_sub(1) as f64 / 2.0),
             Object::Gaussian(g) => [g.x_metres, g.y_metres],
         }
     }
@@ -160,6 +195,7 @@ impl Object {
                 ("x_metres", l.x_metres),
                 ("y_start_metres", l.y_start_metres),
                 ("spacing_metres", l.spacing_metres),
+                ("direction_degrees", l.direction_degrees),
                 ("reflectivity", l.reflectivity),
             ],
             Object::Gaussian(g) => vec![
@@ -197,12 +233,22 @@ mod tests {
 
     #[test]
     fn a_line_starts_at_its_start() {
-        let line =
-            Object::Line(Line { x_metres: 2.0, y_start_metres: 5.0, spacing_metres: 0.1, count: 3, reflectivity: 0.5 });
+        let line = Object::Line(Line { reflectivity: 0.5, ..Line::vertical(2.0, 5.0, 0.1, 3) });
         let r = line.reflectors();
         assert_eq!(r.len(), 3);
         assert_eq!((r[2].x_metres, r[2].y_metres, r[2].reflectivity), (2.0, 5.2, 0.5));
         assert_eq!(line.centre_metres(), [2.0, 5.1]);
+    }
+
+    #[test]
+    fn a_slanted_line_leads_where_it_says() {
+        for (direction_degrees, end) in
+            [(0.0, [4.0, 5.0]), (90.0, [2.0, 7.0]), (225.0, [2.0 - 2f64.sqrt(), 5.0 - 2f64.sqrt()])]
+        {
+            let line = Line { direction_degrees, ..Line::vertical(2.0, 5.0, 0.5, 5) };
+            let found = line.end_metres();
+            assert!((found[0] - end[0]).hypot(found[1] - end[1]) < 1e-12, "{direction_degrees}: {found:?}");
+        }
     }
 
     #[test]

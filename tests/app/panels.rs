@@ -7,6 +7,7 @@ use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Object;
+use apertura::scene::generate::Kind;
 use apertura::signal::Floor;
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
@@ -53,7 +54,7 @@ fn hidden_panels_are_not_computed() {
     }
     s.ask(Command::ClosePanel(Panel::Roc));
     assert_eq!(s.state().pictures(), [MapKind::Input0, MapKind::Target, MapKind::TargetAbove]);
-    s.ask(Command::RandomScene(2));
+    s.ask(Command::RandomScene(Kind::Set2));
     let report = s.state().report().unwrap();
     assert!(report.ran(Stage::FirstMap) && report.ran(Stage::FullMap));
     assert!(!report.ran(Stage::LastMap) && !report.ran(Stage::Ends), "nobody looks at input 1 or an output");
@@ -66,7 +67,7 @@ fn a_maximised_map_is_the_only_one_computed() {
     let mut s = Session::start();
     s.ask(Command::Maximise(Panel::Map(MapKind::Input0)));
     assert_eq!(s.state().pictures(), [MapKind::Input0]);
-    s.ask(Command::RandomScene(1));
+    s.ask(Command::RandomScene(Kind::Set1));
     let report = s.state().report().unwrap();
     assert!(report.ran(Stage::FirstMap) && !report.ran(Stage::FullMap) && !report.ran(Stage::LastMap));
     s.press(Modifiers::NONE, Key::Escape);

@@ -4,6 +4,7 @@ use crate::session::{Session, step_until};
 use apertura::app::{Command, MapKind, Panel};
 use apertura::radar::Radar;
 use apertura::reconstruct::{Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use eframe::egui::{self};
 use egui_kittest::kittest::Queryable;
@@ -97,6 +98,6 @@ fn a_method_that_panics_is_a_message_and_the_app_goes_on() {
     assert!(!s.state().pictures().contains(&MapKind::Output));
     assert!(s.state().pictures().contains(&MapKind::Target), "the maps go on");
     fails.store(false, Ordering::SeqCst);
-    s.ask(Command::RandomScene(1));
+    s.ask(Command::RandomScene(Kind::Set1));
     assert!(s.state().pictures().contains(&MapKind::Output), "and so does the method");
 }

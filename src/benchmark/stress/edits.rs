@@ -34,7 +34,7 @@ fn random_object(rng: &mut impl RngExt) -> Object {
     if at(1.0) < 0.35 {
         Object::Point(Point { x_metres, y_metres, reflectivity })
     } else {
-        Object::Line(Line { x_metres, y_start_metres: y_metres, spacing_metres: 0.1, count: 5, reflectivity })
+        Object::Line(Line { reflectivity, ..Line::vertical(x_metres, y_metres, 0.1, 5) })
     }
 }
 

@@ -79,7 +79,7 @@ impl Atom {
         match *self {
             Atom::Point { x, y } => Object::Point(Point { x_metres: x, y_metres: y, reflectivity }),
             Atom::Line { x, start, spacing, count } => {
-                Object::Line(Line { x_metres: x, y_start_metres: start, spacing_metres: spacing, count, reflectivity })
+                Object::Line(Line { reflectivity, ..Line::vertical(x, start, spacing, count) })
             }
         }
     }

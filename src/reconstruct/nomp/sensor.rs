@@ -179,7 +179,7 @@ mod tests {
     fn an_atom_is_what_the_exact_formula_gives() {
         let radar = Radar::default();
         let sensor = Sensor::new(&radar);
-        let line = Line { x_metres: 12.0, y_start_metres: 3.0, spacing_metres: 0.11, count: 7, reflectivity: 1.0 };
+        let line = Line::vertical(12.0, 3.0, 0.11, 7);
         let scene = Scene { objects: vec![Object::Line(line)], ..Scene::default() };
         let ends = exact::beat_signal(&radar, &scene.reflectors()).two_ends(&radar);
         let mut value = vec![Complex64::default(); sensor.sample_count()];

@@ -115,7 +115,7 @@ fn under_thermal_noise_it_finds_what_is_there_and_little_else() {
 fn a_shorter_line_is_found() {
     let radar = Radar::default();
     let bin = radar.range_resolution_metres();
-    let line = Line { x_metres: 7.0, y_start_metres: 6.0, spacing_metres: 1.5 * bin, count: 40, reflectivity: 1.0 };
+    let line = Line::vertical(7.0, 6.0, 1.5 * bin, 40);
     let scene = Scene { objects: vec![Object::Line(line), Object::Point(Point::new(-4.0, 15.0))], ..Scene::default() };
     let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
     assert_eq!(found.reflectors.len(), 41);

@@ -1,0 +1,165 @@
+//! Scenes over the whole field: what the named kinds beside the thesis' sets hold.
+
+use super::Kind;
+use crate::scene::{GaussianCluster, Line, Object, Point};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+
+/// Nearest place of an ordinary object.
+const NEAREST_METRES: f64 = 2.0;
+/// Farthest place, as a part of the maximum range.
+const FARTHEST: f64 = 0.95;
+/// Angle from the array's axis that places keep.
+const AXIS_MARGIN_DEGREES: f64 = 5.0;
+
+/// The radar's field, in which objects are placed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Field {
+    pub max_range_metres: f64,
+    pub bin_metres: f64,
+}
+
+impl Field {
+    /// The objects of a scene of `kind`, one of [`Kind::BEYOND`]; none for the others.
+    pub fn objects(&self, kind: Kind, rng: &mut ChaCha8Rng) -> Vec<Object> {
+        match kind {
+            Kind::Clusters => {
+                let mut objects: Vec<_> = (0..rng.random_range(1..=3)).map(|_| self.cluster(rng)).collect();
+                objects.extend(self.some_points(rng));
+                objects
+            }
+            Kind::Walls => {
+                let mut objects: Vec<_> = (0..rng.random_range(1..=3))
+                    .map(|_| {
+                        let direction = rng.random_range(0.0..360.0);
+                        self.wall(direction, self.spacing(rng, 3.0), 20..=100, rng)
+                    })
+                    .collect();
+                objects.extend(self.some_points(rng));
+                objects
+            }
+            Kind::Spacings => {
+                let mut objects: Vec<_> = (0..rng.random_range(1..=3))
+                    .map(|_| self.wall(90.0, self.other_spacing(rng), 20..=100, rng))
+                    .collect();
+                objects.extend(self.some_points(rng));
+                objects
+            }
+            Kind::Corner => {
+                let mut objects = self.corner(rng);
+                objects.push(self.cluster(rng));
+                objects.push(self.point(1.0, rng));
+                objects
+            }
+            Kind::Crowd => (0..rng.random_range(12..=40)).map(|_| self.point(1.0, rng)).collect(),
+            Kind::Dynamic => (0..5)
+                .map(|i| {
+                    let decibels = if i == 0 { 0.0 } else { rng.random_range(-40.0..0.0) };
+                    self.point(10f64.powf(decibels / 20.0), rng)
+                })
+                .collect(),
+            Kind::Near => (0..rng.random_range(1..=3)).map(|_| near_point(rng)).collect(),
+            Kind::Set1 | Kind::Set2 | Kind::Set3 | Kind::Points(_) | Kind::Mixed(_) => Vec::new(),
+        }
+    }
+
+    fn place(&self, rng: &mut ChaCha8Rng) -> [f64; 2] {
+        polar(rng.random_range(NEAREST_METRES..FARTHEST * self.max_range_metres), AXIS_MARGIN_DEGREES, rng)
+    }
+
+    fn point(&self, reflectivity: f64, rng: &mut ChaCha8Rng) -> Object {
+        let [x_metres, y_metres] = self.place(rng);
+        Object::Point(Point { x_metres, y_metres, reflectivity })
+    }
+
+    fn some_points(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
+        (0..rng.random_range(1..=3)).map(|_| self.point(1.0, rng)).collect()
+    }
+
+    fn cluster(&self, rng: &mut ChaCha8Rng) -> Object {
+        let [x_metres, y_metres] = self.place(rng);
+        Object::Gaussian(GaussianCluster {
+            x_metres,
+            y_metres,
+            x_std_metres: rng.random_range(0.2..1.0),
+            y_std_metres: rng.random_range(0.2..1.0),
+            count: rng.random_range(15..=40),
+            seed: rng.random(),
+            reflectivity: 1.0,
+        })
+    }
+
+    fn spacing(&self, rng: &mut ChaCha8Rng, most_bins: f64) -> f64 {
+        rng.random_range(0.5..most_bins) * self.bin_metres
+    }
+
+    /// A spacing that the thesis' lines don't have, by 0.1 bins or more.
+    fn other_spacing(&self, rng: &mut ChaCha8Rng) -> f64 {
+        loop {
+            let bins: f64 = rng.random_range(0.5..3.0);
+            if (bins - 1.0).abs() >= 0.1 && (bins - 1.5).abs() >= 0.1 {
+                return bins * self.bin_metres;
+            }
+        }
+    }
+
+    fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        y >= NEAREST_METRES * AXIS_MARGIN_DEGREES.to_radians().sin()
+            && (NEAREST_METRES..=FARTHEST * self.max_range_metres).contains(&x.hypot(y))
+    }
+
+    /// A wall whose two ends lie in the field. Where 100 starts in a row leave its end outside, it gets shorter.
+    fn wall(
+        &self,
+        direction_degrees: f64,
+        spacing_metres: f64,
+        counts: RangeInclusive<usize>,
+        rng: &mut ChaCha8Rng,
+    ) -> Object {
+        let least = *counts.start();
+        let mut count = rng.random_range(counts);
+        loop {
+            for _ in 0..100 {
+                let [x_metres, y_start_metres] = self.place(rng);
+                let line =
+                    Line { direction_degrees, ..Line::vertical(x_metres, y_start_metres, spacing_metres, count) };
+                if count <= least || self.holds(line.end_metres()) {
+                    return Object::Line(line);
+                }
+            }
+            count = least.max(count / 2);
+        }
+    }
+
+    /// Two walls from one place, at right angles.
+    fn corner(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
+        loop {
+            let first = self.wall(rng.random_range(0.0..360.0), self.spacing(rng, 2.0), 20..=80, rng);
+            let Object::Line(first) = first else { continue };
+            let second = Line {
+                direction_degrees: (first.direction_degrees + 90.0) % 360.0,
+                spacing_metres: self.spacing(rng, 2.0),
+                count: rng.random_range(20..=80),
+                ..first.clone()
+            };
+            if self.holds(first.end_metres()) && self.holds(second.end_metres()) {
+                return vec![Object::Line(first), Object::Line(second)];
+            }
+        }
+    }
+}
+
+fn near_point(rng: &mut ChaCha8Rng) -> Object {
+    let range = 0.3 * (8.0f64 / 0.3).powf(rng.random());
+    let [x, y] = polar(range, 15.0, rng);
+    Object::Point(Point::new(x, y))
+}
+
+/// A place at this range, at a uniform angle that keeps `margin_degrees` from the array's axis.
+fn polar(range_metres: f64, margin_degrees: f64, rng: &mut ChaCha8Rng) -> [f64; 2] {
+    let margin = margin_degrees.to_radians();
+    let angle = rng.random_range(margin..PI - margin);
+    [range_metres * angle.cos(), range_metres * angle.sin()]
+}

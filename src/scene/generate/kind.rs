@@ -1,0 +1,152 @@
+//! Kinds of random scenes and their names.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// A kind of random scene.
+///
+/// The named kinds beside the thesis' three sets cover what those leave out. Where nothing else is said, a place lies anywhere in
+/// the field: at a range between 2 m and 95 % of the maximum range, uniform in range and in angle, 5 degrees or more off the
+/// array's axis, with reflectivity 1. A decibel of reflectivity is one of echo power: 20 dB are a factor of 10 in sigma.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// One point.
+    Set1,
+    /// 3 to 6 points.
+    Set2,
+    /// 3 to 6 objects: always a line and a point near its range, the others points or lines.
+    Set3,
+    /// 1 to 3 Gaussian clusters of 15 to 40 points, each with a standard deviation of 0.2 to 1 m along x and along y, and 1 to 3 points.
+    Clusters,
+    /// 1 to 3 walls at any slant, each of 20 to 100 points at 0.5 to 3 range bins, and 1 to 3 points. Both ends lie in the field.
+    Walls,
+    /// 1 to 3 vertical walls of 20 to 100 points at 0.5 to 3 range bins, not at the 1 and 1.5 bins of the thesis' lines, and 1 to 3 points.
+    Spacings,
+    /// A corner: two perpendicular walls that share an end, each of 20 to 80 points at 0.5 to 2 range bins; a cluster of 15 to 40 points and one point.
+    Corner,
+    /// 12 to 40 points.
+    Crowd,
+    /// 5 points up to 40 dB apart: one at 0 dB, the others uniform in decibels down to -40 dB.
+    Dynamic,
+    /// 1 to 3 points near the array: ranges from 0.3 to 8 m, uniform in their logarithm, 15 degrees or more off the array's axis.
+    Near,
+    /// Experiment 1: this many points (1 to 4).
+    Points(u8),
+    /// Experiment 2: this many objects (1 to 4), each a point or a line with equal chance.
+    Mixed(u8),
+}
+
+impl Kind {
+    /// The three test sets, in order.
+    pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
+
+    /// The kinds beside the test sets.
+    pub const BEYOND: [Kind; 7] =
+        [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
+
+    /// Every kind that has a name of its own: the test sets and what lies beyond them.
+    pub fn all() -> impl Iterator<Item = Kind> {
+        Kind::TEST_SETS.into_iter().chain(Kind::BEYOND)
+    }
+
+    /// 1, 2 or 3 for the thesis' test sets, whose printed figures tables 4.1 to 4.3 hold.
+    pub fn test_set(self) -> Option<usize> {
+        Kind::TEST_SETS.iter().position(|&k| k == self).map(|i| i + 1)
+    }
+
+    /// What such a scene holds, in a few words.
+    pub fn description(self) -> &'static str {
+        match self {
+            Kind::Set1 => "one point",
+            Kind::Set2 => "3 to 6 points",
+            Kind::Set3 => "3 to 6 points and lines",
+            Kind::Clusters => "Gaussian clusters and points",
+            Kind::Walls => "walls at any slant and points",
+            Kind::Spacings => "vertical walls at other spacings and points",
+            Kind::Corner => "two perpendicular walls, a cluster and a point",
+            Kind::Crowd => "12 to 40 points",
+            Kind::Dynamic => "5 points up to 40 dB apart",
+            Kind::Near => "points from 0.3 m",
+            Kind::Points(_) => "points of experiment 1",
+            Kind::Mixed(_) => "points and lines of experiment 2",
+        }
+    }
+
+    /// Number of the kind's random streams.
+    pub(super) fn stream(self) -> u64 {
+        match self {
+            Kind::Set1 => 1,
+            Kind::Set2 => 2,
+            Kind::Set3 => 3,
+            Kind::Clusters => 4,
+            Kind::Walls => 5,
+            Kind::Spacings => 6,
+            Kind::Corner => 7,
+            Kind::Crowd => 8,
+            Kind::Dynamic => 9,
+            Kind::Near => 10,
+            Kind::Points(n) => 0x100 + u64::from(n),
+            Kind::Mixed(n) => 0x200 + u64::from(n),
+        }
+    }
+}
+
+/// The name that the command line takes: `1` to `3` for the test sets, a word for the others.
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match self {
+            Kind::Set1 => "1",
+            Kind::Set2 => "2",
+            Kind::Set3 => "3",
+            Kind::Clusters => "clusters",
+            Kind::Walls => "walls",
+            Kind::Spacings => "spacings",
+            Kind::Corner => "corner",
+            Kind::Crowd => "crowd",
+            Kind::Dynamic => "dynamic",
+            Kind::Near => "near",
+            Kind::Points(n) => return write!(f, "points-{n}"),
+            Kind::Mixed(n) => return write!(f, "mixed-{n}"),
+        };
+        f.pad(name)
+    }
+}
+
+impl FromStr for Kind {
+    type Err = String;
+
+    /// Reads the name of one of [`Kind::all`].
+    fn from_str(s: &str) -> Result<Self, String> {
+        let wanted = s.trim();
+        Kind::all().find(|k| k.to_string() == wanted).ok_or_else(|| {
+            let names: Vec<String> = Kind::BEYOND.iter().map(Kind::to_string).collect();
+            format!("there are no scenes called \"{s}\"; expected test set 1, 2 or 3, or {}", names.join(", "))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_leads_back_to_its_kind() {
+        for kind in Kind::all() {
+            assert_eq!(kind.to_string().parse(), Ok(kind));
+        }
+        let error = "wall".parse::<Kind>().unwrap_err();
+        assert!(error.contains("\"wall\"") && error.contains("walls, spacings"), "{error}");
+    }
+
+    #[test]
+    fn no_two_kinds_share_a_stream() {
+        let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
+        let mut streams: Vec<u64> = Kind::all().chain(counted).map(Kind::stream).collect();
+        let kinds = streams.len();
+        streams.sort_unstable();
+        streams.dedup();
+        assert_eq!(streams.len(), kinds);
+    }
+}

@@ -1,0 +1,78 @@
+"""What the training programs share: figures on validation scenes, and files that are replaced in one step."""
+import os
+import subprocess
+
+import numpy as np
+import torch
+
+import scenes as sc
+
+P_FA = {1: 0.0037, 2: 0.0056, 3: 0.0102}
+
+
+def unit(maps):
+    """Every map of a batch stretched from its minimum and maximum to [0, 1]."""
+    lo, hi = maps.amin((1, 2), keepdim=True), maps.amax((1, 2), keepdim=True)
+    return (maps - lo) / (hi - lo)
+
+
+def validation_scenes(seed, count, entry):
+    """For each of the three sets, what `entry(points, rng)` makes of `count` validation scenes."""
+    sets = {}
+    for k in P_FA:
+        sets[k] = []
+        for i in range(count):
+            rng = sc.rng_for("validation", seed, 10_000 * k + i)
+            sets[k] += entry(sc.GENERATORS[k](rng), rng)
+    return sets
+
+
+@torch.no_grad()
+def figures(estimate, sets):
+    """SE, and P_D with its threshold at the thesis' P_FA, for each set; `eta` is where the mean P_FA is the thesis' mean.
+
+    `estimate` turns a list of entries into Lambda of output and target, [n, 512, 1024] each."""
+    etas = np.linspace(0.5, 1.0, 251)
+    report, alarms = {}, []
+    for k, entries in sets.items():
+        se, pd, pfa = [], [], []
+        for i in range(0, len(entries), 4):
+            for o, t in zip(*estimate(entries[i : i + 4])):
+                se.append(float(((o - t) ** 2).sum()))
+                mask = t > 0.9
+                on, off = np.sort(o[mask].numpy()), np.sort(o[~mask].numpy())
+                pd.append(1 - np.searchsorted(on, etas, "right") / on.size)
+                pfa.append(1 - np.searchsorted(off, etas, "right") / off.size)
+        pd, pfa = np.mean(pd, 0), np.mean(pfa, 0)
+        alarms.append(pfa)
+        j = int(np.argmax(pfa <= P_FA[k]))
+        report[str(k)] = {"se": float(np.mean(se)), "pd": float(pd[j]) * 100, "eta": float(etas[j])}
+    mean = sum(P_FA.values()) / len(P_FA)
+    report["eta"] = float(etas[int(np.argmax(np.mean(alarms, 0) <= mean))])
+    return report
+
+
+def commit():
+    """The commit that the programs of this folder run from, with a mark where they differ from it."""
+    here = os.path.dirname(os.path.abspath(__file__))
+
+    def git(*command):
+        return subprocess.run(["git", "-C", here, *command], capture_output=True, text=True).stdout.strip()
+
+    return (git("rev-parse", "--short=12", "HEAD") or "unknown") + ("-changed" if git("status", "--porcelain", ".") else "")
+
+
+def save(path, state):
+    torch.save(state, path + ".part")
+    os.replace(path + ".part", path)
+
+
+def export(model_state, path, meta, report, count):
+    """Writes weights as safetensors with their record: `meta` and the figures of `report` on `count` scenes a set."""
+    from safetensors.torch import save_file
+    meta = {**meta, "commit": commit(), "eta": f"{report['eta']:.3f}", "validation": f"{count} scenes a set: " + "; ".join(
+        f"set {k}: SE {report[str(k)]['se']:.0f}, P_D {report[str(k)]['pd']:.2f} % at P_FA {100 * P_FA[k]:.2f} %" for k in P_FA)}
+    for name, value in meta.items():
+        print(f"{name}: {value}")
+    save_file({k: v.contiguous() for k, v in model_state.items()}, path + ".part", metadata=meta)
+    os.replace(path + ".part", path)

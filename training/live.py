@@ -1,0 +1,168 @@
+"""The live network: PyTorch twin of `src/network/live/module.rs`, with the same layer names and shapes."""
+import math
+
+import torch
+import torch.nn as nn
+import torch.nn.functional as F
+
+LN10 = math.log(10.0)
+ROWS, COLS, FINE, GRID = 512, 1024, 256, 64
+IN_CHANNELS = 16 + 8 + 6 + 2 + 4
+
+
+def wrap_cols(x, n=1):
+    return torch.cat([x[..., -n:], x, x[..., :n]], -1)
+
+
+class Conv(nn.Module):
+    """3x3 convolution, circular in angle (columns), zero-padded in range (rows)."""
+
+    def __init__(self, cin, cout):
+        super().__init__()
+        self.conv = nn.Conv2d(cin, cout, 3, padding=(1, 0))
+
+    def forward(self, x):
+        return self.conv(wrap_cols(x))
+
+
+class Context(nn.Module):
+    """Row, column and global means, mixed and broadcast back."""
+
+    def __init__(self, c):
+        super().__init__()
+        self.row = nn.Conv2d(2 * c, c, 1)
+        self.col = nn.Conv2d(2 * c, c, 1)
+
+    def forward(self, x):
+        r = torch.cat([x.mean(3, keepdim=True), x.amax(3, keepdim=True)], 1)
+        c = torch.cat([x.mean(2, keepdim=True), x.amax(2, keepdim=True)], 1)
+        return x + F.relu(self.row(r)) + F.relu(self.col(c))
+
+
+class Block(nn.Module):
+    """Residual block of two convolutions; the second starts at zero."""
+
+    def __init__(self, c, context=False):
+        super().__init__()
+        self.conv1 = Conv(c, c)
+        self.conv2 = Conv(c, c)
+        self.context = Context(c) if context else None
+        nn.init.zeros_(self.conv2.conv.weight)
+        nn.init.zeros_(self.conv2.conv.bias)
+
+    def forward(self, x):
+        h = self.conv1(F.relu(x))
+        if self.context is not None:
+            h = self.context(h)
+        return x + self.conv2(F.relu(h))
+
+
+def shuffle_cols(x, r):
+    """[B, C*r, H, W] -> [B, C, H, W*r]."""
+    b, c, h, w = x.shape
+    return x.view(b, c // r, r, h, w).permute(0, 1, 3, 4, 2).reshape(b, c // r, h, w * r)
+
+
+def unshuffle_cols(x, r):
+    b, c, h, w = x.shape
+    return x.view(b, c, h, w // r, r).permute(0, 1, 4, 2, 3).reshape(b, c * r, h, w // r)
+
+
+def up2(x):
+    """[B, 4C, H, W] -> [B, C, 2H, 2W]."""
+    return F.pixel_shuffle(x, 2)
+
+
+def circulant(log_kernel, n):
+    """Matrix [n, n] of the even circular kernel whose log10 at distances 0..n/2 is `log_kernel`."""
+    i = torch.arange(n)
+    d = (i[:, None] - i[None, :]) % n
+    d = torch.minimum(d, n - d)
+    return torch.exp(LN10 * log_kernel)[d]
+
+
+def tail_prior(n, offset):
+    """log10 of the side lobes of a Hann window at distances 0..n/2: they fall as 1/k^3."""
+    k = torch.arange(n // 2 + 1, dtype=torch.float32)
+    return offset - 3 * torch.log10(k + 1)
+
+
+class Live(nn.Module):
+    def __init__(self, c=(16, 32, 64, 96), blocks=(1, 2, 2, 3), fine=16):
+        super().__init__()
+        c0, c1, c2, c3 = c
+        b0, b1, b2, b3 = blocks
+        self.stem = Conv(IN_CHANNELS, c0)
+        self.enc0 = nn.Sequential(*[Block(c0) for _ in range(b0)])
+        self.down1 = nn.Conv2d(c0, c1, 2, 2)
+        self.enc1 = nn.Sequential(*[Block(c1) for _ in range((b1 + 1) // 2)])
+        self.down2 = nn.Conv2d(c1, c2, 2, 2)
+        self.enc2 = nn.Sequential(*[Block(c2, True) for _ in range((b2 + 1) // 2)])
+        self.down3 = nn.Conv2d(c2, c3, 2, 2)
+        self.enc3 = nn.Sequential(*[Block(c3, True) for _ in range(b3)])
+        self.up2 = nn.Conv2d(c3, 4 * c2, 1)
+        self.dec2 = nn.Sequential(*[Block(c2, True) for _ in range(b2)])
+        self.up1 = nn.Conv2d(c2, 4 * c1, 1)
+        self.dec1 = nn.Sequential(*[Block(c1) for _ in range(b1)])
+        self.up0 = nn.Conv2d(c1, 4 * c0, 1)
+        self.dec0 = nn.Sequential(*[Block(c0) for _ in range(b0)])
+        self.widen = Conv(c0, 4 * 8)
+        self.fine1 = Conv(8 + 4, fine)
+        self.fine2 = nn.Conv2d(fine, 8, 1)
+        self.row_sources = nn.Conv2d(c0, 2, 1)
+        self.col_kernel = nn.Parameter(tail_prior(ROWS, -0.5))
+        self.row_kernel = nn.Parameter(tail_prior(128, -1.0))
+        self.scalar1 = nn.Linear(2 * c3 + 2, 64)
+        self.scalar2 = nn.Linear(64, 2)
+        nn.init.zeros_(self.scalar2.weight)
+        nn.init.zeros_(self.scalar2.bias)
+        with torch.no_grad():
+            for m in (self.fine2, self.row_sources):
+                m.weight.mul_(0.3)
+                m.bias.fill_(-1.0)
+        r = torch.arange(ROWS, dtype=torch.float32)[:, None].expand(ROWS, GRID)
+        u = ((torch.arange(GRID, dtype=torch.float32) - GRID // 2) / (GRID // 2))[None, :].expand(ROWS, GRID)
+        grid = torch.stack([r / 256 - 1, torch.log10(r + 4) - 2, u, torch.sqrt(1 - u * u)])
+        self.register_buffer("grid", grid, persistent=False)
+
+    def forward(self, fine, coarse, rows, scalars):
+        """log10 |Y_full| [B, 512, 1024] in decades above the gain, and its minimum [B]."""
+        b = fine.shape[0]
+        fine_n = ((fine + 3) / 3).clamp(-4, 2)
+        coarse_n = torch.cat([((coarse[:, :4] + 3) / 3).clamp(-4, 2), coarse[:, 4:]], 1)
+        rows_n = torch.cat([rows[:, :4], ((rows[:, 4:] + 3) / 3).clamp(-4, 2)], 1)
+        scalars_n = (scalars + 8) / 3
+        x = torch.cat([
+            unshuffle_cols(fine_n, 4), coarse_n, rows_n[..., None].expand(-1, -1, -1, GRID),
+            scalars_n[:, :, None, None].expand(-1, -1, ROWS, GRID), self.grid.expand(b, -1, -1, -1)], 1)
+        x0 = self.enc0(self.stem(x.contiguous(memory_format=torch.channels_last)))
+        x1 = self.enc1(self.down1(x0))
+        x2 = self.enc2(self.down2(x1))
+        x3 = self.enc3(self.down3(x2))
+        y2 = self.dec2(x2 + up2(self.up2(x3)))
+        y1 = self.dec1(x1 + up2(self.up1(y2)))
+        y0 = F.relu(self.dec0(x0 + up2(self.up0(y1))))
+        pooled = torch.cat([x3.mean((2, 3)), x3.amax((2, 3))], 1).float()
+        s = self.scalar2(F.relu(self.scalar1(torch.cat([pooled, scalars_n], 1)))).float()
+        f = torch.cat([shuffle_cols(self.widen(y0), 4), fine_n], 1)
+        f = self.fine2(F.relu(self.fine1(f)))
+        heads = shuffle_cols(f, 4).float() * 3 - 3
+        a = heads.clamp(-18, 4)
+        local = torch.exp(LN10 * a[:, 0])
+        column = circulant(self.col_kernel, ROWS) @ torch.exp(LN10 * a[:, 1])
+        sharp = local + column
+        src = shuffle_cols(self.row_sources(y0), 2)[:, 0].float() * 3 - 3
+        wide = torch.exp(LN10 * src.clamp(-18, 4)) + sharp.view(b, ROWS, 128, 8).mean(3)
+        row = (wide @ circulant(self.row_kernel, 128)).repeat_interleave(8, 2)
+        floor = scalars[:, 0] + s[:, 0]
+        total = sharp + row + torch.exp(LN10 * floor)[:, None, None]
+        log = torch.log(total) / LN10
+        minimum = floor - 2.5 + s[:, 1]
+        return log, minimum
+
+
+def normalise(log, minimum):
+    """Lambda in [0, 1]."""
+    m = minimum[:, None, None]
+    top = log.amax((1, 2), keepdim=True)
+    return (log - m) / (top - m)

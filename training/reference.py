@@ -1,0 +1,58 @@
+"""Writes the references that the tests of `src/network` compare with the Rust side: a tiny live network with random weights,
+the samples of a small scene, and what this twin makes of them. Usage: python3 reference.py ../../tests/data
+"""
+import sys
+
+import numpy as np
+import torch
+from safetensors.torch import save_file
+
+import features as ft
+import scenes as sc
+from live import Live
+from thesis import Thesis
+
+POINTS = np.array([[3.0, 12.0], [-9.5, 17.0], [20.0, 6.0]])
+
+
+def main(folder):
+    torch.manual_seed(7)
+    model = Live((4, 6, 8, 10), (1, 1, 1, 1), 4)
+    with torch.no_grad():
+        for p in model.parameters():
+            if p.dim() > 1:
+                p.add_(0.05 * torch.randn_like(p))
+    samples = sc.ends(sc.simulate(POINTS, np.random.default_rng(0), floor=False))
+    fine, coarse, rows, scalars, gain = ft.features(samples)
+    with torch.no_grad():
+        log, minimum = model(fine[None], coarse[None], rows[None], scalars[None])
+    weights = {k: v.contiguous() for k, v in model.state_dict().items()}
+    save_file(weights, f"{folder}/live_reference_weights.safetensors", metadata={"network": "live"})
+    tensors = {
+        "fine": fine[:, ::32, ::8].contiguous(), "coarse": coarse[:, ::32, ::4].contiguous(), "rows": rows[:, ::8].contiguous(),
+        "scalars": scalars, "gain": gain.float().reshape(1), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum,
+        "points": torch.from_numpy(POINTS).float(),
+    }
+    save_file(tensors, f"{folder}/live_reference.safetensors", metadata={"network": "live-reference"})
+
+
+def thesis(folder):
+    torch.manual_seed(3)
+    model = Thesis(3, 3)
+    with torch.no_grad():
+        for name, t in model.state_dict().items():
+            if name.endswith("running_mean") or name.endswith("bias"):
+                t.normal_(0, 0.2)
+            elif name.endswith("running_var"):
+                t.uniform_(0.3, 2)
+    model.eval()
+    x = torch.randn(1, 4, 16, 32)
+    with torch.no_grad():
+        out = model(x)
+    save_file(model.state_dict(), f"{folder}/thesis_reference_weights.safetensors")
+    torch.save(model.state_dict(), f"{folder}/thesis_reference_weights.pt")
+    save_file({"input": x, "output": out}, f"{folder}/thesis_reference.safetensors")
+
+
+main(sys.argv[1])
+thesis(sys.argv[1])
