@@ -34,7 +34,7 @@ def main():
         from safetensors.torch import load_file
     except ImportError as missing:
         sys.exit(f"skipped: {missing.name} is not installed")
-    sys.path.insert(0, os.path.join(HERE, "twin"))
+    sys.path.insert(0, os.path.join(HERE, "..", "training"))
     from live import Live
 
     torch.set_num_threads(THREADS)
@@ -42,7 +42,7 @@ def main():
     model = Live()
     model.load_state_dict(load_file(WEIGHTS))
     model.eval()
-    inputs = (torch.randn(1, 4, 512, 256), torch.randn(1, 8, 512, 64), torch.randn(1, 6, 512), torch.tensor([[-11.6, -5.4]]))
+    inputs = (torch.randn(1, 4, 512, 256), torch.randn(1, 10, 512, 64), torch.randn(1, 6, 512), torch.tensor([[-11.6, -5.4]]))
     with torch.no_grad():
         print(f"PyTorch {torch.__version__}: {median(lambda: model(*inputs)):.1f} ms")
         fast = copy.deepcopy(model).to(memory_format=torch.channels_last)

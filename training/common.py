@@ -1,13 +1,18 @@
 """What the training programs share: figures on validation scenes, and files that are replaced in one step."""
 import os
-import subprocess
 
 import numpy as np
 import torch
 
 import scenes as sc
 
+#: False-alarm rates at which P_D is given: the thesis' for its own sets.
 P_FA = {1: 0.0037, 2: 0.0056, 3: 0.0102}
+ELSEWHERE = 0.01
+
+
+def false_alarm(kind):
+    return P_FA.get(kind, ELSEWHERE)
 
 
 def unit(maps):
@@ -16,20 +21,20 @@ def unit(maps):
     return (maps - lo) / (hi - lo)
 
 
-def validation_scenes(seed, count, entry):
-    """For each of the three sets, what `entry(points, rng)` makes of `count` validation scenes."""
+def validation_scenes(seed, count, entry, kinds=tuple(P_FA)):
+    """For each of the kinds, what `entry(scene, rng)` makes of `count` validation scenes."""
     sets = {}
-    for k in P_FA:
+    for number, k in enumerate(kinds, 1):
         sets[k] = []
         for i in range(count):
-            rng = sc.rng_for("validation", seed, 10_000 * k + i)
+            rng = sc.rng_for("validation", seed, 10_000 * number + i)
             sets[k] += entry(sc.GENERATORS[k](rng), rng)
     return sets
 
 
 @torch.no_grad()
 def figures(estimate, sets):
-    """SE, and P_D with its threshold at the thesis' P_FA, for each set; `eta` is where the mean P_FA is the thesis' mean.
+    """SE, and P_D with its threshold at `false_alarm(kind)`, for each kind; `eta` is where the mean P_FA is the mean of these.
 
     `estimate` turns a list of entries into Lambda of output and target, [n, 512, 1024] each."""
     etas = np.linspace(0.5, 1.0, 251)
@@ -45,21 +50,11 @@ def figures(estimate, sets):
                 pfa.append(1 - np.searchsorted(off, etas, "right") / off.size)
         pd, pfa = np.mean(pd, 0), np.mean(pfa, 0)
         alarms.append(pfa)
-        j = int(np.argmax(pfa <= P_FA[k]))
-        report[str(k)] = {"se": float(np.mean(se)), "pd": float(pd[j]) * 100, "eta": float(etas[j])}
-    mean = sum(P_FA.values()) / len(P_FA)
+        j = int(np.argmax(pfa <= false_alarm(k)))
+        report[str(k)] = {"se": float(np.mean(se)), "pd": float(pd[j]) * 100, "eta": float(etas[j]), "at": false_alarm(k)}
+    mean = float(np.mean([false_alarm(k) for k in sets]))
     report["eta"] = float(etas[int(np.argmax(np.mean(alarms, 0) <= mean))])
     return report
-
-
-def commit():
-    """The commit that the programs of this folder run from, with a mark where they differ from it."""
-    here = os.path.dirname(os.path.abspath(__file__))
-
-    def git(*command):
-        return subprocess.run(["git", "-C", here, *command], capture_output=True, text=True).stdout.strip()
-
-    return (git("rev-parse", "--short=12", "HEAD") or "unknown") + ("-changed" if git("status", "--porcelain", ".") else "")
 
 
 def save(path, state):
@@ -68,10 +63,11 @@ def save(path, state):
 
 
 def export(model_state, path, meta, report, count):
-    """Writes weights as safetensors with their record: `meta` and the figures of `report` on `count` scenes a set."""
+    """Writes weights as safetensors with their record: `meta` and the figures of `report` on `count` scenes a kind."""
     from safetensors.torch import save_file
-    meta = {**meta, "commit": commit(), "eta": f"{report['eta']:.3f}", "validation": f"{count} scenes a set: " + "; ".join(
-        f"set {k}: SE {report[str(k)]['se']:.0f}, P_D {report[str(k)]['pd']:.2f} % at P_FA {100 * P_FA[k]:.2f} %" for k in P_FA)}
+    meta = {**meta, "eta": f"{report['eta']:.3f}", "validation": f"{count} scenes a set: " + "; ".join(
+        f"{'set ' if k[0] in '123' else ''}{k}: SE {v['se']:.0f}, P_D {v['pd']:.2f} % at P_FA {100 * v['at']:.2f} %"
+        for k, v in report.items() if k != "eta")}
     for name, value in meta.items():
         print(f"{name}: {value}")
     save_file({k: v.contiguous() for k, v in model_state.items()}, path + ".part", metadata=meta)

@@ -81,8 +81,29 @@ def capon(z):
     return 0.5 * (torch.log10(power.clamp_min(1e-300)).float()[:, None] - torch.log10(den.clamp_min(1e-6)))
 
 
+# A reflector's blob has the same phase in all of its cells once the phases of mid-chirp and of an end's middle are taken out. Half an element off
+# the middle, so that the angle axis closes: its phase is the same at cos = -1 and cos = 1.
+_ROW_PHASE = torch.from_numpy(np.exp(1j * np.pi * (N_R - 1) / N_R * np.arange(N_R)))[:, None]
+_COLUMN_PHASE = torch.from_numpy(np.exp(1j * np.pi * 6 * _cosines(COARSE)))[None, :]
+
+
+def phase_between(maps):
+    """Cosine and sine [2, 512, 64] of twice the phase between the two ends' maps, both registered on the polar grid of the array's centre: one
+    colour for every cell of a reflector, another for the next reflector. Twice, because side lobes change their sign."""
+    ends = []
+    for e in range(2):
+        smooth = maps[e] * _ROW_PHASE * _COLUMN_PHASE
+        # Only the phase is wanted, and f32 holds no more than 38 decades.
+        smooth = smooth / (smooth.abs().amax() + 1e-300)
+        ends.append(torch.complex(*(_register(part.float(), COARSE, "c", e) for part in (smooth.real, smooth.imag))).to(torch.complex128))
+    cross = ends[0] * ends[1].conj()
+    cross = (cross / (cross.abs() + 1e-300)) ** 2
+    cross = cross.to(torch.complex64)
+    return torch.stack([cross.real, cross.imag])
+
+
 def features(samples):
-    """samples [2, 12, 512] complex128 -> fine [4, 512, 256], coarse [13, 512, 64], scalars [2], gain (decades)."""
+    """samples [2, 12, 512] complex128 -> fine [4, 512, 256], coarse [10, 512, 64], rows [6, 512], scalars [2], gain (decades)."""
     gain = 0.5 * torch.log10((samples.abs() ** 2).mean() + 1e-300)
     samples = samples / 10**gain
     z = torch.fft.fft(samples * hann(N_R), norm="ortho").transpose(1, 2)  # [2, 512, 12]
@@ -101,6 +122,7 @@ def features(samples):
         step = maps[e] * torch.roll(maps[e], 1, 0).conj()
         step = (step / (step.abs() + 1e-300)).to(torch.complex64)
         coarse += [step.real, step.imag]
+    coarse += list(phase_between(maps))
         # local angle: phase step along the elements of the row, an estimate of the mean cosine
     lag = (z[:, :, 1:] * z[:, :, :-1].conj()).sum(2)
     lag = (lag / ((z.abs() ** 2).sum(2) + 1e-300)).to(torch.complex64)

@@ -7,7 +7,8 @@ import torch.nn.functional as F
 
 LN10 = math.log(10.0)
 ROWS, COLS, FINE, GRID = 512, 1024, 256, 64
-IN_CHANNELS = 16 + 8 + 6 + 2 + 4
+COARSE_CHANNELS = 10
+IN_CHANNELS = 16 + COARSE_CHANNELS + 6 + 2 + 4
 
 
 def wrap_cols(x, n=1):
@@ -159,6 +160,17 @@ class Live(nn.Module):
         log = torch.log(total) / LN10
         minimum = floor - 2.5 + s[:, 1]
         return log, minimum
+
+
+def widened(weights):
+    """Weights of the first edition, which had no phase between the ends, with channels for it that start at zero."""
+    stem = weights["stem.conv.weight"]
+    missing = IN_CHANNELS - stem.shape[1]
+    if missing == 0:
+        return weights
+    at = 16 + COARSE_CHANNELS - missing
+    zeros = torch.zeros(stem.shape[0], missing, *stem.shape[2:])
+    return {**weights, "stem.conv.weight": torch.cat([stem[:, :at], zeros, stem[:, at:]], 1)}
 
 
 def normalise(log, minimum):

@@ -1,5 +1,5 @@
 """Writes the references that the tests of `src/network` compare with the Rust side: a tiny live network with random weights,
-the samples of a small scene, and what this twin makes of them. Usage: python3 reference.py ../../tests/data
+the samples of a small scene, and what this twin makes of them. Usage: python3 reference.py ../tests/data
 """
 import sys
 

@@ -1,23 +1,24 @@
 """Trains the live network on scenes simulated as it goes: the PyTorch twin of `apertura train live`, which trains several times as fast
-on a CPU (bfloat16, channels last). The shipped weights come from here.
+on a CPU. The shipped weights come from here.
 
     python3 train_live.py --out DIR --minutes 80                     # start, or go on from DIR/checkpoint.pt
     python3 train_live.py --out DIR --minutes 80 \\
-        --init ../../assets/weights/live.safetensors --lr 5e-4       # go on from the shipped weights
+        --init ../assets/weights/live.safetensors                    # go on from the shipped weights
     python3 train_live.py --out DIR --validation 24 \\
-        --export ../../assets/weights/live.safetensors               # write the averaged weights and their figures, and stop
+        --export ../assets/weights/live.safetensors                  # write the averaged weights and their figures, and stop
+    python3 train_live.py --validation 24 --judge FILE               # figures of any weights on the validation scenes, and stop
 
-Needs torch, numpy and safetensors. The learning rate follows a cosine over `--minutes` of wall-clock time, counted over all
-parts of a run. Two workers take steps on the same weights without waiting for each other, so a run does not repeat bit for bit.
-A checkpoint holds weights, their moving average, optimizer, generator state and the number of scenes drawn, and is replaced in
-one step. After a resume the scene buffers fill again with the next scenes of the training stream.
+Needs torch, numpy and safetensors. The learning rate rises over 200 steps and then falls with the square root of the steps of this run; so a run needs
+no end, and a moving average of the weights is what is validated and written. With `--workers` above 1 they take steps on the same weights
+without waiting for each other, and a run does not repeat bit for bit. A checkpoint holds weights, their moving average, optimizer, generator
+state, the number of scenes drawn and the record of every part of the run, and is replaced in one step. After a resume the scene buffers fill
+again with the next scenes of the training stream.
 
-Training, validation and test scenes come from generators with different keys; the figures in the README come from
-`apertura evaluate`, whose test scenes this program never sees.
+Every scene comes with a noise draw of its own, a third of them over thermal noise from 60 to 10 dB. Training, validation and test scenes come
+from generators with different keys; the figures in the README come from `apertura evaluate`, whose test scenes this program never sees.
 """
 import argparse
 import json
-import math
 import os
 import time
 
@@ -25,12 +26,18 @@ import torch
 import torch.multiprocessing as mp
 
 import features as ft
+import provenance
 import scenes as sc
 from common import export, figures, save, unit, validation_scenes
-from live import Live, normalise
+from live import Live, normalise, widened
 
-def make_entry(points, rng, with_mirror, snr_share=0.0):
-    snr = rng.uniform(20, 60) if rng.random() < snr_share else None
+WARM_UP = 200
+#: What the validation figures are given for: the kinds over the thesis' floor, and three sets over thermal noise.
+KINDS = tuple(k for k in sc.MIXTURE if k != "field")
+NOISY = {"2 at 40 dB": (2, 40), "2 at 20 dB": (2, 20), "3 at 40 dB": (3, 40)}
+
+
+def make_entry(points, rng, with_mirror=False, snr=None):
     y = sc.simulate(points, rng, snr_db=snr)
     log = sc.log_map(y)
     samples = sc.ends(y)
@@ -42,13 +49,19 @@ def make_entry(points, rng, with_mirror, snr_share=0.0):
     return out
 
 
-def plain_entry(points, rng):
-    return make_entry(points, rng, False)
-
-
 def batch_of(entries):
     fine, coarse, rows, scalars, target = (torch.stack(t).float() for t in zip(*entries))
     return (fine, coarse, rows, scalars), target
+
+
+def validation_sets(seed, count):
+    sets = validation_scenes(seed, count, make_entry, KINDS)
+    for number, (name, (kind, snr)) in enumerate(NOISY.items(), len(KINDS) + 1):
+        sets[name] = []
+        for i in range(count):
+            rng = sc.rng_for("validation", seed, 10_000 * number + i)
+            sets[name] += make_entry(sc.GENERATORS[kind](rng), rng, snr=snr)
+    return sets
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -70,108 +83,61 @@ def estimate_with(model):
     return estimate
 
 
-def main():
-    ap = argparse.ArgumentParser()
-    ap.add_argument("--out", required=True)
-    ap.add_argument("--minutes", type=float, default=80)
-    ap.add_argument("--seed", type=int, default=0)
-    ap.add_argument("--batch", type=int, default=4)
-    ap.add_argument("--new-scenes", type=int, default=1, help="scenes simulated a step (each enters with its mirror image)")
-    ap.add_argument("--buffer", type=int, default=512, help="maps kept a worker")
-    ap.add_argument("--workers", type=int, default=2)
-    ap.add_argument("--threads", type=int, default=1, help="threads a worker")
-    ap.add_argument("--lr", type=float, default=1.5e-3)
-    ap.add_argument("--edge-weight", type=float, default=0.0)
-    ap.add_argument("--validation", type=int, default=12, help="validation scenes a set")
-    ap.add_argument("--validate-every", type=float, default=5, help="minutes")
-    ap.add_argument("--snr-share", type=float, default=0.12, help="part of the scenes over thermal noise, 20 to 60 dB SNR")
-    ap.add_argument("--export", help="write the averaged weights to this file, with their validation figures, and stop")
-    ap.add_argument("--init", help="safetensors file whose matching tensors start the weights")
-    args = ap.parse_args()
-    torch.set_num_threads(args.threads)
-    torch.manual_seed(args.seed)
-    os.makedirs(args.out, exist_ok=True)
-    path = os.path.join(args.out, "checkpoint.pt")
-    log_path = os.path.join(args.out, "log.jsonl")
-
-    model = Live().to(memory_format=torch.channels_last)
-    average = Live()
-    average.load_state_dict(model.state_dict())
-    optimizer = torch.optim.AdamW(model.parameters(), lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
-    pick = torch.Generator().manual_seed(args.seed)
-    step, drawn, elapsed, best = 0, 0, 0.0, {}
-    if os.path.exists(path):
-        state = torch.load(path, weights_only=True)
-        model.load_state_dict(state["model"])
-        average.load_state_dict(state["average"])
-        optimizer.load_state_dict(state["optimizer"])
-        pick.set_state(state["pick"])
-        step, drawn, elapsed, best = state["step"], state["drawn"], state["elapsed"], state["report"]
-    elif args.init:
-        from safetensors.torch import load_file
-        old = load_file(args.init)
-        own = model.state_dict()
-        fit = {k: v for k, v in old.items() if k in own and own[k].shape == v.shape}
-        print(f"initial weights: {len(fit)} of {len(own)} tensors from {args.init}", flush=True)
-        model.load_state_dict({**own, **fit})
-        average.load_state_dict(model.state_dict())
-    if args.export:
-        report = figures(estimate_with(average), validation_scenes(args.seed, args.validation, plain_entry))
-        meta = {"network": "live", "recipe": "live", "trainer": "benches/twin/train_live.py (PyTorch)", "seed": str(args.seed),
-                "steps": str(step), "scenes_simulated": str(drawn), "maps_seen": str(step * args.batch),
-                "minutes": f"{elapsed / 60:.0f}"}
-        export(average.state_dict(), args.export, meta, report, args.validation)
-        return
-    model.share_memory()
-    counter = torch.tensor([step, drawn], dtype=torch.int64).share_memory_()
-    began = time.time() - elapsed
-    helpers = [mp.Process(target=train, args=(args, model, counter, began, w), daemon=True) for w in range(1, args.workers)]
-    for h in helpers:
-        h.start()
-
-    sets = validation_scenes(args.seed, args.validation, plain_entry)
-    clock = {"save": time.time(), "validate": time.time(), "report": best}
-
-    def after(step, drawn, running, elapsed, optimizer, pick):
-        decay = min(0.998, (1 + step) / (10 + step))
-        with torch.no_grad():
-            for a, p in zip(average.parameters(), model.parameters()):
-                a.lerp_(p, 1 - decay)
-        done = elapsed > args.minutes * 60
-        if time.time() - clock["validate"] > args.validate_every * 60 or done:
-            clock["report"] = figures(estimate_with(average), sets)
-            clock["validate"] = time.time()
-            with open(log_path, "a") as f:
-                line = {"step": step, "drawn": drawn, "elapsed": elapsed, "loss": running, **clock["report"]}
-                f.write(json.dumps(line) + "\n")
-            print("validation", json.dumps(clock["report"]), flush=True)
-        if time.time() - clock["save"] > 120 or done:
-            save(path, {"model": model.state_dict(), "average": average.state_dict(), "optimizer": optimizer.state_dict(),
-                        "pick": pick.get_state(), "step": step, "drawn": drawn, "elapsed": elapsed,
-                        "report": clock["report"]})
-            clock["save"] = time.time()
-
-    train(args, model, counter, began, 0, optimizer, pick, after)
-    for h in helpers:
-        h.terminate()
+def optimizer_of(model, args):
+    return torch.optim.AdamW(model.parameters(), lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
 
 
-def train(args, model, counter, began, worker, optimizer=None, pick=None, after=None):
+class Run:
+    """Weights, their average, optimizer and record, as a checkpoint holds them."""
+
+    def __init__(self, args):
+        self.path = os.path.join(args.out, "checkpoint.pt")
+        self.model, self.average = Live().to(memory_format=torch.channels_last), Live()
+        self.optimizer = optimizer_of(self.model, args)
+        self.pick = torch.Generator().manual_seed(args.seed)
+        self.step, self.drawn, self.batch, self.parts, initial = 0, 0, args.batch, [], None
+        if os.path.exists(self.path):
+            state = torch.load(self.path, weights_only=True)
+            self.model.load_state_dict(state["model"])
+            self.optimizer.load_state_dict(state["optimizer"])
+            self.pick.set_state(state["pick"])
+            self.step, self.drawn, self.parts = state["step"], state["drawn"], json.loads(state["parts"])
+            self.average.load_state_dict(state["average"])
+        else:
+            if args.init:
+                from safetensors.torch import load_file
+                initial = args.init
+                self.model.load_state_dict(widened(load_file(initial)))
+                self.drawn = args.first_scene
+            self.average.load_state_dict(self.model.state_dict())
+        self.part = provenance.Part(initial, self.step * self.batch)
+
+    def records(self):
+        return [*self.parts, self.part.now(self.step * self.batch)]
+
+    @torch.no_grad()
+    def follow(self):
+        decay = min(0.998, (1 + self.step) / (10 + self.step))
+        for a, p in zip(self.average.parameters(), self.model.parameters()):
+            a.lerp_(p, 1 - decay)
+
+    def save(self):
+        save(self.path, {"model": self.model.state_dict(), "average": self.average.state_dict(), "optimizer": self.optimizer.state_dict(),
+                         "pick": self.pick.get_state(), "step": self.step, "drawn": self.drawn, "parts": json.dumps(self.records())})
+
+
+def train(args, model, counter, worker, optimizer, pick, after):
     """One worker: draws scenes, takes steps on the shared weights, without waiting for the others (as Hogwild)."""
     torch.set_num_threads(args.threads)
-    optimizer = optimizer or torch.optim.AdamW(model.parameters(), lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
-    pick = pick or torch.Generator().manual_seed(args.seed + 1000 * worker + int(counter[0]))
-    buffer, at = [], 0
-    total = args.minutes * 60
-    running = None
-    elapsed = 0.0
-    while elapsed < total:
+    buffer, at, running = [], 0, None
+    while True:
         for _ in range(args.new_scenes if len(buffer) >= args.batch * 8 else args.batch):
             index = int(counter[1])
             counter[1] += 1
             # one stream a worker: the worker's number is part of the index
             rng = sc.rng_for("train", args.seed, index * 16 + worker)
-            for entry in make_entry(sc.mixture(rng), rng, True, args.snr_share):
+            snr = rng.uniform(10, 60) if rng.random() < args.snr_share else None
+            for entry in make_entry(sc.mixture(rng), rng, True, snr):
                 if len(buffer) < args.buffer:
                     buffer.append(entry)
                 else:
@@ -179,13 +145,10 @@ def train(args, model, counter, began, worker, optimizer=None, pick=None, after=
                 at += 1
         chosen = torch.randint(len(buffer), (args.batch,), generator=pick).tolist()
         inputs, target = batch_of([buffer[i] for i in chosen])
-        elapsed = time.time() - began
         step = int(counter[0])
-        lr = args.lr * min(1, (step + 1) / 200) * max(0.01, 0.5 * (1 + math.cos(math.pi * min(1, elapsed / total))))
         for group in optimizer.param_groups:
-            group["lr"] = lr
-        with torch.autocast("cpu", torch.bfloat16):
-            log, minimum = model(*inputs)
+            group["lr"] = args.lr * min((step + 1) / WARM_UP, (1 + step / 2000) ** -0.5)
+        log, minimum = model(*inputs)
         loss = loss_of(log, minimum, target, args.edge_weight)
         if not torch.isfinite(loss):
             raise SystemExit(f"loss is not finite at step {step}; the last good checkpoint is in {args.out}")
@@ -194,12 +157,84 @@ def train(args, model, counter, began, worker, optimizer=None, pick=None, after=
         torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimizer.step()
         counter[0] += 1
-        value = float(loss.detach())
-        running = value if running is None else 0.98 * running + 0.02 * value
-        if after is not None:
-            after(int(counter[0]), int(counter[1]), running, elapsed, optimizer, pick)
-            if (step // 50) != (int(counter[0]) // 50):
-                print(f"step {step} scenes {int(counter[1])} lr {lr:.2e} loss {running:.4f} {elapsed / 60:.1f} min", flush=True)
+        running = loss.item() if running is None else 0.98 * running + 0.02 * loss.item()
+        if after is not None and after(running):
+            return
+
+
+def helper(args, model, counter, worker):
+    pick = torch.Generator().manual_seed(args.seed + 1000 * worker + int(counter[0]))
+    train(args, model, counter, worker, optimizer_of(model, args), pick, None)
+
+
+def arguments():
+    ap = argparse.ArgumentParser()
+    ap.add_argument("--out")
+    ap.add_argument("--minutes", type=float, default=80, help="of this part of the run")
+    ap.add_argument("--seed", type=int, default=0)
+    ap.add_argument("--batch", type=int, default=4)
+    ap.add_argument("--new-scenes", type=int, default=1, help="scenes simulated a step (each enters with its mirror image)")
+    ap.add_argument("--buffer", type=int, default=512, help="maps kept a worker")
+    ap.add_argument("--workers", type=int, default=1)
+    ap.add_argument("--threads", type=int, default=1, help="threads a worker")
+    ap.add_argument("--lr", type=float, default=5e-4)
+    ap.add_argument("--edge-weight", type=float, default=0.0)
+    ap.add_argument("--validation", type=int, default=6, help="validation scenes a kind")
+    ap.add_argument("--validate-every", type=float, default=15, help="minutes")
+    ap.add_argument("--snr-share", type=float, default=1 / 3, help="part of the scenes over thermal noise, 10 to 60 dB SNR")
+    ap.add_argument("--init", help="weight file to start from; one of the first edition gets channels of zeros for what it lacks")
+    ap.add_argument("--first-scene", type=int, default=0, help="with --init: number of the first training scene, so that none is seen twice")
+    ap.add_argument("--export", help="write the averaged weights to this file, with their validation figures, and stop")
+    ap.add_argument("--judge", help="print the validation figures of this weight file, and stop")
+    return ap.parse_args()
+
+
+def main():
+    args = arguments()
+    torch.set_num_threads(args.threads)
+    torch.manual_seed(args.seed)
+    if args.judge:
+        from safetensors.torch import load_file
+        model = Live()
+        model.load_state_dict(widened(load_file(args.judge)))
+        print(json.dumps(figures(estimate_with(model), validation_sets(args.seed, args.validation))))
+        return
+    os.makedirs(args.out, exist_ok=True)
+    run = Run(args)
+    if args.export:
+        report = figures(estimate_with(run.average), validation_sets(args.seed, args.validation))
+        meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
+                "steps": str(run.step), "scenes_simulated": str(run.drawn), **provenance.metadata(run.parts)}
+        export(run.average.state_dict(), args.export, meta, report, args.validation)
+        return
+    run.model.share_memory()
+    counter = torch.tensor([run.step, run.drawn], dtype=torch.int64).share_memory_()
+    helpers = [mp.Process(target=helper, args=(args, run.model, counter, w), daemon=True) for w in range(1, args.workers)]
+    for h in helpers:
+        h.start()
+    sets = validation_sets(args.seed, args.validation)
+    log_path = os.path.join(args.out, "log.jsonl")
+    began = time.time()
+    clock = {"save": began, "validate": 0.0}
+
+    def after(running):
+        run.step, run.drawn = int(counter[0]), int(counter[1])
+        run.follow()
+        done = time.time() - began > args.minutes * 60
+        if time.time() - clock["validate"] > args.validate_every * 60 or done:
+            line = {"maps": run.step * args.batch, "drawn": run.drawn, "loss": running, **figures(estimate_with(run.average), sets)}
+            with open(log_path, "a") as f:
+                f.write(json.dumps(line) + "\n")
+            print(json.dumps(line), flush=True)
+            clock["validate"] = time.time()
+        if time.time() - clock["save"] > 120 or done:
+            run.save()
+            clock["save"] = time.time()
+        return done
+
+    train(args, run.model, counter, 0, run.optimizer, run.pick, after)
+    for h in helpers:
+        h.terminate()
 
 
 if __name__ == "__main__":

@@ -237,7 +237,7 @@ fn from_pytorch(name: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Written by `benches/twin/reference.py` from a PyTorch model with the author's layout: 3 filters, 3 levels, batch norm
+    /// Written by `training/reference.py` from a PyTorch model with the author's layout: 3 filters, 3 levels, batch norm
     /// statistics away from their defaults.
     const WEIGHTS: &[u8] = include_bytes!("../../tests/data/thesis_reference_weights.safetensors");
     const REFERENCE: &[u8] = include_bytes!("../../tests/data/thesis_reference.safetensors");

@@ -27,7 +27,7 @@ pub const COARSE: usize = 64;
 /// Channels of the fine features.
 pub const FINE_CHANNELS: usize = 4;
 /// Channels of the coarse features.
-pub const COARSE_CHANNELS: usize = 8;
+pub const COARSE_CHANNELS: usize = 10;
 /// Channels of the row features.
 pub const ROW_CHANNELS: usize = 6;
 /// Scalars beside the pictures.
@@ -46,8 +46,8 @@ pub struct LiveInput {
     /// `[4, 512, 256]` decades: the Capon spectra of both ends where they agree (minimum) and where either speaks (maximum) on the
     /// centre's grid, and where they agree as the first and as the last end sees it.
     pub fine: Vec<f32>,
-    /// `[8, 512, 64]`: log-magnitude of each end's beams, the same registered, and for each end cosine and sine of the phase step
-    /// from the row before.
+    /// `[10, 512, 64]`: log-magnitude of each end's beams, the same registered, for each end cosine and sine of the phase step
+    /// from the row before, and cosine and sine of twice the phase between the registered ends.
     pub coarse: Vec<f32>,
     /// `[6, 512]`: for each end real and imaginary part of the mean phase step between elements, then each end's power in decades.
     pub rows: Vec<f32>,
@@ -72,6 +72,8 @@ pub struct FeatureExtractor {
     fine_centre: [Vec<Tap>; 2],
     fine_other: [Vec<Tap>; 2],
     coarse_centre: [Vec<Tap>; 2],
+    /// `[512, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
+    even: Vec<Complex64>,
     /// `[elements, 64]`: windowed steering vectors.
     beams: Array2<Complex64>,
     /// `[subarray, 256]` cosines and sines of the lag phases.
@@ -98,6 +100,7 @@ impl FeatureExtractor {
             fine_centre: ends.map(|x| table(FINE, 0.0, x)),
             fine_other: [table(FINE, ends[0], ends[1]), table(FINE, ends[1], ends[0])],
             coarse_centre: ends.map(|x| table(COARSE, 0.0, x)),
+            even: even_phases(),
             beams: beams(),
             lag_cos: Array2::from_shape_fn((SUBARRAY, FINE), |(d, k)| (PI * d as f64 * cosine(k, FINE)).cos() as f32),
             lag_sin: Array2::from_shape_fn((SUBARRAY, FINE), |(d, k)| (PI * d as f64 * cosine(k, FINE)).sin() as f32),
@@ -187,10 +190,37 @@ impl FeatureExtractor {
             });
     }
 
+    /// Cosine and sine of twice the phase between the two ends' maps `[512, 64]`, both registered on the centre's grid: one colour for every
+    /// cell of a reflector, another for the next reflector. Twice, because side lobes change their sign.
+    fn fill_phase_between(&self, both: &[Array2<Complex64>; 2], planes: &mut [f32]) {
+        let even = both.each_ref().map(|map| {
+            let strongest = map.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
+            let cell = |(v, factor): (&Complex64, &Complex64)| {
+                let v = v * factor * strongest;
+                Complex32::new(v.re as f32, v.im as f32)
+            };
+            map.iter().zip(&self.even).map(cell).collect::<Vec<Complex32>>()
+        });
+        let (cosines, sines) = planes.split_at_mut(ROWS * COARSE);
+        cosines.par_iter_mut().zip(sines.par_iter_mut()).with_min_len(COARSE).enumerate().for_each(
+            |(cell, (cos, sin))| {
+                let [a, b]: [Complex64; 2] = std::array::from_fn(|e| {
+                    let v = look_up_complex(&even[e], &self.coarse_centre[e][cell]);
+                    Complex64::new(v.re.into(), v.im.into())
+                });
+                let cross = a * b.conj();
+                let phase = cross / (cross.norm() + 1e-300);
+                let twice = phase * phase;
+                (*cos, *sin) = (twice.re as f32, twice.im as f32);
+            },
+        );
+    }
+
     fn fill_coarse(&self, profiles: &[Array2<Complex64>; 2], coarse: &mut [f32]) {
         const PLANE: usize = ROWS * COARSE;
-        for (e, z) in profiles.iter().enumerate() {
-            let beams = z.dot(&self.beams);
+        let both = profiles.each_ref().map(|z| z.dot(&self.beams));
+        self.fill_phase_between(&both, &mut coarse[8 * PLANE..]);
+        for (e, beams) in both.iter().enumerate() {
             let magnitude: Vec<f32> = beams.iter().map(|v| (v.norm() + 1e-20).log10() as f32).collect();
             for (cell, out) in coarse[(2 + e) * PLANE..][..PLANE].iter_mut().enumerate() {
                 *out = look_up(&magnitude, &self.coarse_centre[e][cell]);
@@ -207,6 +237,14 @@ impl FeatureExtractor {
             }
         }
     }
+}
+
+/// `[512, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
+/// (half an element off) the end's middle; the half lets the angle axis close, the phase at cos(theta) = -1 and 1 being the same.
+fn even_phases() -> Vec<Complex64> {
+    let row = |r: usize| PI * (ROWS - 1) as f64 / ROWS as f64 * r as f64;
+    let column = |k: usize| PI * (ELEMENTS / 2) as f64 * cosine(k, COARSE);
+    (0..ROWS * COARSE).map(|i| Complex64::from_polar(1.0, row(i / COARSE) + column(i % COARSE))).collect()
 }
 
 /// cos(theta) of column `k` of a grid of `columns`.
@@ -252,6 +290,11 @@ fn registration(radar: &Radar, columns: usize, from: f64, to: f64) -> Vec<Tap> {
 
 #[inline]
 fn look_up(plane: &[f32], tap: &Tap) -> f32 {
+    tap.cells.iter().zip(tap.weights).map(|(&i, w)| plane[i as usize] * w).sum()
+}
+
+#[inline]
+fn look_up_complex(plane: &[Complex32], tap: &Tap) -> Complex32 {
     tap.cells.iter().zip(tap.weights).map(|(&i, w)| plane[i as usize] * w).sum()
 }
 

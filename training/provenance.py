@@ -1,0 +1,56 @@
+"""What a run is made of: every part of it is recorded when it STARTS, kept in the checkpoint and written into the weights."""
+import datetime
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def sha256(path):
+    with open(path, "rb") as f:
+        return hashlib.file_digest(f, "sha256").hexdigest()
+
+
+def programs():
+    """One hash over all programs of this folder, names included."""
+    digest = hashlib.sha256()
+    for name in sorted(n for n in os.listdir(HERE) if n.endswith(".py")):
+        digest.update(f"{name} {sha256(os.path.join(HERE, name))}\n".encode())
+    return digest.hexdigest()
+
+
+def commit():
+    """The commit this folder was at, with a mark where it differed from it."""
+    def git(*command):
+        return subprocess.run(["git", "-C", HERE, *command], capture_output=True, text=True).stdout.strip()
+
+    return (git("rev-parse", "--short=12", "HEAD") or "unknown") + ("-changed" if git("status", "--porcelain", ".") else "")
+
+
+class Part:
+    """One start of the program, until it stops or is killed. `initial` is the file its weights came from, if any."""
+
+    def __init__(self, initial, maps):
+        import torch
+        self.began, self.first = time.time(), maps
+        self.record = {
+            "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+            "commit": commit(), "programs_sha256": programs(), "arguments": sys.argv[1:], "torch": torch.__version__,
+            "initial_weights_sha256": sha256(initial) if initial else None, "maps_before": maps,
+        }
+
+    def now(self, maps):
+        """The record as of now, after `maps` maps of the whole run."""
+        minutes = (time.time() - self.began) / 60
+        return {**self.record, "maps_seen": maps - self.first, "wall_minutes": round(minutes, 1),
+                "processor_minutes": round(time.process_time() / 60, 1)}
+
+
+def metadata(parts):
+    """For a weight file, whose values are strings."""
+    return {"maps_seen": str(sum(p["maps_seen"] for p in parts)), "minutes": f"{sum(p['wall_minutes'] for p in parts):.0f}",
+            "parts": json.dumps(parts)}
