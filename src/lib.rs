@@ -70,3 +70,4 @@ pub mod reconstruct;
 pub mod recording;
 pub mod scene;
 pub mod signal;
+pub mod task;

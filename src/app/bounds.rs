@@ -1,11 +1,10 @@
 //! Bounds of one reflector, computed off the UI thread: how well any estimator could place it, and what looks like it.
 
 use crate::bounds::{Ambiguity, BoundsError, PositionBound, ambiguity, cramer_rao, noise_variance};
-use crate::live::worker::{Reply, Worker};
 use crate::picture::ColourMap;
 use crate::radar::{Decibels, End, Layout, LayoutError, Mimo, Polar, Radar};
-use crate::reconstruct::Task;
 use crate::scene::Reflector;
+use crate::task::{Reply, Task, Worker};
 use eframe::egui::{ColorImage, TextureHandle};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

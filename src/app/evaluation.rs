@@ -2,9 +2,9 @@
 
 use crate::evaluate::campaign::{Campaign, CampaignError};
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
-use crate::live::worker::{Reply, Worker};
-use crate::reconstruct::{ReconstructError, Reconstructor, Task};
+use crate::reconstruct::{ReconstructError, Reconstructor};
 use crate::scene::generate::Kind;
+use crate::task::{Reply, Task, Worker};
 use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

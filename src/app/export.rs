@@ -3,9 +3,9 @@
 use super::application::App;
 use crate::files::archive::write_maps;
 use crate::files::write_bytes;
-use crate::live::worker::panic_message;
 use crate::picture::{Format, Style, compose};
 use crate::signal;
+use crate::task::panic_message;
 use eframe::egui::{ColorImage, Context};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -3,11 +3,10 @@
 use super::application::App;
 use super::jobs;
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow, FrontTask, measure};
-use crate::live::worker::{Reply, Worker};
 use crate::radar::Radar;
-use crate::reconstruct::Task;
 use crate::scene::SceneError;
 use crate::signal::{Algorithm, Precision};
+use crate::task::{Reply, Task, Worker};
 use eframe::egui;
 use eframe::egui::{Color32, ComboBox, Ui};
 use egui_plot::{GridMark, HLine, Legend, MarkerShape, Plot, PlotPoints, Points};

@@ -9,7 +9,6 @@
 use super::pictures::{MapKind, Paint, Painter, Picture, Subject};
 use super::settings::{Projection, Settings};
 use crate::evaluate::{Metrics, Roc, RocPoint};
-use crate::live::worker::{Reply, Worker};
 use crate::live::{Engine, Frame, Wanted};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
@@ -17,6 +16,7 @@ use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::{Scene, SceneError};
 use crate::signal::TwoEnds;
+use crate::task::{Reply, Worker};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
@@ -228,7 +228,7 @@ impl Pipeline {
         let live = Worker::spawn("maps", LiveState::default, |s, q, _| live_work(s, q), wake.clone())?;
         // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
         let threads = || rayon::ThreadPoolBuilder::new().thread_name(|i| format!("reconstruction {i}")).build().ok();
-        let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &crate::reconstruct::Task| {
+        let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &crate::task::Task| {
             let request = Request { floor: q.wanted.floor, normalisation: q.wanted.normalisation, task: task.clone() };
             let reconstruct = || q.method.reconstruct(&q.radar, &q.ends, &request);
             let result = match threads {

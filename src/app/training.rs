@@ -1,7 +1,6 @@
 //! A training that is watched: the log of one that runs elsewhere, or of one started from here as a process of its own.
 
-use crate::live::worker::{Reply, Worker};
-use crate::reconstruct::Task;
+use crate::task::{Reply, Task, Worker};
 use std::path::{Path, PathBuf};
 use std::process::Child;
 #[cfg(feature = "network")]

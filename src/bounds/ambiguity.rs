@@ -2,7 +2,7 @@
 //! Theory, with Applications to Radar", 1953).
 
 use crate::radar::{Layout, Polar, Radar};
-use crate::reconstruct::steering::Atom;
+use crate::signal::ArrayEcho;
 use ndarray::Array2;
 use rayon::prelude::*;
 
@@ -22,7 +22,7 @@ pub struct Ambiguity {
 ///
 /// A layout without elements hears nothing: its likeness is 0 everywhere.
 pub fn ambiguity(radar: &Radar, layout: &Layout, centre: Polar, ranges_metres: &[f64], cosines: &[f64]) -> Ambiguity {
-    let atom = |range, cos| Atom::heard_by(radar, &layout.x_metres, range, cos);
+    let atom = |range, cos| ArrayEcho::heard_by(radar, &layout.x_metres, range, cos);
     let reflector = atom(centre.range_metres, centre.cos_theta);
     let likeness: Vec<f64> = ranges_metres
         .par_iter()

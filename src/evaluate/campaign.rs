@@ -4,10 +4,11 @@ use super::tables::Tally;
 use super::{Metrics, Roc};
 use crate::maps::{self, Aperture, Normalisation, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstructor, Request, Task};
+use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::SceneError;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::{self, Floor, TwoEnds};
+use crate::task::Task;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -106,6 +107,7 @@ impl Campaign {
                     let start = Instant::now();
                     let found = task
                         .check()
+                        .map_err(ReconstructError::from)
                         .and_then(|()| method.reconstruct(&self.radar, &trial.ends, &request))
                         .map_err(|source| CampaignError::Method {
                             method: method.name(),

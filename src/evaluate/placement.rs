@@ -3,10 +3,11 @@
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::radar::{Decibels, End, Layout, Radar};
 use crate::reconstruct::nomp::{Settings, find};
-use crate::reconstruct::{ReconstructError, Request, Task};
+use crate::reconstruct::{ReconstructError, Request};
 use crate::scene::Reflector;
 use crate::signal::exact;
 use crate::signal::floor::{Floor, add_noise_from};
+use crate::task::Task;
 
 /// Position errors of one reflector over independent draws of thermal noise.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

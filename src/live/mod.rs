@@ -7,7 +7,6 @@ mod bank;
 mod change;
 mod incremental;
 mod report;
-pub mod worker;
 
 pub use incremental::{Engine, Forced};
 pub use report::{Outcome, Report, Stage, StageReport};

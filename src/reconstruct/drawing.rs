@@ -1,12 +1,12 @@
 //! Sparse answers as pictures: the exact map of a few reflectors with complex gains.
 
 use super::rendering::lambda_of_power;
-use super::steering::add_echo;
 use super::{Reconstruction, Request};
 use crate::maps::{Aperture, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scene::Reflector;
 use crate::signal::BeatSignal;
+use crate::signal::echo::add_echo;
 use crate::signal::phase::EchoModel;
 use num_complex::Complex64;
 use rayon::prelude::*;

@@ -4,10 +4,9 @@ use super::beams::{Backprojector, RangeWindow};
 use super::conditioning::{Conditioned, condition};
 use super::drawing::{Gained, draw};
 use super::rendering::silence;
-use super::steering::{Atom, flatten};
 use super::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::radar::Radar;
-use crate::signal::TwoEnds;
+use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Zip;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -43,7 +42,7 @@ const MOST_DRAWN: usize = 200;
 /// The problem in the coordinates that iterations need: Gram matrix and correlations.
 #[derive(Clone)]
 struct Problem {
-    atoms: Vec<Atom>,
+    atoms: Vec<ArrayEcho>,
     /// `A^H A`, row after row.
     gram: Vec<Complex64>,
     /// `A^H y`.
@@ -72,16 +71,16 @@ impl Problem {
         cells.select_nth_unstable_by(count - 1, |a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         cells.truncate(count);
         cells.sort_unstable_by_key(|(i, _)| *i);
-        let atoms: Vec<Atom> = cells
+        let atoms: Vec<ArrayEcho> = cells
             .into_par_iter()
             .map(|(i, _)| {
                 let (bin, column) = (i / radar.elements, i % radar.elements);
-                Atom::at(radar, radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64))
+                ArrayEcho::at(radar, radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64))
             })
             .collect();
         request.task.check()?;
         request.task.set_progress(0.1);
-        let samples = flatten(&conditioned.ends);
+        let samples = conditioned.ends.flat();
         let heard: Vec<Complex64> = atoms.par_iter().map(|a| a.correlate(&samples)).collect();
         let mut gram = vec![Complex64::default(); count * count];
         gram.par_chunks_mut(count).enumerate().for_each(|(i, row)| {

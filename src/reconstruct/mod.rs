@@ -21,7 +21,6 @@ mod registered;
 mod rendering;
 mod root_music;
 mod rows;
-pub(crate) mod steering;
 
 pub use bartlett::BARTLETT;
 pub use baseline::Baseline;
@@ -45,9 +44,8 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::scene::Reflector;
 use crate::signal::{Floor, TwoEnds};
+use crate::task::{Cancelled, Task};
 use ndarray::Array3;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// What a reconstruction is told beside the samples.
 #[derive(Debug, Clone)]
@@ -64,43 +62,6 @@ impl Default for Request {
     /// The thesis' conventions.
     fn default() -> Self {
         Request { floor: Floor::Thesis, normalisation: Normalisation::MinMax, task: Task::default() }
-    }
-}
-
-/// Handle shared between long work and whoever waits for it.
-#[derive(Debug, Clone, Default)]
-pub struct Task {
-    cancelled: Arc<AtomicBool>,
-    progress: Arc<AtomicU32>,
-}
-
-impl Task {
-    /// Asks the work to stop soon.
-    pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the work was asked to stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
-    }
-
-    /// Reports the part that is done, 0 to 1.
-    pub fn set_progress(&self, part: f32) {
-        self.progress.store(part.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
-    }
-
-    /// The part that is done, 0 to 1.
-    pub fn progress(&self) -> f32 {
-        f32::from_bits(self.progress.load(Ordering::Relaxed))
-    }
-
-    /// Stops a computation with `?` when it was cancelled.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`] after [`Task::cancel`].
-    pub fn check(&self) -> Result<(), ReconstructError> {
-        if self.is_cancelled() { Err(ReconstructError::Cancelled) } else { Ok(()) }
     }
 }
 
@@ -147,6 +108,12 @@ pub enum ReconstructError {
         /// Why, and what would help.
         reason: String,
     },
+}
+
+impl From<Cancelled> for ReconstructError {
+    fn from(_: Cancelled) -> Self {
+        ReconstructError::Cancelled
+    }
 }
 
 /// Anything that turns the samples of the two ends into a map of the whole array.

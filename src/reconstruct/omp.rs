@@ -4,10 +4,9 @@ use super::beams::{Backprojector, RangeWindow};
 use super::conditioning::{Conditioned, condition};
 use super::drawing::{Gained, draw};
 use super::rendering::silence;
-use super::steering::{Atom, flatten, unflatten};
 use super::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::radar::Radar;
-use crate::signal::TwoEnds;
+use crate::signal::{ArrayEcho, TwoEnds};
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use ndarray::Array2;
@@ -38,16 +37,16 @@ const NEIGHBOURHOOD: (isize, isize) = (2, 6);
 /// amplitude. It is not white, so that the measured noise understates it.
 const ROUNDING: f64 = 1e-22;
 
-/// An atom and where it was picked.
+/// A cell's echo, picked.
 struct Pick {
     bin: usize,
     column: usize,
-    atom: Atom,
+    atom: ArrayEcho,
 }
 
 /// The atom of a cell of the polar grid.
-fn atom_of_cell(radar: &Radar, bin: usize, column: usize) -> Atom {
-    Atom::at(radar, radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64))
+fn atom_of_cell(radar: &Radar, bin: usize, column: usize) -> ArrayEcho {
+    ArrayEcho::at(radar, radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64))
 }
 
 /// The cell whose exact atom explains most of `residual`, of those around the strongest of `heard`.
@@ -81,7 +80,7 @@ impl Omp {
         conditioned: &Conditioned,
         request: &Request,
     ) -> Result<Vec<Gained>, ReconstructError> {
-        let samples = flatten(&conditioned.ends);
+        let samples = conditioned.ends.flat();
         let noise = conditioned.noise_variance * samples.len() as f64 * 1.1;
         let enough = noise.max(energy(&samples) * ROUNDING);
         let backprojector = Backprojector::new(radar, RangeWindow::None);
@@ -92,7 +91,7 @@ impl Omp {
         while picks.len() < self.max_atoms && energy(&residual) > enough {
             request.task.check()?;
             request.task.set_progress(0.9 * picks.len() as f32 / self.max_atoms as f32);
-            let [first, last] = backprojector.amplitudes(&unflatten(radar, &residual));
+            let [first, last] = backprojector.amplitudes(&TwoEnds::of_flat(radar, &residual));
             let heard = ndarray::Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
             let Some(pick) = strongest(radar, &heard, &residual, &picks) else { break };
             let mut direction = pick.atom.unit_samples();

@@ -83,7 +83,7 @@ impl Reconstructor for RowMethod {
         let Some(conditioned) = condition(radar, ends)? else { return Ok(silence(radar)) };
         let [first, last] = End::BOTH.map(|end| {
             let map = self.end_power(radar, &conditioned, end, request)?;
-            Ok(register(radar, radar.end_centre_metres(end), &map))
+            Ok::<_, ReconstructError>(register(radar, radar.end_centre_metres(end), &map))
         });
         let (mut power, last): (Array2<f64>, Array2<f64>) = (first?, last?);
         Zip::from(&mut power).and(&last).par_for_each(|a, b| *a = (*a * b).sqrt());
@@ -130,7 +130,7 @@ impl RowMethod {
             let half = if end == End::First { 0.0 } else { 0.5 };
             let part = done.fetch_add(1, Ordering::Relaxed) as f32 / bins as f32;
             request.task.set_progress(half + part / 2.0);
-            Ok(())
+            Ok::<(), ReconstructError>(())
         })?;
         Ok(power)
     }

@@ -11,10 +11,13 @@
 //!
 //! [`plan`] chooses among them and says what it chose; [`synthesis`] runs the block algorithms over the array.
 //!
+//! [`echo`] is one reflector's echo as a value: what sparse methods take a signal apart into.
+//!
 //! [`floor`] says what lies beneath the reflectors: rounding noise as in the thesis, nothing, or thermal noise.
 
 pub mod closed_form;
 pub mod direct;
+pub mod echo;
 pub mod exact;
 pub mod floor;
 pub mod gridded;
@@ -27,8 +30,8 @@ pub mod simd;
 pub mod split;
 pub mod synthesis;
 
+pub use echo::ArrayEcho;
 pub use floor::Floor;
-
 pub use plan::{Algorithm, Precision, Recipe};
 pub use rows::Rows;
 
@@ -84,6 +87,23 @@ impl TwoEnds {
             End::First => &self.first,
             End::Last => &self.last,
         }
+    }
+
+    /// The samples of both as one vector, element after element: `[2 * end_elements * samples]`.
+    pub fn flat(&self) -> Vec<Complex64> {
+        self.first.iter().chain(&self.last).copied().collect()
+    }
+
+    /// The inverse of [`TwoEnds::flat`] for the ends of `radar`.
+    ///
+    /// # Panics
+    /// When there are fewer samples than `radar`'s ends have.
+    pub fn of_flat(radar: &Radar, samples: &[Complex64]) -> Self {
+        let (elements, per_element) = (radar.end_elements, radar.samples);
+        let end = |from: usize| {
+            Array2::from_shape_fn((elements, per_element), |(n, n1)| samples[(from + n) * per_element + n1])
+        };
+        TwoEnds { first: end(0), last: end(elements) }
     }
 }
 

@@ -5,9 +5,10 @@
 
 use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::tables::{PRINTED_BASELINE, Tally};
-use apertura::reconstruct::{Baseline, Task};
+use apertura::reconstruct::Baseline;
 use apertura::scene::generate::Kind;
 use apertura::signal::Floor;
+use apertura::task::Task;
 
 /// Standard errors between ours and the printed SE, P_D and P_FA.
 fn deviations(tally: &Tally, set: usize) -> [f64; 3] {

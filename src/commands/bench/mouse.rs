@@ -4,10 +4,10 @@
 use crate::benchmark::front::{Convention, scattered};
 use crate::commands::CommandError;
 use crate::interact::{Editor, Place, Snap};
-use crate::live::worker::{Reply, Worker};
 use crate::live::{Engine, Frame, Wanted};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
+use crate::task::{Reply, Worker};
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};

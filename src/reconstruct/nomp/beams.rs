@@ -2,7 +2,7 @@
 
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
-use crate::reconstruct::steering::unflatten;
+use crate::signal::TwoEnds;
 use ndarray::Array2;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 /// `count` beams of each end, evenly spaced in cos(theta), of `samples` laid out channel by channel: `[beam, range bin]` for each
 /// end, phases referred to the middle of the end.
 pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<Complex64>; 2] {
-    let ends = unflatten(radar, samples);
+    let ends = TwoEnds::of_flat(radar, samples);
     let radians_per_element =
         -TAU * radar.carrier.turns_per_wavelength() * radar.element_spacing_metres / radar.wavelength_metres();
     End::BOTH.map(|end| {

@@ -9,7 +9,6 @@ use super::sensor::Sensor;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::conditioning::{noise_variance, unit_gain};
-use crate::reconstruct::steering::{flatten, unflatten};
 use crate::reconstruct::{ReconstructError, Request};
 use crate::scene::Reflector;
 use crate::signal::floor::thesis_noise_variance;
@@ -56,7 +55,7 @@ impl Default for Settings {
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
     let sensor = Sensor::new(radar);
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
-    let samples = flatten(&ends);
+    let samples = ends.flat();
     let window = hann(radar.samples);
     let windowed: Vec<Complex64> = samples.iter().enumerate().map(|(i, v)| v * window[i % radar.samples]).collect();
     let search = Search {
@@ -322,7 +321,7 @@ impl Search<'_> {
     /// Most neighbouring range bins with an echo at either end: above the noise, and no more than 60 dB below the strongest when
     /// ranges are evened out by the 1/R^2 law.
     fn longest_run(&self) -> usize {
-        let ends = unflatten(self.radar, self.samples);
+        let ends = TwoEnds::of_flat(self.radar, self.samples);
         let weights = self.radar.window.weights(self.radar.samples);
         let window = weights.iter().map(|w| w * w).sum::<f64>() / self.radar.samples as f64;
         let channels = End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter());

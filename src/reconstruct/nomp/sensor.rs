@@ -171,9 +171,8 @@ impl Kernel for Block<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::steering::{flatten, unflatten};
     use crate::scene::{Line, Object, Scene};
-    use crate::signal::exact;
+    use crate::signal::{TwoEnds, exact};
 
     #[test]
     fn an_atom_is_what_the_exact_formula_gives() {
@@ -186,12 +185,12 @@ mod tests {
         let ones = vec![1.0; sensor.samples];
         let atom = Atom::Line { x: 12.0, start: 3.0, spacing: 0.11, count: 7 };
         sensor.fill_atom(&atom, &ones, &mut [&mut value]);
-        let expected = flatten(&ends);
+        let expected = ends.flat();
         let peak = expected.iter().fold(0.0, |m: f64, v| m.max(v.norm()));
         for (a, b) in value.iter().zip(&expected) {
             assert!((a - b).norm() < 1e-13 * peak);
         }
-        assert_eq!(unflatten(&radar, &expected), ends);
+        assert_eq!(TwoEnds::of_flat(&radar, &expected), ends);
     }
 
     #[test]

@@ -4,10 +4,10 @@ use super::*;
 use crate::evaluate::{detection_rates, squared_error};
 use crate::maps::{LogMaps, Normalisation};
 use crate::radar::Decibels;
-use crate::reconstruct::Task;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Line, Object, Point, Scene};
 use crate::signal::simulate;
+use crate::task::Task;
 use num_complex::Complex64;
 
 fn ends_of(radar: &Radar, scene: &Scene) -> TwoEnds {

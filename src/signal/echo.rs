@@ -1,8 +1,7 @@
-//! The exact near-field echo of a place in the samples of both ends: the atoms of the sparse methods.
+//! The exact near-field echo of a single reflector, as any line of elements samples it.
 
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
-use crate::signal::TwoEnds;
 use crate::signal::phase::EchoModel;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -11,14 +10,14 @@ use std::f64::consts::TAU;
 const RESTART: usize = 32;
 
 /// Adds `gain` times the echo of a unit reflector to `samples` of the element at `element_x` metres.
-pub(super) fn add_echo(
+pub fn add_echo(
     model: &EchoModel,
-    element_x: f64,
+    element_x_metres: f64,
     reflector: &Reflector,
     gain: Complex64,
     samples: &mut [Complex64],
 ) {
-    let echo = model.echo(element_x, reflector);
+    let echo = model.echo(element_x_metres, reflector);
     let step = Complex64::cis(TAU * echo.turns_at(1) - TAU * echo.turns_at(0));
     for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
         let mut phasor = gain * Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(block * RESTART));
@@ -27,20 +26,6 @@ pub(super) fn add_echo(
             phasor *= step;
         }
     }
-}
-
-/// Samples of both ends as one vector, element after element.
-pub(super) fn flatten(ends: &TwoEnds) -> Vec<Complex64> {
-    ends.first.iter().chain(&ends.last).copied().collect()
-}
-
-/// The inverse of [`flatten`].
-pub(super) fn unflatten(radar: &Radar, samples: &[Complex64]) -> TwoEnds {
-    let size = radar.end_elements * radar.samples;
-    let end = |part: &[Complex64]| {
-        ndarray::Array2::from_shape_fn((radar.end_elements, radar.samples), |(n, n1)| part[n * radar.samples + n1])
-    };
-    TwoEnds { first: end(&samples[..size]), last: end(&samples[size..]) }
 }
 
 /// Echo of one reflector at one element, as the geometric series it is: `start * step^n1`.
@@ -52,10 +37,12 @@ struct Series {
     last: Complex64,
 }
 
-/// Echo of one reflector in the samples of both ends.
+/// Echo of one reflector as several elements hear it: samples of known norm, never written out unless asked for.
 #[derive(Debug, Clone)]
-pub(crate) struct Atom {
+pub struct ArrayEcho {
+    /// Whose echo it is; its reflectivity is 1.
     pub reflector: Reflector,
+    /// One an element.
     series: Vec<Series>,
     samples: usize,
     norm: f64,
@@ -66,15 +53,15 @@ fn element_xs(radar: &Radar) -> impl Iterator<Item = f64> + '_ {
     End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).map(|n| radar.element_x_metres(n))
 }
 
-impl Atom {
-    /// The atom of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`), as both ends hear it.
+impl ArrayEcho {
+    /// The echo of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`), as both ends hear it.
     pub fn at(radar: &Radar, range_metres: f64, cos_theta: f64) -> Self {
         let xs: Vec<f64> = element_xs(radar).collect();
-        Atom::heard_by(radar, &xs, range_metres, cos_theta)
+        ArrayEcho::heard_by(radar, &xs, range_metres, cos_theta)
     }
 
-    /// The same as the elements at `element_xs` metres hear it.
-    pub fn heard_by(radar: &Radar, element_xs: &[f64], range_metres: f64, cos_theta: f64) -> Self {
+    /// The same as the elements at `element_x_metres` hear it.
+    pub fn heard_by(radar: &Radar, element_x_metres: &[f64], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
         let reflector = Reflector {
             x_metres: range_metres * cos,
@@ -82,7 +69,7 @@ impl Atom {
             reflectivity: 1.0,
         };
         let model = EchoModel::new(radar);
-        let series: Vec<Series> = element_xs
+        let series: Vec<Series> = element_x_metres
             .iter()
             .map(|&x| {
                 let echo = model.echo(x, &reflector);
@@ -94,7 +81,7 @@ impl Atom {
             })
             .collect();
         let power: f64 = series.iter().map(|s| s.start.norm_sqr()).sum();
-        Atom { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
+        ArrayEcho { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
     }
 
     /// Root of the sum of squares of its samples.
@@ -102,7 +89,7 @@ impl Atom {
         self.norm
     }
 
-    /// Its samples scaled to norm 1, element after element.
+    /// Its samples scaled to norm 1, element after element: `[elements * samples]`.
     pub fn unit_samples(&self) -> Vec<Complex64> {
         let mut out = Vec::with_capacity(self.series.len() * self.samples);
         for s in &self.series {
@@ -115,7 +102,7 @@ impl Atom {
         out
     }
 
-    /// Inner product of its unit samples with `y`: `sum conj(atom) y`.
+    /// Inner product of its unit samples with `y`: `sum conj(echo) y`, `y` being `[elements * samples]`.
     pub fn correlate(&self, y: &[Complex64]) -> Complex64 {
         let sum: Complex64 = self
             .series
@@ -130,8 +117,8 @@ impl Atom {
         sum / self.norm
     }
 
-    /// Inner product of the unit samples of two atoms, `sum conj(self) other`: a geometric series for each element.
-    pub fn inner(&self, other: &Atom) -> Complex64 {
+    /// Inner product of the unit samples of two echoes, `sum conj(self) other`: a geometric series for each element.
+    pub fn inner(&self, other: &ArrayEcho) -> Complex64 {
         let sum: Complex64 = self
             .series
             .iter()
@@ -158,30 +145,31 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn an_atom_is_the_exact_signal() {
+    fn an_echo_is_the_exact_signal() {
         let radar = Radar::default();
-        let atom = Atom::at(&radar, 17.3, -0.4);
-        let scene = Scene::of_points([(atom.reflector.x_metres, atom.reflector.y_metres)]);
-        let exact = flatten(&simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar));
-        let unit = atom.unit_samples();
+        let echo = ArrayEcho::at(&radar, 17.3, -0.4);
+        let scene = Scene::of_points([(echo.reflector.x_metres, echo.reflector.y_metres)]);
+        let exact = simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar).flat();
+        let unit = echo.unit_samples();
         for (e, u) in exact.iter().zip(&unit) {
-            assert!((e / atom.norm() - u).norm() < 1e-13);
+            assert!((e / echo.norm() - u).norm() < 1e-13);
         }
-        assert!((atom.correlate(&exact) / atom.norm() - 1.0).norm() < 1e-12);
+        assert!((echo.correlate(&exact) / echo.norm() - 1.0).norm() < 1e-12);
         let mut added = vec![Complex64::default(); 512];
         let model = EchoModel::new(&radar);
-        add_echo(&model, radar.element_x_metres(0), &atom.reflector, Complex64::from(1.0), &mut added);
+        add_echo(&model, radar.element_x_metres(0), &echo.reflector, Complex64::from(1.0), &mut added);
         for (a, e) in added.iter().zip(&exact) {
-            assert!((a - e).norm() < 1e-13 * atom.norm());
+            assert!((a - e).norm() < 1e-13 * echo.norm());
         }
     }
 
     #[test]
     fn inner_products_are_those_of_the_samples() {
         let radar = Radar::default();
-        let atoms = [(17.3, -0.4), (17.3, -0.402), (17.35, -0.4), (30.0, 0.9)].map(|(r, c)| Atom::at(&radar, r, c));
-        for a in &atoms {
-            for b in &atoms {
+        let echoes =
+            [(17.3, -0.4), (17.3, -0.402), (17.35, -0.4), (30.0, 0.9)].map(|(r, c)| ArrayEcho::at(&radar, r, c));
+        for a in &echoes {
+            for b in &echoes {
                 let slow: Complex64 = a.unit_samples().iter().zip(b.unit_samples()).map(|(a, b)| a.conj() * b).sum();
                 assert!((a.inner(b) - slow).norm() < 1e-8, "{} {slow}", a.inner(b));
             }

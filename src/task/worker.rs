@@ -9,7 +9,7 @@
 //!
 //! A panic in the work becomes [`Reply::Panicked`] and the worker starts afresh with new state.
 
-use crate::reconstruct::Task;
+use super::Task;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -179,7 +179,7 @@ impl<Q, T> Drop for Worker<Q, T> {
 }
 
 /// What a caught panic said.
-pub(crate) fn panic_message(panic: &(dyn Any + Send)) -> String {
+pub fn panic_message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".to_owned())
 }

@@ -1,0 +1,9 @@
+//! Long work: how it is watched, stopped, and done on a thread of its own.
+//!
+//! Uses nothing else of the crate, so that everything may use it.
+
+mod handle;
+mod worker;
+
+pub use handle::{Cancelled, Task};
+pub use worker::{Generation, Reply, Worker, panic_message};
