@@ -3,15 +3,15 @@
 //!
 //! `cargo run --release --example choose_eta -- thresholds|penalty|unexplained`; minutes each.
 
+use apertura::evaluate::trial::Trial;
 use apertura::evaluate::{Roc, squared_error};
-use apertura::maps::{LogMaps, RangeAngleMap};
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::nomp::{Settings, find};
 use apertura::reconstruct::{Fista, Hybrid, Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::{GaussianCluster, Object, Scene};
-use apertura::signal::{Floor, TwoEnds, simulate};
+use apertura::signal::Floor;
 use clap::Parser;
 use std::error::Error;
 use std::sync::Arc;
@@ -52,25 +52,15 @@ fn main() -> Outcome {
     }
 }
 
-/// A scene as a method meets it, and what it is compared with.
-struct Trial {
-    ends: TwoEnds,
-    target: RangeAngleMap,
+/// A scene as a method meets it.
+fn trial(radar: &Radar, scene: &Scene) -> Outcome<Trial> {
+    Ok(Trial::new(radar, scene, Floor::Thesis, Request::default().normalisation)?)
 }
 
-impl Trial {
-    fn new(radar: &Radar, scene: &Scene, noise_seed: u64) -> Outcome<Trial> {
-        let signal = simulate(radar, scene, Floor::Thesis, noise_seed)?;
-        let target = LogMaps::of_signal(radar, &signal).full.normalise(Request::default().normalisation);
-        Ok(Trial { ends: signal.two_ends(radar), target })
-    }
-
-    /// The first `count` validation scenes of a kind.
-    fn validation(radar: &Radar, kind: Kind, count: u32) -> impl Iterator<Item = Outcome<Trial>> {
-        let generator = Generator::new(radar, Reading::Program, Purpose::Validation, 0);
-        (0..count)
-            .map(move |number| Trial::new(radar, &generator.scene(kind, number), generator.noise_seed(kind, number)))
-    }
+/// The first `count` validation scenes of a kind.
+fn validation(radar: &Radar, kind: Kind, count: u32) -> impl Iterator<Item = Outcome<Trial>> {
+    let generator = Generator::new(radar, Reading::Program, Purpose::Validation, 0);
+    (0..count).map(move |number| trial(radar, &generator.scene(kind, number)))
 }
 
 /// Figures of one method.
@@ -92,8 +82,8 @@ fn thresholds(names: &[String]) -> Outcome {
     let mut all: Vec<Figures> = methods.into_iter().map(figures).collect();
     let request = Request::default();
     for (set, kind) in Kind::TEST_SETS.into_iter().enumerate() {
-        for trial in Trial::validation(&radar, kind, SCENES) {
-            let Trial { ends, target } = trial?;
+        for trial in validation(&radar, kind, SCENES) {
+            let Trial { ends, target, .. } = trial?;
             for f in &mut all {
                 let start = Instant::now();
                 let output = f.method.reconstruct(&radar, &ends, &request)?;
@@ -125,15 +115,13 @@ fn thresholds(names: &[String]) -> Outcome {
 
 fn penalty() -> Outcome {
     let radar = Radar::default();
-    let trials = Kind::TEST_SETS
-        .into_iter()
-        .flat_map(|kind| Trial::validation(&radar, kind, 4))
-        .collect::<Outcome<Vec<Trial>>>()?;
+    let trials =
+        Kind::TEST_SETS.into_iter().flat_map(|kind| validation(&radar, kind, 4)).collect::<Outcome<Vec<Trial>>>()?;
     let mut best = (f64::INFINITY, 0.0);
     for penalty in [0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2] {
         let fista = Fista { penalty, ..Fista::default() };
         let mut error = 0.0;
-        for Trial { ends, target } in &trials {
+        for Trial { ends, target, .. } in &trials {
             let found = fista.reconstruct(&radar, ends, &Request::default())?;
             error += squared_error(target, &found.lambda) / trials.len() as f64;
         }
@@ -190,8 +178,8 @@ impl Choosing {
 fn unexplained() -> Outcome {
     let radar = Radar::default();
     let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
-    let sets = Kind::TEST_SETS.into_iter().flat_map(|kind| Trial::validation(&radar, kind, 6));
-    let clouds = (0..15).map(|i| Trial::new(&radar, &cloud(i), u64::from(i)));
+    let sets = Kind::TEST_SETS.into_iter().flat_map(|kind| validation(&radar, kind, 6));
+    let clouds = (0..15).map(|i| trial(&radar, &Scene { noise_seed: u64::from(i), ..cloud(i) }));
     let rows: Vec<Choosing> =
         sets.chain(clouds).map(|trial| Choosing::of(&radar, &trial?, &*fallback)).collect::<Outcome<_>>()?;
     let error = |limit: f64| {

@@ -1,8 +1,9 @@
 //! Methods on the tables' test scenes, in the background: what the panel asks for and what comes back.
 
 use crate::evaluate::campaign::{Campaign, CampaignError};
-use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
-use crate::reconstruct::{ReconstructError, Reconstructor};
+use crate::evaluate::sets::SceneSet;
+use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
+use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use crate::task::{Reply, Task, Worker};
 use std::fmt::Write;
@@ -28,7 +29,7 @@ pub(super) struct Row {
     pub squared_error: Estimate,
     pub detection: Estimate,
     pub false_alarm: Estimate,
-    /// P_D where P_FA is the printed one of experiment 2.
+    /// P_D where every scene's P_FA is held to the printed one of experiment 2.
     pub detection_at_printed: Option<f64>,
     pub median_milliseconds: f64,
 }
@@ -121,7 +122,7 @@ impl Evaluation {
         for reply in self.worker.replies() {
             match reply {
                 Reply::Done { result: Ok(()), .. } => self.ended = None,
-                Reply::Done { result: Err(error), .. } if is_cancelled(&error) => {
+                Reply::Done { result: Err(error), .. } if error.is_cancelled() => {
                     self.ended = Some("cancelled; what was finished stays".to_owned());
                 }
                 Reply::Done { result: Err(error), .. } => self.ended = Some(error.to_string()),
@@ -164,10 +165,6 @@ impl Evaluation {
     }
 }
 
-fn is_cancelled(error: &CampaignError) -> bool {
-    matches!(error, CampaignError::Method { source: ReconstructError::Cancelled, .. })
-}
-
 /// One method after another, so that each is on screen as soon as it is finished. The scenes are simulated anew for each: that is
 /// a small part of the time.
 fn run(request: &Request, task: &Task, wake: &impl Fn()) -> Result<(), CampaignError> {
@@ -179,8 +176,9 @@ fn run(request: &Request, task: &Task, wake: &impl Fn()) -> Result<(), CampaignE
                 request.done.fetch_add(1, Ordering::Relaxed);
                 wake();
             };
-            for tally in plan.campaign.run(kind, &[method.as_ref()], task, on_map)? {
-                let printed = PRINTED_EXPERIMENT_2[set - 1].false_alarm;
+            let rows = plan.campaign.run(&[SceneSet::Generated(kind)], &[method.as_ref()], task, |_| on_map())?;
+            let tally = Tally::of(&rows);
+            if tally.scenes() > 0 {
                 let row = Row {
                     set,
                     method: method.name(),
@@ -189,7 +187,7 @@ fn run(request: &Request, task: &Task, wake: &impl Fn()) -> Result<(), CampaignE
                     squared_error: tally.squared_error(),
                     detection: tally.detection(),
                     false_alarm: tally.false_alarm(),
-                    detection_at_printed: tally.roc().at_false_alarm(printed).map(|p| p.detection),
+                    detection_at_printed: Some(tally.detection_at_printed().mean).filter(|d| d.is_finite()),
                     median_milliseconds: tally.median_milliseconds(),
                 };
                 // Nobody listens any more once another run has begun.

@@ -3,8 +3,7 @@
 use super::figure::{Drawn, Figure, save};
 use super::{CommandError, print};
 use crate::bounds::{Lobes, cut, lobes};
-use crate::evaluate::tables::Estimate;
-use crate::evaluate::{Roc, squared_error};
+use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
 use crate::radar::{Layout, LayoutKind, Polar, Radar};
 use crate::reconstruct::{Request, layout_matched_filter};
@@ -85,8 +84,7 @@ impl Args {
             let mut rocs = vec![Roc::default(); layouts.len()];
             for number in 0..self.count {
                 let scene = generator.scene(kind, number);
-                let signal =
-                    simulate(&radar, &scene, request.floor, u64::from(number)).map_err(CommandError::failed)?;
+                let signal = simulate(&radar, &scene, request.floor, scene.noise_seed).map_err(CommandError::failed)?;
                 let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
                 for (i, layout) in layouts.iter().enumerate() {
                     let samples = heard(&radar, &self.layout[i], layout, &signal)?;

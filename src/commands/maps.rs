@@ -45,9 +45,9 @@ pub struct Args {
     #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
     colours: ColourMap,
 
-    /// Seed of the thermal noise of --floor snr=DB
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    seed: u64,
+    /// Seed of the floor's noise; overrides the scene's
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
 }
 
 impl Args {
@@ -58,8 +58,8 @@ impl Args {
         if let Some(carrier) = self.carrier {
             radar.carrier = carrier;
         }
-        let signal =
-            signal::simulate(&radar, &scene, self.floor.floor, self.seed).map_err(CommandError::on(&self.scene))?;
+        let seed = self.seed.unwrap_or(scene.noise_seed);
+        let signal = signal::simulate(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.scene))?;
         match output {
             Output::Archive => {
                 write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))?;

@@ -19,6 +19,7 @@ mod scenes;
 mod stress;
 #[cfg(feature = "network")]
 mod train;
+mod worsen;
 
 pub use error::CommandError;
 pub use output::print;
@@ -53,6 +54,7 @@ enum Command {
     Stress(stress::Args),
     #[cfg(feature = "network")]
     Train(train::Args),
+    Worsen(worsen::Args),
 }
 
 impl Command {
@@ -68,6 +70,7 @@ impl Command {
             Command::Stress(args) => args.run(),
             #[cfg(feature = "network")]
             Command::Train(args) => args.run(),
+            Command::Worsen(args) => args.run(),
         }
     }
 }

@@ -87,7 +87,7 @@ enum WindowError {
 fn draw_instead(file: &SceneFile) -> Result<(), CommandError> {
     let SceneFile { scene, radar } = file;
     let style = Style::default();
-    let signal = signal::simulate(radar, scene, style.floor, 0).map_err(CommandError::failed)?;
+    let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
     let bytes = compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
         .map_err(CommandError::failed)?;
     let path = free_name(Path::new("."));

@@ -14,15 +14,19 @@ pub struct Args {
     set: Kind,
 
     /// Number of scenes
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    count: u32,
+    #[arg(long, value_name = "N", required_unless_present = "index", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    count: Option<u32>,
+
+    /// This scene alone: the one in the row of `apertura evaluate --rows` with this index
+    #[arg(long, value_name = "I", conflicts_with_all = ["count", "format"])]
+    index: Option<u32>,
 
     /// Seed: the same seed gives the same scenes
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
 
-    /// Folder to write to; made where it is missing
-    #[arg(short, long, value_name = "DIR")]
+    /// Folder to write to, made where it is missing; with --index, the file (.toml or .npz)
+    #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
     /// Kind of file
@@ -45,22 +49,29 @@ enum FileFormat {
 impl Args {
     /// Writes `set1-seed0-0000.toml`, `walls-seed0-0000.toml` and so on.
     pub fn run(self) -> Result<(), CommandError> {
-        std::fs::create_dir_all(&self.output)
-            .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
         let radar = Radar::default();
         let reading = if self.thesis_text { Reading::Text } else { Reading::Program };
         let generator = Generator::new(&radar, reading, Purpose::Test, self.seed);
+        if let Some(index) = self.index {
+            let scene = generator.scene(self.set, index);
+            let seed = scene.noise_seed;
+            file::save(&self.output, &SceneFile { scene, radar }).map_err(CommandError::failed)?;
+            return print(&format!("wrote {} (noise seed {seed})", self.output.display()));
+        }
+        std::fs::create_dir_all(&self.output)
+            .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
         let extension = match self.format {
             FileFormat::Toml => "toml",
             FileFormat::Npz => "npz",
         };
         let (prefix, what) = if self.set.test_set().is_some() { ("set", "set ") } else { ("", "") };
-        for number in 0..self.count {
+        let count = self.count.unwrap_or_default();
+        for number in 0..count {
             let name = format!("{prefix}{}-seed{}-{number:04}.{extension}", self.set, self.seed);
             let scene = generator.scene(self.set, number);
             let file = SceneFile { scene, radar: radar.clone() };
             file::save(&self.output.join(name), &file).map_err(CommandError::failed)?;
         }
-        print(&format!("wrote {} scenes of {what}{} to {}", self.count, self.set, self.output.display()))
+        print(&format!("wrote {count} scenes of {what}{} to {}", self.set, self.output.display()))
     }
 }

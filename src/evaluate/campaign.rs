@@ -1,30 +1,38 @@
-//! Methods over many test scenes: what fills tables 4.1 to 4.3.
+//! Methods over many scenes: what fills tables 4.1 to 4.3, row by row.
 
-use super::tables::Tally;
-use super::{Metrics, Roc};
-use crate::maps::{self, Aperture, Normalisation, RangeAngleMap};
+use super::rows::Row;
+use super::sets::{Case, SceneSet};
+use super::trial::{RowPlace, Trial};
+use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::SceneError;
-use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::{self, Floor, TwoEnds};
+use crate::scene::file::SceneFileError;
+use crate::scene::generate::{Generator, Purpose, Reading};
+use crate::signal::Floor;
 use crate::task::Task;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use std::time::Instant;
+use std::fmt;
+use std::str::FromStr;
 
 /// Which scenes methods are tried on.
 #[derive(Debug, Clone)]
 pub struct Campaign {
-    /// The radar.
+    /// The radar of generated scenes.
     pub radar: Radar,
-    /// How scenes are made.
+    /// How generated scenes are made.
     pub reading: Reading,
-    /// What the scenes are for; reported figures come from [`Purpose::Test`].
+    /// What generated scenes are for; reported figures come from [`Purpose::Test`].
     pub purpose: Purpose,
-    /// Seed of the scenes and of the noise.
+    /// Seed of generated scenes.
     pub seed: u64,
-    /// Number of scenes of each kind.
+    /// Number of generated scenes of each kind; of a folder's, all are tried.
     pub count: u32,
+    /// Which of them are this run's.
+    pub shard: Shard,
     /// What lies beneath the reflectors.
     pub floor: Floor,
     /// How every map is normalised.
@@ -40,117 +48,254 @@ impl Default for Campaign {
             purpose: Purpose::Test,
             seed: 0,
             count: 100,
+            shard: Shard::default(),
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
         }
     }
 }
 
+/// Every `of`-th scene, from scene `part` on: runs on several machines that together do all. Written and read as "0/4".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    part: u32,
+    of: u32,
+}
+
+impl Default for Shard {
+    /// All scenes.
+    fn default() -> Self {
+        Shard { part: 0, of: 1 }
+    }
+}
+
+impl Shard {
+    /// Whether scene `index` is this shard's.
+    pub fn contains(self, index: u32) -> bool {
+        index % self.of == self.part
+    }
+
+    /// How many of the scenes 0 to `count - 1` are this shard's.
+    pub fn size(self, count: u32) -> u32 {
+        count.saturating_sub(self.part).div_ceil(self.of)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.part, self.of)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let parts = s.split_once('/').and_then(|(part, of)| Some((part.trim().parse().ok()?, of.trim().parse().ok()?)));
+        match parts {
+            Some((part, of)) if part < of => Ok(Shard { part, of }),
+            _ => Err(format!("\"{s}\" is no part of a whole; expected I/N with I from 0 to N - 1, as in 0/4")),
+        }
+    }
+}
+
 /// Why a campaign stopped.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
-    /// A generated scene can't be simulated.
-    #[error("scene {number} of {kind:?}: {source}")]
+    /// A scene can't be simulated.
+    #[error("scene {index} of {set}: {source}")]
     Scene {
-        /// Kind of the scene.
-        kind: Kind,
+        /// The set.
+        set: String,
         /// Number of the scene.
-        number: u32,
+        index: u32,
         /// Why.
         source: SceneError,
     },
+    /// A scene can't be read.
+    #[error(transparent)]
+    File(#[from] SceneFileError),
     /// A method failed.
-    #[error("{method} on scene {number} of {kind:?}: {source}")]
+    #[error("{method} on scene {index} of {set}: {source}")]
     Method {
         /// Name of the method.
         method: &'static str,
-        /// Kind of the scene.
-        kind: Kind,
+        /// The set.
+        set: String,
         /// Number of the scene.
-        number: u32,
+        index: u32,
         /// Why.
         source: ReconstructError,
     },
 }
 
-/// A scene as a method meets it.
-struct Trial {
-    number: u32,
-    ends: TwoEnds,
-    target: RangeAngleMap,
+impl CampaignError {
+    /// Whether somebody asked it to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, CampaignError::Method { source: ReconstructError::Cancelled, .. })
+    }
 }
 
 impl Campaign {
-    /// Tries every method on the scenes of one kind; one [`Tally`] a method, in their order.
+    /// How many of a set's scenes this campaign tries.
+    pub fn scenes(&self, set: &SceneSet) -> u32 {
+        self.shard.size(set.len().unwrap_or(self.count))
+    }
+
+    /// The generator of its scenes.
+    pub fn generator(&self) -> Generator {
+        Generator::new(&self.radar, self.reading, self.purpose, self.seed)
+    }
+
+    /// Tries every method on the scenes of every set. `on_row` is called with each row as it is found; all are returned, sorted by set,
+    /// scene and method, as they are given.
     ///
     /// Scenes are simulated in parallel, reconstructions run one after another, so that their times are those of a map alone on
-    /// the machine. The figures, times apart, don't depend on the number of threads. `on_map` is called after every map.
+    /// the machine: in an order that is drawn anew for every scene, after each has made one map that is not timed. The figures, times apart,
+    /// don't depend on the order nor on the number of threads.
     ///
     /// # Errors
     /// [`CampaignError`] names the scene, and the method that failed or was cancelled through `task`.
     pub fn run(
         &self,
-        kind: Kind,
+        sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
         task: &Task,
-        mut on_map: impl FnMut(),
-    ) -> Result<Vec<Tally>, CampaignError> {
-        let generator = Generator::new(&self.radar, self.reading, self.purpose, self.seed);
+        mut on_row: impl FnMut(&Row),
+    ) -> Result<Vec<Row>, CampaignError> {
+        let generator = self.generator();
         let request = Request { floor: self.floor, normalisation: self.normalisation, task: task.clone() };
-        let mut tallies = vec![Tally::default(); methods.len()];
-        let numbers: Vec<u32> = (0..self.count).collect();
-        for batch in numbers.chunks(rayon::current_num_threads()) {
-            let trials: Result<Vec<Trial>, _> =
-                batch.par_iter().map(|&number| self.trial(&generator, kind, number)).collect();
-            for trial in trials? {
-                for (method, tally) in methods.iter().zip(&mut tallies) {
-                    let start = Instant::now();
-                    let found = task
-                        .check()
-                        .map_err(ReconstructError::from)
-                        .and_then(|()| method.reconstruct(&self.radar, &trial.ends, &request))
-                        .map_err(|source| CampaignError::Method {
-                            method: method.name(),
-                            kind,
-                            number: trial.number,
-                            source,
-                        })?;
-                    let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-                    let metrics = Metrics::of(&trial.target, &found.lambda, method.eta());
-                    tally.add(&metrics, |roc: &mut Roc| roc.add(&trial.target, &found.lambda), milliseconds);
-                    on_map();
+        let mut rows = Vec::new();
+        let mut warm = false;
+        for set in sets {
+            let count = set.len().unwrap_or(self.count);
+            let numbers: Vec<u32> = (0..count).filter(|&n| self.shard.contains(n)).collect();
+            for batch in numbers.chunks(rayon::current_num_threads()) {
+                let trials: Result<Vec<Trial>, _> =
+                    batch.par_iter().map(|&index| self.trial(set, &generator, index)).collect();
+                for (trial, &index) in trials?.iter().zip(batch) {
+                    let job = Job { campaign: self, set, index, trial, request: &request };
+                    if !std::mem::replace(&mut warm, true) {
+                        methods.iter().try_for_each(|&method| job.answer(method).map(drop))?;
+                    }
+                    rows.extend(job.rows(methods, &mut on_row)?);
                 }
             }
         }
-        Ok(tallies)
+        Ok(rows)
     }
 
-    fn trial(&self, generator: &Generator, kind: Kind, number: u32) -> Result<Trial, CampaignError> {
-        let scene = generator.scene(kind, number);
-        let noise_seed = generator.noise_seed(kind, number);
-        let signal = signal::simulate(&self.radar, &scene, self.floor, noise_seed)
-            .map_err(|source| CampaignError::Scene { kind, number, source })?;
-        let profiles = maps::range_transform(&self.radar, &signal);
-        let full = maps::angle_transform(&self.radar, &profiles, Aperture::Full).log_magnitude();
-        Ok(Trial { number, ends: signal.two_ends(&self.radar), target: full.normalise(self.normalisation) })
+    /// Reads or makes a scene, simulates it, and finds where its objects show.
+    ///
+    /// # Errors
+    /// [`CampaignError`] names the scene.
+    pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
+        let Case { radar, scene } = set.case(&self.radar, generator, index)?;
+        let trial = Trial::new(&radar, &scene, self.floor, self.normalisation)
+            .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
+        trial.footprints();
+        Ok(trial)
+    }
+}
+
+fn set_name(set: &SceneSet) -> String {
+    match set {
+        SceneSet::Generated(kind) if kind.test_set().is_some() => format!("set {kind}"),
+        set => set.to_string(),
+    }
+}
+
+/// All methods on one scene.
+struct Job<'a> {
+    campaign: &'a Campaign,
+    set: &'a SceneSet,
+    index: u32,
+    trial: &'a Trial,
+    request: &'a Request,
+}
+
+impl Job<'_> {
+    fn answer(&self, method: &dyn Reconstructor) -> Result<super::trial::Answer, CampaignError> {
+        self.trial.ask(method, self.request).map_err(|source| CampaignError::Method {
+            method: method.name(),
+            set: set_name(self.set),
+            index: self.index,
+            source,
+        })
+    }
+
+    /// One row a method, in their order.
+    fn rows(&self, methods: &[&dyn Reconstructor], on_row: &mut impl FnMut(&Row)) -> Result<Vec<Row>, CampaignError> {
+        let set = self.set.to_string();
+        let seed = if matches!(self.set, SceneSet::Generated(_)) { self.campaign.seed } else { 0 };
+        let place = RowPlace { set: &set, index: self.index, seed };
+        let mut order: Vec<usize> = (0..methods.len()).collect();
+        order.shuffle(&mut ChaCha8Rng::seed_from_u64(u64::from(self.index)));
+        let mut found = Vec::new();
+        for i in order {
+            let answer = self.answer(methods[i])?;
+            let row = self.trial.row(place, methods[i].name(), &answer, self.set.false_alarm());
+            on_row(&row);
+            found.push((i, row));
+        }
+        found.sort_by_key(|(i, _)| *i);
+        Ok(found.into_iter().map(|(_, row)| row).collect())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::Baseline;
+    use crate::reconstruct::{BARTLETT, Baseline};
+    use crate::scene::generate::Kind;
+
+    /// Rows without their times.
+    fn figures(rows: &[Row]) -> Vec<Row> {
+        rows.iter().map(|r| Row { milliseconds: 0.0, ..r.clone() }).collect()
+    }
 
     #[test]
-    fn a_campaign_repeats_itself_and_can_be_cancelled() {
-        let campaign = Campaign { count: 3, seed: 3, ..Campaign::default() };
-        let run = |task: &Task| campaign.run(Kind::Set1, &[&Baseline], task, || ());
-        let (a, b) = (run(&Task::default()).unwrap(), run(&Task::default()).unwrap());
-        assert_eq!(a[0].squared_error(), b[0].squared_error());
-        assert_eq!((a[0].scenes(), a[0].roc().scenes()), (3, 3));
+    fn a_campaign_repeats_itself_and_its_shards_add_up_to_it() {
+        let sets = [SceneSet::Generated(Kind::Set1), SceneSet::Generated(Kind::Set2)];
+        let run = |shard: &str| {
+            let campaign = Campaign { count: 3, seed: 3, shard: shard.parse().unwrap(), ..Campaign::default() };
+            let mut seen = 0;
+            let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| seen += 1).unwrap();
+            assert_eq!(rows.len(), seen);
+            figures(&rows)
+        };
+        let whole = run("0/1");
+        assert_eq!(
+            whole.iter().map(|r| (r.set.as_str(), r.index)).collect::<Vec<_>>()[2..6],
+            [("1", 1), ("1", 1), ("1", 2), ("1", 2)]
+        );
+        assert_eq!(whole.len(), 12);
+        assert_ne!(whole[0].squared_error, whole[2].squared_error);
+        let shards = vec![("a".into(), run("1/2")), ("b".into(), run("0/2"))];
+        assert_eq!(super::super::rows::merge(shards).unwrap(), whole);
+    }
+
+    #[test]
+    fn a_campaign_can_be_cancelled() {
         let task = Task::default();
         task.cancel();
-        let stopped = run(&task).unwrap_err();
-        assert!(matches!(stopped, CampaignError::Method { source: ReconstructError::Cancelled, .. }), "{stopped}");
+        let sets = [SceneSet::Generated(Kind::Set1)];
+        let stopped = Campaign::default().run(&sets, &[&Baseline], &task, |_| ()).unwrap_err();
+        assert!(stopped.is_cancelled() && stopped.to_string().contains("scene 0 of set 1"), "{stopped}");
+    }
+
+    #[test]
+    fn shards_share_all_scenes() {
+        for (count, of) in [(10, 3), (2, 5), (0, 2), (7, 1)] {
+            let shards: Vec<Shard> = (0..of).map(|part| Shard { part, of }).collect();
+            assert_eq!(shards.iter().map(|s| s.size(count)).sum::<u32>(), count);
+            for s in shards {
+                assert_eq!((0..count).filter(|&n| s.contains(n)).count() as u32, s.size(count), "{s}");
+            }
+        }
+        assert_eq!("1/4".parse(), Ok(Shard { part: 1, of: 4 }));
+        for wrong in ["4/4", "1", "a/b", "0/0", "-1/2"] {
+            assert!(wrong.parse::<Shard>().is_err_and(|e| e.contains(wrong)));
+        }
     }
 }

@@ -1,11 +1,22 @@
-//! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables.
+//! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables; methods over many scenes, row by row;
+//! what kind of failure; and the search for worse scenes.
 
+mod blobs;
 pub mod campaign;
+mod estimate;
+pub mod failure;
+pub mod filter;
 mod metrics;
 mod placement;
 mod roc;
+pub mod rows;
+pub mod sets;
 pub mod tables;
+pub mod trial;
+pub mod worsen;
 
+pub use blobs::{Blobs, blobs};
+pub use estimate::Estimate;
 pub use metrics::{Metrics, TARGET_ETA, detection_rates, squared_error};
 pub use placement::{Placement, placement};
 pub use roc::{Roc, RocPoint};

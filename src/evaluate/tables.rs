@@ -1,25 +1,8 @@
 //! Tables 4.1 to 4.3: averages over test scenes beside the printed values.
 
-use super::{Metrics, Roc};
+pub use super::estimate::Estimate;
 
-/// A mean over scenes with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Estimate {
-    /// Mean over the scenes.
-    pub mean: f64,
-    /// Standard deviation of the mean; 0 for fewer than two scenes.
-    pub standard_error: f64,
-}
-
-impl Estimate {
-    /// Mean and standard error of `values`; NaN for none.
-    pub fn of(values: &[f64]) -> Estimate {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        Estimate { mean, standard_error: if values.len() > 1 { (variance / n).sqrt() } else { 0.0 } }
-    }
-}
+use super::rows::{Column, Row, estimate};
 
 /// What the thesis prints for one test set (tables 4.1 to 4.3); rates as fractions.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -38,15 +21,6 @@ impl Printed {
     /// All are printed with two decimals of a percent, but for the baseline's on set 1 (12.4 % and 0.2 %).
     pub fn rate_rounding(&self) -> f64 {
         if *self == PRINTED_BASELINE[0] { 0.05e-2 } else { 0.005e-2 }
-    }
-}
-
-impl Estimate {
-    /// Standard errors from this estimate to the nearest value that is printed as `printed`, signed; rounding apart it is
-    /// `(mean - printed) / standard_error`.
-    pub fn deviation_from(&self, printed: f64, rounding: f64) -> f64 {
-        let off = self.mean - printed;
-        off.signum() * (off.abs() - rounding).max(0.0) / self.standard_error
     }
 }
 
@@ -71,56 +45,67 @@ pub const PRINTED_EXPERIMENT_2: [Printed; 3] = [
     Printed { squared_error: 1613.29, detection: 0.9197, false_alarm: 0.0102 },
 ];
 
-/// One method on one test set.
+/// One method on one set: means of its rows.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
-    squared_error: Vec<f64>,
-    detection: Vec<f64>,
-    false_alarm: Vec<f64>,
-    milliseconds: Vec<f64>,
-    roc: Roc,
+    rows: Vec<Row>,
 }
 
 impl Tally {
-    /// Adds a scene's figures, its ROC and the time its map took.
-    pub fn add(&mut self, metrics: &Metrics, roc: impl FnOnce(&mut Roc), milliseconds: f64) {
-        self.squared_error.push(metrics.squared_error);
-        self.detection.extend(metrics.detection);
-        self.false_alarm.push(metrics.false_alarm);
-        self.milliseconds.push(milliseconds);
-        roc(&mut self.roc);
+    /// The rows of one method on one set.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Tally {
+        Tally { rows: rows.into_iter().cloned().collect() }
+    }
+
+    fn estimate(&self, column: Column) -> Estimate {
+        estimate(&self.rows, column)
     }
 
     /// Number of scenes.
     pub fn scenes(&self) -> usize {
-        self.squared_error.len()
+        self.rows.len()
+    }
+
+    /// Threshold of the method.
+    pub fn eta(&self) -> f32 {
+        self.rows.first().map_or(f32::NAN, |row| row.eta)
     }
 
     /// SE.
     pub fn squared_error(&self) -> Estimate {
-        Estimate::of(&self.squared_error)
+        self.estimate(Column::SquaredError)
     }
 
-    /// P_D, over the scenes that have target cells.
+    /// P_D at the method's threshold, over the scenes that have target cells.
     pub fn detection(&self) -> Estimate {
-        Estimate::of(&self.detection)
+        self.estimate(Column::Detection)
     }
 
-    /// P_FA.
+    /// P_FA at the method's threshold.
     pub fn false_alarm(&self) -> Estimate {
-        Estimate::of(&self.false_alarm)
+        self.estimate(Column::FalseAlarm)
     }
 
-    /// Median time of one reconstruction, milliseconds.
+    /// P_D where a threshold for each scene holds its P_FA to the printed one.
+    pub fn detection_at_printed(&self) -> Estimate {
+        self.estimate(Column::DetectionAtPrinted)
+    }
+
+    /// Objects missed, a scene.
+    pub fn missed(&self) -> Estimate {
+        self.estimate(Column::Missed)
+    }
+
+    /// Ghosts, a scene.
+    pub fn ghosts(&self) -> Estimate {
+        self.estimate(Column::Ghosts)
+    }
+
+    /// Median time of one reconstruction, milliseconds; NaN without scenes.
     pub fn median_milliseconds(&self) -> f64 {
-        let mut t = self.milliseconds.clone();
+        let mut t: Vec<f64> = self.rows.iter().map(|row| row.milliseconds).collect();
         t.sort_by(f64::total_cmp);
         t.get(t.len() / 2).copied().unwrap_or(f64::NAN)
-    }
-
-    /// The averaged ROC.
-    pub fn roc(&self) -> &Roc {
-        &self.roc
     }
 }
 
@@ -134,12 +119,5 @@ mod tests {
         assert!((e.deviation_from(0.002, 0.0) - 1.0).abs() < 1e-9);
         assert_eq!(e.deviation_from(0.002, PRINTED_BASELINE[0].rate_rounding()), 0.0);
         assert!((e.deviation_from(0.003, 0.0005) + 4.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn standard_error_of_known_values() {
-        let e = Estimate::of(&[1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(e.mean, 2.5);
-        assert!((e.standard_error - (5.0f64 / 3.0 / 4.0).sqrt()).abs() < 1e-12);
     }
 }

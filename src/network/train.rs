@@ -207,7 +207,8 @@ pub(super) fn lesson<S: Student>(
     kind: Kind,
     number: u32,
 ) -> Result<(S::Input, RangeAngleMap), TrainError> {
-    let signal = simulate(&run.radar, &generator.scene(kind, number), Floor::Thesis, 0)?;
+    let scene = generator.scene(kind, number);
+    let signal = simulate(&run.radar, &scene, Floor::Thesis, scene.noise_seed)?;
     let input = S::input(tables, &signal.two_ends(&run.radar))?;
     Ok((input, S::target(config, &run.radar, &signal)))
 }

@@ -3,6 +3,7 @@
 //! ```toml
 //! name = "A pair and a wall"
 //! notes = "What to look for."
+//! noise_seed = 12          # optional; picks the noise of the floor, 0 otherwise
 //!
 //! [radar]                  # optional; only what differs from table 3.1
 //! carrier = "two-way"
@@ -170,15 +171,18 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
         name: &'a str,
         #[serde(skip_serializing_if = "str::is_empty")]
         notes: &'a str,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        noise_seed: Option<u64>,
         #[serde(skip_serializing_if = "toml::Table::is_empty")]
         radar: toml::Table,
         object: &'a [Object],
     }
-    let Scene { name, notes, objects } = &file.scene;
+    let Scene { name, notes, noise_seed, objects } = &file.scene;
+    let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
     let usual = toml::Table::try_from(Radar::default())?;
     let mut radar = toml::Table::try_from(&file.radar)?;
     radar.retain(|key, value| usual.get(key) != Some(value));
-    toml::to_string_pretty(&Document { name, notes, radar, object: objects })
+    toml::to_string_pretty(&Document { name, notes, noise_seed, radar, object: objects })
 }
 
 /// Reads a scene from text and checks that it can be simulated.
@@ -194,6 +198,8 @@ pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
         name: String,
         #[serde(default)]
         notes: String,
+        #[serde(default)]
+        noise_seed: u64,
         #[serde(default)]
         radar: Radar,
         #[serde(default, rename = "object")]
@@ -233,7 +239,7 @@ pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
             spans.push(place);
         }
     }
-    let scene = Scene { name: head.name, notes: head.notes, objects };
+    let scene = Scene { name: head.name, notes: head.notes, noise_seed: head.noise_seed, objects };
     scene.validate(&head.radar).map_err(|error| {
         let span = match &error {
             SceneError::Value { object, field, .. } => spans[*object].field(field),
@@ -331,7 +337,12 @@ mod tests {
                 reflectivity: 1.0,
             }),
         ];
-        let scene = Scene { name: "All \"three\"".to_owned(), notes: "First line.\nSecond: 'x'.".to_owned(), objects };
+        let scene = Scene {
+            name: "All \"three\"".to_owned(),
+            notes: "First line.\nSecond: 'x'.".to_owned(),
+            noise_seed: 9,
+            objects,
+        };
         SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, ..Radar::default() } }
     }
 

@@ -2,7 +2,7 @@
 //! kinds that cover the whole field.
 //!
 //! Every scene comes from its own random stream, named by purpose, kind and number: training, validation and test scenes can't
-//! meet, and scene 7 is the same whether or not scenes 0 to 6 were made. So does the noise beneath it ([`Generator::noise_seed`]).
+//! meet, and scene 7 is the same whether or not scenes 0 to 6 were made. So does the noise beneath it ([`Scene::noise_seed`]).
 
 mod field;
 mod kind;
@@ -74,16 +74,16 @@ impl Generator {
         rng
     }
 
-    /// Seed of the noise beneath scene `number` of a kind, below 2^53: each scene of each purpose has its own, so that no method meets in a
-    /// test the noise it was fitted to.
-    pub fn noise_seed(&self, kind: Kind, number: u32) -> u64 {
+    /// Seed of the noise beneath a scene, below 2^53.
+    fn noise_seed(&self, kind: Kind, number: u32) -> u64 {
         let mut rng = self.rng(kind, number);
         // Far beyond what the scene itself draws from the stream.
         rng.set_word_pos(1 << 40);
         rng.random::<u64>() >> 11
     }
 
-    /// Scene `number` of a kind.
+    /// Scene `number` of a kind. Each scene of each purpose has its own [`Scene::noise_seed`], so that no method meets in a test the noise it
+    /// was fitted to.
     pub fn scene(&self, kind: Kind, number: u32) -> Scene {
         let rng = &mut self.rng(kind, number);
         let objects = match kind {
@@ -101,7 +101,8 @@ impl Generator {
                 Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
             }
         };
-        Scene { name: format!("{kind:?} {number}, seed {}", self.seed), notes: String::new(), objects }
+        let name = format!("{kind:?} {number}, seed {}", self.seed);
+        Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }
     }
 
     /// A random point: normal range and normal angle, both clipped as the author's program clips them.

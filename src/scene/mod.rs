@@ -34,9 +34,17 @@ pub struct Scene {
     /// What the scene is meant to show.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub notes: String,
+    /// Picks the noise of the floor beneath the scene, where there is noise. TOML holds it up to 2^63.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub noise_seed: u64,
     /// The objects.
     #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<Object>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(seed: &u64) -> bool {
+    *seed == 0
 }
 
 /// Nearest a reflector may come to an element, metres. Closer than this the 1/R^2 law means nothing and its amplitude knows no bound.

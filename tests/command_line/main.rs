@@ -4,3 +4,4 @@ mod bounds;
 mod cli;
 #[cfg(feature = "network")]
 mod reconstruct;
+mod rows;

@@ -4,6 +4,7 @@
 //! values come from finitely many scenes themselves, so this is strict, and the control shows that it can fail.
 
 use apertura::evaluate::campaign::Campaign;
+use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::{PRINTED_BASELINE, Tally};
 use apertura::reconstruct::Baseline;
 use apertura::scene::generate::Kind;
@@ -21,11 +22,14 @@ fn deviations(tally: &Tally, set: usize) -> [f64; 3] {
     ]
 }
 
+fn tally(campaign: &Campaign, set: usize) -> Tally {
+    let sets = [SceneSet::Generated(Kind::TEST_SETS[set - 1])];
+    Tally::of(&campaign.run(&sets, &[&Baseline], &Task::default(), |_| ()).expect("test scenes are valid"))
+}
+
 fn run(floor: Floor, set: usize, count: u32) -> Tally {
     let campaign = Campaign { floor, count, seed: 1, ..Campaign::default() };
-    let mut tallies =
-        campaign.run(Kind::TEST_SETS[set - 1], &[&Baseline], &Task::default(), || ()).expect("test scenes are valid");
-    tallies.remove(0)
+    tally(&campaign, set)
 }
 
 #[test]
@@ -48,10 +52,7 @@ fn the_exact_floor_does_not_reproduce_them() {
 #[ignore = "simulates 300 scenes with the plain formula"]
 fn all_nine_baseline_cells() {
     for set in [1, 2, 3] {
-        let campaign = Campaign::default();
-        let tally =
-            campaign.run(Kind::TEST_SETS[set - 1], &[&Baseline], &Task::default(), || ()).expect("valid scenes");
-        let found = deviations(&tally[0], set);
+        let found = deviations(&tally(&Campaign::default(), set), set);
         assert!(found.iter().all(|d| d.abs() < 2.5), "set {set}: SE, P_D, P_FA off by {found:.2?} standard errors");
     }
 }

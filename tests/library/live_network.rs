@@ -1,31 +1,21 @@
 //! The shipped live network on fresh scenes.
 
-use apertura::evaluate::Metrics;
+use apertura::evaluate::campaign::Campaign;
+use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::Tally;
-use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::Request;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::scene::generate::{Kind, Purpose};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::{Floor, TwoEnds, simulate};
-use std::time::Instant;
+use apertura::task::Task;
 
-fn tally(kind: Kind, scenes: u32) -> Tally {
-    let radar = Radar::default();
+fn tally(kind: Kind, count: u32) -> Tally {
     let live = methods::by_name("live").expect("the live network ships with the program");
-    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 77);
-    let mut tally = Tally::default();
-    for number in 0..scenes {
-        let scene = generator.scene(kind, number);
-        let signal = simulate(&radar, &scene, Floor::Thesis, generator.noise_seed(kind, number)).unwrap();
-        let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax);
-        let start = Instant::now();
-        let out = live.reconstruct(&radar, &signal.two_ends(&radar), &Request::default()).unwrap();
-        let time = start.elapsed().as_secs_f64() * 1e3;
-        tally.add(&Metrics::of(&target, &out.lambda, live.eta()), |roc| roc.add(&target, &out.lambda), time);
-    }
-    tally
+    let campaign = Campaign { purpose: Purpose::Validation, seed: 77, count, ..Campaign::default() };
+    let sets = [SceneSet::Generated(kind)];
+    Tally::of(&campaign.run(&sets, &[live.as_ref()], &Task::default(), |_| ()).expect("validation scenes are valid"))
 }
 
 #[test]

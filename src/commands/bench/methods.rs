@@ -3,22 +3,20 @@
 use super::CommandError;
 use crate::commands::figure::{Drawn, Figure, save};
 use crate::commands::print;
+use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
-use crate::evaluate::squared_error;
-use crate::evaluate::tables::Estimate;
-use crate::maps::LogMaps;
+use crate::evaluate::sets::SceneSet;
+use crate::evaluate::tables::Tally;
+use crate::evaluate::trial::Trial;
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::{Reconstructor, Request};
-use crate::scene::Scene;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::simulate;
 use crate::task::Task;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
-use std::time::Instant;
 
 /// Crowded scenes are told apart by how close their reflectors lie: a few say nothing of the median.
 const FEWEST_CROWDS: u32 = 20;
@@ -110,15 +108,21 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
 
 fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {
     let campaign = Campaign { count, ..Campaign::default() };
-    let [one, two, three] = Kind::TEST_SETS;
-    let run = |kind| campaign.run(kind, methods, &Task::default(), &on_map).map_err(CommandError::failed);
-    let sets = [run(one)?, run(two)?, run(three)?];
-    let row = |(i, method): (usize, &&dyn Reconstructor)| MethodRow {
-        method: method.name(),
-        squared_error: [0, 1, 2].map(|set| sets[set][i].squared_error()),
-        median_milliseconds: [0, 1, 2].map(|set| sets[set][i].median_milliseconds()),
+    let sets = Kind::TEST_SETS.map(SceneSet::Generated);
+    let rows = campaign.run(&sets, methods, &Task::default(), |_| on_map()).map_err(CommandError::failed)?;
+    let row = |method: &&dyn Reconstructor| {
+        let tally = |set: &SceneSet| {
+            let set = set.to_string();
+            Tally::of(rows.iter().filter(|row| row.method == method.name() && row.set == set))
+        };
+        let tallies = sets.each_ref().map(tally);
+        MethodRow {
+            method: method.name(),
+            squared_error: tallies.each_ref().map(Tally::squared_error),
+            median_milliseconds: tallies.each_ref().map(Tally::median_milliseconds),
+        }
     };
-    Ok(methods.iter().enumerate().map(row).collect())
+    Ok(methods.iter().map(row).collect())
 }
 
 /// The hybrid on the first `count` test scenes of `kind` that hold `reflectors` reflectors.
@@ -135,9 +139,14 @@ fn crowd(
     let scenes = (0..).map(|number| generator.scene(kind, number)).filter(|s| s.reflector_count() == reflectors);
     let (mut times, mut errors) = (Vec::new(), Vec::new());
     for scene in scenes.take(count as usize) {
-        let (milliseconds, error) = timed(&radar, &scene, &*hybrid, &request)?;
-        times.push(milliseconds);
-        errors.push(error);
+        let trial = Trial::new(&radar, &scene, request.floor, request.normalisation).map_err(CommandError::failed)?;
+        if times.is_empty() {
+            // Warmed up, as the methods above were.
+            trial.ask(&*hybrid, &request).map_err(CommandError::failed)?;
+        }
+        let answer = trial.ask(&*hybrid, &request).map_err(CommandError::failed)?;
+        times.push(answer.milliseconds);
+        errors.push(answer.metrics.squared_error);
         on_map();
     }
     times.sort_by(f64::total_cmp);
@@ -149,22 +158,6 @@ fn crowd(
         worst_milliseconds: times[times.len() - 1],
         squared_error: Estimate::of(&errors),
     })
-}
-
-/// Milliseconds and SE of one map.
-fn timed(
-    radar: &Radar,
-    scene: &Scene,
-    method: &dyn Reconstructor,
-    request: &Request,
-) -> Result<(f64, f64), CommandError> {
-    let signal = simulate(radar, scene, request.floor, 0).map_err(CommandError::failed)?;
-    let target = LogMaps::of_signal(radar, &signal).full.normalise(request.normalisation);
-    let ends = signal.two_ends(radar);
-    let start = Instant::now();
-    let found = method.reconstruct(radar, &ends, request).map_err(CommandError::failed)?;
-    let milliseconds = 1e3 * start.elapsed().as_secs_f64();
-    Ok((milliseconds, squared_error(&target, &found.lambda)))
 }
 
 /// Height of a name on the chart, pixels.

@@ -1,0 +1,160 @@
+//! `apertura worsen`: near a scene, one on which a method does worse; or the smallest move after which it is right.
+
+use super::arguments::FloorArgs;
+use super::network_args::NetworkArgs;
+use super::{CommandError, print};
+use crate::evaluate::worsen::{Aim, Finding, Measure, Outcome, Search, summary};
+use crate::scene::Scene;
+use crate::scene::file::{self, SceneFile};
+use crate::task::Task;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Search near a scene for one on which a method does worse, or for the smallest move after which it is right
+///
+/// Objects move by at most --within; their echoes change by up to 6 dB against each other; other noise is drawn. The same seed gives the same
+/// scene as long as --tries ends the search, not --minutes. With --repair objects move and nothing else changes; right is an output that
+/// misses no object (--measure missed), has no ghost (ghosts), or has a fifth of the squared error. Prints before and after; OUT.toml
+/// is written when something was found.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene to start from (.toml or .npz)
+    scene: PathBuf,
+
+    /// Reconstruction method
+    #[arg(long, value_name = "NAME")]
+    method: String,
+
+    /// What worse means
+    #[arg(long, value_name = "squared-error|missed|ghosts", default_value_t)]
+    measure: Measure,
+
+    /// Look for the smallest move after which the method is right instead
+    #[arg(long)]
+    repair: bool,
+
+    /// How far objects may move, metres
+    #[arg(long, value_name = "METRES", default_value_t = Search::default().within_metres)]
+    within: f64,
+
+    /// Scenes to try
+    #[arg(long, value_name = "N", default_value_t = Search::default().tries, value_parser = clap::value_parser!(u32).range(1..))]
+    tries: u32,
+
+    /// Stop after so many minutes
+    #[arg(long, value_name = "T", default_value_t = 10.0)]
+    minutes: f64,
+
+    /// Picks the scenes that are tried
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+
+    /// Scene file to write
+    #[arg(short, long, value_name = "OUT.toml")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    network: NetworkArgs,
+
+    #[command(flatten)]
+    floor: FloorArgs,
+}
+
+impl Args {
+    /// Searches, prints, and writes what was found.
+    pub fn run(self) -> Result<(), CommandError> {
+        file::Format::of_path(&self.output).map_err(CommandError::failed)?;
+        let Some(time) = Duration::try_from_secs_f64(60.0 * self.minutes).ok().filter(|t| !t.is_zero()) else {
+            return Err(CommandError::Usage(format!("--minutes {}: expected more than 0", self.minutes)));
+        };
+        let SceneFile { scene, radar } = file::load(&self.scene).map_err(CommandError::failed)?;
+        let methods = self.network.methods(std::slice::from_ref(&self.method))?;
+        let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
+        let search = Search {
+            radar: radar.clone(),
+            floor: self.floor.floor,
+            aim: if self.repair { Aim::Repair } else { Aim::Worsen },
+            measure: self.measure,
+            within_metres: self.within,
+            tries: self.tries,
+            seed: self.seed,
+            ..Search::default()
+        };
+        let begin = Instant::now();
+        let bar = indicatif::ProgressBar::new(u64::from(self.tries));
+        let on_try = |tries: u32, _: &[Finding]| {
+            bar.set_position(u64::from(tries));
+            begin.elapsed() < time
+        };
+        let outcome =
+            search.run(&scene, method.as_ref(), &Task::default(), on_try).map_err(CommandError::on(&self.scene))?;
+        bar.finish_and_clear();
+        let Some((start, end)) = outcome.ends() else { return Err(CommandError::Usage("nothing was tried".into())) };
+        print(&format!("before: {}", self.figures(start)))?;
+        let Some(end) = end else { return self.nothing(&outcome) };
+        print(&format!("after:  {}", self.figures(end)))?;
+        print(&changes(&scene, &end.scene))?;
+        self.print_end(&outcome, end)?;
+        let notes = format!("{} before, {} after, by {}", self.figures(start), self.figures(end), method.name());
+        let name = format!("{} than {}", if self.repair { "Better" } else { "Worse" }, called(&scene, &self.scene));
+        let found = SceneFile { scene: Scene { name, notes, ..end.scene.clone() }, radar };
+        file::save(&self.output, &found).map_err(CommandError::failed)?;
+        print(&format!("wrote {}", self.output.display()))
+    }
+
+    fn figures(&self, finding: &Finding) -> String {
+        let m = &finding.metrics;
+        let detection = m.detection.map_or("-".to_owned(), |d| format!("{:.2} %", 100.0 * d));
+        let mut text = format!("SE {:.1}, P_D {detection}, P_FA {:.2} %", m.squared_error, 100.0 * m.false_alarm);
+        if self.measure != Measure::SquaredError {
+            text += &format!("; {}", summary(&finding.failures));
+        }
+        text
+    }
+
+    fn print_end(&self, outcome: &Outcome, end: &Finding) -> Result<(), CommandError> {
+        let Outcome { tries, .. } = outcome;
+        print(&format!("try {} of {tries} with seed {}", end.tries, self.seed))?;
+        if *tries < self.tries {
+            return print(&format!("ended by the clock; --tries {tries} repeats this search"));
+        }
+        Ok(())
+    }
+
+    fn nothing(&self, outcome: &Outcome) -> Result<(), CommandError> {
+        if self.repair && outcome.tries == 0 {
+            return print("nothing to repair");
+        }
+        let what = if self.repair { "right" } else { "worse" };
+        let message = format!(
+            "no scene {what} than this within {} m in {} tries; try a larger --within, more --tries, or another --seed",
+            self.within, outcome.tries
+        );
+        Err(CommandError::Usage(message))
+    }
+}
+
+fn called(scene: &Scene, path: &std::path::Path) -> String {
+    if scene.name.is_empty() { path.display().to_string() } else { scene.name.clone() }
+}
+
+/// What differs between two scenes of the same objects.
+fn changes(before: &Scene, after: &Scene) -> String {
+    let mut lines = Vec::new();
+    for (i, (a, b)) in before.objects.iter().zip(&after.objects).enumerate() {
+        let ([ax, ay], [bx, by]) = (a.centre_metres(), b.centre_metres());
+        let (dx, dy) = (bx - ax, by - ay);
+        let strength = |o: &crate::scene::Object| o.reflectors().first().map_or(0.0, |r| r.reflectivity.abs());
+        let mut line =
+            format!("object {} ({}): moved by {dx:+.3} m, {dy:+.3} m ({:.3} m)", i + 1, a.kind(), dx.hypot(dy));
+        let db = 20.0 * (strength(b) / strength(a)).log10();
+        if db.abs() > 0.005 {
+            line += &format!(", echo {db:+.2} dB");
+        }
+        lines.push(line);
+    }
+    if before.noise_seed != after.noise_seed {
+        lines.push(format!("noise seed {} in place of {}", after.noise_seed, before.noise_seed));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,316 @@
+//! What kind of failure: every object of a scene found, missed, merged with a neighbour or on the wrong tooth of the comb; and ghosts, where
+//! a method sees what isn't there.
+//!
+//! An object's *footprint* is where it alone, seen by the whole array without noise, exceeds the level at which the scene's target is
+//! thresholded. All verdicts are about footprints and the output above the method's threshold, so that they hold for any method, whether or
+//! not it believes in reflectors.
+
+use super::TARGET_ETA;
+use super::blobs::Blobs;
+use crate::maps::{Aperture, LambdaScale, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
+use crate::radar::Radar;
+use crate::scene::{Object, Scene};
+use crate::signal::plan::{self, Recipe};
+use ndarray::Axis;
+
+/// Part of a footprint that must be detected for the object to count as found.
+const FOUND: f64 = 0.5;
+/// Error of a footprint's simulation, relative to the object's amplitudes.
+const TOLERANCE: f64 = 1e-6;
+/// Columns that a wrong tooth is looked for to either side. The two ends' ambiguity has a peak about every column.
+const MOST_TEETH: i32 = 8;
+/// An output belongs to another tooth when the target moved there leaves at most this part of the squared error.
+const EXPLAINED: f64 = 0.5;
+/// Cells that a detection may lie from a footprint without being a ghost: side lobes and smeared edges.
+const GHOST_MARGIN: usize = 3;
+/// Smaller specks are no ghosts, cells.
+const GHOST_CELLS: usize = 8;
+
+/// A cell of a map: range bin and column.
+pub type Cell = [usize; 2];
+
+/// What became of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Fate {
+    /// Half of its footprint or more is detected, and nothing is wrong with it.
+    Found,
+    /// Less than half of its footprint is detected.
+    Missed,
+    /// One blob covers it and this object, which the target shows apart.
+    Merged {
+        /// Index of the other object in the scene.
+        with: usize,
+    },
+    /// It is where it should be but for a shift along the columns, to another tooth of the two ends' ambiguity.
+    WrongTooth {
+        /// How far, columns.
+        columns: i32,
+    },
+    /// Too weak beside the others: the target itself doesn't show it.
+    Hidden,
+}
+
+impl Fate {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Fate::Found => "found",
+            Fate::Missed => "missed",
+            Fate::Merged { .. } => "merged",
+            Fate::WrongTooth { .. } => "wrong tooth",
+            Fate::Hidden => "hidden",
+        }
+    }
+
+    /// Whether the method did what could be done: found it, or couldn't have.
+    pub fn is_right(self) -> bool {
+        matches!(self, Fate::Found | Fate::Hidden)
+    }
+}
+
+/// A blob of the output where the scene has nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ghost {
+    /// Its cells.
+    pub cells: Vec<Cell>,
+}
+
+/// What became of every object, and what isn't there.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Failures {
+    /// In the scene's order.
+    pub objects: Vec<Fate>,
+    /// Blobs far from every object and from what the target shows.
+    pub ghosts: Vec<Ghost>,
+}
+
+impl Failures {
+    /// Objects that are [`Fate::Missed`].
+    pub fn missed(&self) -> usize {
+        self.objects.iter().filter(|f| **f == Fate::Missed).count()
+    }
+
+    /// Whether every object is found and nothing else is.
+    pub fn is_right(&self) -> bool {
+        self.ghosts.is_empty() && self.objects.iter().all(|f| f.is_right())
+    }
+}
+
+/// Where each object of a scene shows in its target.
+#[derive(Debug, Clone)]
+pub struct Footprints {
+    objects: Vec<Vec<Cell>>,
+    target: Blobs,
+}
+
+impl Footprints {
+    /// The footprints in `scene`, whose target map is `target`, with `scale` between its decades and Lambda.
+    ///
+    /// `scene` must have passed [`Scene::validate`].
+    pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
+        let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
+        let objects = scene.objects.iter().map(|o| footprint(radar, o, level)).collect();
+        Footprints { objects, target: Blobs::of(&target.above(TARGET_ETA)) }
+    }
+
+    /// The cells of every object, in the scene's order; empty for one that the target doesn't show.
+    pub fn cells(&self) -> &[Vec<Cell>] {
+        &self.objects
+    }
+
+    /// Judges `output`, thresholded at `eta`, against `target`.
+    pub fn judge(&self, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Failures {
+        let found = Blobs::of(&output.above(eta));
+        let mut objects: Vec<Fate> = self.objects.iter().map(|cells| alone(cells, target, output, &found)).collect();
+        for i in 0..objects.len() {
+            if objects[i] == Fate::Found
+                && let Some(with) = self.merged(i, &objects, &found)
+            {
+                objects[i] = Fate::Merged { with };
+            }
+        }
+        let ghosts = self.ghosts(&found, &objects);
+        Failures { objects, ghosts }
+    }
+
+    /// The first object that shares a blob of the output with object `i`, but not one of the target.
+    fn merged(&self, i: usize, fates: &[Fate], found: &Blobs) -> Option<usize> {
+        let blob = |blobs: &Blobs, of: usize| blobs.most_of(&self.objects[of]);
+        let (shown, seen) = (blob(&self.target, i)?, blob(found, i)?);
+        (0..fates.len())
+            .filter(|&o| o != i && matches!(fates[o], Fate::Found | Fate::Merged { .. }))
+            .find(|&o| blob(found, o) == Some(seen) && blob(&self.target, o).is_some_and(|other| other != shown))
+    }
+
+    fn ghosts(&self, found: &Blobs, fates: &[Fate]) -> Vec<Ghost> {
+        let (rows, columns) = found.labels.dim();
+        let mut taken = vec![false; found.cells.len() + 1];
+        let mut take = |[row, column]: Cell, shift: i32| {
+            let near = GHOST_MARGIN as i32;
+            for r in row.saturating_sub(GHOST_MARGIN)..(row + GHOST_MARGIN + 1).min(rows) {
+                for c in -near..=near {
+                    taken[found.labels[[r, moved(column, c + shift, columns)]] as usize] = true;
+                }
+            }
+        };
+        // What the target shows beside the objects, side lobes and noise, is no ghost either.
+        self.target.cells.iter().flatten().for_each(|&cell| take(cell, 0));
+        for (cells, fate) in self.objects.iter().zip(fates) {
+            let shift = if let Fate::WrongTooth { columns } = fate { *columns } else { 0 };
+            cells.iter().for_each(|&cell| take(cell, shift));
+        }
+        let blobs = found.cells.iter().zip(&taken[1..]);
+        blobs
+            .filter(|(cells, taken)| !**taken && cells.len() >= GHOST_CELLS)
+            .map(|(cells, _)| Ghost { cells: cells.clone() })
+            .collect()
+    }
+}
+
+/// The fate of one object, whatever its neighbours'.
+fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> Fate {
+    if cells.is_empty() {
+        return Fate::Hidden;
+    }
+    let columns = target.lambda.ncols();
+    let at = |[row, column]: Cell, shift: i32| [row, moved(column, shift, columns)];
+    let covered = |shift: i32| {
+        let hits = cells.iter().filter(|&&cell| found.labels[at(cell, shift)] != 0).count();
+        hits as f64 / cells.len() as f64
+    };
+    // With its edges: inside, a target above its threshold is nearly flat.
+    let error = |shift: i32| -> f64 {
+        let edges = cells.iter().flat_map(|&cell| [-MOST_TEETH, 0, MOST_TEETH].map(|edge| at(cell, edge)));
+        edges.map(|cell| f64::from(output.lambda[at(cell, shift)] - target.lambda[cell]).powi(2)).sum()
+    };
+    let here = error(0);
+    let best = (-MOST_TEETH..=MOST_TEETH)
+        .map(|shift| (shift, error(shift)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(shift, error)| *shift != 0 && *error <= EXPLAINED * here && covered(*shift) >= FOUND);
+    match best {
+        Some((columns, _)) => Fate::WrongTooth { columns },
+        None if covered(0) >= FOUND => Fate::Found,
+        None => Fate::Missed,
+    }
+}
+
+fn moved(column: usize, by: i32, columns: usize) -> usize {
+    (column as i64 + i64::from(by)).rem_euclid(columns as i64) as usize
+}
+
+/// The cells that `object` alone, without noise, lifts above `level` (a magnitude).
+fn footprint(radar: &Radar, object: &Object, level: f64) -> Vec<Cell> {
+    let reflectors = object.reflectors();
+    let amplitude = plan::amplitude_bound(radar, &reflectors);
+    let recipe = Recipe::plan(reflectors.len(), amplitude, TOLERANCE);
+    let profiles = range_transform(radar, &plan::beat_signal(radar, &reflectors, &recipe)).profiles;
+    // No cell of a row can exceed what its profiles add up to.
+    let scale = (radar.elements as f64).sqrt().recip();
+    let window = radar.window.weights(radar.elements);
+    let most = |bin: usize| -> f64 {
+        profiles.column(bin).iter().zip(&window).map(|(p, w)| p.norm() * w.abs()).sum::<f64>() * scale
+    };
+    let bins: Vec<usize> = (0..radar.samples).filter(|&bin| most(bin) > level).collect();
+    let rows = RangeProfiles { profiles: profiles.select(Axis(1), &bins) };
+    let map = angle_transform(radar, &rows, Aperture::Full);
+    map.cells.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((row, column), _)| [bins[row], column]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::{LogMaps, Normalisation};
+    use crate::scene::Point;
+    use crate::signal::{Floor, simulate};
+
+    /// A target, where its objects show, and how far a threshold lies from its cells' edge.
+    fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
+        let radar = Radar::default();
+        let scene = Scene::of_points(points.iter().copied());
+        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
+        let target = full.normalise(Normalisation::MinMax);
+        let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
+        (target, footprints)
+    }
+
+    fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
+        let columns = map.lambda.ncols();
+        let lambda = ndarray::Array2::from_shape_fn(map.lambda.dim(), |(r, c)| map.lambda[[r, moved(c, -by, columns)]]);
+        RangeAngleMap { lambda }
+    }
+
+    /// Silences the cells of one object, with their surroundings.
+    fn without(map: &RangeAngleMap, cells: &[Cell]) -> RangeAngleMap {
+        let mut map = map.clone();
+        for &[r, c] in cells {
+            for c in c.saturating_sub(60)..(c + 60).min(1024) {
+                map.lambda[[r, c]] = 0.0;
+            }
+        }
+        map
+    }
+
+    const TWO: [(f64, f64); 2] = [(-4.0, 12.0), (5.0, 20.0)];
+
+    #[test]
+    fn a_perfect_output_finds_every_object() {
+        let (target, footprints) = scene(&TWO);
+        assert!(footprints.cells().iter().all(|c| c.len() > 20));
+        let found = footprints.judge(&target, &target, TARGET_ETA);
+        assert!(found.is_right() && found.objects == [Fate::Found; 2], "{:?}", found.objects);
+    }
+
+    #[test]
+    fn what_is_left_out_is_missed_and_nothing_else() {
+        let (target, footprints) = scene(&TWO);
+        let output = without(&target, &footprints.cells()[1]);
+        let found = footprints.judge(&target, &output, TARGET_ETA);
+        assert_eq!((&found.objects[..], found.missed()), (&[Fate::Found, Fate::Missed][..], 1));
+        assert!(found.ghosts.is_empty());
+    }
+
+    #[test]
+    fn a_shift_by_a_few_columns_is_the_wrong_tooth_and_no_ghost() {
+        let (target, footprints) = scene(&[(5.0, 20.0)]);
+        for by in [-3, 1, 6] {
+            let found = footprints.judge(&target, &shifted(&target, by), TARGET_ETA);
+            assert_eq!(found.objects, [Fate::WrongTooth { columns: by }]);
+            assert!(found.ghosts.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_blob_elsewhere_is_a_ghost() {
+        let (target, footprints) = scene(&[(5.0, 20.0)]);
+        let mut output = target.clone();
+        output.lambda.slice_mut(ndarray::s![100..104, 200..206]).fill(1.0);
+        output.lambda[[50, 50]] = 1.0;
+        let found = footprints.judge(&target, &output, TARGET_ETA);
+        assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "a speck is no ghost");
+        assert_eq!(found.ghosts[0].cells.len(), 24);
+    }
+
+    #[test]
+    fn one_blob_over_two_objects_is_a_merger() {
+        let (target, footprints) = scene(&[(-2.0, 20.0), (2.0, 20.0)]);
+        assert_eq!(footprints.judge(&target, &target, TARGET_ETA).objects, [Fate::Found; 2]);
+        let row = footprints.cells()[0][0][0];
+        let mut output = target.clone();
+        output.lambda.slice_mut(ndarray::s![row..row + 2, 400..620]).fill(1.0);
+        let found = footprints.judge(&target, &output, TARGET_ETA);
+        assert_eq!(found.objects, [Fate::Merged { with: 1 }, Fate::Merged { with: 0 }]);
+    }
+
+    #[test]
+    fn an_object_that_the_target_hides_is_no_failure() {
+        let radar = Radar::default();
+        let point = |x_metres, reflectivity| Object::Point(Point { x_metres, y_metres: 15.0, reflectivity });
+        let scene = Scene { objects: vec![point(-5.0, 1.0), point(5.0, 1e-6)], ..Scene::default() };
+        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
+        let target = full.normalise(Normalisation::MinMax);
+        let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
+        let found = footprints.judge(&target, &target, TARGET_ETA);
+        assert_eq!(found.objects, [Fate::Found, Fate::Hidden]);
+    }
+}

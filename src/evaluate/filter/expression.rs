@@ -1,0 +1,120 @@
+//! What an expression means.
+
+use crate::evaluate::rows::{Column, Row, Value};
+use std::collections::HashMap;
+
+/// What is true or false.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Truth {
+    Or(Box<[Truth; 2]>),
+    And(Box<[Truth; 2]>),
+    Not(Box<Truth>),
+    Compare(Box<Term>, Comparison, Box<Term>),
+}
+
+/// What has a value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Term {
+    Number(f64),
+    Text(String),
+    /// Of the row itself, or of a method's row on the same scene.
+    Column(Option<String>, Column),
+    Arithmetic(Box<Term>, Sign, Box<Term>),
+    Negative(Box<Term>),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comparison {
+    Equal,
+    Unequal,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    Plus,
+    Minus,
+    Times,
+    Over,
+}
+
+/// A scene's key: set, seed, number.
+type Key<'a> = (&'a str, u64, u32);
+
+/// Every row by its scene and method.
+pub struct Scenes<'a> {
+    rows: HashMap<(Key<'a>, &'a str), &'a Row>,
+}
+
+fn key(row: &Row) -> Key<'_> {
+    (&row.set, row.seed, row.index)
+}
+
+impl<'a> Scenes<'a> {
+    pub fn new(rows: &'a [Row]) -> Self {
+        Scenes { rows: rows.iter().map(|row| ((key(row), row.method.as_str()), row)).collect() }
+    }
+
+    fn value(&self, row: &'a Row, method: Option<&'a str>, column: Column) -> Value<'a> {
+        match method {
+            None => column.of(row),
+            Some(method) => self.rows.get(&(key(row), method)).map_or(Value::Missing, |row| column.of(row)),
+        }
+    }
+}
+
+impl Truth {
+    pub fn holds<'a>(&'a self, row: &'a Row, scenes: &Scenes<'a>) -> bool {
+        match self {
+            Truth::Or(both) => both.iter().any(|t| t.holds(row, scenes)),
+            Truth::And(both) => both.iter().all(|t| t.holds(row, scenes)),
+            Truth::Not(inner) => !inner.holds(row, scenes),
+            Truth::Compare(a, how, b) => how.holds(a.value(row, scenes), b.value(row, scenes)),
+        }
+    }
+}
+
+impl Comparison {
+    fn holds(self, a: Value<'_>, b: Value<'_>) -> bool {
+        let order = match (a, b) {
+            (Value::Number(a), Value::Number(b)) => a.partial_cmp(&b),
+            (Value::Text(a), Value::Text(b)) => Some(a.cmp(b)),
+            (Value::Missing, _) | (_, Value::Missing) => None,
+            // A set's number and another's name.
+            _ => return self == Comparison::Unequal,
+        };
+        order.is_some_and(|order| match self {
+            Comparison::Equal => order.is_eq(),
+            Comparison::Unequal => order.is_ne(),
+            Comparison::Less => order.is_lt(),
+            Comparison::LessOrEqual => order.is_le(),
+            Comparison::Greater => order.is_gt(),
+            Comparison::GreaterOrEqual => order.is_ge(),
+        })
+    }
+}
+
+impl Term {
+    fn value<'a>(&'a self, row: &'a Row, scenes: &Scenes<'a>) -> Value<'a> {
+        let number = |term: &'a Term| match term.value(row, scenes) {
+            Value::Number(v) => Some(v),
+            _ => None,
+        };
+        let found = match self {
+            Term::Number(v) => Some(*v),
+            Term::Text(text) => return Value::Text(text),
+            Term::Column(method, column) => return scenes.value(row, method.as_deref(), *column),
+            Term::Negative(inner) => number(inner).map(|v| -v),
+            Term::Arithmetic(a, sign, b) => number(a).zip(number(b)).map(|(a, b)| match sign {
+                Sign::Plus => a + b,
+                Sign::Minus => a - b,
+                Sign::Times => a * b,
+                Sign::Over => a / b,
+            }),
+        };
+        found.map_or(Value::Missing, Value::Number)
+    }
+}

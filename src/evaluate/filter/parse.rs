@@ -1,0 +1,435 @@
+//! From an expression's text to what it means.
+
+use super::expression::{Comparison, Sign, Term, Truth};
+use crate::evaluate::rows::Column;
+use std::fmt::Write;
+
+/// Brackets and signs may be nested so deep.
+const DEEPEST: usize = 50;
+/// Longest expression, characters.
+const LONGEST: usize = 2000;
+
+/// What is wrong with an expression, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("column {column}: {message}")]
+pub struct FilterError {
+    /// Where, in characters from 1; just after the text where something is missing at its end.
+    pub column: usize,
+    /// What was expected there.
+    pub message: String,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Token {
+    Number(f64),
+    Text(String),
+    /// A column's name, and a method's before it.
+    Name(Option<String>, String),
+    Sign(&'static str),
+    End,
+}
+
+/// Signs, longer ones before those they begin with; each with what it is the same as.
+const SIGNS: [(&str, &str); 18] = [
+    ("&&", "&"),
+    ("||", "|"),
+    ("==", "="),
+    ("!=", "!="),
+    ("<=", "<="),
+    (">=", ">="),
+    ("&", "&"),
+    ("|", "|"),
+    ("=", "="),
+    ("!", "!"),
+    ("<", "<"),
+    (">", ">"),
+    ("+", "+"),
+    ("-", "-"),
+    ("*", "*"),
+    ("/", "/"),
+    ("(", "("),
+    (")", ")"),
+];
+
+const OPERAND: &str = "expected a column, a number, a name in quotes or (";
+
+fn error<T>(at: usize, message: impl Into<String>) -> Result<T, FilterError> {
+    Err(FilterError { column: at + 1, message: message.into() })
+}
+
+/// Cuts a text into tokens, each with the character it starts at.
+fn tokens(text: &[char]) -> Result<Vec<(usize, Token)>, FilterError> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while let Some(&c) = text.get(at) {
+        let start = at;
+        let token = match c {
+            _ if c.is_whitespace() => {
+                at += 1;
+                continue;
+            }
+            '"' | '\'' => {
+                let Some(length) = text[at + 1..].iter().position(|q| *q == c) else {
+                    return error(start, "this quote is not closed");
+                };
+                at += length + 2;
+                Token::Text(text[start + 1..at - 1].iter().collect())
+            }
+            '0'..='9' | '.' => Token::Number(number(text, &mut at)?),
+            _ if is_name(c) => {
+                let first = name(text, &mut at);
+                if text.get(at) == Some(&'.') {
+                    at += 1;
+                    Token::Name(Some(first), name(text, &mut at))
+                } else {
+                    Token::Name(None, first)
+                }
+            }
+            _ => {
+                let rest: String = text[at..].iter().take(2).collect();
+                let Some((sign, same)) = SIGNS.iter().find(|(sign, _)| rest.starts_with(sign)) else {
+                    return error(start, format!("\"{c}\" has no meaning here; {OPERAND}"));
+                };
+                at += sign.len();
+                Token::Sign(same)
+            }
+        };
+        found.push((start, token));
+    }
+    found.push((text.len(), Token::End));
+    Ok(found)
+}
+
+/// Whether a name may begin with `c`.
+pub(super) fn is_name(c: char) -> bool {
+    c.is_alphabetic() || c == '_'
+}
+
+/// A name: letters, digits, underscores, and hyphens between them.
+fn name(text: &[char], at: &mut usize) -> String {
+    let start = *at;
+    while let Some(&c) = text.get(*at) {
+        let inside = is_name(c) || c.is_ascii_digit();
+        let hyphen = c == '-' && *at > start && text.get(*at + 1).is_some_and(|next| is_name(*next));
+        if !(inside || hyphen) {
+            break;
+        }
+        *at += 1;
+    }
+    text[start..*at].iter().collect()
+}
+
+fn number(text: &[char], at: &mut usize) -> Result<f64, FilterError> {
+    let start = *at;
+    while let Some(&c) = text.get(*at) {
+        let exponent = matches!(c, '+' | '-') && *at > start && matches!(text[*at - 1], 'e' | 'E');
+        if !(c.is_ascii_alphanumeric() || c == '.' || exponent) {
+            break;
+        }
+        *at += 1;
+    }
+    let digits: String = text[start..*at].iter().collect();
+    match digits.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => error(start, format!("\"{digits}\" is not a number")),
+    }
+}
+
+/// Reads a whole expression about rows of `methods`.
+pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Truth, FilterError> {
+    let characters: Vec<char> = text.chars().collect();
+    if characters.len() > LONGEST {
+        return error(LONGEST, format!("an expression may have {LONGEST} characters"));
+    }
+    let tokens = tokens(&characters)?;
+    let mut parser = Parser { tokens: &tokens, methods, next: 0, depth: 0 };
+    let start = parser.at();
+    let whole = parser.either()?;
+    match parser.peek() {
+        Token::End => whole.truth(start, parser.at()),
+        Token::Sign(")") => error(parser.at(), "this bracket was never opened"),
+        _ => error(parser.at(), "expected &, | or the end"),
+    }
+}
+
+/// What brackets may hold.
+enum Part {
+    Truth(Truth),
+    Term(Term),
+}
+
+impl Part {
+    /// `start` is where it begins, `end` where something is missing if it is a value only.
+    fn truth(self, start: usize, end: usize) -> Result<Truth, FilterError> {
+        match self {
+            Part::Truth(truth) => Ok(truth),
+            Part::Term(Term::Column(..)) => error(end, "expected a comparison after the column, as in objects >= 4"),
+            Part::Term(_) => error(start, "expected a comparison, as in objects >= 4"),
+        }
+    }
+
+    fn term(self, start: usize) -> Result<Term, FilterError> {
+        match self {
+            Part::Term(term) => Ok(term),
+            Part::Truth(_) => error(start, "expected a value, found something true or false"),
+        }
+    }
+}
+
+struct Parser<'a> {
+    tokens: &'a [(usize, Token)],
+    methods: &'a [&'a str],
+    next: usize,
+    depth: usize,
+}
+
+impl Parser<'_> {
+    fn peek(&self) -> &Token {
+        &self.tokens[self.next].1
+    }
+
+    fn at(&self) -> usize {
+        self.tokens[self.next].0
+    }
+
+    fn take(&mut self, sign: &str) -> bool {
+        let found = *self.peek() == Token::Sign(SIGNS.iter().find(|(s, _)| *s == sign).map_or("", |(s, _)| s));
+        self.next += usize::from(found);
+        found
+    }
+
+    /// `a | b`
+    fn either(&mut self) -> Result<Part, FilterError> {
+        let start = self.at();
+        let mut found = self.both()?;
+        while self.at_sign("|") {
+            let left = found.truth(start, self.at())?;
+            self.next += 1;
+            let start = self.at();
+            let right = self.both()?.truth(start, self.at())?;
+            found = Part::Truth(Truth::Or(Box::new([left, right])));
+        }
+        Ok(found)
+    }
+
+    /// `a & b`
+    fn both(&mut self) -> Result<Part, FilterError> {
+        let start = self.at();
+        let mut found = self.not()?;
+        while self.at_sign("&") {
+            let left = found.truth(start, self.at())?;
+            self.next += 1;
+            let start = self.at();
+            let right = self.not()?.truth(start, self.at())?;
+            found = Part::Truth(Truth::And(Box::new([left, right])));
+        }
+        Ok(found)
+    }
+
+    fn at_sign(&self, sign: &str) -> bool {
+        matches!(self.peek(), Token::Sign(s) if *s == sign)
+    }
+
+    /// `! a`
+    fn not(&mut self) -> Result<Part, FilterError> {
+        if self.take("!") {
+            let start = self.at();
+            let inner = self.deeper(Self::not)?.truth(start, self.at())?;
+            return Ok(Part::Truth(Truth::Not(Box::new(inner))));
+        }
+        self.comparison()
+    }
+
+    /// `a < b`
+    fn comparison(&mut self) -> Result<Part, FilterError> {
+        let start = self.at();
+        let left = self.sum()?;
+        let how = match self.peek() {
+            Token::Sign("=") => Comparison::Equal,
+            Token::Sign("!=") => Comparison::Unequal,
+            Token::Sign("<") => Comparison::Less,
+            Token::Sign("<=") => Comparison::LessOrEqual,
+            Token::Sign(">") => Comparison::Greater,
+            Token::Sign(">=") => Comparison::GreaterOrEqual,
+            _ => return Ok(left),
+        };
+        let left = left.term(start)?;
+        self.next += 1;
+        let start = self.at();
+        let right = self.sum()?.term(start)?;
+        let text = |term: &Term| matches!(term, Term::Text(_) | Term::Column(_, Column::Method));
+        let number = |term: &Term| !text(term) && !matches!(term, Term::Column(_, Column::Set));
+        if (text(&left) && number(&right)) || (number(&left) && text(&right)) {
+            return error(start, "a name and a number are never equal; names of methods stand in quotes");
+        }
+        Ok(Part::Truth(Truth::Compare(Box::new(left), how, Box::new(right))))
+    }
+
+    /// `a + b`
+    fn sum(&mut self) -> Result<Part, FilterError> {
+        self.arithmetic(Self::product, &[("+", Sign::Plus), ("-", Sign::Minus)])
+    }
+
+    /// `a * b`
+    fn product(&mut self) -> Result<Part, FilterError> {
+        self.arithmetic(Self::operand, &[("*", Sign::Times), ("/", Sign::Over)])
+    }
+
+    fn arithmetic(
+        &mut self,
+        part: fn(&mut Self) -> Result<Part, FilterError>,
+        signs: &[(&str, Sign)],
+    ) -> Result<Part, FilterError> {
+        let mut start = self.at();
+        let mut found = part(self)?;
+        while let Some((_, sign)) = signs.iter().find(|(s, _)| self.at_sign(s)) {
+            let left = numeric(found.term(start)?, start)?;
+            self.next += 1;
+            start = self.at();
+            let right = numeric(part(self)?.term(start)?, start)?;
+            found = Part::Term(Term::Arithmetic(Box::new(left), *sign, Box::new(right)));
+        }
+        Ok(found)
+    }
+
+    fn operand(&mut self) -> Result<Part, FilterError> {
+        let start = self.at();
+        if self.take("-") {
+            let inner = self.deeper(Self::operand)?.term(start)?;
+            return Ok(Part::Term(Term::Negative(Box::new(numeric(inner, start)?))));
+        }
+        if self.take("(") {
+            let inner = self.deeper(Self::either)?;
+            return if self.take(")") {
+                Ok(inner)
+            } else {
+                error(self.at(), "expected ) for the bracket that is open")
+            };
+        }
+        let term = match self.peek().clone() {
+            Token::Number(value) => Term::Number(value),
+            Token::Text(text) => Term::Text(text),
+            Token::Name(method, column) => self.column(start, method, &column)?,
+            Token::Sign(sign) => return error(start, format!("\"{sign}\" has nothing before it; {OPERAND}")),
+            Token::End => return error(start, OPERAND),
+        };
+        self.next += 1;
+        Ok(Part::Term(term))
+    }
+
+    fn deeper(&mut self, inner: fn(&mut Self) -> Result<Part, FilterError>) -> Result<Part, FilterError> {
+        if self.depth == DEEPEST {
+            return error(self.at(), format!("brackets and signs are nested more than {DEEPEST} deep"));
+        }
+        self.depth += 1;
+        let found = inner(self);
+        self.depth -= 1;
+        found
+    }
+
+    fn column(&self, start: usize, method: Option<String>, name: &str) -> Result<Term, FilterError> {
+        let at = method.as_ref().map_or(start, |m| start + m.chars().count() + 1);
+        if let Some(method) = &method
+            && !self.methods.contains(&method.as_str())
+        {
+            let known = self.methods.join(", ");
+            return error(start, format!("there are no rows by \"{method}\"; there are some by {known}"));
+        }
+        match Column::by_name(name) {
+            Some(column) => Ok(Term::Column(method, column)),
+            None if self.methods.contains(&name) && method.is_none() => {
+                let end = at + name.chars().count();
+                error(
+                    end,
+                    format!("expected a dot and a column, as in {name}.squared_error; or quotes around \"{name}\""),
+                )
+            }
+            None => {
+                let mut message =
+                    if name.is_empty() { "expected a column".into() } else { format!("there is no column \"{name}\"") };
+                if let Some(near) = nearest(name) {
+                    // Writing to a string can't fail.
+                    let _ = write!(message, "; is {near} meant?");
+                }
+                error(at, message)
+            }
+        }
+    }
+}
+
+/// A term that can be reckoned with.
+fn numeric(term: Term, start: usize) -> Result<Term, FilterError> {
+    match term {
+        Term::Text(_) | Term::Column(_, Column::Method) => error(start, "expected a number, found a name"),
+        term => Ok(term),
+    }
+}
+
+/// The column whose name is most like `name`, if any is like it.
+fn nearest(name: &str) -> Option<&'static str> {
+    let like = |column: &Column| (edits(name, column.name()), column.name());
+    let (edits, column) = Column::ALL.iter().map(like).min()?;
+    (edits <= 1 + name.chars().count() / 4 && !name.is_empty()).then_some(column)
+}
+
+/// Characters to add, drop or change between `a` and `b` (Levenshtein distance).
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut before = std::mem::replace(&mut row[0], i + 1);
+        for (j, to) in b.iter().enumerate() {
+            let changed = before + usize::from(from != *to);
+            before = row[j + 1];
+            row[j + 1] = changed.min(before + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_point_at_the_mistake() {
+        let methods = ["live", "nomp"];
+        for (text, column, part) in [
+            ("", 1, "expected a column"),
+            ("objects", 8, "expected a comparison after the column"),
+            ("objects >", 10, "expected a column, a number"),
+            ("objects > 4 &", 14, "expected a column, a number"),
+            ("objects > 4 objects < 3", 13, "expected &, | or the end"),
+            ("objets > 4", 1, "there is no column \"objets\"; is objects meant?"),
+            ("live.sqared_error > 4", 6, "is squared_error meant?"),
+            ("lvie.squared_error > 4", 1, "no rows by \"lvie\"; there are some by live, nomp"),
+            ("live > 4", 5, "expected a dot and a column, as in live.squared_error"),
+            ("live. > 4", 6, "expected a column"),
+            ("(objects > 4", 13, "expected ) for the bracket"),
+            ("objects > 4)", 12, "never opened"),
+            ("objects > 4.4.4", 11, "\"4.4.4\" is not a number"),
+            ("objects > 1e999", 11, "is not a number"),
+            ("method = 3", 10, "never equal"),
+            ("method = \"live", 10, "not closed"),
+            ("method + 1 = 3", 1, "expected a number, found a name"),
+            ("objects # 3", 9, "\"#\" has no meaning"),
+            ("* 3", 1, "\"*\" has nothing before it"),
+            ("(objects > 3) + 1 > 2", 1, "expected a value"),
+            ("3", 1, "expected a comparison"),
+            ("ünlike > 3 & objects", 1, "there is no column \"ünlike\""),
+            ("objects > 1 & ünlike > 3", 15, "there is no column"),
+        ] {
+            let found = parse(text, &methods).unwrap_err();
+            assert!(found.column == column && found.message.contains(part), "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn no_expression_is_too_much() {
+        for text in ["(".repeat(1900), "!".repeat(1900), "-".repeat(1900), "objects > 1 &".repeat(1900)] {
+            assert!(parse(&text, &["live"]).is_err());
+        }
+        let many = "objects > 1 | ".repeat(100) + "objects > 2";
+        assert!(parse(&many, &["live"]).is_ok());
+    }
+}

@@ -1,0 +1,311 @@
+//! Rows as CSV.
+
+use super::{Column, Row};
+use std::io::{self, Read, Write};
+
+impl Row {
+    /// The cells as they are written: every figure with all its digits, so that it is read back as it was.
+    fn cells(&self) -> [String; 18] {
+        fn maybe(v: Option<f64>) -> String {
+            v.map(|v| format!("{v:?}")).unwrap_or_default()
+        }
+        [
+            self.set.clone(),
+            self.index.to_string(),
+            self.seed.to_string(),
+            self.method.clone(),
+            format!("{:?}", self.eta),
+            format!("{:?}", self.squared_error),
+            maybe(self.detection),
+            format!("{:?}", self.false_alarm),
+            maybe(self.detection_at_printed),
+            format!("{:?}", self.milliseconds),
+            self.objects.to_string(),
+            self.reflectors.to_string(),
+            self.missed.to_string(),
+            self.ghosts.to_string(),
+            maybe(self.nearest_pair_columns),
+            maybe(self.nearest_pair_bins),
+            maybe(self.min_range_metres),
+            maybe(self.strongest_over_weakest_db),
+        ]
+    }
+}
+
+/// Writes rows, a line each, under a line of names. The lines already written are whole at any time: [`RowWriter::flush`] after each scene
+/// keeps what a stopped run has found.
+pub struct RowWriter<W: Write> {
+    out: csv::Writer<W>,
+}
+
+impl<W: Write> RowWriter<W> {
+    /// Begins with the names.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn new(out: W) -> io::Result<Self> {
+        let mut out = csv::Writer::from_writer(out);
+        out.write_record(Column::ALL.map(Column::name))?;
+        Ok(RowWriter { out })
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn add(&mut self, row: &Row) -> io::Result<()> {
+        Ok(self.out.write_record(row.cells())?)
+    }
+
+    /// Hands on what was added.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Writes a whole table.
+///
+/// # Errors
+/// What `out` says.
+pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
+    let mut writer = RowWriter::new(out)?;
+    rows.into_iter().try_for_each(|row| writer.add(row))?;
+    writer.flush()
+}
+
+/// Most rows that a file may have: they take some 600 MB.
+pub const MAX_ROWS: usize = 2_000_000;
+/// Most bytes that a line of a file may have.
+const MAX_LINE_BYTES: usize = 64 << 10;
+
+/// Why a file's rows can't be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RowError {
+    /// It can't be read.
+    #[error("{0}")]
+    Io(io::Error),
+    /// Names are missing in its first line.
+    #[error("line 1: there is no column \"{missing}\"; expected {}", Column::ALL.map(Column::name).join(","))]
+    Header {
+        /// The first column that is missing.
+        missing: &'static str,
+    },
+    /// A cell holds something else than it should.
+    #[error("line {line}, column {column}: \"{found}\"; expected {expected}")]
+    Cell {
+        /// Line, from 1.
+        line: u64,
+        /// Name of the column.
+        column: &'static str,
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: &'static str,
+    },
+    /// A line is no row.
+    #[error("line {line}: {message}")]
+    Line {
+        /// Line, from 1.
+        line: u64,
+        /// What is wrong, and what was expected.
+        message: String,
+    },
+    /// There are too many.
+    #[error("there are more than {MAX_ROWS} rows; split the file")]
+    TooMany,
+}
+
+/// Reads what [`write_rows`] wrote. Columns may stand in any order, and others beside them.
+///
+/// # Errors
+/// [`RowError`] names the line and the column.
+pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
+    let lines = ShortLines { input, line: 1, bytes: 0 };
+    let mut reader = csv::Reader::from_reader(lines);
+    let header = reader.headers().map_err(of_csv)?;
+    let mut places = [0; Column::ALL.len()];
+    for (place, column) in places.iter_mut().zip(Column::ALL) {
+        let found = header.iter().position(|name| name.trim() == column.name());
+        *place = found.ok_or(RowError::Header { missing: column.name() })?;
+    }
+    let mut rows = Vec::new();
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(of_csv)? {
+        if rows.len() == MAX_ROWS {
+            return Err(RowError::TooMany);
+        }
+        let line = record.position().map_or(0, csv::Position::line);
+        rows.push(Cells { record: &record, places: &places, line }.row()?);
+    }
+    Ok(rows)
+}
+
+/// One line, and where its columns stand.
+struct Cells<'a> {
+    record: &'a csv::StringRecord,
+    places: &'a [usize; Column::ALL.len()],
+    line: u64,
+}
+
+impl Cells<'_> {
+    fn text(&self, column: Column) -> &str {
+        self.record.get(self.places[column as usize]).unwrap_or_default().trim()
+    }
+
+    fn parse<T: std::str::FromStr>(&self, column: Column, expected: &'static str) -> Result<T, RowError> {
+        self.text(column).parse().map_err(|_| self.unexpected(column, expected))
+    }
+
+    fn unexpected(&self, column: Column, expected: &'static str) -> RowError {
+        let found = self.text(column).chars().take(40).collect();
+        RowError::Cell { line: self.line, column: column.name(), found, expected }
+    }
+
+    fn number(&self, column: Column) -> Result<f64, RowError> {
+        const EXPECTED: &str = "a finite number";
+        let value: f64 = self.parse(column, EXPECTED)?;
+        if value.is_finite() { Ok(value) } else { Err(self.unexpected(column, EXPECTED)) }
+    }
+
+    fn maybe(&self, column: Column) -> Result<Option<f64>, RowError> {
+        if self.text(column).is_empty() { Ok(None) } else { self.number(column).map(Some) }
+    }
+
+    fn count(&self, column: Column) -> Result<usize, RowError> {
+        self.parse(column, "a whole number from 0")
+    }
+
+    fn name(&self, column: Column) -> Result<String, RowError> {
+        match self.text(column) {
+            "" => Err(self.unexpected(column, "a name")),
+            name => Ok(name.to_owned()),
+        }
+    }
+
+    fn row(&self) -> Result<Row, RowError> {
+        Ok(Row {
+            set: self.name(Column::Set)?,
+            index: self.parse(Column::Index, "a whole number from 0")?,
+            seed: self.parse(Column::Seed, "a whole number from 0")?,
+            method: self.name(Column::Method)?,
+            // Shortest digits of an f32 are not those of the f64 beside it.
+            eta: self.number(Column::Eta).and_then(|_| self.parse(Column::Eta, "a finite number"))?,
+            squared_error: self.number(Column::SquaredError)?,
+            detection: self.maybe(Column::Detection)?,
+            false_alarm: self.number(Column::FalseAlarm)?,
+            detection_at_printed: self.maybe(Column::DetectionAtPrinted)?,
+            milliseconds: self.number(Column::Milliseconds)?,
+            objects: self.count(Column::Objects)?,
+            reflectors: self.count(Column::Reflectors)?,
+            missed: self.count(Column::Missed)?,
+            ghosts: self.count(Column::Ghosts)?,
+            nearest_pair_columns: self.maybe(Column::NearestPairColumns)?,
+            nearest_pair_bins: self.maybe(Column::NearestPairBins)?,
+            min_range_metres: self.maybe(Column::MinRangeMetres)?,
+            strongest_over_weakest_db: self.maybe(Column::StrongestOverWeakestDb)?,
+        })
+    }
+}
+
+fn of_csv(error: csv::Error) -> RowError {
+    let line = error.position().map_or(1, csv::Position::line);
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => match error.downcast::<LongLine>() {
+            Ok(LongLine { line }) => {
+                RowError::Line { line, message: format!("is longer than {MAX_LINE_BYTES} bytes; expected a row") }
+            }
+            Err(error) => RowError::Io(error),
+        },
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            RowError::Line { line, message: format!("has {len} cells; expected {expected_len}, as in the first line") }
+        }
+        csv::ErrorKind::Utf8 { .. } => RowError::Line { line, message: "is not text; expected CSV in UTF-8".into() },
+        other => RowError::Line { line, message: format!("{other:?}") },
+    }
+}
+
+/// A line that is too long.
+#[derive(Debug, thiserror::Error)]
+#[error("line {line} is too long")]
+struct LongLine {
+    line: u64,
+}
+
+/// Passes on what it reads as long as lines are short, so that no file can ask for more memory than a line may have.
+struct ShortLines<R> {
+    input: R,
+    line: u64,
+    bytes: usize,
+}
+
+impl<R: Read> Read for ShortLines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.input.read(buffer)?;
+        for byte in &buffer[..read] {
+            self.bytes += 1;
+            if *byte == b'\n' {
+                (self.line, self.bytes) = (self.line + 1, 0);
+            }
+            if self.bytes > MAX_LINE_BYTES {
+                return Err(io::Error::other(LongLine { line: self.line }));
+            }
+        }
+        Ok(read)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::row;
+    use super::*;
+
+    fn text(rows: &[Row]) -> String {
+        let mut out = Vec::new();
+        write_rows(&mut out, rows).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    fn error(text: &str) -> String {
+        read_rows(text.as_bytes()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn rows_are_read_as_they_were_written() {
+        let rows = vec![row("1", 0, "live"), row("a \"folder\", with all", 1, "nomp")];
+        assert_eq!(read_rows(text(&rows).as_bytes()).unwrap(), rows);
+        assert!(text(&rows).starts_with(
+            "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,\
+             reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db\n"
+        ));
+    }
+
+    #[test]
+    fn columns_may_be_elsewhere_and_others_beside_them() {
+        let table = text(&[row("1", 0, "live")]);
+        let turned: String = table
+            .lines()
+            .map(|line| line.split(',').rev().chain(["note"]).collect::<Vec<_>>().join(",") + "\r\n")
+            .collect();
+        assert_eq!(read_rows(turned.as_bytes()).unwrap(), [row("1", 0, "live")]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_line_and_column() {
+        let good = text(&[row("1", 0, "live"), row("1", 1, "live")]);
+        assert_eq!(
+            error(&good.replace("34.333333333333336", "inf")),
+            "line 3, column squared_error: \"inf\"; expected a finite number"
+        );
+        assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\""));
+        assert!(error(&good.replace("ghosts", "spirits")).contains("no column \"ghosts\""));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 18"));
+        assert!(error("").contains("no column \"set\""));
+        let long = format!("{good}{}", "x".repeat(1 << 20));
+        assert_eq!(error(&long), "line 4: is longer than 65536 bytes; expected a row");
+        let binary = [good.as_bytes(), b"\xff\xfe,".repeat(18).as_slice()].concat();
+        assert!(read_rows(binary.as_slice()).is_err());
+    }
+}

@@ -1,0 +1,165 @@
+//! Scenes that methods are tried on: a kind of generated scenes, or a folder of scene files.
+
+use super::tables::PRINTED_EXPERIMENT_2;
+use crate::radar::Radar;
+use crate::scene::Scene;
+use crate::scene::file::{self, SceneFileError};
+use crate::scene::generate::{Generator, Kind};
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A false-alarm rate for scenes that the thesis prints no table of.
+const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
+
+/// A set of scenes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SceneSet {
+    /// Random scenes of one kind.
+    Generated(Kind),
+    /// Somebody's own.
+    Folder(Folder),
+}
+
+/// The scene files of a folder, in the order of their names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Folder {
+    path: PathBuf,
+    files: Vec<PathBuf>,
+}
+
+/// A folder without a scene, or one that can't be read.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// What the system says.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// There is none.
+    #[error("{}: there is no scene in this folder; expected files ending in .toml or .npz", path.display())]
+    Empty {
+        /// The folder.
+        path: PathBuf,
+    },
+}
+
+impl Folder {
+    /// Looks which scene files there are; they are read when their turn comes. Files whose names begin with a dot are left alone.
+    ///
+    /// # Errors
+    /// [`FolderError`] when there is none.
+    pub fn open(path: &Path) -> Result<Folder, FolderError> {
+        let failed = |source| FolderError::Io { path: path.to_owned(), source };
+        let mut files = Vec::new();
+        for entry in std::fs::read_dir(path).map_err(failed)? {
+            let file = entry.map_err(failed)?.path();
+            let hidden = file.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
+            if !hidden && file.is_file() && file::Format::of_path(&file).is_ok() {
+                files.push(file);
+            }
+        }
+        files.sort();
+        if files.is_empty() {
+            Err(FolderError::Empty { path: path.to_owned() })
+        } else {
+            Ok(Folder { path: path.to_owned(), files })
+        }
+    }
+
+    /// The file of scene `index`.
+    pub fn file(&self, index: u32) -> Option<&Path> {
+        self.files.get(index as usize).map(PathBuf::as_path)
+    }
+}
+
+/// A scene of a set, and the radar that looks at it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The radar.
+    pub radar: Radar,
+    /// The scene; its [`Scene::noise_seed`] picks the floor's noise.
+    pub scene: Scene,
+}
+
+impl SceneSet {
+    /// How many scenes there are, if not as many as one likes.
+    pub fn len(&self) -> Option<u32> {
+        match self {
+            SceneSet::Generated(_) => None,
+            SceneSet::Folder(folder) => Some(u32::try_from(folder.files.len()).unwrap_or(u32::MAX)),
+        }
+    }
+
+    /// Whether it has no scenes: a folder always has some.
+    pub fn is_empty(&self) -> bool {
+        self.len() == Some(0)
+    }
+
+    /// Scene `index`. `radar` and `generator` are those of generated scenes; a file says itself which radar it is for.
+    ///
+    /// # Errors
+    /// [`SceneFileError`] when a file is no scene any more.
+    pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<Case, SceneFileError> {
+        match self {
+            SceneSet::Generated(kind) => Ok(Case { radar: radar.clone(), scene: generator.scene(*kind, index) }),
+            SceneSet::Folder(folder) => {
+                let path = folder.file(index).unwrap_or(&folder.path);
+                file::load(path).map(|file| Case { radar: file.radar, scene: file.scene })
+            }
+        }
+    }
+
+    /// The false-alarm rate at which methods are held against each other: what the thesis prints for its experiment 2, and 1 % where it
+    /// prints nothing.
+    pub fn false_alarm(&self) -> f64 {
+        match self {
+            SceneSet::Generated(kind) => false_alarm(kind.test_set()),
+            SceneSet::Folder(_) => false_alarm(None),
+        }
+    }
+}
+
+/// [`SceneSet::false_alarm`] for test set 1, 2 or 3, or something else.
+pub fn false_alarm(test_set: Option<usize>) -> f64 {
+    let printed = test_set.and_then(|set| PRINTED_EXPERIMENT_2.get(set.wrapping_sub(1)));
+    printed.map_or(FALSE_ALARM_ELSEWHERE, |p| p.false_alarm)
+}
+
+/// As rows name it.
+impl fmt::Display for SceneSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SceneSet::Generated(kind) => kind.fmt(f),
+            SceneSet::Folder(folder) => folder.path.display().fmt(f),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_a_set_of_its_scene_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let empty = Folder::open(folder.path()).unwrap_err().to_string();
+        assert!(empty.contains("no scene in this folder"), "{empty}");
+        write("b.toml", "name = \"b\"");
+        write("a.toml", "name = \"a\"\nnoise_seed = 12");
+        write("notes.txt", "");
+        write(".hidden.toml", "");
+        let set = SceneSet::Folder(Folder::open(folder.path()).unwrap());
+        assert_eq!((set.len(), set.false_alarm()), (Some(2), 0.01));
+        let radar = Radar::default();
+        let generator = Generator::new(&radar, Default::default(), crate::scene::generate::Purpose::Test, 0);
+        let case = set.case(&radar, &generator, 0).unwrap();
+        assert_eq!((case.scene.name.as_str(), case.scene.noise_seed), ("a", 12));
+        assert!(set.case(&radar, &generator, 7).is_err());
+        assert!(Folder::open(&folder.path().join("missing")).unwrap_err().to_string().contains("missing"));
+    }
+}

@@ -1,0 +1,212 @@
+//! One scene as methods meet it, and how what they make of it is judged.
+
+use super::failure::{Failures, Footprints};
+use super::rows::Row;
+use super::{Metrics, Roc};
+use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
+use crate::radar::Radar;
+use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::scene::{Reflector, Scene, SceneError};
+use crate::signal::{self, Floor, TwoEnds};
+use std::sync::OnceLock;
+use std::time::Instant;
+
+/// A simulated scene: what methods get, and what they are held against.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// The radar.
+    pub radar: Radar,
+    /// The samples of the two ends.
+    pub ends: TwoEnds,
+    /// Lambda of the whole array.
+    pub target: RangeAngleMap,
+    scene: Scene,
+    scale: LambdaScale,
+    footprints: OnceLock<Footprints>,
+}
+
+/// What can be said of a scene without simulating it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Facts {
+    objects: usize,
+    reflectors: usize,
+    /// Columns and range bins between the nearest two reflectors of different objects.
+    nearest_pair: Option<[f64; 2]>,
+    min_range_metres: Option<f64>,
+    strongest_over_weakest_db: Option<f64>,
+}
+
+/// What a method made of a [`Trial`].
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// What it found.
+    pub found: Reconstruction,
+    /// How long it took.
+    pub milliseconds: f64,
+    /// SE, and P_D and P_FA at the method's threshold.
+    pub metrics: Metrics,
+    /// The method's threshold.
+    pub eta: f32,
+}
+
+impl Trial {
+    /// Simulates `scene` over `floor`, the noise picked by the scene's seed.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the radar can't see the scene.
+    pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
+        let signal = signal::simulate(radar, scene, floor, scene.noise_seed)?;
+        let profiles = maps::range_transform(radar, &signal);
+        let full = maps::angle_transform(radar, &profiles, Aperture::Full).log_magnitude();
+        let target = full.normalise(normalisation);
+        let ends = signal.two_ends(radar);
+        let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
+        Ok(Trial { radar, ends, target, scene, scale, footprints: OnceLock::new() })
+    }
+
+    /// Lets `method` try, and judges what it makes.
+    ///
+    /// # Errors
+    /// [`ReconstructError`] of the method.
+    pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<Answer, ReconstructError> {
+        request.task.check()?;
+        let start = Instant::now();
+        let found = method.reconstruct(&self.radar, &self.ends, request)?;
+        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        let eta = method.eta();
+        Ok(Answer { metrics: Metrics::of(&self.target, &found.lambda, eta), found, milliseconds, eta })
+    }
+
+    /// Where each object shows in the target; found when first asked for.
+    pub fn footprints(&self) -> &Footprints {
+        self.footprints.get_or_init(|| Footprints::new(&self.radar, &self.scene, &self.target, self.scale))
+    }
+
+    /// What kind of failure an answer is, if any.
+    pub fn failures(&self, answer: &Answer) -> Failures {
+        self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
+    }
+
+    /// The row of an answer. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
+    pub fn row(&self, place: RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
+        let roc = Roc::of(&self.target, &answer.found.lambda);
+        let facts = Facts::of(&self.radar, &self.scene);
+        let failures = self.failures(answer);
+        Row {
+            set: place.set.to_owned(),
+            index: place.index,
+            seed: place.seed,
+            method: method.to_owned(),
+            eta: answer.eta,
+            squared_error: answer.metrics.squared_error,
+            detection: answer.metrics.detection,
+            false_alarm: answer.metrics.false_alarm,
+            detection_at_printed: roc.at_false_alarm(false_alarm).map(|p| p.detection),
+            milliseconds: answer.milliseconds,
+            objects: facts.objects,
+            reflectors: facts.reflectors,
+            missed: failures.missed(),
+            ghosts: failures.ghosts.len(),
+            nearest_pair_columns: facts.nearest_pair.map(|[columns, _]| columns),
+            nearest_pair_bins: facts.nearest_pair.map(|[_, bins]| bins),
+            min_range_metres: facts.min_range_metres,
+            strongest_over_weakest_db: facts.strongest_over_weakest_db,
+        }
+    }
+}
+
+/// Where a row's scene is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RowPlace<'a> {
+    /// Name of the set.
+    pub set: &'a str,
+    /// Number of the scene.
+    pub index: u32,
+    /// Seed of the set.
+    pub seed: u64,
+}
+
+/// Where a reflector shows: (column, range bin), neither rounded, and its object.
+type Spot = ([f64; 2], usize);
+
+impl Facts {
+    fn of(radar: &Radar, scene: &Scene) -> Facts {
+        let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.reflectors()));
+        let reflectors: Vec<(usize, Reflector)> =
+            of_objects.flat_map(|(i, all)| all.into_iter().map(move |r| (i, r))).collect();
+        let range = |r: &Reflector| r.x_metres.hypot(r.y_metres);
+        let ranges = reflectors.iter().map(|(_, r)| range(r));
+        // Seen from the middle of the array; what doesn't reflect has no echo.
+        let echoes = reflectors.iter().map(|(_, r)| r.reflectivity.abs() / range(r).powi(2)).filter(|e| *e > 0.0);
+        let (weakest, strongest) = echoes.fold((f64::INFINITY, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
+        let half = radar.elements as f64 / 2.0;
+        let spots = reflectors.iter().map(|(object, r)| {
+            let cosine = r.x_metres / range(r).max(f64::MIN_POSITIVE);
+            ([half * (1.0 + cosine), range(r) / radar.range_resolution_metres()], *object)
+        });
+        Facts {
+            objects: scene.objects.len(),
+            reflectors: reflectors.len(),
+            nearest_pair: nearest_pair(spots.collect()),
+            min_range_metres: ranges.reduce(f64::min),
+            strongest_over_weakest_db: (strongest > 0.0).then(|| 20.0 * (strongest / weakest).log10()),
+        }
+    }
+}
+
+/// Columns and bins between the nearest two spots of different objects, in cells.
+fn nearest_pair(mut spots: Vec<Spot>) -> Option<[f64; 2]> {
+    spots.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
+    let mut nearest: Option<([f64; 2], f64)> = None;
+    for (i, ([column, bin], object)) in spots.iter().enumerate() {
+        for ([other_column, other_bin], other) in &spots[i + 1..] {
+            let apart = [(other_column - column).abs(), other_bin - bin];
+            if nearest.is_some_and(|(_, distance)| apart[1] >= distance) {
+                break;
+            }
+            let distance = apart[0].hypot(apart[1]);
+            if object != other && nearest.is_none_or(|(_, least)| distance < least) {
+                nearest = Some((apart, distance));
+            }
+        }
+    }
+    nearest.map(|(apart, _)| apart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Object, Point};
+
+    #[test]
+    fn facts_of_a_known_scene() {
+        let radar = Radar::default();
+        let bin = radar.range_resolution_metres();
+        let point = |x: f64, y: f64, reflectivity| Object::Point(Point { x_metres: x, y_metres: y, reflectivity });
+        // At broadside a column is 1 / 512 of the cosine.
+        let objects = vec![point(0.0, 100.0 * bin, 1.0), point(0.0, 103.0 * bin, 1.0), point(0.0, 200.0 * bin, 0.04)];
+        let facts = Facts::of(&radar, &Scene { objects, ..Scene::default() });
+        let [columns, bins] = facts.nearest_pair.unwrap();
+        assert!(columns == 0.0 && (bins - 3.0).abs() < 1e-9);
+        assert!((facts.min_range_metres.unwrap() - 100.0 * bin).abs() < 1e-9);
+        assert!((facts.strongest_over_weakest_db.unwrap() - 40.0).abs() < 1e-9, "a factor of 100 in amplitude");
+        let empty = Facts::of(&radar, &Scene::default());
+        assert_eq!((empty.nearest_pair, empty.min_range_metres, empty.strongest_over_weakest_db), (None, None, None));
+    }
+
+    #[test]
+    fn the_nearest_pair_is_the_one_that_trying_all_finds() {
+        let spots: Vec<Spot> =
+            (0..60).map(|i| ([f64::from(i * 37 % 61) * 3.3, f64::from(i * 53 % 59) * 1.7], i as usize % 7)).collect();
+        let mut least = f64::INFINITY;
+        for (a, object) in &spots {
+            for (b, other) in &spots {
+                if object != other {
+                    least = least.min((a[0] - b[0]).hypot(a[1] - b[1]));
+                }
+            }
+        }
+        let [columns, bins] = nearest_pair(spots).unwrap();
+        assert_eq!(columns.hypot(bins), least);
+    }
+}
