@@ -1,7 +1,8 @@
 //! One range-angle map with title, axes and colour bar.
 
+use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PictureError};
+use super::colour::{ColourMap, Rgb};
 use super::text::{self, Weight};
-use super::{Area, ColourMap, FAINT_INK, HAIRLINE, INK, PictureError, colour::Rgb};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
@@ -52,7 +53,7 @@ impl MapPanel<'_> {
         let pixels = self.cells.paint(size.0 as usize, size.1 as usize, right < left);
         let top_left = (left.min(right), radar.max_range_metres());
         let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer(top_left, size, pixels)
-            .ok_or_else(|| PictureError("a map has no room".to_owned()))?;
+            .ok_or_else(|| PictureError::new("a map has no room"))?;
         chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
         chart
             .configure_mesh()

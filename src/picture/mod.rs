@@ -3,6 +3,7 @@
 //! [`render`] draws what the app shows: the scene on the left, the maps of both ends, of the whole array and of a reconstruction on
 //! the right, and what both thresholds make of them.
 
+mod canvas;
 pub mod colour;
 mod compose;
 mod map_panel;
@@ -12,6 +13,7 @@ mod text;
 
 pub(crate) use text::register_fonts;
 
+pub use canvas::PictureError;
 pub use colour::ColourMap;
 pub use compose::{ComposeError, Format, Style, compose};
 pub use png::{encode_png, is_our_png};
@@ -20,12 +22,11 @@ use crate::evaluate::{Metrics, TARGET_ETA};
 use crate::maps::RangeAngleMap;
 use crate::radar::{Carrier, End, Radar};
 use crate::scene::Scene;
+use canvas::{Area, FAINT_INK, INK, PAPER};
 use image::RgbImage;
 use map_panel::{Cells, MapPanel};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use scene_panel::Content;
-use std::fmt::Display;
 
 /// Everything a picture shows.
 #[derive(Debug, Clone, Copy)]
@@ -52,29 +53,11 @@ pub struct Panels<'a> {
     pub colours: ColourMap,
 }
 
-/// A picture could not be drawn.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("can't draw the picture: {0}")]
-pub struct PictureError(String);
-
-impl PictureError {
-    fn new(error: impl Display) -> Self {
-        PictureError(error.to_string())
-    }
-}
-
-type Area<B> = DrawingArea<B, Shift>;
-
 const WIDTH: u32 = 2180;
 const HEIGHT: u32 = 1120;
 const HEADER: i32 = 84;
 const LEFT: i32 = 700;
 const MARGIN: i32 = 24;
-
-const INK: RGBColor = RGBColor(28, 32, 38);
-const FAINT_INK: RGBColor = RGBColor(104, 112, 122);
-const HAIRLINE: RGBColor = RGBColor(206, 211, 217);
-const PAPER: RGBColor = RGBColor(252, 252, 250);
 
 /// Draws the picture, 2180 x 1120 pixels.
 ///
@@ -87,7 +70,7 @@ pub fn render(panels: &Panels) -> Result<RgbImage, PictureError> {
         let root = BitMapBackend::with_buffer(&mut buffer, (WIDTH, HEIGHT)).into_drawing_area();
         panels.draw(&root)?;
     }
-    RgbImage::from_raw(WIDTH, HEIGHT, buffer).ok_or_else(|| PictureError("its buffer is too small".to_owned()))
+    RgbImage::from_raw(WIDTH, HEIGHT, buffer).ok_or_else(|| PictureError::new("its buffer is too small"))
 }
 
 /// Draws the same picture as SVG: lines and text stay sharp at any size, the maps are bitmaps in it.

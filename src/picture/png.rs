@@ -1,6 +1,6 @@
 //! PNG files that say which program made them, so that it may replace them without asking.
 
-use super::PictureError;
+use super::canvas::PictureError;
 use image::codecs::png::{PngDecoder, PngEncoder};
 use image::{ExtendedColorType, ImageDecoder, ImageEncoder, RgbImage};
 use std::io::Cursor;

@@ -1,7 +1,8 @@
 //! The half plane ahead of the array from above, in metres: the scene, or a map projected onto it (thesis figure 2-12).
 
+use super::ColourMap;
+use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
 use super::text::{self, Weight};
-use super::{Area, ColourMap, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
 use crate::maps::{RangeAngleMap, cartesian::project};
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Scene};
@@ -44,14 +45,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .build_cartesian_2d(-max..max, -behind..tall - behind)
         .map_err(PictureError::new)?;
     if let Content::Map(map, colours) = content {
-        let rows = (max / metres) as usize;
-        let lambda = project(radar, map, rows).lambda;
-        let paint = |v: f32| if v.is_nan() { [PAPER.0, PAPER.1, PAPER.2] } else { colours.colour(v) };
-        let pixels = lambda.outer_iter().rev().flat_map(|row| row.iter().flat_map(|v| paint(*v)).collect::<Vec<u8>>());
-        let bitmap: BitMapElement<_> =
-            BitMapElement::with_owned_buffer((-max, max), (2 * rows as u32, rows as u32), pixels.collect())
-                .ok_or_else(|| PictureError("a map has no room".to_owned()))?;
-        chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
+        draw_map(&mut chart, radar, map, colours, metres)?;
     }
     chart
         .configure_mesh()
@@ -72,6 +66,42 @@ pub(super) fn draw<B: DrawingBackend>(
         Content::Scene(_) => HAIRLINE.mix(1.0),
         Content::Map(..) => HAIRLINE.mix(0.35),
     };
+    draw_rings_and_spokes(&mut chart, max, line)?;
+    draw_array(&mut chart, radar)?;
+    if let Content::Scene(scene) = content {
+        draw_objects(&mut chart, scene, max)?;
+    }
+    Ok(())
+}
+
+type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Paints a map, `metres` a pixel, onto the half plane.
+fn draw_map<B: DrawingBackend>(
+    chart: &mut Chart<B>,
+    radar: &Radar,
+    map: &RangeAngleMap,
+    colours: ColourMap,
+    metres: f64,
+) -> Result<(), PictureError> {
+    let max = radar.max_range_metres();
+    let rows = (max / metres) as usize;
+    let lambda = project(radar, map, rows).lambda;
+    let paint = |v: f32| if v.is_nan() { [PAPER.0, PAPER.1, PAPER.2] } else { colours.colour(v) };
+    let pixels = lambda.outer_iter().rev().flat_map(|row| row.iter().flat_map(|v| paint(*v)).collect::<Vec<u8>>());
+    let bitmap: BitMapElement<_> =
+        BitMapElement::with_owned_buffer((-max, max), (2 * rows as u32, rows as u32), pixels.collect())
+            .ok_or_else(|| PictureError::new("a map has no room"))?;
+    chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
+    Ok(())
+}
+
+/// A ring every 10 m, the edge of the range, and a spoke every quarter of cos(theta).
+fn draw_rings_and_spokes<B: DrawingBackend>(
+    chart: &mut Chart<B>,
+    max: f64,
+    line: RGBAColor,
+) -> Result<(), PictureError> {
     let arc = |range: f64, style: ShapeStyle| {
         let at = move |degree: i32| {
             let angle = f64::from(degree) * PI / 180.0;
@@ -87,7 +117,11 @@ pub(super) fn draw<B: DrawingBackend>(
         chart.draw_series(LineSeries::new([(0.0, 0.0), end], line)).map_err(PictureError::new)?;
     }
     chart.draw_series(arc(max, FAINT_INK.into())).map_err(PictureError::new)?;
+    Ok(())
+}
 
+/// The whole array, and its two ends.
+fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<(), PictureError> {
     let element = |n: usize| (radar.element_x_metres(n), 0.0);
     let whole = LineSeries::new([element(0), element(radar.elements - 1)], ARRAY.stroke_width(5));
     chart.draw_series(whole).map_err(PictureError::new)?;
@@ -96,14 +130,8 @@ pub(super) fn draw<B: DrawingBackend>(
             .draw_series([Circle::new((radar.end_centre_metres(end), 0.0), 4, END.filled())])
             .map_err(PictureError::new)?;
     }
-
-    if let Content::Scene(scene) = content {
-        draw_objects(&mut chart, scene, max)?;
-    }
     Ok(())
 }
-
-type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64) -> Result<(), PictureError> {
     for object in &scene.objects {

@@ -1,6 +1,6 @@
 //! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
 
-use super::{Area, PictureError};
+use super::canvas::{Area, PictureError};
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use std::sync::OnceLock;
@@ -19,7 +19,7 @@ pub(super) const FAMILY: &str = "sans-serif";
 pub(crate) fn register_fonts() -> Result<(), PictureError> {
     static DONE: OnceLock<Result<(), PictureError>> = OnceLock::new();
     DONE.get_or_init(|| {
-        let broken = |_| PictureError("the embedded font is broken".to_owned());
+        let broken = |_| PictureError::new("the embedded font is broken");
         register_font(FAMILY, FontStyle::Normal, include_bytes!("../../assets/fonts/DejaVuSans.ttf"))
             .map_err(broken)?;
         register_font(FAMILY, FontStyle::Bold, include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")).map_err(broken)

@@ -16,7 +16,7 @@ fn small() -> Radar {
 fn every_scene_holds_on_a_small_radar() {
     let request = StressRequest { coincident: 300, edits: 200, seed: 1 };
     let report = stress::run(&small(), &small(), &request, |_| {}).unwrap();
-    report.verdict().unwrap();
+    report.numbers().unwrap();
     assert_eq!(report.refused.len(), 1, "one scene lies on an element");
     assert!(report.cases.len() > 100, "{} cases", report.cases.len());
     // A run that can't see an error proves nothing: the plain formula's rounding and f32's must show.
@@ -29,7 +29,7 @@ fn every_scene_holds_on_a_small_radar() {
 #[ignore = "takes minutes: the whole radar, ten thousand points in one place, ten thousand edits"]
 fn every_scene_holds_on_the_whole_radar() {
     let report = stress::run(&Radar::default(), &small(), &StressRequest::default(), |_| {}).unwrap();
-    report.verdict().unwrap();
+    report.numbers().unwrap();
 }
 
 /// Where only the rows that changed are recomputed, edits end at a fresh build too.

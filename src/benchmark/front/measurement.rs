@@ -121,6 +121,12 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     jobs
 }
 
+/// All three maps, drawn by `convention`.
+fn wanted(convention: Convention) -> Wanted {
+    let Convention { floor, normalisation } = convention;
+    Wanted { floor, normalisation, seed: SEED, ends: false, ..Wanted::default() }
+}
+
 /// One of the fast algorithms, by the live engine.
 fn fast_row(
     radar: &Radar,
@@ -130,13 +136,6 @@ fn fast_row(
     repeats: usize,
 ) -> Result<FrontRow, SceneError> {
     let convention = Convention::for_tolerance(job.recipe.tolerance);
-    let wanted = |c: Convention| Wanted {
-        floor: c.floor,
-        normalisation: c.normalisation,
-        seed: SEED,
-        ends: false,
-        ..Wanted::default()
-    };
     let mut engine = Engine::new(radar.clone());
     engine.force(Forced {
         algorithm: match job.entrant {

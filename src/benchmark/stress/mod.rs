@@ -22,8 +22,10 @@ use serde::Serialize;
 const MOST_FOR_PLAIN: usize = 1000;
 /// What the algorithms in single and in double precision are asked for.
 const TOLERANCES: [(Precision, f64); 2] = [(Precision::F32, 1e-6), (Precision::F64, 1e-12)];
-/// Incremental sums may end this far from a fresh build.
-const MOST_DRIFT: f64 = 1e-9;
+/// Incremental sums over the thesis' floor may end this far from a fresh build: ten times the error of a sum that is planned there.
+const MOST_DRIFT: f64 = 1e-13;
+/// The process may grow by this much over the edits after the first twentieth: what allocators keep.
+const MOST_GROWTH_BYTES: u64 = 16 << 20;
 /// The conventions that maps are drawn in: the two that errors are given for, and the trap.
 const CONVENTIONS: [Convention; 3] = [Convention::FIXED_RANGE, Convention::THESIS, Convention::NO_FLOOR];
 
@@ -120,13 +122,15 @@ pub enum StressFailure {
         /// The difference.
         difference: f64,
     },
-    /// The engine's caches grow.
-    #[error("caches grew from {early} to {late} bytes over {edits} edits; expected no growth")]
+    /// Memory grows: the engine's caches at all, or the process by more than allocators keep.
+    #[error("{what} grew from {early} to {late} bytes over {edits} edits; expected no growth")]
     Memory {
+        /// "caches" or "the process".
+        what: &'static str,
         /// Bytes after the first edits.
-        early: usize,
+        early: u64,
         /// Bytes in the end.
-        late: usize,
+        late: u64,
         /// Edits made.
         edits: usize,
     },
@@ -143,9 +147,26 @@ pub enum StressFailure {
 impl StressReport {
     /// Whether everything held; the first thing that did not otherwise.
     ///
+    /// Memory is that of the whole process: where it does other things meanwhile, [`StressReport::numbers`] is all that can be said.
+    ///
     /// # Errors
     /// [`StressFailure`].
     pub fn verdict(&self) -> Result<(), StressFailure> {
+        self.numbers()?;
+        let EditReport { edits, resident_bytes_early, resident_bytes, .. } = self.edits;
+        match resident_bytes_early.zip(resident_bytes) {
+            Some((early, late)) if late > early + MOST_GROWTH_BYTES => {
+                Err(StressFailure::Memory { what: "the process", early, late, edits })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether every number is right, and the engine's caches don't grow.
+    ///
+    /// # Errors
+    /// [`StressFailure`].
+    pub fn numbers(&self) -> Result<(), StressFailure> {
         if let Some(c) = self.cases.iter().find(|c| !c.holds()) {
             let (scene, algorithm, precision) = (c.scene, c.algorithm, c.precision);
             return Err(match c.tolerance {
@@ -160,8 +181,8 @@ impl StressReport {
             return Err(StressFailure::Drift { edits: e.edits, difference: e.worst_difference });
         }
         if e.cache_bytes > e.cache_bytes_early {
-            let (early, late) = (e.cache_bytes_early, e.cache_bytes);
-            return Err(StressFailure::Memory { early, late, edits: e.edits });
+            let (early, late) = (e.cache_bytes_early as u64, e.cache_bytes as u64);
+            return Err(StressFailure::Memory { what: "caches", early, late, edits: e.edits });
         }
         Ok(())
     }
@@ -317,4 +338,31 @@ fn case(
 /// Cells that are no Lambda.
 fn out_of_range(map: &RangeAngleMap) -> usize {
     map.lambda.iter().filter(|v| !(0.0..=1.0).contains(*v)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_that_grows_is_found_out() {
+        let mut edits = EditReport {
+            edits: 100,
+            worst_difference: 1e-15,
+            cache_bytes_early: 1000,
+            cache_bytes: 1000,
+            resident_bytes_early: Some(50 << 20),
+            resident_bytes: Some(60 << 20),
+        };
+        let verdict = |edits: &EditReport| {
+            StressReport { cases: Vec::new(), refused: Vec::new(), edits: edits.clone() }.verdict()
+        };
+        assert_eq!(verdict(&edits), Ok(()));
+        edits.resident_bytes = Some(80 << 20);
+        assert!(verdict(&edits).unwrap_err().to_string().starts_with("the process grew from"));
+        edits.cache_bytes = 1001;
+        assert!(verdict(&edits).unwrap_err().to_string().starts_with("caches grew"));
+        edits.worst_difference = 1e-12;
+        assert!(matches!(verdict(&edits), Err(StressFailure::Drift { .. })));
+    }
 }

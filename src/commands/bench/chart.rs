@@ -1,7 +1,7 @@
 //! The run-time/error front as SVG and PNG.
 
-use super::CommandError;
 use crate::benchmark::front::{Entrant, Front, FrontRow, FrontTask};
+use crate::commands::CommandError;
 use crate::picture;
 use crate::signal::Algorithm;
 use plotters::coord::Shift;

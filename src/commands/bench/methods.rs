@@ -1,6 +1,6 @@
 //! `apertura bench --methods`: run time against squared error of every reconstruction method, and the hybrid's time for crowds.
 
-use super::CommandError;
+use crate::commands::CommandError;
 use crate::commands::figure::{Drawn, Figure, save};
 use crate::commands::print;
 use crate::evaluate::Estimate;

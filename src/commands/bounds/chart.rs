@@ -1,6 +1,6 @@
 //! The pictures of `apertura bounds`.
 
-use super::Report;
+use super::report::{Bound, BoundRow, Report, columns_to_cos};
 use crate::bounds::Ambiguity;
 use crate::commands::figure::{Drawn, Figure};
 use crate::evaluate::Placement;
@@ -86,7 +86,7 @@ impl Figure for BoundsFigure<'_> {
         };
         let mut chart = axes.draw(area)?;
         for (layout, colour) in report.layouts.iter().zip(COLOURS.iter().cycle()) {
-            let line = |bound: fn(&super::BoundRow) -> Option<super::Bound>| {
+            let line = |bound: fn(&BoundRow) -> Option<Bound>| {
                 layout.bounds.iter().filter_map(move |b| Some((b.snr_db, bound(b)?.position_millimetres)))
             };
             let beside = line(|b| b.beside_another);
@@ -157,7 +157,7 @@ impl Figure for AmbiguityFigure<'_> {
         let caption = format!("Which places sound like the reflector in the middle: 0 to -{RANGE_DB} dB");
         let area = area.margin(8, 0, 0, 0).titled(&caption, ("sans-serif", 22))?;
         let bin = self.radar.range_resolution_metres();
-        let column = super::columns_to_cos(self.radar);
+        let column = columns_to_cos(self.radar);
         for (panel, (name, patch)) in area.split_evenly((self.patches.len(), 1)).into_iter().zip(self.patches) {
             let columns = |cos: f64| (cos - self.centre.cos_theta) / column;
             let bins = |range: f64| (range - self.centre.range_metres) / bin;

@@ -1,16 +1,17 @@
 //! `apertura bounds`: what no estimator can beat, for any element layout.
 
 mod chart;
+mod report;
 
 use super::figure::{save, save_bitmap};
 use super::{CommandError, print};
-use crate::bounds::{Ambiguity, Lobes, PositionBound, ambiguity, cramer_rao, cut, lobes, noise_variance};
+use crate::bounds::{Ambiguity, PositionBound, ambiguity, cramer_rao, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
 use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::scene::Reflector;
 use crate::task::Task;
 use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
-use serde::Serialize;
+use report::{Bound, BoundRow, LayoutReport, Report, columns_to_cos};
 use std::path::PathBuf;
 
 /// Bound the error of any position estimate, and show which places sound alike, for several element layouts
@@ -85,42 +86,6 @@ fn apart(text: &str) -> Result<f64, String> {
         Ok(columns) if f64::is_finite(columns) && columns != 0.0 => Ok(columns),
         _ => Err("expected a number of columns other than 0".to_owned()),
     }
-}
-
-/// Everything the command says; its JSON.
-#[derive(Debug, Serialize)]
-struct Report {
-    x_metres: f64,
-    y_metres: f64,
-    apart_columns: f64,
-    layouts: Vec<LayoutReport>,
-    /// The Newton search on the two ends.
-    monte_carlo: Vec<Placement>,
-}
-
-/// One layout.
-#[derive(Debug, Serialize)]
-struct LayoutReport {
-    layout: String,
-    elements: usize,
-    lobes: Option<Lobes>,
-    bounds: Vec<BoundRow>,
-}
-
-/// Bounds at one signal-to-noise ratio; `None` where the samples don't determine the positions.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct BoundRow {
-    snr_db: f64,
-    alone: Option<Bound>,
-    beside_another: Option<Bound>,
-}
-
-/// Standard deviations that no unbiased estimate can stay below.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct Bound {
-    range_millimetres: f64,
-    columns: f64,
-    position_millimetres: f64,
 }
 
 impl Args {
@@ -218,11 +183,6 @@ impl Args {
     }
 }
 
-/// cos(theta) from one column of the whole array's map to the next.
-fn columns_to_cos(radar: &Radar) -> f64 {
-    (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs()
-}
-
 /// The ambiguity function around `centre`: four range bins and sixteen columns to each side.
 fn patch(radar: &Radar, layout: &Layout, centre: Polar) -> Ambiguity {
     let bin = radar.range_resolution_metres() / 8.0;
@@ -230,74 +190,4 @@ fn patch(radar: &Radar, layout: &Layout, centre: Polar) -> Ambiguity {
     let ranges: Vec<f64> = (-32..=32).map(|i| centre.range_metres + f64::from(i) * bin).collect();
     let cosines: Vec<f64> = (-128..=128).map(|i| centre.cos_theta + f64::from(i) * column).collect();
     ambiguity(radar, layout, centre, &ranges, &cosines)
-}
-
-impl Bound {
-    fn of(radar: &Radar, bound: &PositionBound) -> Self {
-        Bound {
-            range_millimetres: 1e3 * bound.range_metres,
-            columns: bound.cos_theta / columns_to_cos(radar),
-            position_millimetres: 1e3 * bound.position_metres(),
-        }
-    }
-}
-
-impl Report {
-    fn print(&self) -> Result<(), CommandError> {
-        print(&format!(
-            "One reflector at ({}, {}) m, and another {} columns beside it",
-            self.x_metres, self.y_metres, self.apart_columns
-        ))?;
-        print(&format!(
-            "\n{:12} {:>8} {:>16} {:>18} {:>16} {:>16}",
-            "ambiguity", "elements", "main lobe, cols", "side lobe, dB", "at, columns", "rms side, dB"
-        ))?;
-        let radar = Radar::default();
-        let db = |v: f64| format!("{:.2}", 20.0 * v.max(1e-9).log10());
-        for l in &self.layouts {
-            let Some(lobes) = &l.lobes else { continue };
-            let column = columns_to_cos(&radar);
-            print(&format!(
-                "{:12} {:>8} {:>16.2} {:>18} {:>16.2} {:>16}",
-                l.layout,
-                l.elements,
-                lobes.main_lobe_cos / column,
-                db(lobes.highest_side_lobe),
-                lobes.highest_side_lobe_offset / column,
-                db(lobes.side_lobe_rms)
-            ))?;
-        }
-        print(&format!(
-            "\n{:12} {:>7} | {:>10} {:>10} {:>11} | {:>10} {:>10} {:>11}",
-            "bound", "SNR, dB", "range, mm", "columns", "position, mm", "range, mm", "columns", "position, mm"
-        ))?;
-        let cells = |bound: Option<Bound>| match bound {
-            Some(b) => format!("{:>10.4} {:>10.5} {:>11.4}", b.range_millimetres, b.columns, b.position_millimetres),
-            None => format!("{:>10} {:>10} {:>11}", "-", "-", "-"),
-        };
-        for l in &self.layouts {
-            for b in &l.bounds {
-                print(&format!("{:12} {:>7} | {} | {}", l.layout, b.snr_db, cells(b.alone), cells(b.beside_another)))?;
-            }
-        }
-        if !self.monte_carlo.is_empty() {
-            print(&format!(
-                "\n{:7} {:>9} {:>10} {:>10} {:>13} {:>11} {:>11}",
-                "SNR, dB", "trials", "bound, mm", "error, mm", "error / bound", "other tooth", "miscounted"
-            ))?;
-        }
-        for p in &self.monte_carlo {
-            print(&format!(
-                "{:7} {:>9} {:>10.4} {:>10.4} {:>13.3} {:>11} {:>11}",
-                p.snr_db,
-                p.trials,
-                1e3 * p.bound_metres,
-                1e3 * p.error_metres,
-                p.ratio(),
-                p.off_by_a_tooth,
-                p.miscounted
-            ))?;
-        }
-        Ok(())
-    }
 }

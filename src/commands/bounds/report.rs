@@ -1,0 +1,118 @@
+//! What `apertura bounds` says.
+
+use crate::bounds::{Lobes, PositionBound};
+use crate::commands::{CommandError, print};
+use crate::evaluate::Placement;
+use crate::radar::Radar;
+use serde::Serialize;
+
+/// Everything the command says; its JSON.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    pub x_metres: f64,
+    pub y_metres: f64,
+    pub apart_columns: f64,
+    pub layouts: Vec<LayoutReport>,
+    /// The Newton search on the two ends.
+    pub monte_carlo: Vec<Placement>,
+}
+
+/// One layout.
+#[derive(Debug, Serialize)]
+pub struct LayoutReport {
+    pub layout: String,
+    pub elements: usize,
+    pub lobes: Option<Lobes>,
+    pub bounds: Vec<BoundRow>,
+}
+
+/// Bounds at one signal-to-noise ratio; `None` where the samples don't determine the positions.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct BoundRow {
+    pub snr_db: f64,
+    pub alone: Option<Bound>,
+    pub beside_another: Option<Bound>,
+}
+
+/// Standard deviations that no unbiased estimate can stay below.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Bound {
+    pub range_millimetres: f64,
+    pub columns: f64,
+    pub position_millimetres: f64,
+}
+
+/// cos(theta) from one column of the whole array's map to the next.
+pub fn columns_to_cos(radar: &Radar) -> f64 {
+    (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs()
+}
+
+impl Bound {
+    pub fn of(radar: &Radar, bound: &PositionBound) -> Self {
+        Bound {
+            range_millimetres: 1e3 * bound.range_metres,
+            columns: bound.cos_theta / columns_to_cos(radar),
+            position_millimetres: 1e3 * bound.position_metres(),
+        }
+    }
+}
+
+impl Report {
+    pub fn print(&self) -> Result<(), CommandError> {
+        print(&format!(
+            "One reflector at ({}, {}) m, and another {} columns beside it",
+            self.x_metres, self.y_metres, self.apart_columns
+        ))?;
+        print(&format!(
+            "\n{:12} {:>8} {:>16} {:>18} {:>16} {:>16}",
+            "ambiguity", "elements", "main lobe, cols", "side lobe, dB", "at, columns", "rms side, dB"
+        ))?;
+        let radar = Radar::default();
+        let db = |v: f64| format!("{:.2}", 20.0 * v.max(1e-9).log10());
+        for l in &self.layouts {
+            let Some(lobes) = &l.lobes else { continue };
+            let column = columns_to_cos(&radar);
+            print(&format!(
+                "{:12} {:>8} {:>16.2} {:>18} {:>16.2} {:>16}",
+                l.layout,
+                l.elements,
+                lobes.main_lobe_cos / column,
+                db(lobes.highest_side_lobe),
+                lobes.highest_side_lobe_offset / column,
+                db(lobes.side_lobe_rms)
+            ))?;
+        }
+        print(&format!(
+            "\n{:12} {:>7} | {:>10} {:>10} {:>11} | {:>10} {:>10} {:>11}",
+            "bound", "SNR, dB", "range, mm", "columns", "position, mm", "range, mm", "columns", "position, mm"
+        ))?;
+        let cells = |bound: Option<Bound>| match bound {
+            Some(b) => format!("{:>10.4} {:>10.5} {:>11.4}", b.range_millimetres, b.columns, b.position_millimetres),
+            None => format!("{:>10} {:>10} {:>11}", "-", "-", "-"),
+        };
+        for l in &self.layouts {
+            for b in &l.bounds {
+                print(&format!("{:12} {:>7} | {} | {}", l.layout, b.snr_db, cells(b.alone), cells(b.beside_another)))?;
+            }
+        }
+        if !self.monte_carlo.is_empty() {
+            print(&format!(
+                "\n{:7} {:>9} {:>10} {:>10} {:>13} {:>11} {:>11}",
+                "SNR, dB", "trials", "bound, mm", "error, mm", "error / bound", "other tooth", "miscounted"
+            ))?;
+        }
+        for p in &self.monte_carlo {
+            print(&format!(
+                "{:7} {:>9} {:>10.4} {:>10.4} {:>13.3} {:>11} {:>11}",
+                p.snr_db,
+                p.trials,
+                1e3 * p.bound_metres,
+                1e3 * p.error_metres,
+                p.ratio(),
+                p.off_by_a_tooth,
+                p.miscounted
+            ))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,24 @@
+//! What every panel of a picture is drawn on and with.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::fmt::Display;
+
+/// A picture could not be drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("can't draw the picture: {0}")]
+pub struct PictureError(String);
+
+impl PictureError {
+    pub(super) fn new(error: impl Display) -> Self {
+        PictureError(error.to_string())
+    }
+}
+
+/// What panels are drawn on.
+pub(super) type Area<B> = DrawingArea<B, Shift>;
+
+pub(super) const INK: RGBColor = RGBColor(28, 32, 38);
+pub(super) const FAINT_INK: RGBColor = RGBColor(104, 112, 122);
+pub(super) const HAIRLINE: RGBColor = RGBColor(206, 211, 217);
+pub(super) const PAPER: RGBColor = RGBColor(252, 252, 250);
