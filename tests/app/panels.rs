@@ -120,11 +120,11 @@ fn the_window_reaches_the_maps_and_comes_back() {
     s.settle();
     s.app.get_by_label("hamming").click();
     s.settle();
-    assert_eq!(s.state().settings().window, WindowFunction::Hamming);
+    assert_eq!(s.state().radar().window, WindowFunction::Hamming);
     let after = s.state().work_done();
     assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
     s.ask(Command::SetWindow(WindowFunction::Hann));
-    assert_eq!(s.state().settings().window, WindowFunction::Hann);
+    assert_eq!(s.state().radar().window, WindowFunction::Hann);
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn every_button_of_the_guide_leaves_a_working_app() {
     s.settle();
     s.app.get_by_label("Two-way").click();
     s.settle();
-    assert_eq!(s.state().settings().carrier, Carrier::TwoWay);
+    assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
     assert_eq!(s.state().editor().scene().name, "Four reflectors");
     assert_eq!(s.state().messages(), 0);
 }

@@ -29,13 +29,13 @@ fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
 #[test]
 fn run_times_arrive_while_they_are_measured() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::Front));
+    s.ask(Command::Maximise(Panel::RunTime));
     s.app.get_by_label("Measure").click();
-    step_until(&mut s, "a row arrives", |s| s.state().front_rows() > 0);
+    step_until(&mut s, "a row arrives", |s| s.state().run_time_rows() > 0);
     s.app.step();
     s.app.get_by_label("Cancel").click();
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
-    assert!(s.state().front_rows() > 0, "what was measured stays");
+    assert!(s.state().run_time_rows() > 0, "what was measured stays");
 }
 
 /// A file dropped on the window.

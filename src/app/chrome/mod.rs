@@ -1,0 +1,7 @@
+//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar.
+
+pub mod menu;
+pub mod messages;
+pub mod palette;
+pub mod status_bar;
+pub mod tiles;
