@@ -1,10 +1,10 @@
 //! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
 
 use super::apply::{self, Effect};
-use super::chrome::{menu, messages, palette, status_bar, tiles};
+use super::chrome::{file_dialog, menu, messages, palette, status_bar, tiles};
 use super::contents::{self, Contents};
 use super::input;
-use super::jobs::{FrameLog, Jobs};
+use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::state::{Arrangement, Command, Methods, Notices, Pointer, Settings, State};
 use super::widgets::theme;
 use crate::interact::Editor;
@@ -32,6 +32,8 @@ pub struct Options {
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
     pub data_folder: Option<PathBuf>,
+    /// Whether files are asked for by the window's own dialog even where the system has one.
+    pub own_dialogs: bool,
 }
 
 /// What is kept from one start to the next.
@@ -53,6 +55,8 @@ pub struct App {
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
     title: String,
+    /// Keys that came too quickly for one frame.
+    later: input::Later,
 }
 
 /// What chrome and panels remember from frame to frame.
@@ -60,6 +64,7 @@ pub struct App {
 struct Memory {
     menu: menu::Memory,
     palette: palette::Memory,
+    file_dialog: file_dialog::Memory,
     panels: contents::Memory,
 }
 
@@ -86,18 +91,20 @@ impl App {
             scene_view: Default::default(),
             map_views: Default::default(),
             pointer: Pointer::default(),
+            guided: Default::default(),
             path: None,
             recent: kept.recent,
             dark: ctx.theme() == egui::Theme::Dark,
         };
-        let jobs = Jobs::start(ctx, folder.as_deref())?;
+        let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
+        let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
         restore(&mut state, &jobs);
         if let Some(path) = options.scene {
             apply::open(&mut state, path);
         }
         let memory = Memory::default();
-        Ok(App { state, jobs, memory, asked: Vec::new(), frame_log, title: String::new() })
+        Ok(App { state, jobs, memory, asked: Vec::new(), frame_log, title: String::new(), later: Default::default() })
     }
 
     /// Does commands, and what they ask of the window.
@@ -123,8 +130,7 @@ impl App {
     fn read_input(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.asked);
         let input = input::Input {
-            dialogs: &self.jobs.dialogs,
-            palette: self.memory.palette.is_open(),
+            keys_taken: self.memory.palette.is_open() || self.memory.file_dialog.is_open(),
             selected: !self.state.editor.selection().is_empty(),
             bin_metres: self.state.radar.range_resolution_metres(),
         };
@@ -148,6 +154,7 @@ impl App {
         });
         let input = palette::Input { methods: &state.methods.all };
         commands.extend(palette::show(ui.ctx(), input, &mut memory.palette));
+        commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
         commands
     }
 
@@ -186,16 +193,25 @@ fn restore(state: &mut State, jobs: &Jobs) {
 }
 
 impl eframe::App for App {
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        if self.later.sort(input) {
+            ctx.request_repaint();
+        }
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if let Some(log) = &mut self.frame_log {
             log.begin_frame();
         }
         let ctx = ui.ctx().clone();
         self.state.dark = ctx.theme() == egui::Theme::Dark;
-        self.jobs.poll(&mut self.state);
+        let mut commands = self.jobs.poll(&mut self.state);
         // Before anything is drawn, so that no panel acts on what is no longer there.
-        let commands = self.read_input(&ctx);
+        commands.extend(self.read_input(&ctx));
         self.apply(&ctx, commands);
+        if let Some(question) = self.jobs.dialogs.take_unanswered() {
+            self.memory.file_dialog.ask(question);
+        }
         let commands = self.draw(ui);
         self.apply(&ctx, commands);
         if self.state.pointer.turn(&self.state.radar) {

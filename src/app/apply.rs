@@ -32,6 +32,15 @@ pub enum Effect {
 
 /// Does a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
+    if let Command::Guided(commands) = command {
+        let before = state.setup();
+        for command in commands {
+            apply(state, jobs, command);
+        }
+        let after = state.setup();
+        state.guided.push(before, after);
+        return None;
+    }
     // Each looks for its own commands and hands the others on.
     let left = settings(&mut state.settings, command)
         .and_then(|c| edit(state, c))
@@ -66,12 +75,13 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
             }
         }
         Command::SetNoiseSeed(seed) => settings.seed = seed,
-        Command::SetRandomSeed(seed) => settings.random_seed = seed,
+        Command::SetNextRandom { seed, number } => (settings.random_seed, settings.random_number) = (seed, number),
         Command::SetTargetEta(eta) => settings.target_eta = eta,
         Command::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
         Command::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
         Command::SetSnap(snap) => settings.snap = snap,
         Command::SetBounds(bounds) => settings.bounds = bounds,
+        Command::MarkReflectors => settings.show_reflectors = true,
         Command::ToggleReflectors => settings.show_reflectors ^= true,
         Command::ToggleFound => settings.show_found ^= true,
         Command::ToggleFieldsOfView => settings.show_fields_of_view ^= true,
@@ -85,8 +95,8 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
 fn edit(state: &mut State, command: Command) -> Option<Command> {
     let editor = &mut state.editor;
     match command {
-        Command::Undo => _ = editor.undo(),
-        Command::Redo => _ = editor.redo(),
+        Command::Undo => state.undo(),
+        Command::Redo => state.redo(),
         Command::Seal => editor.seal(),
         Command::PasteText(text) => {
             if let Err(error) = editor.paste(&text, &state.radar) {
@@ -161,7 +171,7 @@ fn exports(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Comma
     None
 }
 
-fn choose(state: &mut State, jobs: &Jobs, purpose: Purpose) -> Option<Command> {
+fn choose(state: &mut State, jobs: &mut Jobs, purpose: Purpose) -> Option<Command> {
     jobs.choose_file(state, purpose);
     None
 }
@@ -278,9 +288,9 @@ fn preset(state: &mut State, index: usize) {
 }
 
 fn random_scene(state: &mut State, kind: Kind) {
-    let seed = state.settings.random_seed;
-    let scene = Generator::new(&state.radar, Reading::Program, ScenePurpose::Test, seed).scene(kind, 0);
-    state.settings.random_seed = seed.wrapping_add(1);
+    let Settings { random_seed: seed, random_number: number, .. } = state.settings;
+    let scene = Generator::new(&state.radar, Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
+    state.settings.random_number = number.wrapping_add(1);
     state.set_scene("random scene", SceneFile { scene, radar: state.radar.clone() });
     state.path = None;
 }

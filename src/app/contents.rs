@@ -82,7 +82,7 @@ impl<'a> Contents<'a> {
             progress: pipeline.method_progress(),
             refusal: pipeline.refusal(),
             output: pipeline.output().map(|o| (o.method, o.took)),
-            scores: pipeline.result().and_then(|r| r.scores),
+            scores: pipeline.scores(),
             outdated: pipeline.output_is_outdated(),
         };
         let input = controls::Input {
@@ -137,9 +137,10 @@ impl<'a> Contents<'a> {
 
     fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
         let pipeline = &self.jobs.pipeline;
-        let points = pipeline.result().and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
+        let points = pipeline.output().and(pipeline.result()).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
         let method = pipeline.output().map_or("output", |o| o.method);
-        roc::show(ui, roc::Input { points, method, eta: self.state.output_eta() })
+        let refusal = pipeline.refusal().map(|r| r.reason.as_str());
+        roc::show(ui, roc::Input { points, method, eta: self.state.output_eta(), refusal })
     }
 
     fn timing(&mut self, ui: &mut Ui) -> Vec<Command> {
@@ -227,7 +228,7 @@ impl Draw for Contents<'_> {
             kind,
             method: pipeline.output().map(|o| o.method),
             updating: pipeline.is_stale(kind) || (kind.needs_output() && pipeline.output_is_outdated()),
-            metrics: pipeline.result().and_then(|r| r.scores).map(|s| s.metrics),
+            metrics: pipeline.scores().map(|s| s.metrics),
             target_eta: self.state.settings.target_eta,
             output_eta: self.state.output_eta(),
         })
@@ -265,12 +266,12 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
 pub fn menu_input<'a>(state: &'a State, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
     let history = state.editor.history();
     menu::Input {
-        can_undo: history.undo_label().is_some(),
+        can_undo: state.can_undo(),
         can_redo: history.redo_label().is_some(),
         selected: !state.editor.selection().is_empty(),
         projection: state.settings.projection,
         colours: state.settings.colours,
-        random_seed: state.settings.random_seed,
+        random: (state.settings.random_seed, state.settings.random_number),
         recent: &state.recent,
         is_open,
     }

@@ -3,6 +3,7 @@
 use super::application::App;
 use super::state::{Arrangement, Command, MapKind, Settings};
 use crate::bounds::PositionBound;
+use crate::evaluate::Metrics;
 use crate::interact::Editor;
 use crate::live::Report;
 use crate::radar::Radar;
@@ -66,6 +67,16 @@ impl App {
     /// Name of the method whose output is on screen, if there is one.
     pub fn shown_method(&self) -> Option<&'static str> {
         self.jobs.pipeline.output().map(|output| output.method)
+    }
+
+    /// Figures on screen, if there are any.
+    pub fn metrics(&self) -> Option<Metrics> {
+        self.jobs.pipeline.scores().map(|s| s.metrics)
+    }
+
+    /// Whether the output on screen belongs to something else than the maps.
+    pub fn output_is_outdated(&self) -> bool {
+        self.jobs.pipeline.output_is_outdated()
     }
 
     /// Rows that the run-time panel has measured.

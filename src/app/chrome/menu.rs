@@ -21,8 +21,8 @@ pub struct Input<'a> {
     pub projection: Projection,
     /// Colours of the maps.
     pub colours: ColourMap,
-    /// Seed of the next random scene.
-    pub random_seed: u64,
+    /// Seed of the next random scene, and its number.
+    pub random: (u64, u32),
     /// Files opened or saved lately, latest first.
     pub recent: &'a [PathBuf],
     /// Whether a panel has a visible tile.
@@ -58,7 +58,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file(ui, input.recent, &mut asked));
             ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
-            ui.menu_button("Scene", |ui| scene(ui, input.random_seed, memory, &mut asked));
+            ui.menu_button("Scene", |ui| scene(ui, input.random, memory, &mut asked));
             ui.menu_button("View", |ui| view(ui, &input, &mut asked));
             ui.menu_button("Tools", |ui| {
                 ui.set_min_width(240.0);
@@ -140,7 +140,7 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-fn scene(ui: &mut Ui, random_seed: u64, memory: &Memory, asked: &mut Vec<Command>) {
+fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Command>) {
     ui.set_min_width(260.0);
     entries(ui, [NewObject::Point, NewObject::Line, NewObject::Cluster].map(|kind| Command::Add(kind, None)), asked);
     ui.separator();
@@ -155,11 +155,15 @@ fn scene(ui: &mut Ui, random_seed: u64, memory: &Memory, asked: &mut Vec<Command
     ui.separator();
     entries(ui, Kind::all().map(Command::RandomScene), asked);
     ui.horizontal(|ui| {
-        let label = ui.label("Seed of the next random scene");
-        let mut seed = random_seed;
-        let tip = "The same set and seed always give the same scene; it rises by one each time";
-        if ui.add(egui::DragValue::new(&mut seed)).labelled_by(label.id).on_hover_text(tip).changed() {
-            asked.push(Command::SetRandomSeed(seed));
+        let (mut seed, mut number) = random;
+        let label = ui.label("Next: seed");
+        let tip = "The same kind, seed and number always give the same scene: that of the tables and of the command line";
+        let seeds = ui.add(egui::DragValue::new(&mut seed).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        let label = ui.label("number");
+        let tip = "It rises by one each time";
+        let numbers = ui.add(egui::DragValue::new(&mut number).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        if seeds.changed() || numbers.changed() {
+            asked.push(Command::SetNextRandom { seed, number });
         }
     });
     ui.separator();
@@ -217,7 +221,7 @@ mod tests {
                 selected: false,
                 projection: Projection::RangeAngle,
                 colours: ColourMap::Grey,
-                random_seed: 1,
+                random: (0, 0),
                 recent: &[],
                 is_open: &|panel| panel == Panel::Scene,
             };

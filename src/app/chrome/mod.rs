@@ -1,5 +1,6 @@
-//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar.
+//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar, file dialog.
 
+pub mod file_dialog;
 pub mod menu;
 pub mod messages;
 pub mod palette;

@@ -5,8 +5,9 @@ use crate::app::state::State;
 use crate::files::archive::write_maps;
 use crate::files::write_bytes;
 use crate::picture::{Format, Style, compose};
+use crate::reconstruct::Request;
 use crate::signal;
-use crate::task::panic_message;
+use crate::task::{Task, panic_message};
 use eframe::egui::{ColorImage, Context};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,7 +17,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 /// What came of an export.
 pub struct Export {
     path: PathBuf,
-    written: Result<(), String>,
+    /// What to add where something could not be had.
+    written: Result<Option<String>, String>,
 }
 
 impl Export {
@@ -27,7 +29,8 @@ impl Export {
     pub fn message(&self) -> Result<String, String> {
         let path = self.path.display();
         match &self.written {
-            Ok(()) => Ok(format!("Exported {path}")),
+            Ok(None) => Ok(format!("Exported {path}")),
+            Ok(Some(but)) => Ok(format!("Exported {path}, {but}")),
             Err(error) => Err(format!("{path}: {error}\nNothing was written; choose another place.")),
         }
     }
@@ -68,7 +71,7 @@ impl Exports {
         let (done, wake) = (self.done.0.clone(), self.wake.clone());
         self.wake.request_screenshot(move |picture| {
             // Compressing takes longer than a frame.
-            if let Err(error) = in_background(done, wake, path, move |path| write_png(path, &picture)) {
+            if let Err(error) = in_background(done, wake, path, move |path| write_png(path, &picture).map(|()| None)) {
                 tracing::warn!("the picture could not be exported: {error}");
             }
         });
@@ -92,21 +95,26 @@ impl Exports {
             let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
             let bytes =
                 compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg).map_err(|e| e.to_string())?;
-            write_bytes(path, &bytes).map_err(|e| e.to_string())
+            write_bytes(path, &bytes).map(|()| None).map_err(|e| e.to_string())
         })
     }
 
-    /// Writes samples and maps of the scene on screen as NumPy arrays. Returns what to tell.
+    /// Writes samples and maps of the scene on screen, and the output of the method in use, as NumPy arrays. Returns what to tell.
     ///
     /// # Errors
     /// Why it could not be begun.
     pub fn maps(&self, state: &State, mut path: PathBuf) -> Result<String, String> {
         path.set_extension("npz");
         let (radar, scene) = (state.radar.clone(), state.editor.scene().clone());
-        let (floor, seed) = (state.settings.floor, state.settings.seed);
+        let (floor, normalisation, seed) = (state.settings.floor, state.settings.normalisation, state.settings.seed);
+        let method = state.method().cloned();
         self.begin(path, move |path| {
             let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
-            write_maps(path, &radar, &scene, &signal).map_err(|e| e.to_string())
+            let request = Request { floor, normalisation, task: Task::default() };
+            let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
+            let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
+            write_maps(path, &radar, &scene, &signal, output).map_err(|e| e.to_string())?;
+            Ok(found.err().map(|why| format!("without the output: {why}")))
         })
     }
 
@@ -116,14 +124,14 @@ impl Exports {
     /// What is missing, or why it could not be begun.
     pub fn metrics(&self, state: &State, pipeline: &Pipeline, path: PathBuf) -> Result<String, String> {
         let text = metrics_csv(state, pipeline)?;
-        self.begin(path, move |path| write_bytes(path, text.as_bytes()).map_err(|e| e.to_string()))
+        self.begin(path, move |path| write_bytes(path, text.as_bytes()).map(|()| None).map_err(|e| e.to_string()))
     }
 
     /// Starts an export that takes a moment, and says so.
     fn begin(
         &self,
         path: PathBuf,
-        write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
+        write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
     ) -> Result<String, String> {
         let name = path.display().to_string();
         match in_background(self.done.0.clone(), self.wake.clone(), path, write) {
@@ -138,7 +146,7 @@ fn in_background(
     done: Sender<Export>,
     wake: Context,
     path: PathBuf,
-    write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
+    write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
 ) -> std::io::Result<()> {
     let work = move || {
         let written = catch_unwind(AssertUnwindSafe(|| write(&path)))
@@ -161,8 +169,8 @@ fn write_png(path: &Path, picture: &ColorImage) -> Result<(), String> {
 
 fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
     let result = pipeline.result().ok_or("There are no maps yet; try again in a moment.")?;
-    let (scores, output) = result
-        .scores
+    let (scores, output) = pipeline
+        .scores()
         .zip(pipeline.output())
         .ok_or("There are no figures: show an output panel and place a reflector first.")?;
     if pipeline.output_is_outdated() {
@@ -185,4 +193,17 @@ fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
         scores.output_blobs,
         output.took.as_secs_f64() * 1e3,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_could_not_be_had_is_told() {
+        let export = |written| Export { path: "maps.npz".into(), written }.message();
+        assert_eq!(export(Ok(None)).unwrap(), "Exported maps.npz");
+        assert!(export(Ok(Some("without the output: no".to_owned()))).unwrap().ends_with("without the output: no"));
+        assert!(export(Err("disk full".to_owned())).unwrap_err().contains("Nothing was written"));
+    }
 }

@@ -16,7 +16,7 @@ mod training;
 
 pub use autosave::Autosave;
 pub use bounds::{Bounds, BoundsRequest, BoundsResult};
-pub use dialogs::{Dialogs, Purpose};
+pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
 pub use frame_log::FrameLog;
@@ -25,7 +25,7 @@ pub use run_time::RunTime;
 pub use scene_maps::Scores;
 pub use training::{Log, Training};
 
-use crate::app::state::{Panel, State};
+use crate::app::state::{Command, Panel, State};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -61,7 +61,7 @@ impl Jobs {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(ctx: &Context, folder: Option<&Path>) -> std::io::Result<Jobs> {
+    pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> std::io::Result<Jobs> {
         let wake = {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
@@ -73,15 +73,15 @@ impl Jobs {
             run_time: RunTime::start(wake.clone())?,
             training: Training::start(wake)?,
             exports: Exports::new(ctx.clone()),
-            dialogs: Dialogs::default(),
+            dialogs,
             autosave: folder.map(Autosave::claim),
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
         })
     }
 
-    /// Takes in what was finished since the last frame.
-    pub fn poll(&mut self, state: &mut State) {
+    /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
+    pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = self.pipeline.poll();
         errors.extend(self.bounds.poll());
         errors.extend(self.evaluation.poll());
@@ -91,6 +91,9 @@ impl Jobs {
         for export in self.exports.finished() {
             tell(state, export.message());
         }
+        let (chosen, told) = self.dialogs.poll();
+        told.into_iter().for_each(|t| state.notices.info(t));
+        chosen
     }
 
     /// Asks for what the panels of this frame need, if that changed.
@@ -116,10 +119,10 @@ impl Jobs {
     }
 
     /// Opens a file dialog; what is chosen comes back as a command.
-    pub fn choose_file(&self, state: &mut State, purpose: Purpose) {
+    pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
         let ctx = self.wake.clone();
         let folder = state.path.as_ref().and_then(|p| p.parent()).map(Path::to_path_buf);
-        if let Err(error) = self.dialogs.ask(purpose, folder, move || ctx.request_repaint()) {
+        if let Err(error) = self.dialogs.ask(Question { purpose, folder }, move || ctx.request_repaint()) {
             let advice = "Drop a file on the window instead.";
             state.notices.error(format!("The file dialog could not be opened: {error}. {advice}"));
         }

@@ -6,7 +6,7 @@
 //!                               └── pair of maps ◄── method worker ◄───────┘
 //! ```
 
-use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair};
+use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
 use crate::app::state::{MapKind, Panel, State};
 use crate::live::Wanted;
 use crate::maps::{Normalisation, RangeAngleMap};
@@ -264,6 +264,12 @@ impl Pipeline {
     /// The latest output.
     pub fn output(&self) -> Option<&MethodResult> {
         self.output.as_ref()
+    }
+
+    /// Figures of that output, against the target of the same scene.
+    pub fn scores(&self) -> Option<Scores> {
+        self.output.as_ref()?;
+        self.result.as_ref()?.scores
     }
 
     /// Why the scene on screen can't be computed.

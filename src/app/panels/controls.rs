@@ -124,9 +124,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             ui.horizontal(|ui| {
                 let mut eta = input.eta;
                 let slider = ui.add(threshold(&mut eta));
-                if slider.changed() {
-                    asked.push(Command::SetMethodEta(method.name(), Some(eta)));
-                }
+                asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
                 let own = input.settings.method_eta.contains_key(method.name());
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
                 if reset.on_hover_text(format!("Back to the method's own η = {}", method.eta())).clicked() {
@@ -139,13 +137,17 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
             let mut eta = input.settings.target_eta;
             let slider = ui.add(threshold(&mut eta));
-            if slider.changed() {
-                asked.push(Command::SetTargetEta(eta));
-            }
+            asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
             slider
         });
     });
     figures(ui, method, &input.run, asked);
+}
+
+/// The new eta, if it looks any different: the field writes back what it shows when the focus only passes through.
+fn moved(before: f32, after: f32) -> Option<f32> {
+    let shown = |eta: f32| (100.0 * eta).round();
+    (shown(before) != shown(after)).then_some(after)
 }
 
 /// A slider that shows two decimals; what nobody moves keeps all of its own.
@@ -342,6 +344,25 @@ mod tests {
             Command::SetSnap(Snap::Metres(0.5)),
         ];
         assert_eq!(controls.state(), &asked, "and what is chosen already is not asked for");
+    }
+
+    #[test]
+    fn the_focus_passes_through_a_threshold_without_rounding_it() {
+        assert_eq!((moved(0.851, 0.85), moved(0.851, 0.86)), (None, Some(0.86)));
+        let mut settings = Settings::default();
+        settings.target_eta = 0.851;
+        let radar = Radar::default();
+        let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let (eta, run) = (0.123, Run::default());
+            let input = Input { settings: &settings, radar: &radar, methods: &[], method: Some(&CAPON), eta, run };
+            asked.extend(show(ui, input));
+        };
+        let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
+        for _ in 0..30 {
+            controls.key_press(eframe::egui::Key::Tab);
+            controls.run();
+        }
+        assert!(controls.state().is_empty(), "{:?}", controls.state());
     }
 
     #[test]

@@ -67,7 +67,7 @@ fn draw(ui: &mut Ui, input: &Input<'_>, cut: Cut, legend: bool) {
     let (title, at, low, high) = match cut {
         Cut::Angle => {
             let title = format!("cos θ, at range {:.2} m", radar.range_of_bin_metres(bin as f64));
-            (title, cursor.cos_theta, -1.0, 1.0)
+            (title, radar.cos_of_column(cursor.column), -1.0, 1.0)
         }
         Cut::Range => {
             let title = format!("range in m, at cos θ {:.3}", radar.cos_of_column(column as f64));

@@ -25,6 +25,7 @@ const CHAPTERS: &[&[Step]] = &[
         Step { label: "One reflector at 20 m", commands: || scene("one-at-20-m", thesis()) },
         Step { label: "A tenth of a radian off", commands: || scene("one-at-20-m-a-tenth-of-a-radian-off", thesis()) },
     ],
+    &[Step { label: "Rings around four blobs", commands: || scene("four-reflectors", rings(thesis())) }],
     &[
         Step { label: "Four reflectors, Hann", commands: || scene("four-reflectors", window(WindowFunction::Hann)) },
         Step { label: "No window", commands: || scene("four-reflectors", window(WindowFunction::Rectangular)) },
@@ -95,6 +96,12 @@ fn thesis() -> Vec<Command> {
     ]
 }
 
+/// The true reflectors over the maps besides.
+fn rings(mut then: Vec<Command>) -> Vec<Command> {
+    then.push(Command::MarkReflectors);
+    then
+}
+
 /// A window without a floor, so that its side lobes are all there is to see.
 fn window(window: WindowFunction) -> Vec<Command> {
     vec![
@@ -134,8 +141,8 @@ pub fn show(ui: &mut Ui, memory: &mut Memory) -> Vec<Command> {
                 CommonMarkViewer::new().show(ui, &mut memory.cache, chapter);
                 ui.horizontal_wrapped(|ui| {
                     for step in *steps {
-                        if ui.button(step.label).on_hover_text("Set it up; undo brings your scene back").clicked() {
-                            asked.extend((step.commands)());
+                        if ui.button(step.label).on_hover_text("Set it up; undo brings your scene and your settings back").clicked() {
+                            asked.push(Command::Guided((step.commands)()));
                         }
                     }
                 });
@@ -161,7 +168,8 @@ mod tests {
         let mut guide = Harness::builder().with_size([640.0, 9000.0]).build_ui_state(draw, Default::default());
         guide.get_by_label("Hamming").click();
         guide.step();
-        assert_eq!(guide.state().1, scene("four-reflectors", window(WindowFunction::Hamming)));
+        let steps = scene("four-reflectors", window(WindowFunction::Hamming));
+        assert_eq!(guide.state().1, [Command::Guided(steps)]);
     }
 
     #[test]

@@ -122,7 +122,8 @@ fn single(ui: &mut Ui, radar: &Radar, editor: &mut Editor, asked: &mut Vec<Comma
     Grid::new("object").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| fields(ui, &mut edited));
     let [x, y] = edited.centre_metres();
     let polar = radar.polar_of(x, y);
-    let (bin, column) = (radar.bin_of_range(polar.range_metres), radar.column_of_cos(polar.cos_theta));
+    let seen = radar.blob_of(0.0, x, y);
+    let (bin, column) = (radar.bin_of_range(polar.range_metres), radar.column_of_cos(seen.cos_theta));
     ui.weak(format!(
         "range {:.3} m · cos θ {:.4} · bin {bin:.1} · column {column:.1}",
         polar.range_metres, polar.cos_theta

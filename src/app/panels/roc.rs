@@ -16,12 +16,14 @@ pub struct Input<'a> {
     pub method: &'a str,
     /// The threshold in use.
     pub eta: f32,
+    /// Why there is no output.
+    pub refusal: Option<&'a str>,
 }
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let Some(roc) = input.points else {
-        ui.centered_and_justified(|ui| ui.weak("No ROC: the target has no cell above 0.9."));
+        ui.centered_and_justified(|ui| ui.weak(input.refusal.unwrap_or("No ROC: the target has no cell above 0.9.")));
         return Vec::new();
     };
     let log = |false_alarm: f64| false_alarm.max(SMALLEST).log10();
@@ -71,7 +73,7 @@ mod tests {
     #[test]
     fn a_scene_without_a_characteristic_is_told() {
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui, Input { points: None, method: "baseline", eta: 0.5 }));
+            asked.extend(show(ui, Input { points: None, method: "baseline", eta: 0.5, refusal: None }));
         };
         let roc = Harness::new_ui_state(draw, Vec::new());
         let _told = roc.get_by_label_contains("No ROC");

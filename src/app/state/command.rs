@@ -55,8 +55,13 @@ pub enum Command {
     Preset(usize),
     /// Make a random test scene.
     RandomScene(Kind),
-    /// Seed of the next random scene.
-    SetRandomSeed(u64),
+    /// Which random scene is next.
+    SetNextRandom {
+        /// Seed of its stream.
+        seed: u64,
+        /// Its number in the stream.
+        number: u32,
+    },
     /// Ask for the log of a training and watch it.
     OpenLog,
     /// Watch this log of a training.
@@ -148,6 +153,8 @@ pub enum Command {
     SetSnap(Snap),
     /// What bounds are computed for.
     SetBounds(BoundsSettings),
+    /// Draw true reflectors over the maps.
+    MarkReflectors,
     /// Draw true reflectors over the maps or not.
     ToggleReflectors,
     /// Draw the reflectors that the method found or not.
@@ -173,6 +180,8 @@ pub enum Command {
     },
     /// Stop measuring.
     CancelMeasurement,
+    /// Do these for the guide: undo takes back the settings they change, too.
+    Guided(Vec<Command>),
     /// Close every message.
     CloseMessages,
     /// Light or dark.

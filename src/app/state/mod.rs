@@ -5,6 +5,7 @@ mod arrangement;
 mod bounds_settings;
 mod command;
 mod command_table;
+mod guided;
 mod methods;
 mod notices;
 mod panel;
@@ -15,6 +16,7 @@ pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
 pub use command::{Command, EvaluationChoice, NewObject};
 pub use command_table::{listed, shortcuts};
+pub use guided::{Guided, Setup};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, Panel};
@@ -52,6 +54,8 @@ pub struct State {
     pub map_views: MapViews,
     /// Where the pointer is.
     pub pointer: Pointer,
+    /// What the guide did.
+    pub guided: Guided,
     /// The scene's own file, if it has one.
     pub path: Option<PathBuf>,
     /// Files opened or saved lately, latest first.
@@ -71,6 +75,37 @@ impl State {
     /// The scene with its radar, as a file holds them.
     pub fn scene_file(&self) -> SceneFile {
         SceneFile { scene: Scene::clone(self.editor.scene()), radar: self.radar.clone() }
+    }
+
+    /// Everything that the guide may change, as it is.
+    pub fn setup(&self) -> Setup {
+        Setup {
+            settings: self.settings.clone(),
+            radar: self.radar.clone(),
+            scene: self.editor.scene().clone(),
+            depth: self.editor.history().depth(),
+        }
+    }
+
+    /// Whether there is something to undo.
+    pub fn can_undo(&self) -> bool {
+        self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup())
+    }
+
+    /// Undoes the last change of the scene, or all that a button of the guide did.
+    pub fn undo(&mut self) {
+        let Some(step) = self.guided.undo(&self.setup()) else { return _ = self.editor.undo() };
+        while self.editor.history().depth() > step.before.depth && self.editor.undo() {}
+        self.settings.take_back(&step.before.settings, &step.after.settings);
+        self.radar = step.before.radar;
+    }
+
+    /// Does again what was undone last.
+    pub fn redo(&mut self) {
+        let Some(step) = self.guided.redo(&self.setup()) else { return _ = self.editor.redo() };
+        while self.editor.history().depth() < step.after.depth && self.editor.redo() {}
+        self.settings.take_back(&step.after.settings, &step.before.settings);
+        self.radar = step.after.radar;
     }
 
     /// Makes a file the scene's own.

@@ -67,8 +67,24 @@ pub struct Settings {
     pub theme: Brightness,
     /// What the bounds are computed for.
     pub bounds: BoundsSettings,
-    /// Number and seed last used for a random scene.
+    /// Seed of the next random scene.
     pub random_seed: u64,
+    /// Its number among the scenes of that seed.
+    pub random_number: u32,
+}
+
+impl Settings {
+    /// Where the guide changed a setting from `before` to `after` and nobody changed it since, puts back what it was.
+    pub fn take_back(&mut self, before: &Settings, after: &Settings) {
+        macro_rules! take_back {
+            ($($field:ident),*) => {
+                $(if self.$field == after.$field {
+                    self.$field.clone_from(&before.$field);
+                })*
+            };
+        }
+        take_back!(floor, normalisation, dynamic_range, snr, projection, method, show_reflectors);
+    }
 }
 
 impl Default for Settings {
@@ -90,7 +106,8 @@ impl Default for Settings {
             snap: Snap::Off,
             theme: Brightness::System,
             bounds: BoundsSettings::default(),
-            random_seed: 1,
+            random_seed: 0,
+            random_number: 0,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::settings::Projection;
 use crate::interact::Place;
-use crate::radar::Radar;
+use crate::radar::{Polar, Radar};
 use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// The visible part of a map, as fractions of its width and height; y counts upwards.
@@ -124,7 +124,7 @@ pub struct Cursor {
     pub place: Place,
     /// From the middle of the array.
     pub range_metres: f64,
-    /// Cosine of the angle to the array's axis.
+    /// Cosine of the angle to the array's axis: the true one, not that of the column.
     pub cos_theta: f64,
     /// Range bin, fractional; beyond the last one for what is out of range.
     pub bin: f64,
@@ -183,25 +183,34 @@ impl Pointer {
 }
 
 impl Cursor {
-    /// At a place of the scene.
+    /// At a place of the scene: in the cell where the whole array's map shows what stands there.
     pub fn at_place(radar: &Radar, place: Place) -> Self {
-        let polar = radar.polar_of(place.x_metres, place.y_metres);
+        let (polar, blob) = (
+            radar.polar_of(place.x_metres, place.y_metres),
+            radar.blob_of(0.0, place.x_metres, place.y_metres),
+        );
         Cursor {
             place,
             range_metres: polar.range_metres,
             cos_theta: polar.cos_theta,
             bin: radar.bin_of_range(polar.range_metres),
-            column: radar.column_of_cos(polar.cos_theta),
+            column: radar.column_of_cos(blob.cos_theta),
         }
     }
 
-    /// At a cell of a map.
+    /// At a cell of a map: where the reflector stands whose blob is there.
     pub fn at_cell(radar: &Radar, bin: f64, column: f64) -> Self {
-        let range_metres = radar.range_of_bin_metres(bin);
-        let cos_theta = radar.cos_of_column(column);
-        let sin = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-        let place = Place::new(range_metres * cos_theta, range_metres * sin);
-        Cursor { place, range_metres, cos_theta, bin, column }
+        let blob = Polar { range_metres: radar.range_of_bin_metres(bin), cos_theta: radar.cos_of_column(column) };
+        Cursor { column, ..Cursor::at_blob(radar, blob) }
+    }
+
+    /// At a range and direction of a map.
+    pub fn at_blob(radar: &Radar, blob: Polar) -> Self {
+        let Polar { range_metres, cos_theta } = blob;
+        let column = radar.column_of_cos(cos_theta);
+        let cos_theta = radar.cos_of_blob(cos_theta);
+        let place = Place::new(range_metres * cos_theta, range_metres * (1.0 - cos_theta * cos_theta).sqrt());
+        Cursor { place, range_metres, cos_theta, bin: radar.bin_of_range(range_metres), column }
     }
 
     /// The cell it lies in, if the maps have it.

@@ -1,9 +1,8 @@
 //! A map on screen: where its places are, and the numbers behind them.
 
 use crate::app::state::{Cursor, MapView, Projection};
-use crate::interact::Place;
 use crate::maps::{LambdaScale, RangeAngleMap};
-use crate::radar::Radar;
+use crate::radar::{Polar, Radar};
 use crate::scene::Reflector;
 use eframe::egui::{Pos2, Rect, pos2};
 
@@ -18,12 +17,44 @@ pub struct Frame<'a> {
     pub radar: &'a Radar,
     /// Over which coordinates.
     pub projection: Projection,
+    /// Middle of the elements that the map is of, metres along the array.
+    pub centre_x_metres: f64,
 }
 
 impl Frame<'_> {
-    /// Where a place of the scene appears.
-    pub fn at(&self, cursor: &Cursor) -> Pos2 {
-        self.view.to_screen(self.rect, fraction_of(self.radar, self.projection, cursor))
+    /// Where the map shows a reflector.
+    pub fn blob(&self, reflector: &Reflector) -> Pos2 {
+        self.at(self.radar.blob_of(self.centre_x_metres, reflector.x_metres, reflector.y_metres))
+    }
+
+    /// Where it would be if its direction were that of the column.
+    pub fn true_direction(&self, reflector: &Reflector) -> Pos2 {
+        self.at(self.radar.polar_of(reflector.x_metres - self.centre_x_metres, reflector.y_metres))
+    }
+
+    /// Where a cursor is.
+    pub fn cursor(&self, cursor: &Cursor) -> Pos2 {
+        let cos_theta = cursor.cos_theta * self.radar.squint();
+        self.at(Polar { range_metres: cursor.range_metres, cos_theta })
+    }
+
+    /// Where a range and a direction of the map are; ranges wrap around where the map's do.
+    fn at(&self, blob: Polar) -> Pos2 {
+        let (radar, Polar { range_metres, cos_theta }) = (self.radar, blob);
+        let fraction = match self.projection {
+            Projection::RangeAngle => {
+                let bin = radar.bin_of_range(range_metres).rem_euclid(radar.samples as f64);
+                let column = radar.column_of_cos(cos_theta);
+                pos2(((column + 0.5) / radar.elements as f64) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
+            }
+            Projection::Cartesian => {
+                let extent = radar.max_range_metres();
+                let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+                let (x, y) = (range_metres * cos_theta, range_metres * sin_theta);
+                pos2(((x / extent + 1.0) / 2.0) as f32, (y / extent) as f32)
+            }
+        };
+        self.view.to_screen(self.rect, fraction)
     }
 }
 
@@ -54,24 +85,44 @@ pub fn cursor_at(radar: &Radar, projection: Projection, fraction: Pos2) -> Optio
         }
         Projection::Cartesian => {
             let extent = radar.max_range_metres();
-            let cursor = Cursor::at_place(radar, Place::new((2.0 * fx - 1.0) * extent, fy * extent));
+            let cursor = Cursor::at_blob(radar, radar.polar_of((2.0 * fx - 1.0) * extent, fy * extent));
             cursor.cell(radar).map(|_| cursor)
         }
     }
 }
 
-/// Where a place of the scene appears in the map, as fractions.
-fn fraction_of(radar: &Radar, projection: Projection, cursor: &Cursor) -> Pos2 {
-    match projection {
-        Projection::RangeAngle => {
-            let bin = cursor.bin.rem_euclid(radar.samples as f64);
-            pos2(((cursor.column + 0.5) / radar.elements as f64) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
-        }
-        Projection::Cartesian => {
-            let extent = radar.max_range_metres();
-            // A line array sees y and -y alike.
-            let (x, y) = (cursor.place.x_metres, cursor.place.y_metres.abs());
-            pos2(((x / extent + 1.0) / 2.0) as f32, (y / extent) as f32)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interact::Place;
+    use crate::radar::End;
+    use eframe::egui::vec2;
+
+    #[test]
+    fn a_ring_is_drawn_where_the_map_has_the_blob() {
+        let radar = Radar::default();
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(1024.0, 512.0));
+        let reflector = Reflector { x_metres: -0.832 * 20.0, y_metres: 0.5548 * 20.0, reflectivity: 1.0 };
+        let frame = |projection, centre_x_metres| Frame {
+            rect,
+            view: MapView::default(),
+            radar: &radar,
+            projection,
+            centre_x_metres,
+        };
+        let target = frame(Projection::RangeAngle, 0.0);
+        let cos = |at: Pos2| radar.cos_of_column(f64::from(at.x) - 0.5);
+        assert!((cos(target.blob(&reflector)) + 0.81).abs() < 2e-3, "the blob");
+        assert!((cos(target.true_direction(&reflector)) + 0.832).abs() < 2e-3, "the direction");
+        let input = frame(Projection::RangeAngle, radar.end_centre_metres(End::First));
+        assert!(cos(input.blob(&reflector)) > cos(target.blob(&reflector)), "the left end sees it less far to the left");
+        for projection in [Projection::RangeAngle, Projection::Cartesian] {
+            let frame = frame(projection, 0.0);
+            let cursor = Cursor::at_place(&radar, Place::new(reflector.x_metres, reflector.y_metres));
+            let blob = frame.blob(&reflector);
+            assert!((frame.cursor(&cursor) - blob).length() < 1e-2, "the pointer over it in the scene is over its blob");
+            let back = cursor_at(&radar, projection, pos2(blob.x / 1024.0, 1.0 - blob.y / 512.0)).unwrap();
+            assert!(back.place.distance_metres(cursor.place) < 1e-2, "and back: {back:?}");
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::app::widgets::entry::entry;
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::Metrics;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Radar};
+use crate::radar::{Carrier, End, Radar};
 use eframe::egui;
 use eframe::egui::{Align2, Color32, Painter, Rect, Sense, TextureId, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
@@ -63,7 +63,13 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
     navigate(ui, rect, &response, view);
-    let frame = Frame { rect, view: *view, radar: input.radar, projection: input.projection };
+    let frame = Frame {
+        rect,
+        view: *view,
+        radar: input.radar,
+        projection: input.projection,
+        centre_x_metres: centre_x_metres(input.kind, input.radar),
+    };
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(rect.intersect(area));
     match input.texture {
@@ -76,7 +82,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
         None => empty(ui, &inner, rect, input.error.as_ref(), &mut asked),
     }
     draw_axes(ui, &painter, frame);
-    overlay::marks(&inner, frame, &input.marks);
+    overlay::marks(&inner, frame, &input.marks, response.hover_pos());
     if let Some(pos) = response.hover_pos() {
         asked.extend(cursor_at(input.radar, input.projection, view.at(rect, pos)).map(Command::Hover));
     }
@@ -133,6 +139,15 @@ pub fn caption(input: Caption) -> Option<String> {
     (!text.trim().is_empty()).then_some(text)
 }
 
+/// Middle of the elements that a map is of.
+fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
+    match kind {
+        MapKind::Input0 => radar.end_centre_metres(End::First),
+        MapKind::Input1 => radar.end_centre_metres(End::Last),
+        _ => 0.0,
+    }
+}
+
 fn has_bar(kind: MapKind) -> bool {
     !matches!(kind, MapKind::TargetAbove | MapKind::OutputAbove)
 }
@@ -172,7 +187,7 @@ fn navigate(ui: &Ui, rect: Rect, response: &egui::Response, view: &mut MapView) 
 }
 
 fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
-    let Frame { rect, view, radar, projection } = frame;
+    let Frame { rect, view, radar, projection, .. } = frame;
     let (x, y) = match projection {
         Projection::RangeAngle => {
             let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);

@@ -4,26 +4,53 @@ use super::frame::{Cells, Frame, Marks};
 use crate::app::state::{Cursor, Projection};
 use crate::app::widgets::axes;
 use crate::app::widgets::theme::{MARK, MARK_EDGE};
-use crate::interact::Place;
 use crate::scene::Reflector;
 use eframe::egui::{Align2, Color32, Painter, Pos2, Stroke, vec2};
 
 /// Most reflectors that are marked.
 const MARKS: usize = 4000;
 
-/// True reflectors as rings, those the method found as crosses.
-pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>) {
-    let place = |r: &Reflector| frame.at(&Cursor::at_place(frame.radar, Place::new(r.x_metres, r.y_metres)));
+/// How near the pointer must be to a ring to be told the true direction.
+const NEAR: f32 = 9.0;
+
+/// True reflectors as rings, those the method found as crosses: where the map shows what stands there. A ring under the `pointer` tells
+/// the direction in which its reflector really stands.
+pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>, pointer: Option<Pos2>) {
     let radius = if marks.reflectors.len() > 60 { 2.5 } else { 6.0 };
+    let mut nearest: Option<(&Reflector, f32)> = None;
     for r in marks.reflectors.iter().take(MARKS) {
-        let at = place(r);
+        let at = frame.blob(r);
         painter.circle_stroke(at, radius, Stroke::new(2.5, MARK_EDGE));
         painter.circle_stroke(at, radius, Stroke::new(1.2, MARK));
+        let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
+        if distance < nearest.map_or(NEAR, |(_, d)| d) {
+            nearest = Some((r, distance));
+        }
     }
     for r in marks.found.iter().take(MARKS) {
-        cross(painter, place(r), 4.0, Stroke::new(2.6, MARK_EDGE));
-        cross(painter, place(r), 4.0, Stroke::new(1.3, Color32::from_rgb(120, 255, 150)));
+        cross(painter, frame.blob(r), 4.0, Stroke::new(2.6, MARK_EDGE));
+        cross(painter, frame.blob(r), 4.0, Stroke::new(1.3, Color32::from_rgb(120, 255, 150)));
     }
+    if let Some((reflector, _)) = nearest {
+        true_direction(painter, frame, reflector);
+    }
+}
+
+/// From a ring to where it would be without the beam's squint.
+fn true_direction(painter: &Painter, frame: Frame<'_>, reflector: &Reflector) {
+    let (from, to) = (frame.blob(reflector), frame.true_direction(reflector));
+    for (width, colour) in [(3.0, MARK_EDGE), (1.4, MARK)] {
+        painter.line_segment([from, to], Stroke::new(width, colour));
+        painter.circle_filled(to, 1.0 + width, colour);
+    }
+    let text = direction_text(frame, reflector);
+    axes::text_on_patch(painter, frame.rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP, &text);
+}
+
+fn direction_text(frame: Frame<'_>, reflector: &Reflector) -> String {
+    let seen = frame.radar.polar_of(reflector.x_metres - frame.centre_x_metres, reflector.y_metres);
+    let blob = frame.radar.blob_of(frame.centre_x_metres, reflector.x_metres, reflector.y_metres);
+    format!("stands at cos θ {:+.3}, seen at {:+.3}", seen.cos_theta, blob.cos_theta)
 }
 
 fn cross(painter: &Painter, at: Pos2, r: f32, stroke: Stroke) {
@@ -34,7 +61,7 @@ fn cross(painter: &Painter, at: Pos2, r: f32, stroke: Stroke) {
 /// The cell under the pointer of whichever panel has it, and its value here.
 pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>) {
     let Some((bin, column)) = cursor.cell(frame.radar) else { return };
-    let (rect, at, gap) = (frame.rect, frame.at(cursor), 7.0);
+    let (rect, at, gap) = (frame.rect, frame.cursor(cursor), 7.0);
     for stroke in [Stroke::new(2.6, Color32::from_black_alpha(110)), Stroke::new(1.0, MARK)] {
         if frame.projection == Projection::RangeAngle {
             painter.hline(rect.left()..=at.x - gap, at.y, stroke);
