@@ -17,7 +17,8 @@ impl Later {
         events.append(&mut input.events);
         let moves = |e: &Event| matches!(e, Event::Key { key: Key::Tab | Key::Enter, pressed: true, .. });
         let typed = |e: &Event| matches!(e, Event::Text(_) | Event::Paste(_));
-        let from_first = |is: &dyn Fn(&Event) -> bool, from: usize| events[from..].iter().position(is).map(|i| i + from);
+        let from_first =
+            |is: &dyn Fn(&Event) -> bool, from: usize| events[from..].iter().position(is).map(|i| i + from);
         let first_typed = from_first(&typed, 0).unwrap_or(events.len());
         let first_move = from_first(&moves, 0).unwrap_or(events.len());
         // Letters, then a move: the move waits. A move, then letters: the letters wait.
@@ -145,7 +146,13 @@ mod tests {
     fn letters_and_the_keys_that_move_the_focus_come_one_frame_after_the_other() {
         let text = |t: &str| Event::Text(t.to_owned());
         let fast = vec![text("1"), text("2"), press(Key::Tab), text("5"), press(Key::Enter), text("p")];
-        let slow = [vec![text("1"), text("2")], vec![press(Key::Tab)], vec![text("5")], vec![press(Key::Enter)], vec![text("p")]];
+        let slow = [
+            vec![text("1"), text("2")],
+            vec![press(Key::Tab)],
+            vec![text("5")],
+            vec![press(Key::Enter)],
+            vec![text("p")],
+        ];
         assert_eq!(frames(fast), slow);
         let harmless = vec![text("1"), press(Key::ArrowUp), text("2")];
         assert_eq!(frames(harmless.clone()), [harmless]);

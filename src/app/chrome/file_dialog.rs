@@ -2,7 +2,7 @@
 
 use crate::app::jobs::{Purpose, Question};
 use crate::app::state::Command;
-use eframe::egui::{Context, Modal, Id, Ui};
+use eframe::egui::{Context, Id, Modal, Ui};
 use egui_file::FileDialog;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,8 @@ impl Memory {
         let dialog = if purpose.reads() { FileDialog::open_file() } else { FileDialog::save_file() };
         let (_, endings) = purpose.kind();
         let fits = move |path: &Path| {
-            path.is_dir() || path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
+            path.is_dir()
+                || path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
         };
         let dialog = dialog
             .title(purpose.title())

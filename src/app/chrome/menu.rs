@@ -157,7 +157,8 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Comma
     ui.horizontal(|ui| {
         let (mut seed, mut number) = random;
         let label = ui.label("Next: seed");
-        let tip = "The same kind, seed and number always give the same scene: that of the tables and of the command line";
+        let tip =
+            "The same kind, seed and number always give the same scene: that of the tables and of the command line";
         let seeds = ui.add(egui::DragValue::new(&mut seed).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
         let label = ui.label("number");
         let tip = "It rises by one each time";

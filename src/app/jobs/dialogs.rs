@@ -152,7 +152,9 @@ impl Dialogs {
                 Answer::NotShown(question) => {
                     self.unanswered = Some(question);
                     if self.system.take().is_some() {
-                        told = Some("This system shows no file dialog (no portal, no zenity), so the window shows its own.");
+                        told = Some(
+                            "This system shows no file dialog (no portal, no zenity), so the window shows its own.",
+                        );
                     }
                 }
             }

@@ -141,7 +141,11 @@ pub fn show(ui: &mut Ui, memory: &mut Memory) -> Vec<Command> {
                 CommonMarkViewer::new().show(ui, &mut memory.cache, chapter);
                 ui.horizontal_wrapped(|ui| {
                     for step in *steps {
-                        if ui.button(step.label).on_hover_text("Set it up; undo brings your scene and your settings back").clicked() {
+                        if ui
+                            .button(step.label)
+                            .on_hover_text("Set it up; undo brings your scene and your settings back")
+                            .clicked()
+                        {
                             asked.push(Command::Guided((step.commands)()));
                         }
                     }

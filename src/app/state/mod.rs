@@ -94,7 +94,10 @@ impl State {
 
     /// Undoes the last change of the scene, or all that a button of the guide did.
     pub fn undo(&mut self) {
-        let Some(step) = self.guided.undo(&self.setup()) else { return _ = self.editor.undo() };
+        let Some(step) = self.guided.undo(&self.setup()) else {
+            self.editor.undo();
+            return;
+        };
         while self.editor.history().depth() > step.before.depth && self.editor.undo() {}
         self.settings.take_back(&step.before.settings, &step.after.settings);
         self.radar = step.before.radar;
@@ -102,7 +105,10 @@ impl State {
 
     /// Does again what was undone last.
     pub fn redo(&mut self) {
-        let Some(step) = self.guided.redo(&self.setup()) else { return _ = self.editor.redo() };
+        let Some(step) = self.guided.redo(&self.setup()) else {
+            self.editor.redo();
+            return;
+        };
         while self.editor.history().depth() < step.after.depth && self.editor.redo() {}
         self.settings.take_back(&step.after.settings, &step.before.settings);
         self.radar = step.after.radar;

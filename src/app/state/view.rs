@@ -185,10 +185,8 @@ impl Pointer {
 impl Cursor {
     /// At a place of the scene: in the cell where the whole array's map shows what stands there.
     pub fn at_place(radar: &Radar, place: Place) -> Self {
-        let (polar, blob) = (
-            radar.polar_of(place.x_metres, place.y_metres),
-            radar.blob_of(0.0, place.x_metres, place.y_metres),
-        );
+        let (polar, blob) =
+            (radar.polar_of(place.x_metres, place.y_metres), radar.blob_of(0.0, place.x_metres, place.y_metres));
         Cursor {
             place,
             range_metres: polar.range_metres,

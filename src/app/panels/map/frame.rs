@@ -115,12 +115,18 @@ mod tests {
         assert!((cos(target.blob(&reflector)) + 0.81).abs() < 2e-3, "the blob");
         assert!((cos(target.true_direction(&reflector)) + 0.832).abs() < 2e-3, "the direction");
         let input = frame(Projection::RangeAngle, radar.end_centre_metres(End::First));
-        assert!(cos(input.blob(&reflector)) > cos(target.blob(&reflector)), "the left end sees it less far to the left");
+        assert!(
+            cos(input.blob(&reflector)) > cos(target.blob(&reflector)),
+            "the left end sees it less far to the left"
+        );
         for projection in [Projection::RangeAngle, Projection::Cartesian] {
             let frame = frame(projection, 0.0);
             let cursor = Cursor::at_place(&radar, Place::new(reflector.x_metres, reflector.y_metres));
             let blob = frame.blob(&reflector);
-            assert!((frame.cursor(&cursor) - blob).length() < 1e-2, "the pointer over it in the scene is over its blob");
+            assert!(
+                (frame.cursor(&cursor) - blob).length() < 1e-2,
+                "the pointer over it in the scene is over its blob"
+            );
             let back = cursor_at(&radar, projection, pos2(blob.x / 1024.0, 1.0 - blob.y / 512.0)).unwrap();
             assert!(back.place.distance_metres(cursor.place) < 1e-2, "and back: {back:?}");
         }
