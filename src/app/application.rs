@@ -1,37 +1,23 @@
-//! The thin part that wires panels, settings, editor and workers together.
+//! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
 
-use super::bounds::Bounds;
-use super::command::Command;
-use super::evaluation::Evaluation;
-use super::evaluation_panel::EvaluationPanel;
-use super::export::Export;
-use super::files::Files;
-use super::frame_log::FrameLog;
-use super::front_panel::FrontPanel;
-use super::guide_panel::Guide;
-use super::layout::{self, Layout, Panel};
-use super::messages::{self, Kind, Messages};
-use super::palette::Palette;
-use super::pictures::MapKind;
-use super::pipeline::{LiveRequest, Pipeline};
-use super::settings::Settings;
-use super::training::Training;
-use super::view::{Cursor, SceneView, Window};
-use super::{APP_ID, execute, menu, status_bar, theme};
+use super::apply::{self, Effect};
+use super::chrome::{file_dialog, menu, messages, palette, status_bar, tiles};
+use super::contents::{self, Contents};
+use super::input;
+use super::jobs::{Dialogs, FrameLog, Jobs};
+use super::state::{Arrangement, Command, Methods, Notices, Pointer, Settings, State};
+use super::widgets::theme;
 use crate::interact::Editor;
-use crate::live::Wanted;
-use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
-use crate::scene::file::SceneFile;
 use crate::scene::presets;
 use eframe::egui;
-use eframe::egui::{ColorImage, TextureHandle};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Instant;
+
+/// Name under which settings and the autosave are kept.
+pub const APP_ID: &str = "apertura";
 
 /// How the app is started.
 #[derive(Default)]
@@ -46,6 +32,8 @@ pub struct Options {
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
     pub data_folder: Option<PathBuf>,
+    /// Whether files are asked for by the window's own dialog even where the system has one.
+    pub own_dialogs: bool,
 }
 
 /// What is kept from one start to the next.
@@ -53,51 +41,31 @@ pub struct Options {
 #[serde(default)]
 struct Kept {
     settings: Settings,
-    layout: Layout,
+    #[serde(alias = "layout")]
+    arrangement: Arrangement,
     recent: Vec<PathBuf>,
-}
-
-/// Where a texture came from: the picture is sent to the graphics card only when it changed.
-struct Texture {
-    handle: TextureHandle,
-    image: Arc<ColorImage>,
 }
 
 /// The app.
 pub struct App {
-    pub(super) editor: Editor,
-    pub(super) radar: Radar,
-    pub(super) settings: Settings,
-    pub(super) layout: Layout,
-    pub(super) pipeline: Pipeline,
-    pub(super) bounds: Bounds,
-    pub(super) evaluation: EvaluationPanel,
-    pub(super) front: FrontPanel,
-    pub(super) training: Training,
-    pub(super) guide: Guide,
-    pub(super) files: Files,
-    pub(super) messages: Messages,
-    /// Exports that other threads have finished.
-    pub(super) exports: (Sender<Export>, Receiver<Export>),
-    pub(super) palette: Palette,
-    /// What panels asked for; done at the end of the frame.
-    pub(super) commands: Vec<Command>,
-    pub(super) scene_view: SceneView,
-    /// Corner where a box selection began.
-    pub(super) box_start: Option<crate::interact::Place>,
-    pub(super) range_angle: Window,
-    pub(super) cartesian: Window,
-    /// Where the pointer was in the last frame.
-    pub(super) cursor: Option<Cursor>,
-    /// Where the pointer is in this frame; the panels fill it in.
-    pub(super) next_cursor: Option<Cursor>,
-    /// Where the pointer was last, for panels that need a place even when it is elsewhere.
-    last_cursor: Option<Cursor>,
-    textures: BTreeMap<MapKind, Texture>,
+    pub(super) state: State,
+    pub(super) jobs: Jobs,
+    memory: Memory,
+    /// What was asked for outside a frame.
+    pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
     title: String,
-    /// The scene that the autosave holds.
-    autosaved: Arc<crate::scene::Scene>,
+    /// Keys that came too quickly for one frame.
+    later: input::Later,
+}
+
+/// What chrome and panels remember from frame to frame.
+#[derive(Default)]
+struct Memory {
+    menu: menu::Memory,
+    palette: palette::Memory,
+    file_dialog: file_dialog::Memory,
+    panels: contents::Memory,
 }
 
 impl App {
@@ -106,259 +74,165 @@ impl App {
     /// # Errors
     /// When the system can't start a thread or create the frame log.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
-        let ctx = creation.egui_ctx.clone();
+        let ctx = &creation.egui_ctx;
         let kept: Kept = creation.storage.and_then(|s| eframe::get_value(s, eframe::APP_KEY)).unwrap_or_default();
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
-        let wake = {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
         let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| eframe::storage_dir(APP_ID)));
         let default = presets::default_scene();
         let began = options.started.unwrap_or_else(Instant::now);
         let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
-        let mut app = App {
+        let mut state = State {
             editor: Editor::new(default.scene),
             radar: default.radar,
             settings: kept.settings,
-            layout: kept.layout,
-            pipeline: Pipeline::start(methods, wake.clone())?,
-            bounds: Bounds::start(wake.clone())?,
-            evaluation: EvaluationPanel::new(Evaluation::start(wake.clone())?),
-            front: FrontPanel::start(wake.clone())?,
-            training: Training::start(wake)?,
-            guide: Guide::default(),
-            files: Files::new(folder.as_deref(), kept.recent),
-            messages: Messages::default(),
-            exports: channel(),
-            palette: Palette::default(),
-            commands: Vec::new(),
-            scene_view: SceneView::default(),
-            box_start: None,
-            range_angle: Window::default(),
-            cartesian: Window::default(),
-            cursor: None,
-            next_cursor: None,
-            last_cursor: None,
-            textures: BTreeMap::new(),
-            frame_log,
-            title: String::new(),
-            autosaved: Arc::default(),
+            methods: Methods::new(methods),
+            arrangement: kept.arrangement,
+            notices: Notices::default(),
+            scene_view: Default::default(),
+            map_views: Default::default(),
+            pointer: Pointer::default(),
+            guided: Default::default(),
+            path: None,
+            recent: kept.recent,
+            dark: ctx.theme() == egui::Theme::Dark,
         };
-        app.autosaved = app.editor.scene().clone();
-        theme::apply(&ctx, app.settings.theme);
-        app.radar.carrier = app.settings.carrier;
-        app.radar.window = app.settings.window;
-        app.restore();
+        let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
+        let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
+        theme::apply(ctx, state.settings.theme);
+        restore(&mut state, &jobs);
         if let Some(path) = options.scene {
-            app.open(path);
+            apply::open(&mut state, path);
         }
-        Ok(app)
+        let memory = Memory::default();
+        Ok(App { state, jobs, memory, asked: Vec::new(), frame_log, title: String::new(), later: Default::default() })
     }
 
-    fn restore(&mut self) {
-        match self.files.autosave.as_ref().and_then(|a| a.restore()) {
-            Some(Ok(file)) => {
-                self.set_scene("restore", file);
-                self.editor.mark_unsaved();
-                self.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
-            }
-            Some(Err(message)) => self.error(format!("The unsaved scene of the last session can't be read: {message}")),
-            None => {}
+    /// Does commands, and what they ask of the window.
+    fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
+        if commands.iter().any(|c| !matches!(c, Command::Hover(_))) {
+            ctx.request_repaint();
         }
-    }
-
-    /// Opens a scene file; on any error the scene on screen stays.
-    pub(super) fn open(&mut self, path: PathBuf) {
-        match self.files.open(&path) {
-            Ok(file) => self.set_scene("open", file),
-            Err(message) => self.error(format!("{message}\nThe scene on screen was kept.")),
-        }
-    }
-
-    /// Puts another scene on screen; undo brings the last one back.
-    pub(super) fn set_scene(&mut self, label: &str, file: SceneFile) {
-        self.editor.open(label, file.scene);
-        self.settings.carrier = file.radar.carrier;
-        self.settings.window = file.radar.window;
-        self.radar = file.radar;
-        self.scene_view.fit = true;
-    }
-
-    /// The scene with its radar, as a file holds them.
-    pub(super) fn scene_file(&self) -> SceneFile {
-        SceneFile { scene: crate::scene::Scene::clone(self.editor.scene()), radar: self.radar.clone() }
-    }
-
-    /// Shows a message that passes.
-    pub(super) fn info(&mut self, text: impl Into<String>) {
-        self.messages.add(Kind::Info, text.into());
-    }
-
-    /// Shows a message that stays a while.
-    pub(super) fn error(&mut self, text: impl Into<String>) {
-        let text = text.into();
-        tracing::warn!("{text}");
-        self.messages.add(Kind::Error, text);
-    }
-
-    /// The method in use.
-    pub(super) fn method(&self) -> Option<Arc<dyn Reconstructor>> {
-        self.pipeline.method_named(&self.settings.method).cloned()
-    }
-
-    /// eta of the method in use: the user's, or the method's own.
-    pub(super) fn output_eta(&self) -> f32 {
-        let Some(method) = self.method() else { return crate::evaluate::TARGET_ETA };
-        self.settings.method_eta.get(method.name()).copied().unwrap_or_else(|| method.eta())
-    }
-
-    /// Where cuts are taken: under the pointer, where it was last, or through the first object.
-    pub(super) fn cut_cursor(&self) -> Cursor {
-        let first =
-            || self.editor.scene().objects.first().map(|o| Cursor::at_place(&self.radar, o.centre_metres().into()));
-        let inside = |c: &Cursor| c.cell(&self.radar).is_some();
-        self.last_cursor.or_else(first).filter(inside).unwrap_or_else(|| Cursor::at_cell(&self.radar, 0.0, 0.0))
-    }
-
-    /// The texture of a map's latest picture.
-    pub(super) fn texture(&mut self, ctx: &egui::Context, kind: MapKind) -> Option<egui::TextureId> {
-        let image = self.pipeline.result.as_ref()?.pictures.get(&kind)?.image.clone();
-        let options =
-            egui::TextureOptions { minification: egui::TextureFilter::Linear, ..egui::TextureOptions::NEAREST };
-        match self.textures.get_mut(&kind) {
-            Some(texture) => {
-                if !Arc::ptr_eq(&texture.image, &image) {
-                    texture.handle.set(image.clone(), options);
-                    texture.image = image;
-                }
-            }
-            None => {
-                let handle = ctx.load_texture(kind.title(), image.clone(), options);
-                self.textures.insert(kind, Texture { handle, image });
+        for command in commands {
+            match apply::apply(&mut self.state, &mut self.jobs, command) {
+                None => {}
+                Some(Effect::Brightness(brightness)) => theme::apply(ctx, brightness),
+                Some(Effect::Zoom(None)) => ctx.set_zoom_factor(1.0),
+                Some(Effect::Zoom(Some(by))) => ctx.set_zoom_factor((ctx.zoom_factor() + by).clamp(0.5, 3.0)),
+                Some(Effect::Copy(text)) => ctx.copy_text(text),
+                Some(Effect::RequestPaste) => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
+                Some(Effect::Palette) => self.memory.palette.toggle(),
+                Some(Effect::Close) => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             }
         }
-        self.textures.get(&kind).map(|t| t.handle.id())
     }
 
-    /// Asks the workers for what the panels drawn in this frame need, if that changed.
-    fn ask_for_maps(&mut self) {
-        let shown = self.layout.shown();
-        let map = |kind| shown.contains(&Panel::Map(kind));
-        let (cuts, roc) = (shown.contains(&Panel::Cuts), shown.contains(&Panel::Roc));
-        let output = MapKind::ALL.into_iter().any(|k| k.needs_output() && map(k)) || cuts || roc;
-        let scores = output && !self.editor.scene().objects.is_empty();
-        let wanted = Wanted {
-            floor: self.settings.floor,
-            seed: self.settings.seed,
-            normalisation: self.settings.normalisation,
-            first: map(MapKind::Input0) || cuts,
-            last: map(MapKind::Input1) || cuts,
-            full: map(MapKind::Target) || map(MapKind::TargetAbove) || output,
-            ends: output,
+    /// What was asked by keys, files and dialogs, and outside a frame.
+    fn read_input(&mut self, ctx: &egui::Context) -> Vec<Command> {
+        let mut commands = std::mem::take(&mut self.asked);
+        let input = input::Input {
+            keys_taken: self.memory.palette.is_open() || self.memory.file_dialog.is_open(),
+            selected: !self.state.editor.selection().is_empty(),
+            bin_metres: self.state.radar.range_resolution_metres(),
         };
-        let request = LiveRequest {
-            radar: self.radar.clone(),
-            scene: self.editor.scene().clone(),
-            wanted,
-            pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
-            output: self.pipeline.output.as_ref().filter(|_| output).map(|o| o.lambda.clone()),
-            colours: self.settings.colours,
-            projection: self.settings.projection,
-            target_eta: self.settings.target_eta,
-            output_eta: self.output_eta(),
-            scores,
-            roc,
-        };
-        self.pipeline.ask(request);
-        if output {
-            self.pipeline.ask_method(&self.radar, &self.settings, wanted);
-        }
+        commands.extend(input::read(ctx, input));
+        commands
     }
 
-    fn keep_unsaved_scene(&mut self, ctx: &egui::Context) {
-        if Arc::ptr_eq(&self.autosaved, self.editor.scene()) || self.editor.dragged().is_some() {
-            return;
-        }
-        let file = self.scene_file();
-        let Some(autosave) = &mut self.files.autosave else { return };
-        if !self.editor.is_modified() {
-            autosave.forget();
-            self.autosaved = self.editor.scene().clone();
-            return;
-        }
-        match autosave.keep(&file) {
-            Ok(None) => self.autosaved = self.editor.scene().clone(),
-            Ok(Some(later)) => ctx.request_repaint_after(later),
-            Err(message) => {
-                self.autosaved = self.editor.scene().clone();
-                self.error(format!("The scene could not be autosaved: {message}"));
-            }
-        }
+    /// Draws everything; what was asked for meanwhile.
+    fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
+        let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
+        let is_open = |panel| state.arrangement.is_open(panel);
+        let mut commands = menu::show(ui, contents::menu_input(state, &is_open), &mut memory.menu);
+        status_bar::show(ui, contents::status_input(state, jobs));
+        let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
+        egui::CentralPanel::default().frame(background).show(ui, |ui| {
+            let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
+            let mut panels = Contents::new(state, jobs, &mut memory.panels);
+            commands.extend(tiles::show(ui, &mut arrangement, &mut panels));
+            commands.extend(panels.into_commands());
+            state.arrangement = arrangement;
+        });
+        let input = palette::Input { methods: &state.methods.all };
+        commands.extend(palette::show(ui.ctx(), input, &mut memory.palette));
+        commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
+        commands
     }
 
     fn update_title(&mut self, ctx: &egui::Context) {
-        let mark = if self.editor.is_modified() { " •" } else { "" };
-        let title = format!("{}{mark} — apertura", self.files.title());
+        let title = self.state.title();
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
         }
     }
+
+    fn write_frame_log(&mut self, previous: Option<f32>) {
+        let (requested, painted) = self.work_done();
+        if let Some(log) = &mut self.frame_log
+            && let Err(error) = log.write(previous, requested, painted)
+        {
+            self.frame_log = None;
+            self.state.notices.error(format!("The frame log can't be written: {error}"));
+        }
+    }
+}
+
+/// Puts what an earlier window left unsaved on screen.
+fn restore(state: &mut State, jobs: &Jobs) {
+    match jobs.autosave.as_ref().and_then(|a| a.restore()) {
+        Some(Ok(file)) => {
+            state.set_scene("restore", file);
+            state.editor.mark_unsaved();
+            state.notices.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
+        }
+        Some(Err(message)) => {
+            state.notices.error(format!("The unsaved scene of the last session can't be read: {message}"));
+        }
+        None => {}
+    }
 }
 
 impl eframe::App for App {
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        if self.later.sort(input) {
+            ctx.request_repaint();
+        }
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if let Some(log) = &mut self.frame_log {
             log.begin_frame();
         }
         let ctx = ui.ctx().clone();
-        let mut messages = self.pipeline.poll();
-        messages.extend(self.bounds.poll());
-        messages.extend(self.evaluation.evaluation.poll());
-        messages.extend(self.front.poll());
-        messages.extend(self.training.poll());
-        messages.into_iter().for_each(|m| self.error(m));
-        execute::read_input(self, &ctx);
-        menu::show(self, ui);
-        status_bar::show(self, ui);
-        let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
-        egui::CentralPanel::default().frame(background).show(ui, |ui| layout::show(self, ui));
-        super::palette::show(self, &ctx);
-        for command in std::mem::take(&mut self.commands) {
-            execute::run(self, &ctx, command);
+        self.state.dark = ctx.theme() == egui::Theme::Dark;
+        let mut commands = self.jobs.poll(&mut self.state);
+        // Before anything is drawn, so that no panel acts on what is no longer there.
+        commands.extend(self.read_input(&ctx));
+        self.apply(&ctx, commands);
+        if let Some(question) = self.jobs.dialogs.take_unanswered() {
+            self.memory.file_dialog.ask(question);
         }
-        if self.next_cursor != self.cursor {
-            // Panels drawn before the one under the pointer still show the old place.
+        let commands = self.draw(ui);
+        self.apply(&ctx, commands);
+        if self.state.pointer.turn(&self.state.radar) {
+            // Panels drawn before the one under it still show the old place.
             ctx.request_repaint();
         }
-        self.cursor = self.next_cursor.take();
-        self.last_cursor = self.cursor.filter(|c| c.cell(&self.radar).is_some()).or(self.last_cursor);
-        self.ask_for_maps();
-        self.keep_unsaved_scene(&ctx);
+        self.jobs.ask(&mut self.state);
         self.update_title(&ctx);
-        messages::show(self, &ctx);
-        if self.pipeline.method_progress().is_some() {
-            ctx.request_repaint_after(Duration::from_millis(100));
-        }
-        let (requested, painted) = self.work_done();
-        if let Some(log) = &mut self.frame_log
-            && let Err(error) = log.write(frame.info().cpu_usage, requested, painted)
-        {
-            self.frame_log = None;
-            self.error(format!("The frame log can't be written: {error}"));
-        }
+        messages::show(&ctx, &mut self.state.notices);
+        self.write_frame_log(frame.info().cpu_usage);
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        let layout = std::mem::take(&mut self.layout);
-        let kept = Kept { settings: self.settings.clone(), layout, recent: self.files.recent.clone() };
+        let state = &mut self.state;
+        let arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
+        let kept = Kept { settings: state.settings.clone(), arrangement, recent: state.recent.clone() };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
-        self.layout = kept.layout;
-        let file = self.scene_file();
-        if self.editor.is_modified()
-            && let Some(autosave) = &mut self.files.autosave
-            && let Err(error) = autosave.keep_now(&file)
+        state.arrangement = kept.arrangement;
+        if state.editor.is_modified()
+            && let Some(autosave) = &mut self.jobs.autosave
+            && let Err(error) = autosave.keep_now(&state.scene_file())
         {
             tracing::warn!("the scene could not be autosaved: {error}");
         }

@@ -1,87 +1,102 @@
 //! What may be seen of the app from outside: tests ask it what was computed and what was not.
 
 use super::application::App;
-use super::command::Command;
-use super::layout::Layout;
-use super::pictures::MapKind;
-use super::settings::Settings;
+use super::state::{Arrangement, Command, MapKind, Settings};
 use crate::bounds::PositionBound;
+use crate::evaluate::Metrics;
 use crate::interact::Editor;
 use crate::live::Report;
+use crate::radar::Radar;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.
     pub fn editor(&self) -> &Editor {
-        &self.editor
+        &self.state.editor
     }
 
     /// What the user chose.
     pub fn settings(&self) -> &Settings {
-        &self.settings
+        &self.state.settings
     }
 
     /// Where the panels are.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
+    pub fn arrangement(&self) -> &Arrangement {
+        &self.state.arrangement
+    }
+
+    /// The radar before the scene.
+    pub fn radar(&self) -> &Radar {
+        &self.state.radar
     }
 
     /// Asks for a command, as a menu entry would.
     pub fn ask(&mut self, command: Command) {
-        self.commands.push(command);
+        self.asked.push(command);
     }
 
     /// Whether a worker has something to do.
     pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy() || self.bounds.is_busy()
+        self.jobs.is_busy()
     }
 
     /// Report of the last update, if there was one.
     pub fn report(&self) -> Option<&Report> {
-        self.pipeline.result.as_ref().map(|r| &r.frame.report)
+        self.jobs.pipeline.result().map(|r| &r.frame.report)
     }
 
     /// Maps with a picture of the latest scene.
     pub fn pictures(&self) -> Vec<MapKind> {
-        self.pipeline.result.as_ref().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
+        self.jobs.pipeline.result().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
     }
 
     /// Requests sent to the maps worker, and pictures painted, since the start.
     pub fn work_done(&self) -> (u64, u64) {
-        (self.pipeline.requests, self.pipeline.result.as_ref().map_or(0, |r| r.painted))
+        (self.jobs.pipeline.requests(), self.jobs.pipeline.result().map_or(0, |r| r.painted))
     }
 
     /// Bounds asked for since the start.
     pub fn bounds_asked(&self) -> u64 {
-        self.bounds.requests
+        self.jobs.bounds.requests()
     }
 
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
-        self.bounds.result.as_ref().and_then(|r| r.bound.ok())
+        self.jobs.bounds.result().and_then(|r| r.bound.ok())
     }
 
     /// Name of the method whose output is on screen, if there is one.
     pub fn shown_method(&self) -> Option<&'static str> {
-        self.pipeline.output.as_ref().map(|output| output.method)
+        self.jobs.pipeline.output().map(|output| output.method)
+    }
+
+    /// Figures on screen, if there are any.
+    pub fn metrics(&self) -> Option<Metrics> {
+        self.jobs.pipeline.scores().map(|s| s.metrics)
+    }
+
+    /// Whether the output on screen belongs to something else than the maps.
+    pub fn output_is_outdated(&self) -> bool {
+        self.jobs.pipeline.output_is_outdated()
     }
 
     /// Rows that the run-time panel has measured.
-    pub fn front_rows(&self) -> usize {
-        self.front.rows().len()
+    pub fn run_time_rows(&self) -> usize {
+        self.jobs.run_time.rows().len()
     }
 
     /// Whether something runs that was started in a tool's panel.
     pub fn is_at_work(&self) -> bool {
-        self.evaluation.evaluation.progress().is_some() || self.front.progress().is_some() || self.training.is_running()
+        let jobs = &self.jobs;
+        jobs.evaluation.progress().is_some() || jobs.run_time.progress().is_some() || jobs.training.is_running()
     }
 
     /// What the evaluation has found, as CSV.
     pub fn evaluation_csv(&self) -> String {
-        self.evaluation.evaluation.to_csv()
+        self.jobs.evaluation.to_csv()
     }
 
     /// Number of messages on screen.
     pub fn messages(&self) -> usize {
-        self.messages.len()
+        self.state.notices.len()
     }
 }

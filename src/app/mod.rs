@@ -1,61 +1,34 @@
 //! The desktop program: a scene to play with, and every map beside it.
 //!
 //! ```text
-//!   panels ──► Command, Editor, Settings ──► Pipeline ──► two workers (maps and pictures; reconstruction)
-//!     ▲                                         │
-//!     └────────────── latest results ◄──────────┘            nothing shown is ever taken away before its successor is there
+//!   keys, files ──► input ──┐                        ┌──► State ──► contents ──► panels, chrome ──┐
+//!                           ├──► Command ──► apply ──┤                                            │
+//!   what panels ask for ────┘                        └──► Jobs (threads) ──► poll ──► State       │
+//!          ▲                                                                                      │
+//!          └──────────────────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! One panel a file; [`App`] only wires them together. Editing itself is in [`crate::interact`], without egui.
+//! A panel is a function of what it shows and answers with commands; [`apply`] is the only place that changes settings. Imports run
+//! downward: application, contents, panels and chrome, jobs, widgets, state. Nothing shown is ever taken away before its successor is
+//! there. Editing itself is in [`crate::interact`], without egui.
 
 use eframe::egui;
 mod application;
-mod autosave;
-mod axes;
-mod bounds;
-mod bounds_panel;
-mod command;
-mod controls_panel;
-mod cuts_panel;
-mod evaluation;
-mod evaluation_panel;
-mod execute;
-mod export;
-mod files;
-mod frame_log;
-mod front_panel;
-mod guide_panel;
+mod apply;
+mod chrome;
+mod contents;
+mod input;
 mod inspect;
-mod inspector_panel;
 mod jobs;
-mod layout;
-mod map_panel;
-mod menu;
-mod messages;
-mod palette;
-mod pictures;
-mod pipeline;
-mod roc_panel;
-mod scene_canvas;
-mod scene_panel;
-mod settings;
-mod status_bar;
-mod theme;
-mod timing_panel;
-mod training;
-mod training_panel;
-mod view;
+mod panels;
+mod state;
+mod widgets;
 
-pub use application::{App, Options};
-pub use bounds::Elements;
-pub use bounds_panel::BoundsSettings;
-pub use command::{Command, NewObject};
-pub use layout::Panel;
-pub use pictures::MapKind;
-pub use settings::{Projection, Settings};
-
-/// Name under which settings and the autosave are kept.
-const APP_ID: &str = "apertura";
+pub use application::{APP_ID, App, Options};
+pub use state::{
+    Arrangement, BoundsSettings, Brightness, Command, Cursor, Elements, EvaluationChoice, MapKind, NewObject, Panel,
+    Projection, Settings,
+};
 
 /// Why the app did not open.
 #[derive(Debug, thiserror::Error)]

@@ -62,7 +62,7 @@ impl Args {
         let signal = signal::simulate(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.scene))?;
         match output {
             Output::Archive => {
-                write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))?;
+                write_maps(&self.output, &radar, &scene, &signal, None).map_err(CommandError::on(&self.output))?;
             }
             Output::Picture(format) => {
                 let method = match &self.method {

@@ -4,6 +4,7 @@
 
 mod layout;
 mod layout_kind;
+mod squint;
 mod units;
 mod window;
 

@@ -7,7 +7,7 @@ use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Object;
-use apertura::scene::generate::Kind;
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
@@ -120,11 +120,11 @@ fn the_window_reaches_the_maps_and_comes_back() {
     s.settle();
     s.app.get_by_label("hamming").click();
     s.settle();
-    assert_eq!(s.state().settings().window, WindowFunction::Hamming);
+    assert_eq!(s.state().radar().window, WindowFunction::Hamming);
     let after = s.state().work_done();
     assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
     s.ask(Command::SetWindow(WindowFunction::Hann));
-    assert_eq!(s.state().settings().window, WindowFunction::Hann);
+    assert_eq!(s.state().radar().window, WindowFunction::Hann);
 }
 
 #[test]
@@ -152,9 +152,43 @@ fn every_button_of_the_guide_leaves_a_working_app() {
     s.settle();
     s.app.get_by_label("Two-way").click();
     s.settle();
-    assert_eq!(s.state().settings().carrier, Carrier::TwoWay);
+    assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
     assert_eq!(s.state().editor().scene().name, "Four reflectors");
     assert_eq!(s.state().messages(), 0);
+}
+
+#[test]
+fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
+    let mut s = Session::start();
+    s.ask(Command::SetFloor(Floor::Snr(Decibels(30.0))));
+    let (scene, radar, settings) =
+        (s.state().editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
+    s.ask(Command::Maximise(Panel::Guide));
+    for button in ["No window", "Hamming"] {
+        s.app.get_by_label(button).scroll_to_me();
+        s.settle();
+        s.app.get_by_label(button).click();
+        s.settle();
+    }
+    assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Hamming, Floor::Exact));
+    s.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
+    s.press(Modifiers::COMMAND, Key::Z);
+    assert!(Arc::ptr_eq(&scene, s.state().editor().scene()));
+    assert_eq!((s.state().radar(), s.state().settings()), (&radar, &settings));
+    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Rectangular, Floor::Exact));
+}
+
+#[test]
+fn random_scenes_are_those_of_the_tables() {
+    let mut s = Session::start();
+    s.ask(Command::SetNextRandom { seed: 7, number: 3 });
+    for number in [3, 4] {
+        s.ask(Command::RandomScene(Kind::Set3));
+        let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
+        assert_eq!(s.state().editor().scene().objects, generator.scene(Kind::Set3, number).objects);
+    }
 }
 
 #[test]

@@ -87,6 +87,7 @@ pub fn harness(folder: &Path, scene: Option<&str>, methods: Vec<Arc<dyn Reconstr
         scene: scene.map(|s| folder.join(s)),
         methods,
         data_folder: Some(folder.join("data")),
+        own_dialogs: true,
         ..Options::default()
     };
     Harness::builder()

@@ -2,15 +2,16 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{Command, MapKind, Panel};
-use apertura::radar::Radar;
+use apertura::radar::{Carrier, Radar};
 use apertura::reconstruct::{Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
-use eframe::egui::{self};
+use eframe::egui::{self, vec2};
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 #[test]
 fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
@@ -29,13 +30,13 @@ fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
 #[test]
 fn run_times_arrive_while_they_are_measured() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::Front));
+    s.ask(Command::Maximise(Panel::RunTime));
     s.app.get_by_label("Measure").click();
-    step_until(&mut s, "a row arrives", |s| s.state().front_rows() > 0);
+    step_until(&mut s, "a row arrives", |s| s.state().run_time_rows() > 0);
     s.app.step();
     s.app.get_by_label("Cancel").click();
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
-    assert!(s.state().front_rows() > 0, "what was measured stays");
+    assert!(s.state().run_time_rows() > 0, "what was measured stays");
 }
 
 /// A file dropped on the window.
@@ -100,4 +101,132 @@ fn a_method_that_panics_is_a_message_and_the_app_goes_on() {
     fails.store(false, Ordering::SeqCst);
     s.ask(Command::RandomScene(Kind::Set1));
     assert!(s.state().pictures().contains(&MapKind::Output), "and so does the method");
+}
+
+/// Works only where the carrier counts one way, like a network.
+struct Trained;
+
+impl Reconstructor for Trained {
+    fn name(&self) -> &'static str {
+        "trained"
+    }
+    fn description(&self) -> &'static str {
+        "knows one radar"
+    }
+    fn eta(&self) -> f32 {
+        0.5
+    }
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        if radar.carrier == Carrier::TwoWay {
+            return Err(ReconstructError::Unusable { method: "trained", reason: "trained on one-way carriers".into() });
+        }
+        Baseline.reconstruct(radar, ends, request)
+    }
+}
+
+#[test]
+fn a_method_that_refuses_leaves_nothing_of_its_last_output_and_offers_another() {
+    let mut s = Session::with_methods(vec![Arc::new(Trained), Arc::new(Baseline)]);
+    assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
+    s.ask(Command::SetCarrier(Carrier::TwoWay));
+    assert_eq!(s.state().shown_method(), None);
+    assert!(!s.state().pictures().iter().any(|kind| kind.needs_output()), "{:?}", s.state().pictures());
+    assert_eq!(s.state().metrics(), None, "no figures beside no output");
+    assert!(s.app.query_all_by_label_contains("trained on one-way carriers").count() > 0, "and it says why");
+    s.app.get_all_by_label("Use baseline").next().unwrap().click();
+    s.settle();
+    assert_eq!(s.state().shown_method(), Some("baseline"));
+    assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
+}
+
+/// Takes its time, and counts how often it came to an end.
+struct Slow(Arc<AtomicU32>);
+
+impl Reconstructor for Slow {
+    fn name(&self) -> &'static str {
+        "slow"
+    }
+    fn description(&self) -> &'static str {
+        "takes its time"
+    }
+    fn eta(&self) -> f32 {
+        0.5
+    }
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_millis(600) {
+            request.task.check()?;
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        self.0.fetch_add(1, Ordering::SeqCst);
+        Baseline.reconstruct(radar, ends, request)
+    }
+}
+
+#[test]
+fn figures_are_of_one_pair_of_maps_and_a_slow_output_is_marked_as_old() {
+    let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
+    let before = s.state().metrics().unwrap();
+    assert!(!s.state().output_is_outdated());
+    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    let target = s.state().report().unwrap().total;
+    step_until(&mut s, "the maps are new", |s| s.state().report().unwrap().total != target);
+    step_until(&mut s, "the output is told to be old", |s| s.app.query_by_label_contains("(updating)").is_some());
+    assert!(s.state().output_is_outdated());
+    assert_eq!(s.state().metrics(), Some(before), "the figures are those of the output that is shown");
+    s.settle();
+    assert!(!s.state().output_is_outdated() && s.state().metrics() != Some(before));
+}
+
+#[test]
+fn a_drag_lets_a_slow_method_finish_now_and_then() {
+    let finished = Arc::new(AtomicU32::new(0));
+    let mut s = Session::with_methods(vec![Arc::new(Slow(finished.clone()))]);
+    let at = s.handle("point 1: move");
+    s.app.hover_at(at);
+    s.app.step();
+    s.app.drag_at(at);
+    s.app.step();
+    let (before, began) = (finished.load(Ordering::SeqCst), Instant::now());
+    while finished.load(Ordering::SeqCst) < before + 2 {
+        assert!(began.elapsed() < Duration::from_secs(20), "the output froze");
+        s.app.hover_at(at + vec2((began.elapsed().as_secs_f32() * 5.0) % 40.0, 10.0));
+        s.app.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    s.app.drop_at(at);
+    s.settle();
+}
+
+#[test]
+fn exported_maps_hold_the_output() {
+    let mut s = Session::start();
+    let path = s.folder.path().join("maps.npz");
+    s.ask(Command::ExportMapsTo(path.clone()));
+    step_until(&mut s, "it is written", |_| path.exists());
+    let bytes = std::fs::read(&path).unwrap();
+    let named = |key: &[u8]| bytes.windows(key.len()).any(|w| w == key);
+    assert!(named(b"output.npy") && named(b"polar_full.npy"));
+}
+
+#[test]
+fn open_shows_a_dialog_of_the_windows_own_where_the_system_has_none() {
+    let mut s = Session::start();
+    s.ask(Command::Open);
+    assert!(s.app.query_by_label_contains("Open a scene").is_some());
+    s.app.get_by_label("scene.toml").click();
+    s.settle();
+    s.app.get_by_label("Open").click();
+    s.settle();
+    assert!(s.app.query_by_label_contains("Open a scene").is_none());
 }

@@ -25,14 +25,19 @@ fn columns_apart(radar: &Radar, a: f64, b: f64) -> f64 {
     d.min(n - d)
 }
 
-/// How much further from the middle a reflector's column lies than cos(theta) says.
-///
-/// Halfway through the chirp the beat has added half a turn a range bin of distance to the carrier's turns: -2.6 % for the one-way
-/// carrier of table 3.1, +1.3 % for the two-way.
-fn squint(radar: &Radar) -> f64 {
-    let middle = 0.5 * (radar.samples as f64 - 1.0) / radar.samples as f64;
-    let turns_per_metre = middle / radar.range_resolution_metres();
-    1.0 + turns_per_metre * radar.wavelength_metres() / radar.carrier.turns_per_wavelength()
+/// The whole array smears a reflector over dozens of columns, but evenly: the middle of the blob is off by the squint.
+#[test]
+fn the_middle_of_a_blob_is_where_the_squint_puts_it() {
+    let radar = Radar::default();
+    for cos in [-0.832f64, -0.4, 0.0, 0.6, 0.9] {
+        let (x, y) = (20.0 * cos, 20.0 * (1.0 - cos * cos).sqrt());
+        let maps = maps_of(&radar, &Scene::of_points([(x, y)]));
+        let powers = maps.full.decades().indexed_iter().map(|((_, column), d)| (column as f64, 10f64.powf(2.0 * d)));
+        let (weighted, power) = powers.fold((0.0, 0.0), |(w, p), (column, power)| (w + column * power, p + power));
+        let (middle, blob) = (weighted / power, radar.blob_of(0.0, x, y));
+        let expected = radar.column_of_cos(blob.cos_theta);
+        assert!((middle - expected).abs() < 2.0, "cos {cos}: column {middle:.1}, expected {expected:.1}");
+    }
 }
 
 proptest! {
@@ -49,7 +54,7 @@ proptest! {
             let [bin, column] = peak(map);
             let expected = radar.bin_of_range(polar.range_metres);
             prop_assert!((bin as f64 - expected).abs() <= 1.0, "{end:?}: bin {bin} for {expected}");
-            let expected = radar.column_of_cos(polar.cos_theta * squint(&radar));
+            let expected = radar.column_of_cos(polar.cos_theta * radar.squint());
             prop_assert!(columns_apart(&radar, column as f64, expected) <= 2.5, "{end:?}: column {column} for {expected}");
         }
     }
@@ -116,7 +121,7 @@ fn the_two_way_carrier_folds_the_scene() {
             peak(&maps_of(&radar, &Scene::of_points([point])).first)[1] as f64
         };
         let two_way = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-        let apart = columns_apart(&radar, column(0.3), column(0.3 - 1.0 / squint(&two_way)));
+        let apart = columns_apart(&radar, column(0.3), column(0.3 - 1.0 / two_way.squint()));
         assert_eq!(apart <= 2.0, together, "{carrier:?}: {apart} columns apart");
     }
 }

@@ -1,0 +1,135 @@
+//! A file dialog in the window, for systems that have none of their own.
+
+use crate::app::jobs::{Purpose, Question};
+use crate::app::state::Command;
+use eframe::egui::{Context, Id, Modal, Ui};
+use egui_file::FileDialog;
+use std::path::{Path, PathBuf};
+
+/// What is asked for, if anything is.
+#[derive(Default)]
+pub struct Memory {
+    dialog: Option<(Purpose, FileDialog)>,
+    /// A file that is there already, and would be replaced.
+    replace: Option<(Purpose, PathBuf)>,
+}
+
+impl Memory {
+    /// Whether it is on screen.
+    pub fn is_open(&self) -> bool {
+        self.dialog.is_some() || self.replace.is_some()
+    }
+
+    /// Asks for a file.
+    pub fn ask(&mut self, question: Question) {
+        let Question { purpose, folder } = question;
+        let dialog = if purpose.reads() { FileDialog::open_file() } else { FileDialog::save_file() };
+        let (_, endings) = purpose.kind();
+        let fits = move |path: &Path| {
+            path.is_dir()
+                || path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
+        };
+        let dialog = dialog
+            .title(purpose.title())
+            .id("file dialog")
+            .default_filename(purpose.name())
+            .default_size([480.0, 360.0])
+            .show_rename(false)
+            .show_files_filter(Box::new(fits));
+        let dialog = if let Some(folder) = folder { dialog.initial_path(folder) } else { dialog };
+        let (_, dialog) = self.dialog.insert((purpose, dialog));
+        dialog.open();
+    }
+
+    /// A file was chosen: done, unless it would replace another.
+    fn choose(&mut self, purpose: Purpose, path: PathBuf) -> Option<Command> {
+        if purpose.reads() || !path.exists() {
+            return Some(purpose.command(path));
+        }
+        self.replace = Some((purpose, path));
+        None
+    }
+}
+
+/// Draws the dialog, if it is open.
+pub fn show(ctx: &Context, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    if let Some((purpose, dialog)) = &mut memory.dialog {
+        dialog.show(ctx);
+        let (purpose, chosen) = (*purpose, dialog.path().filter(|_| dialog.selected()).map(Path::to_path_buf));
+        if !dialog.visible() {
+            memory.dialog = None;
+        }
+        asked.extend(chosen.and_then(|path| memory.choose(purpose, path)));
+    }
+    if let Some((purpose, path)) = memory.replace.clone() {
+        let answer = Modal::new(Id::unique("replace")).show(ctx, |ui| replace(ui, &path));
+        let answer = answer.inner.or(answer.should_close().then_some(false));
+        match answer {
+            Some(true) => asked.push(purpose.command(path)),
+            Some(false) => {}
+            None => return asked,
+        }
+        memory.replace = None;
+    }
+    asked
+}
+
+/// Asks whether a file is to be replaced; the answer, once there is one.
+fn replace(ui: &mut Ui, path: &Path) -> Option<bool> {
+    ui.set_width(320.0);
+    ui.strong("Replace the file?");
+    ui.label(format!("{} is there already.", path.display()));
+    ui.horizontal(|ui| {
+        let keep = ui.button("Keep it").clicked().then_some(false);
+        keep.or(ui.button("Replace").clicked().then_some(true))
+    })
+    .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn panel(question: Question) -> Harness<'static, (Memory, Vec<Command>)> {
+        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+            let commands = show(ui.ctx(), &mut state.0);
+            state.1.extend(commands);
+        };
+        let mut memory = Memory::default();
+        memory.ask(question);
+        let mut dialog = Harness::builder().with_size([700.0, 500.0]).build_ui_state(draw, (memory, Vec::new()));
+        dialog.run_steps(3);
+        dialog
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_replaced_only_when_asked() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, "").unwrap();
+        let question = Question { purpose: Purpose::SaveScene, folder: Some(folder.path().to_path_buf()) };
+        for (answer, asked) in [("Keep it", vec![]), ("Replace", vec![Command::SaveTo(path.clone())])] {
+            let mut dialog = panel(question.clone());
+            dialog.get_by_label("Save").click();
+            dialog.run_steps(3);
+            assert!(dialog.state().1.is_empty(), "not yet");
+            dialog.get_by_label(answer).click();
+            dialog.run_steps(3);
+            assert_eq!(dialog.state().1, asked);
+            assert!(!dialog.state().0.is_open());
+        }
+    }
+
+    #[test]
+    fn a_new_file_is_written_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let question = Question { purpose: Purpose::ExportMaps, folder: Some(folder.path().to_path_buf()) };
+        let mut dialog = panel(question);
+        dialog.get_by_label("Save").click();
+        dialog.run_steps(3);
+        assert_eq!(dialog.state().1, [Command::ExportMapsTo(folder.path().join("maps.npz"))]);
+    }
+}

@@ -1,0 +1,247 @@
+//! The menu bar and the buttons beside it.
+
+use crate::app::state::{Command, NewObject, Panel, Projection};
+use crate::app::widgets::entry::{button, entry, tooltip};
+use crate::picture::ColourMap;
+use crate::scene::generate::Kind;
+use crate::scene::presets;
+use eframe::egui;
+use eframe::egui::Ui;
+use std::path::PathBuf;
+
+/// What the bar shows.
+pub struct Input<'a> {
+    /// Whether there is something to undo.
+    pub can_undo: bool,
+    /// Whether there is something to redo.
+    pub can_redo: bool,
+    /// Whether something is selected.
+    pub selected: bool,
+    /// Coordinates of the maps.
+    pub projection: Projection,
+    /// Colours of the maps.
+    pub colours: ColourMap,
+    /// Seed of the next random scene, and its number.
+    pub random: (u64, u32),
+    /// Files opened or saved lately, latest first.
+    pub recent: &'a [PathBuf],
+    /// Whether a panel has a visible tile.
+    pub is_open: &'a dyn Fn(Panel) -> bool,
+}
+
+/// A preset as the menu lists it.
+struct Listed {
+    name: String,
+    notes: String,
+}
+
+/// The presets, read once.
+pub struct Memory {
+    presets: Vec<Listed>,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        let listed = |preset: &presets::Preset| {
+            let scene = preset.load().map(|f| f.scene).unwrap_or_default();
+            let name = if scene.name.is_empty() { preset.id.to_owned() } else { scene.name };
+            Listed { name, notes: scene.notes }
+        };
+        Memory { presets: presets::ALL.iter().map(listed).collect() }
+    }
+}
+
+/// Draws the bar.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Panel::top("menu").show(ui, |ui| {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| file(ui, input.recent, &mut asked));
+            ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
+            ui.menu_button("Scene", |ui| scene(ui, input.random, memory, &mut asked));
+            ui.menu_button("View", |ui| view(ui, &input, &mut asked));
+            ui.menu_button("Tools", |ui| {
+                ui.set_min_width(240.0);
+                panels(ui, &Panel::TOOLS, input.is_open, &mut asked);
+            });
+            ui.separator();
+            for (kind, label) in
+                [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
+            {
+                button(ui, label, Command::Add(kind, None), true, &mut asked);
+            }
+            ui.separator();
+            button(ui, "Undo", Command::Undo, input.can_undo, &mut asked);
+            button(ui, "Redo", Command::Redo, input.can_redo, &mut asked);
+            let right = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(right, |ui| self::right(ui, input.projection, &mut asked));
+        });
+    });
+    asked
+}
+
+fn right(ui: &mut Ui, shown: Projection, asked: &mut Vec<Command>) {
+    button(ui, "Commands", Command::Palette, true, asked);
+    if ui.available_width() < 180.0 {
+        return;
+    }
+    ui.separator();
+    for (projection, label) in [(Projection::Cartesian, "Cartesian"), (Projection::RangeAngle, "Range–angle")] {
+        let response = ui.selectable_label(shown == projection, label);
+        if response.on_hover_text(tooltip(ui, &Command::ToggleProjection)).clicked() {
+            asked.push(Command::SetProjection(projection));
+        }
+    }
+}
+
+fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut Vec<Command>) {
+    for command in commands {
+        entry(ui, command, true, asked);
+    }
+}
+
+fn file(ui: &mut Ui, recent: &[PathBuf], asked: &mut Vec<Command>) {
+    ui.set_min_width(220.0);
+    entries(ui, [Command::New, Command::Open], asked);
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in recent {
+                let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    asked.push(Command::OpenPath(path.clone()));
+                    ui.close();
+                }
+            }
+        });
+    });
+    ui.separator();
+    entries(ui, [Command::Save, Command::SaveAs], asked);
+    ui.separator();
+    entries(ui, [Command::ExportPicture, Command::ExportMaps, Command::ExportMetrics], asked);
+    ui.separator();
+    entry(ui, Command::Quit, true, asked);
+}
+
+fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    ui.set_min_width(220.0);
+    entry(ui, Command::Undo, input.can_undo, asked);
+    entry(ui, Command::Redo, input.can_redo, asked);
+    ui.separator();
+    for (command, enabled) in [
+        (Command::Cut, input.selected),
+        (Command::Copy, input.selected),
+        (Command::Paste, true),
+        (Command::Duplicate, input.selected),
+        (Command::Delete, input.selected),
+        (Command::SelectAll, true),
+        (Command::Escape, input.selected),
+    ] {
+        entry(ui, command, enabled, asked);
+    }
+}
+
+fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Command>) {
+    ui.set_min_width(260.0);
+    entries(ui, [NewObject::Point, NewObject::Line, NewObject::Cluster].map(|kind| Command::Add(kind, None)), asked);
+    ui.separator();
+    ui.menu_button("Presets", |ui| {
+        for (index, preset) in memory.presets.iter().enumerate() {
+            if ui.button(&preset.name).on_hover_text(&preset.notes).clicked() {
+                asked.push(Command::Preset(index));
+                ui.close();
+            }
+        }
+    });
+    ui.separator();
+    entries(ui, Kind::all().map(Command::RandomScene), asked);
+    ui.horizontal(|ui| {
+        let (mut seed, mut number) = random;
+        let label = ui.label("Next: seed");
+        let tip =
+            "The same kind, seed and number always give the same scene: that of the tables and of the command line";
+        let seeds = ui.add(egui::DragValue::new(&mut seed).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        let label = ui.label("number");
+        let tip = "It rises by one each time";
+        let numbers = ui.add(egui::DragValue::new(&mut number).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        if seeds.changed() || numbers.changed() {
+            asked.push(Command::SetNextRandom { seed, number });
+        }
+    });
+    ui.separator();
+    entry(ui, Command::FitScene, true, asked);
+}
+
+fn panels(ui: &mut Ui, panels: &[Panel], is_open: &dyn Fn(Panel) -> bool, asked: &mut Vec<Command>) {
+    for &panel in panels {
+        let mut open = is_open(panel);
+        if ui.checkbox(&mut open, panel.title()).on_hover_text(panel.describe()).clicked() {
+            asked.push(if open { Command::OpenPanel(panel) } else { Command::ClosePanel(panel) });
+            ui.close();
+        }
+    }
+}
+
+fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    ui.set_min_width(240.0);
+    ui.menu_button("Panels", |ui| panels(ui, &Panel::all(), input.is_open, asked));
+    ui.menu_button("Colours", |ui| {
+        for colours in ColourMap::ALL {
+            if ui.radio(input.colours == colours, colours.name()).clicked() {
+                asked.push(Command::Colours(colours));
+            }
+        }
+    });
+    entry(ui, Command::ResetLayout, true, asked);
+    ui.separator();
+    let of_maps = [
+        Command::ToggleProjection,
+        Command::ResetMaps,
+        Command::ToggleReflectors,
+        Command::ToggleFound,
+        Command::ToggleFieldsOfView,
+        Command::NextMethod,
+    ];
+    entries(ui, of_maps, asked);
+    ui.separator();
+    let of_window = [Command::ToggleTheme, Command::ZoomIn, Command::ZoomOut, Command::ZoomReset, Command::Palette];
+    entries(ui, of_window, asked);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn menus_ask_for_what_they_list() {
+        let draw = |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
+            let input = Input {
+                can_undo: true,
+                can_redo: false,
+                selected: false,
+                projection: Projection::RangeAngle,
+                colours: ColourMap::Grey,
+                random: (0, 0),
+                recent: &[],
+                is_open: &|panel| panel == Panel::Scene,
+            };
+            let commands = show(ui, input, &mut asked.0);
+            asked.1.extend(commands);
+        };
+        let mut menu = Harness::builder().with_size([900.0, 600.0]).build_ui_state(draw, (Memory::default(), vec![]));
+        menu.get_by_label("+ Line").click();
+        menu.step();
+        menu.get_by_label("Cartesian").click();
+        menu.step();
+        menu.get_by_label("Scene").click();
+        menu.run();
+        menu.get_by_label("Presets").click();
+        menu.run();
+        menu.get_by_label("Four reflectors").click();
+        menu.run();
+        let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
+        let projection = Command::SetProjection(Projection::Cartesian);
+        assert_eq!(menu.state().1, [Command::Add(NewObject::Line, None), projection, Command::Preset(preset)]);
+    }
+}

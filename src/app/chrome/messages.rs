@@ -1,0 +1,77 @@
+//! Messages in the corner: they wrap, can be read aloud and closed, and go away by themselves.
+
+use crate::app::state::{Notice, NoticeKind, Notices};
+use crate::app::widgets::icons::{Icon, icon};
+use crate::app::widgets::theme;
+use eframe::egui;
+use eframe::egui::{Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
+
+/// Widest message, in points.
+const WIDTH: f32 = 380.0;
+
+/// Seconds for which a message stays: long enough to read an error and do what it says.
+const INFO_SECONDS: f64 = 6.0;
+const ERROR_SECONDS: f64 = 20.0;
+
+/// Draws the messages and drops those whose time is over.
+pub fn show(ctx: &Context, notices: &mut Notices) {
+    let messages = notices.list_mut();
+    if messages.is_empty() {
+        return;
+    }
+    let now = ctx.input(|i| i.time);
+    let pointer = ctx.input(|i| i.pointer.hover_pos());
+    let width = WIDTH.min(ctx.content_rect().width() - 40.0);
+    let mut closed = Vec::new();
+    let mut hovered = false;
+    Area::new(Id::unique("messages"))
+        .order(Order::Foreground)
+        .anchor(Align2::RIGHT_BOTTOM, vec2(-12.0, -36.0))
+        .interactable(true)
+        .show(ctx, |ui| {
+            ui.set_max_width(width);
+            for message in messages.iter() {
+                let drawn = Frame::popup(ui.style()).show(ui, |ui| draw(ui, message, width));
+                if drawn.inner {
+                    closed.push(message.number);
+                }
+                hovered |= pointer.is_some_and(|p: Pos2| drawn.response.rect.contains(p));
+            }
+        });
+    for message in messages.iter_mut() {
+        let seconds = match message.kind {
+            NoticeKind::Info => INFO_SECONDS,
+            NoticeKind::Error => ERROR_SECONDS,
+        };
+        let until = message.until.get_or_insert(now + seconds);
+        if hovered {
+            // Nothing goes away under the pointer.
+            *until = until.max(now + 2.0);
+        }
+    }
+    messages.retain(|m| !closed.contains(&m.number) && m.until.is_none_or(|until| until > now));
+    if let Some(next) = messages.iter().filter_map(|m| m.until).min_by(f64::total_cmp) {
+        ctx.request_repaint_after_secs((next - now).max(0.0) as f32);
+    }
+}
+
+/// Draws one message; whether it was closed.
+fn draw(ui: &mut egui::Ui, message: &Notice, width: f32) -> bool {
+    let (sign, colour) = match message.kind {
+        NoticeKind::Info => ("i", theme::INFO),
+        NoticeKind::Error => ("!", theme::ERROR),
+    };
+    ui.horizontal_top(|ui| {
+        ui.set_width(width - 24.0);
+        ui.label(egui::RichText::new(sign).strong().color(colour));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
+            let closed = icon(ui, Icon::Close, "Close this message").clicked();
+            ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
+                ui.add(egui::Label::new(&message.text).wrap());
+            });
+            closed
+        })
+        .inner
+    })
+    .inner
+}

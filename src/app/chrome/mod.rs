@@ -1,0 +1,8 @@
+//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar, file dialog.
+
+pub mod file_dialog;
+pub mod menu;
+pub mod messages;
+pub mod palette;
+pub mod status_bar;
+pub mod tiles;

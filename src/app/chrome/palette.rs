@@ -1,0 +1,201 @@
+//! The palette: find any command by typing part of its name.
+
+use crate::app::state::{Command, listed};
+use crate::reconstruct::Reconstructor;
+use eframe::egui;
+use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
+use std::sync::Arc;
+
+/// What the palette lists beside the commands that are always there.
+pub struct Input<'a> {
+    /// The methods to choose from.
+    pub methods: &'a [Arc<dyn Reconstructor>],
+}
+
+/// State of the palette.
+#[derive(Default)]
+pub struct Memory {
+    open: bool,
+    text: String,
+    chosen: usize,
+    just_opened: bool,
+}
+
+impl Memory {
+    /// Whether it is on screen.
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Opens it afresh, or closes it.
+    pub fn toggle(&mut self) {
+        *self = Memory { open: !self.open, just_opened: !self.open, ..Memory::default() };
+    }
+}
+
+/// A line of the list.
+struct Found {
+    command: Command,
+    name: String,
+    tooltip: &'static str,
+    key: String,
+}
+
+/// The keys that it takes away from everything else.
+struct Keys {
+    up: bool,
+    down: bool,
+    enter: bool,
+    escape: bool,
+}
+
+impl Keys {
+    fn consume(ctx: &Context) -> Keys {
+        ctx.input_mut(|i| {
+            let mut pressed = |key| i.consume_key(Modifiers::NONE, key);
+            Keys {
+                up: pressed(Key::ArrowUp),
+                down: pressed(Key::ArrowDown),
+                enter: pressed(Key::Enter),
+                escape: pressed(Key::Escape),
+            }
+        })
+    }
+}
+
+/// Whether every word of `text` is in `name`, whatever the case.
+fn matches(name: &str, text: &str) -> bool {
+    let name = name.to_lowercase();
+    text.to_lowercase().split_whitespace().all(|word| name.contains(word))
+}
+
+/// The commands whose names match `text`.
+fn find(ctx: &Context, input: &Input<'_>, text: &str) -> Vec<Found> {
+    let commands = listed().iter().filter(|e| e.command != Command::Palette).map(|e| Found {
+        command: e.command.clone(),
+        name: e.name.to_string(),
+        tooltip: e.tooltip,
+        key: e.key.map(|key| ctx.format_shortcut(&key)).unwrap_or_default(),
+    });
+    let methods = input.methods.iter().map(|m| Found {
+        command: Command::Method(m.name()),
+        name: format!("Method: {}", m.name()),
+        tooltip: m.description(),
+        key: String::new(),
+    });
+    commands.chain(methods).filter(|f| matches(&f.name, text)).collect()
+}
+
+/// Draws the palette, if it is open.
+pub fn show(ctx: &Context, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    if !memory.open {
+        return Vec::new();
+    }
+    let keys = Keys::consume(ctx);
+    let area = egui::Window::new("Commands")
+        .title_bar(false)
+        .resizable(false)
+        .collapsible(false)
+        .anchor(Align2::CENTER_TOP, [0.0, 60.0])
+        .fixed_size([420.0, 340.0])
+        .show(ctx, |ui| contents(ui, &input, memory, &keys));
+    let Some(area) = area else { return Vec::new() };
+    let run = area.inner.flatten();
+    if run.is_some() || keys.escape || area.response.clicked_elsewhere() {
+        memory.open = false;
+    }
+    run.into_iter().collect()
+}
+
+/// The text first, then what matches it as it is now: Enter may come in the same frame as the last letter.
+fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, keys: &Keys) -> Option<Command> {
+    let before = memory.text.clone();
+    if memory.just_opened {
+        // The field has no focus yet, but letters may have come already.
+        let typed = ui.input(|i| i.events.iter().filter_map(text_of).collect::<String>());
+        memory.text += &typed;
+    }
+    let edit =
+        TextEdit::singleline(&mut memory.text).hint_text("Type part of a command's name").desired_width(f32::INFINITY);
+    let response = ui.add(edit);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Find a command"));
+    if std::mem::take(&mut memory.just_opened) {
+        response.request_focus();
+    }
+    if memory.text != before {
+        memory.chosen = 0;
+    }
+    let mut found = find(ui.ctx(), input, &memory.text);
+    let last = found.len().saturating_sub(1);
+    memory.chosen = match (keys.up, keys.down) {
+        (true, _) => memory.chosen.saturating_sub(1),
+        (_, true) => memory.chosen + 1,
+        _ => memory.chosen,
+    }
+    .min(last);
+    ui.separator();
+    if found.is_empty() {
+        ui.weak("No command has such a name.");
+    }
+    let clicked = list(ui, &found, memory.chosen, keys.up || keys.down);
+    let run = clicked.or((keys.enter && !found.is_empty()).then_some(memory.chosen))?;
+    Some(found.swap_remove(run).command)
+}
+
+fn text_of(event: &Event) -> Option<&str> {
+    if let Event::Text(text) = event { Some(text) } else { None }
+}
+
+/// Draws what was found; the number of the one that was clicked.
+fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usize> {
+    let mut clicked = None;
+    egui::ScrollArea::vertical().auto_shrink([false, false]).max_height(300.0).show(ui, |ui| {
+        for (index, line) in found.iter().enumerate() {
+            // An empty key, too, pushes the name to the left.
+            let button = Button::selectable(index == chosen, &line.name).shortcut_text(&line.key);
+            let response = ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(line.tooltip);
+            if index == chosen && moved {
+                response.scroll_to_me(None);
+            }
+            if response.clicked() {
+                clicked = Some(index);
+            }
+        }
+    });
+    clicked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::NewObject;
+    use crate::reconstruct::Baseline;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn words_match_in_any_order() {
+        assert!(matches("Show or hide: Input 0", "input SHOW"));
+        assert!(!matches("Show or hide: Input 0", "input 1"));
+        assert!(matches("anything", ""));
+    }
+
+    #[test]
+    fn enter_runs_what_the_text_says_even_in_the_same_frame() {
+        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
+        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+            let commands = show(ui.ctx(), Input { methods: &methods }, &mut state.0);
+            state.1.extend(commands);
+        };
+        let mut palette = Harness::new_ui_state(draw, (Memory::default(), Vec::new()));
+        palette.step();
+        for (text, frames_before_enter) in [("add line", 0), ("method: baseline", 2)] {
+            palette.state_mut().0.toggle();
+            palette.event(Event::Text(text.to_owned()));
+            palette.run_steps(frames_before_enter);
+            palette.key_press(Key::Enter);
+            palette.step();
+            assert!(!palette.state().0.is_open());
+        }
+        assert_eq!(palette.state().1, [Command::Add(NewObject::Line, None), Command::Method("baseline")]);
+    }
+}

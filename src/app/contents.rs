@@ -1,0 +1,289 @@
+//! Panel by panel, what each is told: the only file that knows all of them.
+
+use super::chrome::tiles::Draw;
+use super::chrome::{menu, status_bar};
+use super::jobs::Jobs;
+use super::panels::{
+    bounds, controls, cuts, evaluation, guide, inspector, map, roc, run_time, scene, timing, training,
+};
+use super::state::{Command, MapKind, Panel, State};
+use super::widgets::textures::Texture;
+use crate::live::LiveMap;
+use crate::scene::{Reflector, Scene};
+use eframe::egui::{TextureFilter, TextureOptions, Ui};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What panels remember from frame to frame.
+#[derive(Default)]
+pub struct Memory {
+    textures: BTreeMap<MapKind, Texture>,
+    reflectors: Reflectors,
+    bounds: bounds::Memory,
+    evaluation: evaluation::Memory,
+    run_time: run_time::Memory,
+    training: training::Memory,
+    guide: guide::Memory,
+}
+
+/// The reflectors of the scene on screen: spelled out once a scene, not once a map and frame.
+#[derive(Default)]
+struct Reflectors {
+    of: Option<Arc<Scene>>,
+    list: Vec<Reflector>,
+}
+
+impl Reflectors {
+    fn of(&mut self, scene: &Arc<Scene>) -> &[Reflector] {
+        if !self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, scene)) {
+            self.list = scene.reflectors();
+            self.of = Some(scene.clone());
+        }
+        &self.list
+    }
+}
+
+/// Draws panels, and gathers what they ask for.
+pub struct Contents<'a> {
+    state: &'a mut State,
+    jobs: &'a Jobs,
+    memory: &'a mut Memory,
+    commands: Vec<Command>,
+}
+
+impl<'a> Contents<'a> {
+    /// Of what there is.
+    pub fn new(state: &'a mut State, jobs: &'a Jobs, memory: &'a mut Memory) -> Self {
+        Contents { state, jobs, memory, commands: Vec::new() }
+    }
+
+    /// What was asked for.
+    pub fn into_commands(self) -> Vec<Command> {
+        self.commands
+    }
+
+    fn scene(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (state, pipeline) = (&mut *self.state, &self.jobs.pipeline);
+        let found = pipeline.output().filter(|_| state.settings.show_found);
+        let input = scene::Input {
+            radar: &state.radar,
+            snap: state.settings.snap,
+            fields_of_view: state.settings.show_fields_of_view,
+            found: found.map_or(&[], |o| &o.found.reflectors),
+            cursor: state.pointer.now,
+            error: pipeline.scene_error(),
+        };
+        scene::show(ui, input, &mut state.editor, &mut state.scene_view)
+    }
+
+    fn controls(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (state, pipeline) = (&*self.state, &self.jobs.pipeline);
+        let run = controls::Run {
+            progress: pipeline.method_progress(),
+            refusal: pipeline.refusal(),
+            output: pipeline.output().map(|o| (o.method, o.took)),
+            scores: pipeline.scores(),
+            outdated: pipeline.output_is_outdated(),
+        };
+        let input = controls::Input {
+            settings: &state.settings,
+            radar: &state.radar,
+            methods: &state.methods.all,
+            method: state.method().map(|m| m.as_ref()),
+            eta: state.output_eta(),
+            run,
+        };
+        controls::show(ui, input)
+    }
+
+    fn map(&mut self, ui: &mut Ui, kind: MapKind) -> Vec<Command> {
+        let pipeline = &self.jobs.pipeline;
+        let options = TextureOptions { minification: TextureFilter::Linear, ..TextureOptions::NEAREST };
+        let texture = pipeline.result().and_then(|r| r.pictures.get(&kind)).map(|picture| {
+            let texture = self.memory.textures.entry(kind).or_default();
+            texture.of(ui.ctx(), kind.title(), &picture.image, options)
+        });
+        let settings = &self.state.settings;
+        let scene = self.state.editor.scene();
+        let reflectors = if settings.show_reflectors { self.memory.reflectors.of(scene) } else { &[] };
+        let found = pipeline.output().filter(|_| settings.show_found && kind.needs_output());
+        let input = map::Input {
+            kind,
+            radar: &self.state.radar,
+            projection: settings.projection,
+            colours: settings.colours,
+            texture,
+            stale: pipeline.is_stale(kind),
+            cells: cells(self.jobs, kind),
+            marks: map::Marks { reflectors, found: found.map_or(&[], |o| &o.found.reflectors) },
+            cursor: self.state.pointer.now,
+            error: error(self.state, self.jobs, kind),
+        };
+        map::show(ui, input, self.state.map_views.of(settings.projection))
+    }
+
+    fn cuts(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let pipeline = &self.jobs.pipeline;
+        let frame = pipeline.result().map(|r| &r.frame);
+        let maps = [
+            (MapKind::Input0, frame.and_then(|f| f.first.as_ref()).map(|m| &*m.lambda)),
+            (MapKind::Input1, frame.and_then(|f| f.last.as_ref()).map(|m| &*m.lambda)),
+            (MapKind::Target, frame.and_then(|f| f.full.as_ref()).map(|m| &*m.lambda)),
+            (MapKind::Output, pipeline.output().map(|o| &*o.pair.output)),
+        ];
+        let maps = maps.into_iter().filter_map(|(kind, map)| Some((kind, map?))).collect();
+        cuts::show(ui, cuts::Input { radar: &self.state.radar, cursor: self.state.cut_cursor(), maps })
+    }
+
+    fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let pipeline = &self.jobs.pipeline;
+        let points = pipeline.output().and(pipeline.result()).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
+        let method = pipeline.output().map_or("output", |o| o.method);
+        let refusal = pipeline.refusal().map(|r| r.reason.as_str());
+        roc::show(ui, roc::Input { points, method, eta: self.state.output_eta(), refusal })
+    }
+
+    fn timing(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let pipeline = &self.jobs.pipeline;
+        let update = pipeline.result().map(|r| timing::Update {
+            report: &r.frame.report,
+            took: r.took,
+            painted: r.painted,
+            output: pipeline.output().map(|o| (o.method, o.took)),
+            outdated: pipeline.output_is_outdated(),
+        });
+        timing::show(ui, timing::Input { update })
+    }
+
+    fn bounds(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let job = &self.jobs.bounds;
+        let input = bounds::Input {
+            settings: self.state.settings.bounds,
+            elements: self.state.radar.elements,
+            has_subject: job.has_subject(),
+            result: job.result(),
+            error: job.error(),
+        };
+        bounds::show(ui, input, &mut self.memory.bounds)
+    }
+
+    fn evaluation(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let job = &self.jobs.evaluation;
+        let input = evaluation::Input {
+            methods: &self.state.methods.all,
+            method: self.state.method().map(|m| m.name()),
+            radar: job.radar().unwrap_or(&self.state.radar),
+            progress: job.progress(),
+            rows: job.rows(),
+            note: job.note(),
+        };
+        evaluation::show(ui, input, &mut self.memory.evaluation)
+    }
+
+    fn run_time(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let job = &self.jobs.run_time;
+        let input = run_time::Input {
+            radar: job.radar().unwrap_or(&self.state.radar),
+            progress: job.progress(),
+            rows: job.rows(),
+            bare_fft_ms: job.bare_fft_ms(),
+            note: job.note(),
+        };
+        run_time::show(ui, input, &mut self.memory.run_time)
+    }
+
+    fn training(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let job = &self.jobs.training;
+        let running = job.is_running().then(|| job.progress().unwrap_or(0.0));
+        let input = training::Input { path: job.path(), log: job.log(), note: job.note(), running };
+        training::show(ui, input, &mut self.memory.training)
+    }
+}
+
+impl Draw for Contents<'_> {
+    fn draw(&mut self, ui: &mut Ui, panel: Panel) {
+        let commands = match panel {
+            Panel::Scene => self.scene(ui),
+            Panel::Controls => self.controls(ui),
+            Panel::Inspector => {
+                inspector::show(ui, inspector::Input { radar: &self.state.radar }, &mut self.state.editor)
+            }
+            Panel::Map(kind) => self.map(ui, kind),
+            Panel::Cuts => self.cuts(ui),
+            Panel::Roc => self.roc(ui),
+            Panel::Timing => self.timing(ui),
+            Panel::Bounds => self.bounds(ui),
+            Panel::Evaluation => self.evaluation(ui),
+            Panel::RunTime => self.run_time(ui),
+            Panel::Training => self.training(ui),
+            Panel::Guide => guide::show(ui, &mut self.memory.guide),
+        };
+        self.commands.extend(commands);
+    }
+
+    fn caption(&self, panel: Panel) -> Option<String> {
+        let Panel::Map(kind) = panel else { return None };
+        let pipeline = &self.jobs.pipeline;
+        map::caption(map::Caption {
+            kind,
+            method: pipeline.output().map(|o| o.method),
+            updating: pipeline.is_stale(kind) || (kind.needs_output() && pipeline.output_is_outdated()),
+            metrics: pipeline.scores().map(|s| s.metrics),
+            target_eta: self.state.settings.target_eta,
+            output_eta: self.state.output_eta(),
+        })
+    }
+}
+
+/// The numbers behind a map's picture.
+fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
+    let frame = &jobs.pipeline.result()?.frame;
+    let pair = jobs.pipeline.output().map(|o| &o.pair);
+    let scale = frame.full.as_ref().map(|m| m.scale);
+    match kind {
+        MapKind::Input0 => frame.first.as_ref().map(cells_of),
+        MapKind::Input1 => frame.last.as_ref().map(cells_of),
+        MapKind::Target | MapKind::TargetAbove => frame.full.as_ref().map(cells_of),
+        MapKind::Output | MapKind::OutputAbove => pair.map(|p| map::Cells { map: &p.output, minus: None, scale }),
+        MapKind::Difference => pair.map(|p| map::Cells { map: &p.output, minus: Some(&p.target), scale: None }),
+    }
+}
+
+fn cells_of(map: &LiveMap) -> map::Cells<'_> {
+    map::Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
+}
+
+/// Why a map has no picture, and what would help.
+fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Problem<'a>> {
+    if let Some(reason) = jobs.pipeline.scene_error() {
+        return Some(map::Problem { reason, instead: None });
+    }
+    let refusal = jobs.pipeline.refusal().filter(|_| kind.needs_output())?;
+    Some(map::Problem { reason: &refusal.reason, instead: state.methods.instead_of(refusal.method) })
+}
+
+/// What the menu bar shows.
+pub fn menu_input<'a>(state: &'a State, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
+    let history = state.editor.history();
+    menu::Input {
+        can_undo: state.can_undo(),
+        can_redo: history.redo_label().is_some(),
+        selected: !state.editor.selection().is_empty(),
+        projection: state.settings.projection,
+        colours: state.settings.colours,
+        random: (state.settings.random_seed, state.settings.random_number),
+        recent: &state.recent,
+        is_open,
+    }
+}
+
+/// What the status bar says.
+pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
+    let scene = state.editor.scene();
+    status_bar::Input {
+        cursor: state.pointer.now,
+        objects: scene.objects.len(),
+        reflectors: scene.reflector_count(),
+        took: jobs.pipeline.result().map(|r| r.took),
+    }
+}

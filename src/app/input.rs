@@ -1,0 +1,160 @@
+//! Keys, clipboard events and dropped files become commands.
+
+use super::state::{Command, shortcuts};
+use eframe::egui::{Context, Event, Key, Modifiers, RawInput};
+
+/// Events of one frame that must wait for the next.
+///
+/// A field takes what was typed when it is drawn, but Tab and Enter move the focus before anything is drawn: letters that come in one
+/// frame with them would land in another field, or nowhere.
+#[derive(Default)]
+pub struct Later(Vec<Event>);
+
+impl Later {
+    /// Leaves in `input` what can be done in this frame, after what has waited; keeps the rest. Whether there is a rest.
+    pub fn sort(&mut self, input: &mut RawInput) -> bool {
+        let mut events = std::mem::take(&mut self.0);
+        events.append(&mut input.events);
+        let moves = |e: &Event| matches!(e, Event::Key { key: Key::Tab | Key::Enter, pressed: true, .. });
+        let typed = |e: &Event| matches!(e, Event::Text(_) | Event::Paste(_));
+        let from_first =
+            |is: &dyn Fn(&Event) -> bool, from: usize| events[from..].iter().position(is).map(|i| i + from);
+        let first_typed = from_first(&typed, 0).unwrap_or(events.len());
+        let first_move = from_first(&moves, 0).unwrap_or(events.len());
+        // Letters, then a move: the move waits. A move, then letters: the letters wait.
+        let end = match first_typed < first_move {
+            true => first_move,
+            false => from_first(&|e| typed(e) || moves(e), (first_move + 1).min(events.len())).unwrap_or(events.len()),
+        };
+        self.0 = events.split_off(end);
+        input.events = events;
+        !self.0.is_empty()
+    }
+}
+
+/// What the keys mean depends on this.
+pub struct Input {
+    /// Whether the palette or a dialog is open: then the keys are its own.
+    pub keys_taken: bool,
+    /// Whether something is selected that arrow keys can move.
+    pub selected: bool,
+    /// A range bin of the radar: what an arrow key moves by.
+    pub bin_metres: f64,
+}
+
+/// Everything that was asked for since the last frame, but for what panels will be asked in this one.
+pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
+    let mut commands = Vec::new();
+    let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
+    commands.extend(dropped.map(|path| match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        true => Command::WatchLog(path),
+        false => Command::OpenPath(path),
+    }));
+    if ctx.input(|i| i.pointer.any_released()) {
+        commands.push(Command::Seal);
+    }
+    if input.keys_taken || ctx.text_edit_focused() {
+        return commands;
+    }
+    let events = ctx.input(|i| i.events.clone());
+    commands.extend(events.into_iter().filter_map(|event| match event {
+        Event::Copy => Some(Command::Copy),
+        Event::Cut => Some(Command::Cut),
+        Event::Paste(text) => Some(Command::PasteText(text)),
+        _ => None,
+    }));
+    ctx.input_mut(|keys| {
+        for (shortcut, command) in shortcuts() {
+            // The system turns these three into events of their own.
+            if !matches!(command, Command::Copy | Command::Cut | Command::Paste) && keys.consume_shortcut(shortcut) {
+                commands.push(command.clone());
+            }
+        }
+        for (modifiers, key, command) in [
+            (Modifiers::NONE, Key::Backspace, Command::Delete),
+            (Modifiers::COMMAND, Key::Y, Command::Redo),
+            (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P, Command::Palette),
+        ] {
+            if keys.consume_key(modifiers, key) {
+                commands.push(command);
+            }
+        }
+    });
+    if input.selected && ctx.memory(|m| m.focused().is_none()) {
+        commands.extend(nudge(ctx, input.bin_metres));
+    }
+    commands
+}
+
+/// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
+fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
+    let (mut dx, mut dy) = (0.0, 0.0);
+    ctx.input_mut(|input| {
+        for (modifiers, step) in [(Modifiers::SHIFT, 10.0), (Modifiers::ALT, 0.1), (Modifiers::NONE, 1.0)] {
+            let mut pressed = |key| input.count_and_consume_key(modifiers, key) as f64 * step;
+            dx += pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
+            dy += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
+        }
+    });
+    ((dx, dy) != (0.0, 0.0)).then(|| Command::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn keys_mean_what_the_list_says_and_digits_alone_nothing() {
+        let draw = |ui: &mut eframe::egui::Ui, asked: &mut Vec<Command>| {
+            let input = Input { keys_taken: false, selected: true, bin_metres: 0.5 };
+            asked.extend(read(ui.ctx(), input));
+        };
+        let mut keys = Harness::new_ui_state(draw, Vec::new());
+        let shift = Modifiers::COMMAND | Modifiers::SHIFT;
+        for (modifiers, key) in [
+            (Modifiers::NONE, Key::Num1),
+            (Modifiers::COMMAND, Key::Z),
+            (shift, Key::Z),
+            (Modifiers::SHIFT, Key::ArrowUp),
+        ] {
+            keys.key_press_modifiers(modifiers, key);
+            keys.step();
+        }
+        let nudge = Command::Nudge { dx_metres: 0.0, dy_metres: 5.0 };
+        assert_eq!(keys.state(), &[Command::Undo, Command::Redo, nudge]);
+    }
+
+    fn press(key: Key) -> Event {
+        Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE }
+    }
+
+    /// Frames in which the events are done.
+    fn frames(events: Vec<Event>) -> Vec<Vec<Event>> {
+        let (mut later, mut frames) = (Later::default(), Vec::new());
+        let mut input = RawInput { events, ..RawInput::default() };
+        loop {
+            let more = later.sort(&mut input);
+            frames.push(std::mem::take(&mut input.events));
+            if !more {
+                return frames;
+            }
+        }
+    }
+
+    #[test]
+    fn letters_and_the_keys_that_move_the_focus_come_one_frame_after_the_other() {
+        let text = |t: &str| Event::Text(t.to_owned());
+        let fast = vec![text("1"), text("2"), press(Key::Tab), text("5"), press(Key::Enter), text("p")];
+        let slow = [
+            vec![text("1"), text("2")],
+            vec![press(Key::Tab)],
+            vec![text("5")],
+            vec![press(Key::Enter)],
+            vec![text("p")],
+        ];
+        assert_eq!(frames(fast), slow);
+        let harmless = vec![text("1"), press(Key::ArrowUp), text("2")];
+        assert_eq!(frames(harmless.clone()), [harmless]);
+    }
+}

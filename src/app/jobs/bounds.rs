@@ -1,0 +1,208 @@
+//! Bounds of one reflector, computed off the UI thread: how well any estimator could place it, and what looks like it.
+
+use crate::app::state::{BoundsSettings, Elements, State};
+use crate::app::widgets::textures::colour_table;
+use crate::bounds::{Ambiguity, BoundsError, PositionBound, ambiguity, cramer_rao, noise_variance};
+use crate::interact::Editor;
+use crate::picture::ColourMap;
+use crate::radar::{Decibels, Layout, LayoutError, Polar, Radar};
+use crate::scene::{Object, Reflector};
+use crate::task::{Reply, Task, Worker};
+use eframe::egui::ColorImage;
+use std::sync::Arc;
+
+/// What is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoundsRequest {
+    /// The radar.
+    pub radar: Radar,
+    /// Which elements listen.
+    pub elements: Elements,
+    /// Seed of random elements.
+    pub seed: u64,
+    /// What the reflector is called.
+    pub name: String,
+    /// The reflector.
+    pub reflector: Reflector,
+    /// Signal-to-noise ratio of a sample.
+    pub snr: Decibels,
+    /// Half of what the picture spans, columns.
+    pub columns: f64,
+    /// And range bins.
+    pub bins: f64,
+}
+
+impl BoundsRequest {
+    /// For the selected object's centre, or else the first's; `None` where there is none ahead of the array.
+    fn of(state: &State) -> Option<Self> {
+        let (name, reflector) = subject(&state.editor)?;
+        let BoundsSettings { elements, seed, snr, columns, bins } = state.settings.bounds;
+        Some(BoundsRequest { radar: state.radar.clone(), elements, seed, name, reflector, snr, columns, bins })
+    }
+}
+
+/// The reflector the bounds are of, with its name.
+fn subject(editor: &Editor) -> Option<(String, Reflector)> {
+    let index = editor.selection().iter().next().unwrap_or(0);
+    let object = editor.scene().objects.get(index)?;
+    let [x_metres, y_metres] = object.centre_metres();
+    let reflectivity = match object {
+        Object::Point(p) => p.reflectivity,
+        Object::Line(l) => l.reflectivity,
+        Object::Gaussian(g) => g.reflectivity,
+    };
+    let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
+    let reflector = Reflector { x_metres, y_metres, reflectivity };
+    (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{} {}", object.kind(), index + 1), reflector))
+}
+
+/// What came of it.
+pub struct BoundsResult {
+    /// What was asked.
+    pub request: BoundsRequest,
+    /// Where the elements that listen stand.
+    pub layout: Layout,
+    /// Where the reflector stands.
+    pub centre: Polar,
+    /// How well its position can be known.
+    pub bound: Result<PositionBound, BoundsError>,
+    /// What looks like it.
+    pub ambiguity: Ambiguity,
+    /// The picture of that.
+    pub image: Arc<ColorImage>,
+}
+
+/// Echoes compared for one picture: what takes a few tenths of a second.
+const BUDGET: f64 = 2.0e6;
+
+fn work(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
+    let BoundsRequest { radar, elements, seed, reflector, snr, columns, bins, .. } = &request;
+    let layout = elements.layout(radar, *seed)?;
+    let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
+    let variance = noise_variance(radar, &layout, reflector, *snr);
+    let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);
+    let cells = (BUDGET / layout.len().max(1) as f64).clamp(1e3, 8e4);
+    // Odd numbers, so that the reflector itself is a cell.
+    let across = 2 * ((cells * 2.0).sqrt() / 2.0) as i32 + 1;
+    let up = 2 * ((cells / 2.0).sqrt() / 2.0) as i32 + 1;
+    let around =
+        |half: f64, count: i32| (0..count).map(move |i| half * (2.0 * f64::from(i) / f64::from(count - 1) - 1.0));
+    let column = 2.0 / radar.elements as f64;
+    let ranges: Vec<f64> = around(bins * radar.range_resolution_metres(), up)
+        .map(|d| (centre.range_metres + d).max(radar.aperture_metres() / 100.0))
+        .collect();
+    let cosines: Vec<f64> = around(columns * column, across).map(|d| centre.cos_theta + d).collect();
+    let mut found = ambiguity(radar, &layout, centre, &ranges, &cosines);
+    // There is no direction beyond end-fire.
+    for (mut cells, cos) in found.likeness.columns_mut().into_iter().zip(&cosines) {
+        if cos.abs() > 1.0 {
+            cells.fill(f64::NAN);
+        }
+    }
+    let table = colour_table(ColourMap::Viridis);
+    let paint = |v: &f64| match v.is_nan() {
+        true => eframe::egui::Color32::TRANSPARENT,
+        false => table[(v * 255.0) as usize],
+    };
+    // The top row is the farthest.
+    let pixels = found.likeness.rows().into_iter().rev().flat_map(|row| row.into_iter().map(paint).collect::<Vec<_>>());
+    let image = Arc::new(ColorImage::new([across as usize, up as usize], pixels.collect()));
+    Ok(BoundsResult { layout, centre, bound, ambiguity: found, image, request })
+}
+
+/// The worker, what it was asked last, and what it found last.
+pub struct Bounds {
+    worker: Worker<BoundsRequest, Result<BoundsResult, LayoutError>>,
+    asked: Option<BoundsRequest>,
+    subject: bool,
+    result: Option<BoundsResult>,
+    error: Option<String>,
+    requests: u64,
+}
+
+impl Bounds {
+    /// Starts the worker, which waits; `wake` is called from its thread.
+    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Bounds> {
+        let work = |_: &mut (), request: BoundsRequest, _: &Task| work(request);
+        let worker = Worker::spawn("bounds", || (), work, wake)?;
+        Ok(Bounds { worker, asked: None, subject: false, result: None, error: None, requests: 0 })
+    }
+
+    /// Asks for the bounds of what is selected, unless that was asked for last.
+    pub fn ask(&mut self, state: &State) {
+        let request = BoundsRequest::of(state);
+        self.subject = request.is_some();
+        if request.is_some() && self.asked != request {
+            self.requests += 1;
+            request.clone().map(|request| self.worker.request(request));
+            self.asked = request;
+        }
+    }
+
+    /// Whether there is a reflector to compute bounds of.
+    pub fn has_subject(&self) -> bool {
+        self.subject
+    }
+
+    /// What was found last.
+    pub fn result(&self) -> Option<&BoundsResult> {
+        self.result.as_ref()
+    }
+
+    /// Why nothing was found.
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// Requests so far: a test asks that a hidden panel makes none.
+    pub fn requests(&self) -> u64 {
+        self.requests
+    }
+
+    /// Whether it computes.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy()
+    }
+
+    /// Takes in what was found. Returns a message for the user.
+    pub fn poll(&mut self) -> Option<String> {
+        let mut message = None;
+        for reply in self.worker.replies() {
+            match reply {
+                Reply::Done { result: Ok(result), .. } => (self.result, self.error) = (Some(result), None),
+                Reply::Done { result: Err(error), .. } => (self.result, self.error) = (None, Some(error.to_string())),
+                Reply::Panicked { message: said, .. } => {
+                    self.error = Some(said.clone());
+                    message = Some(format!("Computing the bounds failed ({said}). Move the reflector to try again."));
+                }
+            }
+        }
+        message
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_brightest_at_the_reflector_and_empty_beyond_end_fire() {
+        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let request = BoundsRequest {
+            reflector: Reflector { x_metres: 1.5, y_metres: 0.2, reflectivity: 1.0 },
+            elements: Elements::OneEnd,
+            seed: 0,
+            name: String::new(),
+            snr: Decibels(20.0),
+            columns: 16.0,
+            bins: 3.0,
+            radar,
+        };
+        let found = work(request).unwrap();
+        let (rows, columns) = found.ambiguity.likeness.dim();
+        assert!((found.ambiguity.likeness[[rows / 2, columns / 2]] - 1.0).abs() < 1e-9);
+        assert!(found.ambiguity.likeness[[0, columns - 1]].is_nan());
+        assert_eq!(found.image.size, [columns, rows]);
+        assert!(found.bound.unwrap().x_metres > 0.0);
+    }
+}

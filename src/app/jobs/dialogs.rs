@@ -1,0 +1,216 @@
+//! Which file? The system's dialogs, off the UI thread; what is chosen comes back as a command. Where the system has none, whoever asks
+//! is told, so that the window shows its own.
+
+use crate::app::state::Command;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// A dialog that ended sooner than this was never on screen: nobody is so quick to close it.
+const NEVER_SHOWN: Duration = Duration::from_millis(250);
+
+/// What a file is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// A scene to open.
+    Open,
+    /// The log of a training to watch.
+    OpenLog,
+    /// Where the scene is to be saved.
+    SaveScene,
+    /// Where a picture is to be written.
+    ExportPicture,
+    /// Where the maps are to be written.
+    ExportMaps,
+    /// Where the figures are to be written.
+    ExportMetrics,
+}
+
+impl Purpose {
+    /// What is done with the file.
+    pub fn command(self, path: PathBuf) -> Command {
+        match self {
+            Purpose::Open => Command::OpenPath(path),
+            Purpose::OpenLog => Command::WatchLog(path),
+            Purpose::SaveScene => Command::SaveTo(path),
+            Purpose::ExportPicture => Command::ExportPictureTo(path),
+            Purpose::ExportMaps => Command::ExportMapsTo(path),
+            Purpose::ExportMetrics => Command::ExportMetricsTo(path),
+        }
+    }
+
+    /// Whether the file is read, not written.
+    pub fn reads(self) -> bool {
+        matches!(self, Purpose::Open | Purpose::OpenLog)
+    }
+
+    /// Title of the dialog.
+    pub fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "Open a scene",
+            Purpose::OpenLog => "Open the log of a training",
+            Purpose::SaveScene => "Save the scene",
+            Purpose::ExportPicture => "Export a picture",
+            Purpose::ExportMaps => "Export the maps",
+            Purpose::ExportMetrics => "Export the metrics",
+        }
+    }
+
+    /// How the file's name may end, and what such files are.
+    pub fn kind(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Purpose::Open | Purpose::SaveScene => ("Scenes", &["toml", "npz"]),
+            Purpose::OpenLog | Purpose::ExportMetrics => ("Table", &["csv"]),
+            Purpose::ExportPicture => ("Picture", &["png", "svg"]),
+            Purpose::ExportMaps => ("NumPy arrays", &["npz"]),
+        }
+    }
+
+    /// Name of the file where nobody chooses another.
+    pub fn name(self) -> &'static str {
+        match self {
+            Purpose::Open | Purpose::OpenLog => "",
+            Purpose::SaveScene => "scene.toml",
+            Purpose::ExportPicture => "apertura.png",
+            Purpose::ExportMaps => "maps.npz",
+            Purpose::ExportMetrics => "metrics.csv",
+        }
+    }
+}
+
+/// A file asked for, at first in a folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Question {
+    /// What it is for.
+    pub purpose: Purpose,
+    /// Where to look first.
+    pub folder: Option<PathBuf>,
+}
+
+/// Asks by a dialog of the system; `None` where it was closed without a file, or could not be shown.
+type System = Arc<dyn Fn(Purpose, Option<&Path>) -> Option<PathBuf> + Send + Sync>;
+
+enum Answer {
+    Chosen(Command),
+    NotShown(Question),
+}
+
+/// File dialogs on threads of their own: a window that waits for one would look dead.
+pub struct Dialogs {
+    /// `None` where the system has none.
+    system: Option<System>,
+    answers: (Sender<Answer>, Receiver<Answer>),
+    unanswered: Option<Question>,
+}
+
+impl Dialogs {
+    /// Asks by the system's dialogs as long as there are some.
+    pub fn of_the_system() -> Self {
+        Dialogs::by(Some(Arc::new(system_dialog)))
+    }
+
+    /// Leaves every question to the window.
+    pub fn of_the_window() -> Self {
+        Dialogs::by(None)
+    }
+
+    fn by(system: Option<System>) -> Self {
+        Dialogs { system, answers: channel(), unanswered: None }
+    }
+
+    /// Asks the user for a file; [`Dialogs::poll`] has the command later.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn ask(&mut self, question: Question, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
+        let Some(system) = self.system.clone() else {
+            self.unanswered = Some(question);
+            return Ok(());
+        };
+        let answers = self.answers.0.clone();
+        std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
+            let began = Instant::now();
+            let answer = match system(question.purpose, question.folder.as_deref()) {
+                Some(path) => Answer::Chosen(question.purpose.command(path)),
+                None if began.elapsed() < NEVER_SHOWN => Answer::NotShown(question),
+                None => return,
+            };
+            // The window may be gone by now.
+            let _closed = answers.send(answer);
+            wake();
+        })?;
+        Ok(())
+    }
+
+    /// What the user chose since the last call. Returns also what to tell the user, when it turns out that the system has no dialogs.
+    pub fn poll(&mut self) -> (Vec<Command>, Option<&'static str>) {
+        let (mut chosen, mut told) = (Vec::new(), None);
+        while let Ok(answer) = self.answers.1.try_recv() {
+            match answer {
+                Answer::Chosen(command) => chosen.push(command),
+                Answer::NotShown(question) => {
+                    self.unanswered = Some(question);
+                    if self.system.take().is_some() {
+                        told = Some(
+                            "This system shows no file dialog (no portal, no zenity), so the window shows its own.",
+                        );
+                    }
+                }
+            }
+        }
+        (chosen, told)
+    }
+
+    /// A question that the window has to ask.
+    pub fn take_unanswered(&mut self) -> Option<Question> {
+        self.unanswered.take()
+    }
+}
+
+fn system_dialog(purpose: Purpose, folder: Option<&Path>) -> Option<PathBuf> {
+    let (name, endings) = purpose.kind();
+    let dialog = rfd::FileDialog::new().set_title(purpose.title()).add_filter(name, endings);
+    let dialog = if let Some(folder) = folder { dialog.set_directory(folder) } else { dialog };
+    if purpose.reads() { dialog.pick_file() } else { dialog.set_file_name(purpose.name()).save_file() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(dialogs: &mut Dialogs, question: Question) -> (Vec<Command>, Option<&'static str>) {
+        let (wake, woken) = channel();
+        dialogs.ask(question, move || wake.send(()).unwrap()).unwrap();
+        // Nobody wakes for a dialog that was closed, and nobody needs to for one of the window.
+        let _closed = woken.recv_timeout(Duration::from_secs(2));
+        dialogs.poll()
+    }
+
+    #[test]
+    fn where_the_system_shows_nothing_the_window_asks_and_says_so_once() {
+        let mut dialogs = Dialogs::by(Some(Arc::new(|_, _| None)));
+        let question = |purpose| Question { purpose, folder: Some(PathBuf::from("/scenes")) };
+        let (chosen, told) = answer(&mut dialogs, question(Purpose::Open));
+        assert!(chosen.is_empty() && told.is_some());
+        assert_eq!(dialogs.take_unanswered(), Some(question(Purpose::Open)));
+        let again = answer(&mut dialogs, question(Purpose::SaveScene));
+        assert_eq!(again, (Vec::new(), None), "told once");
+        assert_eq!(dialogs.take_unanswered(), Some(question(Purpose::SaveScene)));
+        assert_eq!(dialogs.take_unanswered(), None);
+    }
+
+    #[test]
+    fn a_dialog_that_somebody_closed_is_no_failure_and_a_file_is_a_command() {
+        let slow: System = Arc::new(|purpose, _| {
+            std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));
+            (purpose == Purpose::Open).then(|| PathBuf::from("a.toml"))
+        });
+        let mut dialogs = Dialogs::by(Some(slow));
+        let question = |purpose| Question { purpose, folder: None };
+        assert_eq!(answer(&mut dialogs, question(Purpose::ExportMaps)), (Vec::new(), None));
+        assert_eq!(dialogs.take_unanswered(), None);
+        let (chosen, _) = answer(&mut dialogs, question(Purpose::Open));
+        assert_eq!(chosen, [Command::OpenPath("a.toml".into())]);
+    }
+}

@@ -1,0 +1,209 @@
+//! Pictures, arrays and figures for other programs, written on threads of their own.
+
+use super::pipeline::Pipeline;
+use crate::app::state::State;
+use crate::files::archive::write_maps;
+use crate::files::write_bytes;
+use crate::picture::{Format, Style, compose};
+use crate::reconstruct::Request;
+use crate::signal;
+use crate::task::{Task, panic_message};
+use eframe::egui::{ColorImage, Context};
+use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+/// What came of an export.
+pub struct Export {
+    path: PathBuf,
+    /// What to add where something could not be had.
+    written: Result<Option<String>, String>,
+}
+
+impl Export {
+    /// What to tell: that it is written, or why not.
+    ///
+    /// # Errors
+    /// The message of one that failed.
+    pub fn message(&self) -> Result<String, String> {
+        let path = self.path.display();
+        match &self.written {
+            Ok(None) => Ok(format!("Exported {path}")),
+            Ok(Some(but)) => Ok(format!("Exported {path}, {but}")),
+            Err(error) => Err(format!("{path}: {error}\nNothing was written; choose another place.")),
+        }
+    }
+}
+
+/// Exports under way.
+pub struct Exports {
+    wake: Context,
+    done: (Sender<Export>, Receiver<Export>),
+}
+
+impl Exports {
+    /// Nothing yet; `wake` draws another frame when one is finished.
+    pub fn new(wake: Context) -> Self {
+        Exports { wake, done: channel() }
+    }
+
+    /// What has been finished since the last call.
+    pub fn finished(&self) -> Vec<Export> {
+        self.done.1.try_iter().collect()
+    }
+
+    /// Writes a picture: what the window shows as PNG, or all panels of the scene drawn afresh as SVG. Returns what to tell.
+    ///
+    /// # Errors
+    /// Why it could not be begun.
+    pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
+        match Format::of_path(&path) {
+            Some(Format::Svg) => self.drawing(state, path),
+            _ => Ok(self.window(path)),
+        }
+    }
+
+    /// Takes a picture of the window and writes it as PNG.
+    fn window(&self, mut path: PathBuf) -> String {
+        path.set_extension("png");
+        let said = format!("Exporting {}…", path.display());
+        let (done, wake) = (self.done.0.clone(), self.wake.clone());
+        self.wake.request_screenshot(move |picture| {
+            // Compressing takes longer than a frame.
+            if let Err(error) = in_background(done, wake, path, move |path| write_png(path, &picture).map(|()| None)) {
+                tracing::warn!("the picture could not be exported: {error}");
+            }
+        });
+        said
+    }
+
+    /// Draws the panels that `apertura maps` draws, with the method and the settings on screen.
+    fn drawing(&self, state: &State, path: PathBuf) -> Result<String, String> {
+        let Some(method) = state.method().cloned() else {
+            return Err("There is no method to draw the output of.".to_owned());
+        };
+        let (radar, scene) = (state.radar.clone(), state.editor.scene().clone());
+        let style = Style {
+            floor: state.settings.floor,
+            normalisation: state.settings.normalisation,
+            colours: state.settings.colours,
+            eta: Some(state.output_eta()),
+        };
+        let seed = state.settings.seed;
+        self.begin(path, move |path| {
+            let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
+            let bytes =
+                compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg).map_err(|e| e.to_string())?;
+            write_bytes(path, &bytes).map(|()| None).map_err(|e| e.to_string())
+        })
+    }
+
+    /// Writes samples and maps of the scene on screen, and the output of the method in use, as NumPy arrays. Returns what to tell.
+    ///
+    /// # Errors
+    /// Why it could not be begun.
+    pub fn maps(&self, state: &State, mut path: PathBuf) -> Result<String, String> {
+        path.set_extension("npz");
+        let (radar, scene) = (state.radar.clone(), state.editor.scene().clone());
+        let (floor, normalisation, seed) = (state.settings.floor, state.settings.normalisation, state.settings.seed);
+        let method = state.method().cloned();
+        self.begin(path, move |path| {
+            let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
+            let request = Request { floor, normalisation, task: Task::default() };
+            let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
+            let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
+            write_maps(path, &radar, &scene, &signal, output).map_err(|e| e.to_string())?;
+            Ok(found.err().map(|why| format!("without the output: {why}")))
+        })
+    }
+
+    /// Writes the figures of the scene on screen as CSV. Returns what to tell.
+    ///
+    /// # Errors
+    /// What is missing, or why it could not be begun.
+    pub fn metrics(&self, state: &State, pipeline: &Pipeline, path: PathBuf) -> Result<String, String> {
+        let text = metrics_csv(state, pipeline)?;
+        self.begin(path, move |path| write_bytes(path, text.as_bytes()).map(|()| None).map_err(|e| e.to_string()))
+    }
+
+    /// Starts an export that takes a moment, and says so.
+    fn begin(
+        &self,
+        path: PathBuf,
+        write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
+    ) -> Result<String, String> {
+        let name = path.display().to_string();
+        match in_background(self.done.0.clone(), self.wake.clone(), path, write) {
+            Ok(()) => Ok(format!("Exporting {name}…")),
+            Err(error) => Err(format!("{name}: the export could not be started: {error}")),
+        }
+    }
+}
+
+/// Writes a file on a thread of its own; a panic there is an error like any other.
+fn in_background(
+    done: Sender<Export>,
+    wake: Context,
+    path: PathBuf,
+    write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
+) -> std::io::Result<()> {
+    let work = move || {
+        let written = catch_unwind(AssertUnwindSafe(|| write(&path)))
+            .unwrap_or_else(|panic| Err(format!("failed: {}", panic_message(panic.as_ref()))));
+        // The window may be gone by now.
+        let _closed = done.send(Export { path, written });
+        wake.request_repaint();
+    };
+    std::thread::Builder::new().name("export".to_owned()).spawn(work).map(|_| ())
+}
+
+fn write_png(path: &Path, picture: &ColorImage) -> Result<(), String> {
+    let [width, height] = picture.size;
+    let bytes = picture.pixels.iter().flat_map(|p| p.to_array()).collect();
+    let image = image::RgbaImage::from_raw(width as u32, height as u32, bytes).ok_or("the picture is incomplete")?;
+    let mut png = Cursor::new(Vec::new());
+    image.write_to(&mut png, image::ImageFormat::Png).map_err(|e| e.to_string())?;
+    write_bytes(path, png.get_ref()).map_err(|e| e.to_string())
+}
+
+fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
+    let result = pipeline.result().ok_or("There are no maps yet; try again in a moment.")?;
+    let (scores, output) = pipeline
+        .scores()
+        .zip(pipeline.output())
+        .ok_or("There are no figures: show an output panel and place a reflector first.")?;
+    if pipeline.output_is_outdated() {
+        return Err("The output is still being made; try again when it is there.".to_owned());
+    }
+    let m = scores.metrics;
+    let detection = m.detection.map_or_else(String::new, |d| d.to_string());
+    Ok(format!(
+        "scene,reflectors,method,floor,normalisation,eta,squared_error,detection,false_alarm,target_blobs,output_blobs,milliseconds\n\
+         \"{}\",{},{},{},{},{},{},{detection},{},{},{},{:.3}\n",
+        state.editor.scene().name.replace('"', "'"),
+        result.scene.reflector_count(),
+        output.method,
+        state.settings.floor,
+        state.settings.normalisation,
+        state.output_eta(),
+        m.squared_error,
+        m.false_alarm,
+        scores.target_blobs,
+        scores.output_blobs,
+        output.took.as_secs_f64() * 1e3,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_could_not_be_had_is_told() {
+        let export = |written| Export { path: "maps.npz".into(), written }.message();
+        assert_eq!(export(Ok(None)).unwrap(), "Exported maps.npz");
+        assert!(export(Ok(Some("without the output: no".to_owned()))).unwrap().ends_with("without the output: no"));
+        assert!(export(Err("disk full".to_owned())).unwrap_err().contains("Nothing was written"));
+    }
+}

@@ -1,0 +1,60 @@
+//! Times of every frame as CSV, for `--frame-log`.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use std::time::Instant;
+
+/// A CSV file with one line a frame.
+pub struct FrameLog {
+    out: BufWriter<File>,
+    began: Instant,
+    frame: u64,
+    /// The frame that is being drawn: when it began, and the thread's time on a processor by then.
+    current: (Instant, Option<f64>),
+}
+
+impl FrameLog {
+    /// Creates the file; its times count from `began`.
+    pub fn create(path: &Path, began: Instant) -> io::Result<Self> {
+        let mut out = BufWriter::new(File::create(path)?);
+        writeln!(out, "frame,seconds,ui_ms,previous_frame_ms,maps_requested,pictures_painted,resident_mib,ui_cpu_ms")?;
+        Ok(FrameLog { out, began, frame: 0, current: (began, None) })
+    }
+
+    /// Begins a frame.
+    pub fn begin_frame(&mut self) {
+        self.current = (Instant::now(), processor_ms());
+    }
+
+    /// Writes the frame that began last: time in the app's own code (by the clock, and on a processor, which other programs don't
+    /// lengthen), and the whole of the previous frame with layout, tessellation and drawing.
+    pub fn write(&mut self, previous: Option<f32>, requested: u64, painted: u64) -> io::Result<()> {
+        let (frame_began, processor_began) = self.current;
+        let (seconds, ui) = (self.began.elapsed().as_secs_f64(), frame_began.elapsed().as_secs_f64() * 1e3);
+        let processor =
+            processor_ms().zip(processor_began).map_or_else(String::new, |(now, then)| format!("{:.3}", now - then));
+        let previous = previous.map_or_else(String::new, |s| format!("{:.3}", s * 1e3));
+        let memory = resident_mib().map_or_else(String::new, |m| format!("{m:.1}"));
+        writeln!(
+            self.out,
+            "{},{seconds:.4},{ui:.3},{previous},{requested},{painted},{memory},{processor}",
+            self.frame
+        )?;
+        self.frame += 1;
+        self.out.flush()
+    }
+}
+
+/// Milliseconds that this thread has run on a processor, where the system tells (Linux).
+fn processor_ms() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split_whitespace().next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds / 1e6)
+}
+
+/// Memory of this process, where the system tells (Linux).
+fn resident_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmRSS:"))?;
+    line.trim().trim_end_matches("kB").trim().parse::<f64>().ok().map(|k| k / 1024.0)
+}

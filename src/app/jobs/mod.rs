@@ -1,0 +1,149 @@
+//! Everything that works beside the window: each on a thread of its own, asked at the end of a frame for what its panels showed, and
+//! polled at the beginning of the next.
+
+mod autosave;
+mod bounds;
+mod dialogs;
+mod evaluation;
+mod export;
+mod frame_log;
+mod painter;
+mod pipeline;
+mod rows;
+mod run_time;
+mod scene_maps;
+mod training;
+
+pub use autosave::Autosave;
+pub use bounds::{Bounds, BoundsRequest, BoundsResult};
+pub use dialogs::{Dialogs, Purpose, Question};
+pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
+pub use export::Exports;
+pub use frame_log::FrameLog;
+pub use pipeline::{Pipeline, Refusal};
+pub use run_time::RunTime;
+pub use scene_maps::Scores;
+pub use training::{Log, Training};
+
+use crate::app::state::{Command, Panel, State};
+use eframe::egui::Context;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Time between two looks at what runs, where a bar shows how far it is.
+const BAR: Duration = Duration::from_millis(100);
+
+/// All of them.
+pub struct Jobs {
+    /// Maps, pictures, outputs.
+    pub pipeline: Pipeline,
+    /// Bounds of one reflector.
+    pub bounds: Bounds,
+    /// Methods on test sets.
+    pub evaluation: Evaluation,
+    /// Run time against error.
+    pub run_time: RunTime,
+    /// A training that is watched.
+    pub training: Training,
+    /// Files being written.
+    pub exports: Exports,
+    /// Files being chosen.
+    pub dialogs: Dialogs,
+    /// Where an unsaved scene is kept, if anywhere.
+    pub autosave: Option<Autosave>,
+    wake: Context,
+    /// Where the app keeps its files, if anywhere.
+    folder: Option<PathBuf>,
+}
+
+impl Jobs {
+    /// Starts every thread. `folder` is where the autosave is kept; without it there is none.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> std::io::Result<Jobs> {
+        let wake = {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        Ok(Jobs {
+            pipeline: Pipeline::start(wake.clone())?,
+            bounds: Bounds::start(wake.clone())?,
+            evaluation: Evaluation::start(wake.clone())?,
+            run_time: RunTime::start(wake.clone())?,
+            training: Training::start(wake)?,
+            exports: Exports::new(ctx.clone()),
+            dialogs,
+            autosave: folder.map(Autosave::claim),
+            wake: ctx.clone(),
+            folder: folder.map(Path::to_path_buf),
+        })
+    }
+
+    /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
+    pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
+        let mut errors = self.pipeline.poll();
+        errors.extend(self.bounds.poll());
+        errors.extend(self.evaluation.poll());
+        errors.extend(self.run_time.poll());
+        errors.extend(self.training.poll());
+        errors.into_iter().for_each(|e| state.notices.error(e));
+        for export in self.exports.finished() {
+            tell(state, export.message());
+        }
+        let (chosen, told) = self.dialogs.poll();
+        told.into_iter().for_each(|t| state.notices.info(t));
+        chosen
+    }
+
+    /// Asks for what the panels of this frame need, if that changed.
+    pub fn ask(&mut self, state: &mut State) {
+        self.pipeline.ask(state);
+        let shown = state.arrangement.shown();
+        if shown.contains(&Panel::Bounds) {
+            self.bounds.ask(state);
+        }
+        if shown.contains(&Panel::Training)
+            && let Some(later) = self.training.look()
+        {
+            self.wake.request_repaint_after(later);
+        }
+        if self.pipeline.is_busy() {
+            self.wake.request_repaint_after(BAR);
+        }
+        match self.autosave.as_mut().map_or(Ok(None), |autosave| autosave.follow(state)) {
+            Ok(None) => {}
+            Ok(Some(later)) => self.wake.request_repaint_after(later),
+            Err(message) => state.notices.error(format!("The scene could not be autosaved: {message}")),
+        }
+    }
+
+    /// Opens a file dialog; what is chosen comes back as a command.
+    pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
+        let ctx = self.wake.clone();
+        let folder = state.path.as_ref().and_then(|p| p.parent()).map(Path::to_path_buf);
+        if let Err(error) = self.dialogs.ask(Question { purpose, folder }, move || ctx.request_repaint()) {
+            let advice = "Drop a file on the window instead.";
+            state.notices.error(format!("The file dialog could not be opened: {error}. {advice}"));
+        }
+    }
+
+    /// A folder of its own for a training by the recipe called `name`; `None` where the app keeps no files.
+    pub fn new_run(&self, name: &str) -> Option<PathBuf> {
+        let runs = self.folder.as_ref()?.join("runs");
+        (1u32..).map(|n| runs.join(format!("{name}-{n}"))).find(|run| !run.exists())
+    }
+
+    /// Whether maps, output or bounds are being computed.
+    pub fn is_busy(&self) -> bool {
+        self.pipeline.is_busy() || self.bounds.is_busy()
+    }
+}
+
+/// Shows what became of something.
+pub fn tell(state: &mut State, said: Result<String, String>) {
+    match said {
+        Ok(info) => state.notices.info(info),
+        Err(error) => state.notices.error(error),
+    }
+}

@@ -1,0 +1,310 @@
+//! What to compute, and what came of it: the UI's side of the two workers.
+//!
+//! ```text
+//!   scene, what is shown ──► maps worker (engine, pictures, scores) ──► MapsResult
+//!                               ▲                                          │ ends, target
+//!                               └── pair of maps ◄── method worker ◄───────┘
+//! ```
+
+use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
+use crate::app::state::{MapKind, Panel, State};
+use crate::live::Wanted;
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::Radar;
+use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::scene::SceneError;
+use crate::signal::{Floor, TwoEnds};
+use crate::task::{Reply, Task, Worker};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
+/// finishes, so that something is seen.
+const PATIENCE: Duration = Duration::from_millis(400);
+
+/// What is older than this on screen is marked as old: less would flicker.
+const STALE: Duration = Duration::from_millis(400);
+
+/// What a method works on.
+#[derive(Clone)]
+struct Basis {
+    ends: Arc<TwoEnds>,
+    target: Arc<RangeAngleMap>,
+    floor: Floor,
+    normalisation: Normalisation,
+}
+
+impl Basis {
+    fn same(&self, other: &Basis) -> bool {
+        Arc::ptr_eq(&self.ends, &other.ends)
+            && Arc::ptr_eq(&self.target, &other.target)
+            && (self.floor, self.normalisation) == (other.floor, other.normalisation)
+    }
+}
+
+/// What the method worker is asked for.
+#[derive(Clone)]
+struct MethodRequest {
+    radar: Radar,
+    basis: Basis,
+    method: Arc<dyn Reconstructor>,
+}
+
+impl MethodRequest {
+    fn same(&self, other: &MethodRequest) -> bool {
+        self.basis.same(&other.basis) && self.method.name() == other.method.name()
+    }
+}
+
+/// What a method made.
+#[derive(Clone)]
+pub struct MethodResult {
+    /// Its name.
+    pub method: &'static str,
+    /// Its map, and the one it aimed for.
+    pub pair: Pair,
+    /// All that it found.
+    pub found: Arc<Reconstruction>,
+    /// Time it took.
+    pub took: Duration,
+    basis: Basis,
+}
+
+/// Why a method gave nothing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// Its name.
+    pub method: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+type MethodReply = (MethodRequest, Result<Reconstruction, ReconstructError>);
+
+/// The workers, what they were asked last, and what they made last.
+pub struct Pipeline {
+    maps: Worker<MapsRequest, Result<MapsResult, SceneError>>,
+    method: Worker<MethodRequest, MethodReply>,
+    asked: Option<MapsRequest>,
+    /// When the maps worker was asked for what it hasn't answered yet.
+    waiting: Option<Instant>,
+    method_asked: Option<MethodRequest>,
+    /// Since when the output belongs to something else than the maps.
+    outdated: Option<Instant>,
+    result: Option<MapsResult>,
+    output: Option<MethodResult>,
+    scene_error: Option<String>,
+    refusal: Option<Refusal>,
+    requests: u64,
+}
+
+impl Pipeline {
+    /// Starts the workers; `wake` is called from their threads when there is something to show.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn start(wake: impl Fn() + Clone + Send + 'static) -> std::io::Result<Pipeline> {
+        let work = |state: &mut MapsState, request: MapsRequest, _: &Task| state.work(request);
+        let maps = Worker::spawn("maps", MapsState::default, work, wake.clone())?;
+        // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
+        let threads = || rayon::ThreadPoolBuilder::new().thread_name(|i| format!("reconstruction {i}")).build().ok();
+        let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
+            let Basis { floor, normalisation, .. } = q.basis;
+            let request = Request { floor, normalisation, task: task.clone() };
+            let reconstruct = || q.method.reconstruct(&q.radar, &q.basis.ends, &request);
+            let result = match threads {
+                Some(threads) => threads.install(reconstruct),
+                None => reconstruct(),
+            };
+            (q, result)
+        };
+        let method = Worker::spawn("reconstruction", threads, work, wake)?;
+        Ok(Pipeline {
+            maps,
+            method,
+            asked: None,
+            waiting: None,
+            method_asked: None,
+            outdated: None,
+            result: None,
+            output: None,
+            scene_error: None,
+            refusal: None,
+            requests: 0,
+        })
+    }
+
+    /// Takes in what the workers made since the last frame. Returns messages for the user.
+    pub fn poll(&mut self) -> Vec<String> {
+        let mut messages = Vec::new();
+        for reply in self.maps.replies() {
+            self.waiting = self.waiting.filter(|_| self.maps.is_busy());
+            match reply {
+                Reply::Done { result: Ok(mut result), elapsed, .. } => {
+                    result.took = elapsed;
+                    self.result = Some(result);
+                    self.scene_error = None;
+                }
+                Reply::Done { result: Err(error), .. } => self.scene_error = Some(error.to_string()),
+                Reply::Panicked { message, .. } => messages.push(format!(
+                    "Computing the maps failed ({message}). The last maps stay; undo the last change (Ctrl+Z) or change the scene."
+                )),
+            }
+        }
+        for reply in self.method.replies() {
+            match reply {
+                Reply::Done { result: (request, Ok(found)), elapsed, .. } => self.take_in(request, found, elapsed),
+                // Cancelled by the user, or because the scene moved on and the next request waits.
+                Reply::Done { result: (_, Err(ReconstructError::Cancelled)), .. } => {}
+                Reply::Done { result: (request, Err(error)), .. } => {
+                    self.refuse(request.method.name(), error.to_string());
+                }
+                Reply::Panicked { message, .. } => {
+                    let method = self.method_asked.as_ref().map_or("", |q| q.method.name());
+                    self.refuse(method, format!("failed: {message}"));
+                    messages.push(format!(
+                        "The reconstruction failed ({message}). It was started afresh; choose another method, or change the scene to try again."
+                    ));
+                }
+            }
+        }
+        messages
+    }
+
+    fn take_in(&mut self, request: MethodRequest, found: Reconstruction, took: Duration) {
+        let found = Arc::new(found);
+        let pair = Pair { target: request.basis.target.clone(), output: Arc::new(found.lambda.clone()) };
+        self.refusal = None;
+        self.output = Some(MethodResult { method: request.method.name(), pair, found, took, basis: request.basis });
+    }
+
+    /// There is no output, and the last one is not its own: nothing of it stays.
+    fn refuse(&mut self, method: &'static str, reason: String) {
+        self.output = None;
+        self.refusal = Some(Refusal { method, reason });
+    }
+
+    /// Asks the workers for what the panels of this frame need, if that changed.
+    pub fn ask(&mut self, state: &State) {
+        let shown = state.arrangement.shown();
+        let map = |kind| shown.contains(&Panel::Map(kind));
+        let (cuts, roc) = (shown.contains(&Panel::Cuts), shown.contains(&Panel::Roc));
+        let output = MapKind::ALL.into_iter().any(|k| k.needs_output() && map(k)) || cuts || roc;
+        let settings = &state.settings;
+        let wanted = Wanted {
+            floor: settings.floor,
+            seed: settings.seed,
+            normalisation: settings.normalisation,
+            first: map(MapKind::Input0) || cuts,
+            last: map(MapKind::Input1) || cuts,
+            full: map(MapKind::Target) || map(MapKind::TargetAbove) || output,
+            ends: output,
+        };
+        self.ask_maps(MapsRequest {
+            radar: state.radar.clone(),
+            scene: state.editor.scene().clone(),
+            wanted,
+            pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
+            pair: self.output.as_ref().filter(|_| output).map(|o| o.pair.clone()),
+            colours: settings.colours,
+            projection: settings.projection,
+            target_eta: settings.target_eta,
+            output_eta: state.output_eta(),
+            scores: output && !state.editor.scene().objects.is_empty(),
+            roc,
+        });
+        if output {
+            self.ask_method(state, wanted);
+        }
+    }
+
+    fn ask_maps(&mut self, request: MapsRequest) {
+        if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
+            self.requests += 1;
+            self.maps.request(request.clone());
+            self.asked = Some(request);
+            self.waiting.get_or_insert_with(Instant::now);
+        }
+    }
+
+    /// Asks for an output of the latest maps, unless it was asked for just that.
+    fn ask_method(&mut self, state: &State, wanted: Wanted) {
+        let basis = self.result.as_ref().and_then(|r| {
+            let (ends, full) = r.frame.ends.clone().zip(r.frame.full.as_ref())?;
+            let (floor, normalisation) = (wanted.floor, wanted.normalisation);
+            Some(Basis { ends, target: full.lambda.clone(), floor, normalisation })
+        });
+        let Some((basis, method)) = basis.zip(state.method().cloned()) else { return };
+        let request = MethodRequest { radar: state.radar.clone(), basis, method };
+        let current =
+            self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
+        self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
+        if !self.method_asked.as_ref().is_some_and(|a| a.same(&request)) {
+            if state.editor.dragged().is_none() {
+                self.method.cancel_older_than(PATIENCE);
+            }
+            self.method.request(request.clone());
+            self.method_asked = Some(request);
+        }
+    }
+
+    /// Stops the reconstruction that runs.
+    pub fn cancel_method(&mut self) {
+        self.method.cancel();
+        let method = self.method_asked.as_ref().map_or("", |q| q.method.name());
+        let reason = "cancelled; change the scene or the method to start again".to_owned();
+        self.refusal = Some(Refusal { method, reason });
+    }
+
+    /// The latest maps.
+    pub fn result(&self) -> Option<&MapsResult> {
+        self.result.as_ref()
+    }
+
+    /// The latest output.
+    pub fn output(&self) -> Option<&MethodResult> {
+        self.output.as_ref()
+    }
+
+    /// Figures of that output, against the target of the same scene.
+    pub fn scores(&self) -> Option<Scores> {
+        self.output.as_ref()?;
+        self.result.as_ref()?.scores
+    }
+
+    /// Why the scene on screen can't be computed.
+    pub fn scene_error(&self) -> Option<&str> {
+        self.scene_error.as_deref()
+    }
+
+    /// Why the method has no output for the scene on screen.
+    pub fn refusal(&self) -> Option<&Refusal> {
+        self.refusal.as_ref()
+    }
+
+    /// Progress of the reconstruction, 0 to 1; `None` when none runs.
+    pub fn method_progress(&self) -> Option<f32> {
+        self.method.progress()
+    }
+
+    /// Requests sent to the maps worker: a test asks that an idle app sends none.
+    pub fn requests(&self) -> u64 {
+        self.requests
+    }
+
+    /// Whether either worker has something to do.
+    pub fn is_busy(&self) -> bool {
+        self.maps.is_busy() || self.method.is_busy()
+    }
+
+    /// Whether the shown output belongs to something else than the shown maps.
+    pub fn output_is_outdated(&self) -> bool {
+        self.outdated.is_some()
+    }
+
+    /// Whether a map has belonged to an earlier scene for so long that it must be told.
+    pub fn is_stale(&self, kind: MapKind) -> bool {
+        let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
+        old(self.waiting) || (kind.needs_output() && old(self.outdated))
+    }
+}

@@ -1,0 +1,232 @@
+//! A training that is watched: the log of one that runs elsewhere, or of one started from here as a process of its own.
+
+use crate::task::{Reply, Task, Worker};
+use std::path::{Path, PathBuf};
+use std::process::Child;
+#[cfg(feature = "network")]
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Time between two looks at the log.
+pub const EVERY: Duration = Duration::from_secs(1);
+
+/// Most points of a curve; a longer log is thinned.
+const POINTS: usize = 4000;
+
+/// What a log says.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Log {
+    /// Step and loss.
+    pub loss: Vec<[f64; 2]>,
+    /// Step and smoothed loss, where the log has it.
+    pub smoothed: Vec<[f64; 2]>,
+    /// Names and values of the last line.
+    pub last: Vec<(String, String)>,
+    /// Last step.
+    pub step: f64,
+}
+
+impl Log {
+    /// Reads CSV with a heading that names `step` and `loss`; an unfinished last line is left out.
+    ///
+    /// # Errors
+    /// What is wrong, with the line.
+    pub fn parse(text: &str) -> Result<Log, String> {
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        let mut lines = whole.lines();
+        let Some(heading) = lines.next() else { return Ok(Log::default()) };
+        let names: Vec<&str> = heading.split(',').map(str::trim).collect();
+        let column = |name: &str| names.iter().position(|n| *n == name);
+        let (Some(step), Some(loss)) = (column("step"), column("loss")) else {
+            return Err(format!("line 1: expected a heading with step and loss, found \"{heading}\""));
+        };
+        let smoothed = column("smoothed_loss");
+        let rows: Vec<&str> = lines.filter(|l| !l.trim().is_empty()).collect();
+        let thin = rows.len().div_ceil(POINTS).max(1);
+        let mut log = Log::default();
+        for (number, row) in rows.iter().enumerate() {
+            if number % thin != 0 && number + 1 != rows.len() {
+                continue;
+            }
+            let values: Vec<&str> = row.split(',').map(str::trim).collect();
+            let value = |column: usize| -> Result<f64, String> {
+                let text = values.get(column).copied().unwrap_or("");
+                text.parse()
+                    .map_err(|_| format!("line {}: {} is \"{text}\"; expected a number", number + 2, names[column]))
+            };
+            log.step = value(step)?;
+            log.loss.push([log.step, value(loss)?]);
+            if let Some(smoothed) = smoothed {
+                log.smoothed.push([log.step, value(smoothed)?]);
+            }
+            if number + 1 == rows.len() {
+                log.last = names.iter().zip(&values).map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
+            }
+        }
+        Ok(log)
+    }
+}
+
+/// A training started from here.
+struct Started {
+    child: Child,
+    steps: Option<u64>,
+}
+
+/// What is watched.
+pub struct Training {
+    worker: Worker<PathBuf, Result<Log, String>>,
+    path: Option<PathBuf>,
+    looked: Option<Instant>,
+    log: Option<Log>,
+    note: Option<String>,
+    started: Option<Started>,
+}
+
+impl Training {
+    /// Starts the thread that reads logs, which waits; `wake` is called from it.
+    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Training> {
+        let read = |_: &mut (), path: PathBuf, _: &Task| {
+            let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+            Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))
+        };
+        let worker = Worker::spawn("training log", || (), read, wake)?;
+        Ok(Training { worker, path: None, looked: None, log: None, note: None, started: None })
+    }
+
+    /// The log that is followed.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// The latest log.
+    pub fn log(&self) -> Option<&Log> {
+        self.log.as_ref()
+    }
+
+    /// What is wrong with it, or how the training ended.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Follows a log.
+    pub fn follow(&mut self, path: PathBuf) {
+        (self.path, self.log, self.note, self.looked) = (Some(path), None, None, None);
+    }
+
+    /// Starts `apertura train RECIPE` as a process of its own, its run in `folder`, and follows its log. `steps` is what it will take in all.
+    ///
+    /// # Errors
+    /// When the program can't be started.
+    #[cfg(feature = "network")]
+    pub fn begin(&mut self, recipe: &str, folder: &Path, steps: Option<u64>) -> std::io::Result<()> {
+        if let Some(parent) = folder.parent() {
+            std::fs::create_dir_all(parent)?;
+        }
+        let child = Command::new(std::env::current_exe()?)
+            .args(["train", recipe, "--output"])
+            .arg(folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()?;
+        self.follow(folder.join("log.csv"));
+        self.started = Some(Started { child, steps });
+        Ok(())
+    }
+
+    /// Whether a training started from here runs.
+    pub fn is_running(&self) -> bool {
+        self.started.is_some()
+    }
+
+    /// The part of a training started from here that is done.
+    pub fn progress(&self) -> Option<f32> {
+        let steps = self.started.as_ref()?.steps?;
+        let done = self.log.as_ref().map_or(0.0, |l| l.step);
+        Some((done / steps.max(1) as f64) as f32)
+    }
+
+    /// Ends a training started from here; its last checkpoint stays.
+    pub fn cancel(&mut self) {
+        if let Some(mut started) = self.started.take() {
+            // It may have ended by itself a moment ago.
+            let _ended = started.child.kill();
+            let _status = started.child.wait();
+            self.note = Some("stopped; its last checkpoint stays in the folder of the log".to_owned());
+        }
+    }
+
+    /// Looks at the log again once a while; called while the panel is visible. Returns when to call again.
+    pub fn look(&mut self) -> Option<Duration> {
+        let due = self.looked.is_none_or(|t| t.elapsed() >= EVERY);
+        if let Some(path) = self.path.clone().filter(|_| due && !self.worker.is_busy()) {
+            self.looked = Some(Instant::now());
+            // A training that has just begun has no log yet.
+            if !self.is_running() || path.exists() {
+                self.worker.request(path);
+            }
+        }
+        self.path.as_ref().map(|_| EVERY)
+    }
+
+    /// Takes in what was read. Returns a message for the user.
+    pub fn poll(&mut self) -> Option<String> {
+        let mut message = None;
+        if let Some(started) = &mut self.started
+            && let Ok(Some(status)) = started.child.try_wait()
+        {
+            self.started = None;
+            self.looked = None;
+            self.note = Some(if status.success() {
+                "finished; the weights are in the folder of the log".to_owned()
+            } else {
+                message = Some(format!("The training ended with {status}. Run it on the command line to see why."));
+                format!("ended with {status}")
+            });
+        }
+        for reply in self.worker.replies() {
+            match reply {
+                Reply::Done { result: Ok(log), .. } => self.log = Some(log),
+                Reply::Done { result: Err(error), .. } => self.note = Some(error),
+                Reply::Panicked { message: said, .. } => message = Some(format!("Reading the log failed: {said}")),
+            }
+        }
+        message
+    }
+}
+
+impl Drop for Training {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logs_are_read_as_they_grow() {
+        let text = "step,epoch,loss,smoothed_loss\n1,0,4.0,4.0\n2,0,2.0,3.9\n3,0,1.";
+        let log = Log::parse(text).unwrap();
+        assert_eq!(log.loss, [[1.0, 4.0], [2.0, 2.0]]);
+        assert_eq!(log.smoothed[1], [2.0, 3.9]);
+        assert_eq!(log.last[2], ("loss".to_owned(), "2.0".to_owned()));
+        assert_eq!(Log::parse("").unwrap(), Log::default());
+        let error = Log::parse("step,loss\n1,2\n2,abc\n").unwrap_err();
+        assert!(error.contains("line 3") && error.contains("abc"), "{error}");
+        assert!(Log::parse("time,value\n1,2\n").unwrap_err().contains("step and loss"));
+    }
+
+    #[test]
+    fn long_logs_are_thinned_to_their_last_line() {
+        let mut text = String::from("step,loss\n");
+        for i in 0..3 * POINTS {
+            text += &format!("{i},{}\n", 1.0 / (1 + i) as f64);
+        }
+        let log = Log::parse(&text).unwrap();
+        assert!(log.loss.len() <= POINTS + 1);
+        assert_eq!(log.step, (3 * POINTS - 1) as f64);
+    }
+}

@@ -1,0 +1,221 @@
+//! Methods on the tables' test scenes, beside what the thesis prints.
+
+use crate::app::jobs::EvaluationRow;
+use crate::app::state::{Command, EvaluationChoice};
+use crate::app::widgets::progress::progress;
+use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
+use crate::radar::Radar;
+use crate::reconstruct::Reconstructor;
+use eframe::egui;
+use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// The printed columns with their names.
+const PRINTED: [(&str, [Printed; 3]); 3] = [
+    ("printed: baseline", PRINTED_BASELINE),
+    ("printed: experiment 1", PRINTED_EXPERIMENT_1),
+    ("printed: experiment 2", PRINTED_EXPERIMENT_2),
+];
+
+/// What the test sets hold.
+const SETS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
+
+/// What can be chosen, and what was found.
+pub struct Input<'a> {
+    /// The methods to choose from.
+    pub methods: &'a [Arc<dyn Reconstructor>],
+    /// The method in use: evaluated where nobody chose others.
+    pub method: Option<&'static str>,
+    /// The radar of what was found, or else of what would be.
+    pub radar: &'a Radar,
+    /// The part that is done, while it runs.
+    pub progress: Option<f32>,
+    /// What is finished.
+    pub rows: &'a [EvaluationRow],
+    /// How the last run ended, if not well.
+    pub note: Option<&'a str>,
+}
+
+/// What is chosen.
+pub struct Memory {
+    methods: BTreeSet<&'static str>,
+    sets: [bool; 3],
+    count: u32,
+    seed: u64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Memory { methods: BTreeSet::new(), sets: [true; 3], count: 10, seed: 0 }
+    }
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
+            choices(ui, &input, memory);
+            buttons(ui, &input, memory, &mut asked);
+            if let Some(note) = input.note {
+                ui.colored_label(ui.visuals().warn_fg_color, note);
+            }
+            if let Some(other) = unlike_the_thesis(input.radar) {
+                ui.colored_label(ui.visuals().warn_fg_color, other);
+            }
+            ui.separator();
+            if input.rows.is_empty() {
+                ui.weak("Tables 4.1 to 4.3 of the thesis for the chosen methods. Scenes are random, but the same for the same seed.");
+            }
+            tables(ui, input.rows);
+        });
+    });
+    asked
+}
+
+/// How the radar differs from the one that the printed figures are of.
+fn unlike_the_thesis(radar: &Radar) -> Option<String> {
+    let thesis = Radar::default();
+    let what = match radar {
+        radar if *radar == thesis => return None,
+        radar if radar.window != thesis.window => format!("a {} window", radar.window.name()),
+        radar if radar.carrier != thesis.carrier => "a two-way carrier".to_owned(),
+        radar => format!("another radar, {} elements and {} samples", radar.elements, radar.samples),
+    };
+    Some(format!("With {what}: the printed figures are of table 3.1 and don't compare."))
+}
+
+fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
+    let known = |name: &&'static str| input.methods.iter().any(|m| m.name() == *name);
+    memory.methods.retain(known);
+    if memory.methods.is_empty() {
+        memory.methods.extend(input.method);
+    }
+    ui.add_enabled_ui(input.progress.is_none(), |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let names = memory.methods.iter().copied().collect::<Vec<_>>().join(", ");
+            let title = if memory.methods.len() > 3 { format!("{} methods", memory.methods.len()) } else { names };
+            let menu = ui.menu_button(format!("Methods: {title}"), |ui| {
+                for method in input.methods {
+                    let mut chosen = memory.methods.contains(method.name());
+                    if ui.checkbox(&mut chosen, method.name()).on_hover_text(method.description()).changed() {
+                        match chosen {
+                            true => memory.methods.insert(method.name()),
+                            false => memory.methods.remove(method.name()),
+                        };
+                    }
+                }
+            });
+            menu.response.on_hover_text("Methods to evaluate");
+            for ((chosen, what), number) in memory.sets.iter_mut().zip(SETS).zip(1..) {
+                ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
+            }
+            let label = ui.label("scenes a set");
+            ui.add(DragValue::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
+            let label = ui.label("seed");
+            ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+        });
+    });
+}
+
+fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        if let Some(part) = input.progress {
+            if progress(ui, part, 180.0, "Stop after this map; the rows that are finished stay") {
+                asked.push(Command::CancelEvaluation);
+            }
+            return;
+        }
+        let sets: Vec<usize> = (1..=3).filter(|set| memory.sets[set - 1]).collect();
+        let ready = !sets.is_empty() && !memory.methods.is_empty();
+        let start = ui.add_enabled(ready, egui::Button::new("Evaluate"));
+        let start = start.on_hover_text("Run the chosen methods over the chosen sets, in the background");
+        if start.on_disabled_hover_text("Choose a method and a set first").clicked() {
+            let methods = memory.methods.iter().copied().collect();
+            let (count, seed) = (memory.count, memory.seed);
+            asked.push(Command::Evaluate(EvaluationChoice { methods, sets, count, seed }));
+        }
+        if !input.rows.is_empty() && ui.button("Copy as CSV").on_hover_text("Copy the rows to the clipboard").clicked()
+        {
+            asked.push(Command::CopyEvaluation);
+        }
+    });
+}
+
+fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
+    for set in 1..=3 {
+        if !rows.iter().any(|r| r.set == set) {
+            continue;
+        }
+        ui.strong(format!("Table 4.{set}: {}", SETS[set - 1]));
+        Grid::new(("table", set)).num_columns(6).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
+            let at = format!("P_D % at P_FA {:.2} %", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
+            for title in ["", "SE", "P_D %", "P_FA %", &at, "ms a map"] {
+                ui.weak(title);
+            }
+            ui.end_row();
+            for (name, columns) in PRINTED {
+                let printed = columns[set - 1];
+                ui.weak(name);
+                ui.monospace(format!("{:.2}", printed.squared_error));
+                ui.monospace(format!("{:.2}", 100.0 * printed.detection));
+                ui.monospace(format!("{:.2}", 100.0 * printed.false_alarm));
+                ui.end_row();
+            }
+            for row in rows.iter().filter(|r| r.set == set) {
+                ui.strong(format!("{} (η {:.2})", row.method, row.eta))
+                    .on_hover_text(format!("{} scenes; mean ± standard error", row.scenes));
+                ui.monospace(with_error(row.squared_error, 1.0, 0));
+                ui.monospace(with_error(row.detection, 100.0, 2));
+                ui.monospace(with_error(row.false_alarm, 100.0, 2));
+                ui.monospace(row.detection_at_printed.map_or("–".to_owned(), |d| format!("{:.2}", 100.0 * d)));
+                ui.monospace(format!("{:.1}", row.median_milliseconds));
+                ui.end_row();
+            }
+        });
+        ui.add_space(8.0);
+    }
+}
+
+fn with_error(estimate: Estimate, scale: f64, digits: usize) -> String {
+    format!("{:.digits$} ± {:.digits$}", scale * estimate.mean, scale * estimate.standard_error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{Carrier, WindowFunction};
+    use crate::reconstruct::{Baseline, CAPON};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn what_is_chosen_is_asked_for() {
+        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
+        let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+            let method = Some("capon");
+            let input = Input { methods: &methods, method, radar: &radar, progress: None, rows: &[], note: None };
+            let commands = show(ui, input, &mut state.0);
+            state.1.extend(commands);
+        };
+        let mut evaluation = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Default::default());
+        evaluation.get_by_label("set 2").click();
+        evaluation.step();
+        evaluation.get_by_label("Evaluate").click();
+        evaluation.step();
+        let choice = EvaluationChoice { methods: vec!["capon"], sets: vec![1, 3], count: 10, seed: 0 };
+        assert_eq!(evaluation.state().1, [Command::Evaluate(choice)]);
+        let _told = evaluation.get_by_label_contains("With a two-way carrier");
+    }
+
+    #[test]
+    fn a_radar_that_the_tables_do_not_know_is_told() {
+        assert_eq!(unlike_the_thesis(&Radar::default()), None);
+        let hamming = Radar { window: WindowFunction::Hamming, ..Radar::default() };
+        assert!(unlike_the_thesis(&hamming).unwrap().contains("hamming"));
+        let small = Radar { elements: 128, ..Radar::default() };
+        assert!(unlike_the_thesis(&small).unwrap().contains("128 elements"));
+    }
+}

@@ -1,0 +1,134 @@
+//! A map on screen: where its places are, and the numbers behind them.
+
+use crate::app::state::{Cursor, MapView, Projection};
+use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::{Polar, Radar};
+use crate::scene::Reflector;
+use eframe::egui::{Pos2, Rect, pos2};
+
+/// Where on screen a map is, and which part of it.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// On screen.
+    pub rect: Rect,
+    /// The visible part.
+    pub view: MapView,
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Over which coordinates.
+    pub projection: Projection,
+    /// Middle of the elements that the map is of, metres along the array.
+    pub centre_x_metres: f64,
+}
+
+impl Frame<'_> {
+    /// Where the map shows a reflector.
+    pub fn blob(&self, reflector: &Reflector) -> Pos2 {
+        self.at(self.radar.blob_of(self.centre_x_metres, reflector.x_metres, reflector.y_metres))
+    }
+
+    /// Where it would be if its direction were that of the column.
+    pub fn true_direction(&self, reflector: &Reflector) -> Pos2 {
+        self.at(self.radar.polar_of(reflector.x_metres - self.centre_x_metres, reflector.y_metres))
+    }
+
+    /// Where a cursor is.
+    pub fn cursor(&self, cursor: &Cursor) -> Pos2 {
+        let cos_theta = cursor.cos_theta * self.radar.squint();
+        self.at(Polar { range_metres: cursor.range_metres, cos_theta })
+    }
+
+    /// Where a range and a direction of the map are; ranges wrap around where the map's do.
+    fn at(&self, blob: Polar) -> Pos2 {
+        let (radar, Polar { range_metres, cos_theta }) = (self.radar, blob);
+        let fraction = match self.projection {
+            Projection::RangeAngle => {
+                let bin = radar.bin_of_range(range_metres).rem_euclid(radar.samples as f64);
+                let column = radar.column_of_cos(cos_theta);
+                pos2(((column + 0.5) / radar.elements as f64) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
+            }
+            Projection::Cartesian => {
+                let extent = radar.max_range_metres();
+                let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+                let (x, y) = (range_metres * cos_theta, range_metres * sin_theta);
+                pos2(((x / extent + 1.0) / 2.0) as f32, (y / extent) as f32)
+            }
+        };
+        self.view.to_screen(self.rect, fraction)
+    }
+}
+
+/// The numbers behind a picture.
+pub struct Cells<'a> {
+    /// Lambda, `[range bins, columns]`.
+    pub map: &'a RangeAngleMap,
+    /// What is subtracted from it.
+    pub minus: Option<&'a RangeAngleMap>,
+    /// From Lambda to decades of amplitude.
+    pub scale: Option<LambdaScale>,
+}
+
+/// Reflectors drawn over a map.
+pub struct Marks<'a> {
+    /// True ones, as rings.
+    pub reflectors: &'a [Reflector],
+    /// Those the method found, as crosses.
+    pub found: &'a [Reflector],
+}
+
+/// A place of the map as fractions of its width and height, to a cursor. `None` outside the radar's view.
+pub fn cursor_at(radar: &Radar, projection: Projection, fraction: Pos2) -> Option<Cursor> {
+    let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
+    match projection {
+        Projection::RangeAngle => {
+            Some(Cursor::at_cell(radar, fy * radar.samples as f64 - 0.5, fx * radar.elements as f64 - 0.5))
+        }
+        Projection::Cartesian => {
+            let extent = radar.max_range_metres();
+            let cursor = Cursor::at_blob(radar, radar.polar_of((2.0 * fx - 1.0) * extent, fy * extent));
+            cursor.cell(radar).map(|_| cursor)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interact::Place;
+    use crate::radar::End;
+    use eframe::egui::vec2;
+
+    #[test]
+    fn a_ring_is_drawn_where_the_map_has_the_blob() {
+        let radar = Radar::default();
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(1024.0, 512.0));
+        let reflector = Reflector { x_metres: -0.832 * 20.0, y_metres: 0.5548 * 20.0, reflectivity: 1.0 };
+        let frame = |projection, centre_x_metres| Frame {
+            rect,
+            view: MapView::default(),
+            radar: &radar,
+            projection,
+            centre_x_metres,
+        };
+        let target = frame(Projection::RangeAngle, 0.0);
+        let cos = |at: Pos2| radar.cos_of_column(f64::from(at.x) - 0.5);
+        assert!((cos(target.blob(&reflector)) + 0.81).abs() < 2e-3, "the blob");
+        assert!((cos(target.true_direction(&reflector)) + 0.832).abs() < 2e-3, "the direction");
+        let input = frame(Projection::RangeAngle, radar.end_centre_metres(End::First));
+        assert!(
+            cos(input.blob(&reflector)) > cos(target.blob(&reflector)),
+            "the left end sees it less far to the left"
+        );
+        for projection in [Projection::RangeAngle, Projection::Cartesian] {
+            let frame = frame(projection, 0.0);
+            let cursor = Cursor::at_place(&radar, Place::new(reflector.x_metres, reflector.y_metres));
+            let blob = frame.blob(&reflector);
+            assert!(
+                (frame.cursor(&cursor) - blob).length() < 1e-2,
+                "the pointer over it in the scene is over its blob"
+            );
+            let back = cursor_at(&radar, projection, pos2(blob.x / 1024.0, 1.0 - blob.y / 512.0)).unwrap();
+            assert!(back.place.distance_metres(cursor.place) < 1e-2, "and back: {back:?}");
+        }
+    }
+}

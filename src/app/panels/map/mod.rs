@@ -1,0 +1,286 @@
+//! One map: picture, axes, colour bar, cursor, marks.
+
+mod colour_bar;
+mod frame;
+mod overlay;
+
+pub use frame::{Cells, Marks};
+
+use crate::app::state::{Command, Cursor, MapKind, MapView, Panel, Projection};
+use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::entry::entry;
+use crate::app::widgets::theme::Inks;
+use crate::evaluate::Metrics;
+use crate::picture::ColourMap;
+use crate::radar::{Carrier, End, Radar};
+use eframe::egui;
+use eframe::egui::{Align2, Color32, Painter, Rect, Sense, TextureId, Ui, pos2, vec2};
+use frame::{Frame, cursor_at};
+
+/// What a map shows.
+pub struct Input<'a> {
+    /// Which map.
+    pub kind: MapKind,
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Over which coordinates.
+    pub projection: Projection,
+    /// Colours of Lambda.
+    pub colours: ColourMap,
+    /// Its picture, if there is one.
+    pub texture: Option<TextureId>,
+    /// Whether the picture is of an earlier scene, and has been for long enough to be told.
+    pub stale: bool,
+    /// The numbers behind the picture.
+    pub cells: Option<Cells<'a>>,
+    /// What is drawn over it.
+    pub marks: Marks<'a>,
+    /// Where the pointer is, in whichever panel.
+    pub cursor: Option<Cursor>,
+    /// Why there is no picture.
+    pub error: Option<Problem<'a>>,
+}
+
+/// Why there is no picture.
+pub struct Problem<'a> {
+    /// What is wrong.
+    pub reason: &'a str,
+    /// Name of a method that works instead.
+    pub instead: Option<&'static str>,
+}
+
+/// Width of the colour bar with its numbers.
+const BAR: f32 = 38.0;
+
+/// Draws a map.
+pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
+    let mut asked = Vec::new();
+    let area = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
+    let bar = has_bar(input.kind) && area.width() > 250.0;
+    let rect = rect_of(area, bar, input.projection);
+    let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
+    let label = format!("{} map", input.kind.title());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
+    navigate(ui, rect, &response, view);
+    let frame = Frame {
+        rect,
+        view: *view,
+        radar: input.radar,
+        projection: input.projection,
+        centre_x_metres: centre_x_metres(input.kind, input.radar),
+    };
+    let painter = ui.painter().with_clip_rect(area);
+    let inner = ui.painter().with_clip_rect(rect.intersect(area));
+    match input.texture {
+        Some(texture) => {
+            let uv = Rect::from_min_max(pos2(view.low.x, view.high.y), pos2(view.high.x, view.low.y));
+            let tint = if input.stale { Color32::from_gray(120) } else { Color32::WHITE };
+            inner.rect_filled(rect, 0.0, Inks::of(ui.visuals()).beyond);
+            inner.image(texture, rect, uv, tint);
+        }
+        None => empty(ui, &inner, rect, input.error.as_ref(), &mut asked),
+    }
+    draw_axes(ui, &painter, frame);
+    overlay::marks(&inner, frame, &input.marks, response.hover_pos());
+    if let Some(pos) = response.hover_pos() {
+        asked.extend(cursor_at(input.radar, input.projection, view.at(rect, pos)).map(Command::Hover));
+    }
+    if let Some(cursor) = &input.cursor {
+        overlay::cursor(&inner, frame, cursor, input.cells.as_ref());
+    }
+    if input.stale {
+        let corner = rect.left_bottom() + vec2(8.0, -8.0);
+        axes::text_on_patch(&inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
+    }
+    if bar {
+        let bar = Rect::from_min_max(pos2(rect.right() + 7.0, rect.top()), pos2(rect.right() + 16.0, rect.bottom()));
+        colour_bar::draw(ui, &painter, bar, input.kind, input.colours);
+    }
+    response.context_menu(|ui| menu(ui, input.kind, &mut asked));
+    asked
+}
+
+/// Figures for a map's title bar.
+pub struct Caption {
+    /// Which map.
+    pub kind: MapKind,
+    /// The method whose output is shown.
+    pub method: Option<&'static str>,
+    /// Whether the map is of an earlier scene.
+    pub updating: bool,
+    /// Figures of the output that is shown, against the target of the same scene.
+    pub metrics: Option<Metrics>,
+    /// eta'.
+    pub target_eta: f32,
+    /// eta.
+    pub output_eta: f32,
+}
+
+/// What stands in the title bar of a map's panel.
+pub fn caption(input: Caption) -> Option<String> {
+    let updating = if input.updating { "(updating) " } else { "" };
+    let text = match input.kind {
+        MapKind::TargetAbove => format!("η' = {:.2} {updating}", input.target_eta),
+        MapKind::OutputAbove => {
+            let figures = input.metrics.map_or_else(String::new, |m| {
+                let detection = m.detection.map_or("–".to_owned(), |d| format!("{:.1} %", d * 100.0));
+                format!("P_D {detection} · P_FA {:.2} % · ", m.false_alarm * 100.0)
+            });
+            format!("{figures}η = {:.2} {updating}", input.output_eta)
+        }
+        MapKind::Output => format!("{} {updating}", input.method.unwrap_or_default()),
+        MapKind::Difference => {
+            let figures = input.metrics.map_or_else(String::new, |m| format!("SE {:.0} ", m.squared_error));
+            format!("{figures}{updating}")
+        }
+        _ => updating.to_owned(),
+    };
+    (!text.trim().is_empty()).then_some(text)
+}
+
+/// Middle of the elements that a map is of.
+fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
+    match kind {
+        MapKind::Input0 => radar.end_centre_metres(End::First),
+        MapKind::Input1 => radar.end_centre_metres(End::Last),
+        _ => 0.0,
+    }
+}
+
+fn has_bar(kind: MapKind) -> bool {
+    !matches!(kind, MapKind::TargetAbove | MapKind::OutputAbove)
+}
+
+/// Where the picture goes within the panel.
+fn rect_of(area: Rect, bar: bool, projection: Projection) -> Rect {
+    let right = if bar { BAR } else { 10.0 };
+    let rect = Rect::from_min_max(
+        area.min + vec2(axes::LEFT + 4.0, 8.0),
+        pos2((area.right() - right).max(area.left() + 60.0), (area.bottom() - axes::BOTTOM).max(area.top() + 30.0)),
+    );
+    if projection == Projection::RangeAngle {
+        return rect;
+    }
+    // Equal aspect: the map is twice as wide as high.
+    let size = vec2(rect.width().min(2.0 * rect.height()), rect.height().min(rect.width() / 2.0));
+    Align2::CENTER_CENTER.align_size_within_rect(size, rect)
+}
+
+fn navigate(ui: &Ui, rect: Rect, response: &egui::Response, view: &mut MapView) {
+    if let Some(pos) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let factor = pinch * (scroll / 200.0).exp();
+        if factor != 1.0 {
+            let fixed = view.at(rect, pos);
+            view.zoom(factor, fixed);
+        }
+    }
+    if response.dragged() {
+        let before = view.at(rect, rect.min);
+        let after = view.at(rect, rect.min + response.drag_delta());
+        view.pan(before - after);
+    }
+    if response.double_clicked() {
+        *view = MapView::default();
+    }
+}
+
+fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
+    let Frame { rect, view, radar, projection, .. } = frame;
+    let (x, y) = match projection {
+        Projection::RangeAngle => {
+            let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);
+            let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
+            let title = match radar.carrier {
+                Carrier::OneWay => "cos θ",
+                Carrier::TwoWay => "cos θ, folded: each column stands for two directions",
+            };
+            let x = Axis { low: cos(view.low.x), high: cos(view.high.x), title };
+            (x, Axis { low: range(view.low.y), high: range(view.high.y), title: "range, m" })
+        }
+        Projection::Cartesian => {
+            let extent = radar.max_range_metres();
+            let x = |fraction: f32| (2.0 * f64::from(fraction) - 1.0) * extent;
+            let y = |fraction: f32| f64::from(fraction) * extent;
+            let across = Axis { low: x(view.low.x), high: x(view.high.x), title: "x, m" };
+            (across, Axis { low: y(view.low.y), high: y(view.high.y), title: "y, m" })
+        }
+    };
+    axes::draw(ui, painter, rect, x, y);
+}
+
+/// What a map without a picture says, and the way out of it.
+fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<'_>>, asked: &mut Vec<Command>) {
+    painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    let text = error.map_or("computing…", |e| e.reason);
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 16.0).max(40.0), 76.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(egui::RichText::new(text).size(12.0).weak()).wrap().selectable(false));
+            if let Some(instead) = error.and_then(|e| e.instead)
+                && ui.button(format!("Use {instead}")).on_hover_text("A method that works here").clicked()
+            {
+                asked.push(Command::Method(instead));
+            }
+        });
+    });
+}
+
+fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
+    for command in [
+        Command::Maximise(Panel::Map(kind)),
+        Command::ToggleProjection,
+        Command::ResetMaps,
+        Command::ToggleReflectors,
+        Command::ClosePanel(Panel::Map(kind)),
+    ] {
+        entry(ui, command, true, asked);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
+        let radar = Radar::default();
+        let input = Input {
+            kind: MapKind::Output,
+            radar: &radar,
+            projection: Projection::RangeAngle,
+            colours: ColourMap::Grey,
+            texture: None,
+            stale: false,
+            cells: None,
+            marks: Marks { reflectors: &[], found: &[] },
+            cursor: None,
+            error,
+        };
+        asked.extend(show(ui, input, &mut MapView::default()));
+    }
+
+    #[test]
+    fn the_pointer_is_told_in_cells() {
+        let mut map = Harness::new_ui_state(|ui, asked| draw(ui, None, asked), Vec::new());
+        map.step();
+        let rect = map.get_by_label("Output map").rect();
+        map.hover_at(rect.center());
+        map.step();
+        let Some(Command::Hover(cursor)) = map.state().last() else { panic!("{:?}", map.state()) };
+        assert!((cursor.bin - 255.5).abs() < 1.0 && (cursor.column - 511.5).abs() < 1.0, "{cursor:?}");
+    }
+
+    #[test]
+    fn a_refusal_is_told_and_another_method_offered() {
+        let problem = || Problem { reason: "trained on another radar", instead: Some("capon") };
+        let mut map = Harness::new_ui_state(|ui, asked| draw(ui, Some(problem()), asked), Vec::new());
+        map.step();
+        let _told = map.get_by_label("trained on another radar");
+        map.get_by_label("Use capon").click();
+        map.step();
+        assert!(map.state().contains(&Command::Method("capon")), "{:?}", map.state());
+    }
+}

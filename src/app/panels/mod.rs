@@ -1,0 +1,14 @@
+//! The panels, one a file: each a function of what it shows, which answers with what was asked for.
+
+pub mod bounds;
+pub mod controls;
+pub mod cuts;
+pub mod evaluation;
+pub mod guide;
+pub mod inspector;
+pub mod map;
+pub mod roc;
+pub mod run_time;
+pub mod scene;
+pub mod timing;
+pub mod training;

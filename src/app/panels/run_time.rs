@@ -1,0 +1,199 @@
+//! Run time against error on this machine, measured while one watches.
+
+use crate::app::state::Command;
+use crate::app::widgets::progress::progress;
+use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
+use crate::radar::Radar;
+use crate::signal::{Algorithm, Precision};
+use eframe::egui;
+use eframe::egui::{Color32, ComboBox, Ui};
+use egui_plot::{GridMark, HLine, Legend, MarkerShape, Plot, PlotPoints, Points};
+use std::collections::BTreeSet;
+
+/// Errors below this are drawn at this: a logarithmic axis has no zero.
+const SMALLEST_ERROR: f64 = 1e-16;
+
+/// What was measured.
+pub struct Input<'a> {
+    /// The radar of what was measured, or else of what would be.
+    pub radar: &'a Radar,
+    /// The part that is done, while it measures.
+    pub progress: Option<f32>,
+    /// Rows measured so far.
+    pub rows: &'a [FrontRow],
+    /// Time of one bare transform, milliseconds.
+    pub bare_fft_ms: Option<f64>,
+    /// How the last run ended, if not well.
+    pub note: Option<&'a str>,
+}
+
+/// What is chosen.
+pub struct Memory {
+    thorough: bool,
+    task: FrontTask,
+    /// Number of reflectors whose rows are drawn; all where `None`.
+    reflectors: Option<usize>,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Memory { thorough: false, task: FrontTask::Scratch, reflectors: None }
+    }
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| match input.progress {
+            Some(part) => {
+                if progress(ui, part, 180.0, "Stop after this measurement; what was measured stays") {
+                    asked.push(Command::CancelMeasurement);
+                }
+            }
+            None => {
+                let tip = "Time how long three maps take, and how wrong they are, by algorithm and precision; leave the \
+                           machine alone meanwhile";
+                if ui.button("Measure").on_hover_text(tip).clicked() {
+                    memory.reflectors = None;
+                    asked.push(Command::Measure { thorough: memory.thorough });
+                }
+                ui.checkbox(&mut memory.thorough, "thorough")
+                    .on_hover_text("Every algorithm, up to 300 reflectors, drags too: about a minute instead of seconds");
+            }
+        });
+        let Radar { elements, samples, window, .. } = input.radar;
+        ui.weak(format!("{elements} elements, {samples} samples, window {}", window.name()));
+        if let Some(note) = input.note {
+            ui.colored_label(ui.visuals().warn_fg_color, note);
+        }
+        if !input.rows.is_empty() {
+            filter(ui, input.rows, memory);
+            plot(ui, &input, memory);
+        } else if input.progress.is_none() {
+            ui.weak("Nothing measured yet.");
+        }
+    });
+    asked
+}
+
+/// Which rows are drawn.
+fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut Memory) {
+    let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
+    ui.horizontal_wrapped(|ui| {
+        let text = |count: Option<usize>| match count {
+            None => "all".to_owned(),
+            Some(count) => count.to_string(),
+        };
+        let label = ui.label("Reflectors");
+        let combo = ComboBox::from_id_salt("reflectors").width(60.0).selected_text(text(memory.reflectors));
+        let combo = combo.show_ui(ui, |ui| {
+            for choice in std::iter::once(None).chain(counts.into_iter().map(Some)) {
+                ui.selectable_value(&mut memory.reflectors, choice, text(choice));
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text("Draw the measurements of so many reflectors");
+        if rows.iter().any(|r| r.task == FrontTask::Drag) {
+            ui.selectable_value(&mut memory.task, FrontTask::Scratch, "from scratch");
+            ui.selectable_value(&mut memory.task, FrontTask::Drag, "one dragged");
+        } else {
+            memory.task = FrontTask::Scratch;
+        }
+    });
+}
+
+fn colour(entrant: Entrant, dark: bool) -> Color32 {
+    match entrant {
+        Entrant::Planned if dark => Color32::from_rgb(225, 230, 238),
+        Entrant::Planned => Color32::from_rgb(40, 46, 58),
+        Entrant::Forced(Algorithm::Split) => Color32::from_rgb(64, 146, 246),
+        Entrant::Forced(Algorithm::Gridded) => Color32::from_rgb(240, 130, 40),
+        Entrant::Forced(Algorithm::ClosedForm) => Color32::from_rgb(230, 70, 90),
+        Entrant::Forced(Algorithm::Exact) => Color32::from_rgb(60, 170, 90),
+        Entrant::Forced(Algorithm::Direct) => Color32::from_rgb(180, 90, 200),
+    }
+}
+
+fn plot(ui: &mut Ui, input: &Input<'_>, memory: &Memory) {
+    let dark = ui.visuals().dark_mode;
+    let drawn = |r: &&FrontRow| r.task == memory.task && memory.reflectors.is_none_or(|count| count == r.reflectors);
+    let shown: Vec<&FrontRow> = input.rows.iter().filter(drawn).collect();
+    let powers = |mark: GridMark| match (mark.value - mark.value.round()).abs() < 1e-6 {
+        true => power_of_ten(mark.value.round() as i32),
+        false => String::new(),
+    };
+    let places = |shown: &[&FrontRow]| -> Vec<[f64; 2]> {
+        shown.iter().map(|r| [r.signal_error.max(SMALLEST_ERROR).log10(), r.median_ms.log10()]).collect()
+    };
+    Plot::new("run time")
+        .x_axis_label("largest error of a sample")
+        .y_axis_label("three maps, ms")
+        .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [8.0, 4.0, 2.0]))
+        .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [10.0, 1.0, 0.5]))
+        .x_axis_formatter(move |mark, _| powers(mark))
+        .y_axis_formatter(move |mark, _| powers(mark))
+        .legend(Legend::default().background_alpha(0.7))
+        .include_x(SMALLEST_ERROR.log10())
+        .include_x(-2.0)
+        .include_y(0.0)
+        .include_y(2.0)
+        .allow_scroll(false)
+        .y_axis_min_width(36.0)
+        .show(ui, |plot| {
+            if let Some(bare) = input.bare_fft_ms {
+                let line = HLine::new("one bare transform, one thread", bare.log10());
+                plot.hline(line.color(Color32::GRAY).width(1.0).style(egui_plot::LineStyle::dashed_loose()));
+            }
+            let entrants = std::iter::once(Entrant::Planned).chain(Algorithm::ALL.map(Entrant::Forced));
+            for entrant in entrants {
+                for (precision, shape) in [(Precision::F32, MarkerShape::Circle), (Precision::F64, MarkerShape::Square)]
+                {
+                    let rows: Vec<&FrontRow> =
+                        shown.iter().copied().filter(|r| r.algorithm == entrant && r.precision == precision).collect();
+                    if rows.is_empty() {
+                        continue;
+                    }
+                    let planned = entrant == Entrant::Planned;
+                    plot.points(
+                        Points::new(format!("{entrant}, {precision}"), PlotPoints::from(places(&rows)))
+                            .shape(shape)
+                            .filled(!planned)
+                            .radius(if planned { 6.5 } else { 3.5 })
+                            .color(colour(entrant, dark)),
+                    );
+                }
+            }
+        });
+}
+
+fn power_of_ten(exponent: i32) -> String {
+    match exponent {
+        -2..=4 => format!("{}", 10f64.powi(exponent)),
+        _ => format!("1e{exponent}").replace('-', "−"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn measuring_is_asked_for_and_can_be_stopped() {
+        let radar = Radar { elements: 128, ..Radar::default() };
+        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+            let progress = (!state.1.is_empty()).then_some(0.5);
+            let input = Input { radar: &radar, progress, rows: &[], bare_fft_ms: None, note: None };
+            let commands = show(ui, input, &mut state.0);
+            state.1.extend(commands);
+        };
+        let mut run_time = Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Default::default());
+        let _told = run_time.get_by_label_contains("128 elements");
+        for label in ["thorough", "Measure", "Cancel"] {
+            run_time.get_by_label(label).click();
+            run_time.step();
+        }
+        assert_eq!(run_time.state().1, [Command::Measure { thorough: true }, Command::CancelMeasurement]);
+    }
+}

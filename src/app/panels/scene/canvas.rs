@@ -1,0 +1,240 @@
+//! How the scene is drawn: ground, rings, spokes, array, objects, grips.
+
+use crate::app::state::{Cursor, SceneView};
+use crate::app::widgets::axes;
+use crate::app::widgets::theme::Inks;
+use crate::interact::{Grip, Place, grips};
+use crate::radar::{End, Radar};
+use crate::scene::{Object, Reflector};
+use eframe::egui;
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use std::f64::consts::PI;
+
+/// Most reflectors that are drawn of one object.
+const DOTS: usize = 400;
+
+/// Where the canvas is, and what part of the scene it shows.
+#[derive(Clone, Copy)]
+pub struct Canvas<'a> {
+    /// On screen.
+    pub rect: Rect,
+    /// The visible part.
+    pub view: SceneView,
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Colours.
+    pub inks: Inks,
+}
+
+impl Canvas<'_> {
+    /// Where a place of the scene appears.
+    pub fn at(&self, place: Place) -> Pos2 {
+        self.view.to_screen(self.rect, place)
+    }
+}
+
+/// Everything that doesn't move: ground, rings, spokes, fields of view, array.
+pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool) {
+    let Canvas { rect, view, radar, inks } = canvas;
+    painter.rect_filled(rect, 0.0, inks.beyond);
+    let extent = radar.max_range_metres();
+    let origin = Place::new(0.0, 0.0);
+    painter.add(Shape::convex_polygon(half_disc(view, rect, origin, extent), inks.ground, Stroke::NONE));
+    if fields_of_view {
+        for (end, colour) in End::BOTH.into_iter().zip(inks.ends) {
+            field_of_view(radar, view, painter, rect, end, colour);
+        }
+    }
+    rings(radar, view, painter, rect, inks);
+    array(radar, view, painter, rect, inks);
+}
+
+/// Outline of the half disc ahead of the array.
+fn half_disc(view: SceneView, rect: Rect, centre: Place, radius: f64) -> Vec<Pos2> {
+    arc(view, rect, centre, radius, 0.0, PI)
+}
+
+fn arc(view: SceneView, rect: Rect, centre: Place, radius: f64, from: f64, to: f64) -> Vec<Pos2> {
+    let steps = 96;
+    let at = |i: usize| {
+        let angle = from + (to - from) * i as f64 / steps as f64;
+        Place::new(centre.x_metres + radius * angle.cos(), centre.y_metres + radius * angle.sin())
+    };
+    (0..=steps).map(|i| view.to_screen(rect, at(i))).collect()
+}
+
+fn rings(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: Inks) {
+    let extent = radar.max_range_metres();
+    let thin = Stroke::new(1.0, inks.grid);
+    let visible = f64::from(rect.width().min(2.0 * rect.height())) * view.metres_per_point;
+    let spokes = [15, 30, 45, 60, 75, 90, 105, 120, 135, 150, 165];
+    for degrees in spokes {
+        let angle = f64::from(degrees) * PI / 180.0;
+        let end = view.to_screen(rect, Place::new(extent * angle.cos(), extent * angle.sin()));
+        let stroke = if degrees % 30 == 0 { thin } else { Stroke::new(1.0, inks.grid.gamma_multiply(0.5)) };
+        painter.line_segment([view.to_screen(rect, Place::new(0.0, 0.0)), end], stroke);
+        if degrees % 30 == 0 {
+            let out = view.to_screen(rect, Place::new(1.03 * extent * angle.cos(), 1.03 * extent * angle.sin()));
+            axes::text(painter, out, Align2::CENTER_CENTER, &format!("{degrees}°"), inks.grid_text);
+        }
+    }
+    let ranges = axes::ticks(0.0, extent, (0.5 * extent * 8.0 / visible.max(1e-3)).clamp(4.0, 60.0) as f32);
+    let step = ranges.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
+    for range in ranges.into_iter().filter(|r| *r > 0.0) {
+        painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), range), thin));
+        let at = view.to_screen(rect, Place::new(range, 0.0));
+        axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &axes::tick_text(range, step), inks.grid_text);
+        let at = view.to_screen(rect, Place::new(-range, 0.0));
+        axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &axes::tick_text(range, step), inks.grid_text);
+    }
+    let edge = Stroke::new(1.5, inks.grid_text);
+    painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), extent), edge));
+}
+
+/// What one end can see: its unambiguous angles out to the maximum range (thesis figure 5-6).
+fn field_of_view(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, end: End, colour: Color32) {
+    let centre = Place::new(radar.end_centre_metres(end), 0.0);
+    let half = radar.end_field_of_view_radians();
+    let mut outline = arc(view, rect, centre, radar.max_range_metres(), PI / 2.0 - half, PI / 2.0 + half);
+    outline.push(view.to_screen(rect, centre));
+    painter.add(Shape::convex_polygon(outline.clone(), colour.gamma_multiply(0.07), Stroke::NONE));
+    painter.add(Shape::closed_line(outline, Stroke::new(1.2, colour.gamma_multiply(0.7))));
+}
+
+/// The array to scale on the x axis, its ends in their colours with markers that stay visible when it is small.
+fn array(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: Inks) {
+    let at = |x: f64| view.to_screen(rect, Place::new(x, 0.0));
+    let half = radar.aperture_metres() / 2.0;
+    painter.line_segment([at(-half), at(half)], Stroke::new(3.0, inks.array));
+    for ((end, colour), name) in End::BOTH.into_iter().zip(inks.ends).zip(["0", "1"]) {
+        let range = radar.end_range(end);
+        let (a, b) = (radar.element_x_metres(range.start), radar.element_x_metres(range.end - 1));
+        painter.line_segment([at(a), at(b)], Stroke::new(5.0, colour));
+        let tip = at((a + b) / 2.0) + vec2(0.0, 3.0);
+        let triangle = vec![tip, tip + vec2(-5.0, 9.0), tip + vec2(5.0, 9.0)];
+        painter.add(Shape::convex_polygon(triangle, colour, Stroke::NONE));
+        let side = if end == End::First { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
+        let shift = if end == End::First { -6.0 } else { 6.0 };
+        axes::text(painter, tip + vec2(shift, 1.0), side, name, colour);
+    }
+}
+
+/// How an object is drawn.
+#[derive(Clone, Copy)]
+pub struct Look {
+    /// Whether it is selected.
+    pub selected: bool,
+    /// Whether the pointer is over it.
+    pub hovered: bool,
+}
+
+/// An object, as it is when selected, hovered or neither.
+pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look) {
+    let (Canvas { view, inks, .. }, Look { selected, hovered }) = (canvas, look);
+    let colour = if selected { inks.selected } else { inks.reflector };
+    let at = |p: Place| canvas.at(p);
+    let centre = at(object.centre_metres().into());
+    let halo = if hovered || selected { colour.gamma_multiply(0.25) } else { Color32::TRANSPARENT };
+    match object {
+        Object::Point(p) => {
+            painter.circle_filled(centre, 9.0, halo);
+            painter.circle(centre, 4.5, colour, Stroke::new(1.0, inks.ground));
+            if p.y_metres < 0.0 {
+                ghost(painter, at(Place::new(p.x_metres, -p.y_metres)), inks);
+            }
+        }
+        Object::Line(l) => {
+            let (a, b) = (at(Place::new(l.x_metres, l.y_start_metres)), at(l.end_metres().into()));
+            painter.line_segment([a, b], Stroke::new(9.0, halo));
+            painter.line_segment([a, b], Stroke::new(1.0, colour.gamma_multiply(0.6)));
+            dots(painter, object, 1.8, colour, at);
+        }
+        Object::Gaussian(g) => {
+            let radius =
+                vec2((g.x_std_metres / view.metres_per_point) as f32, (g.y_std_metres / view.metres_per_point) as f32);
+            painter.add(egui::epaint::EllipseShape {
+                center: centre,
+                radius: 2.0 * radius,
+                fill: halo.gamma_multiply(0.4),
+                stroke: Stroke::new(1.0, colour.gamma_multiply(0.6)),
+                angle: 0.0,
+            });
+            dots(painter, object, 1.8, colour, at);
+        }
+    }
+    if selected {
+        let handles = grips(object, view.metres_per_point);
+        for g in handles.into_iter().filter(|g| g.grip != Grip::Body) {
+            grip(painter, at(g.place), g.grip, colour, inks);
+        }
+    }
+}
+
+fn dots(painter: &Painter, object: &Object, radius: f32, colour: Color32, at: impl Fn(Place) -> Pos2) {
+    let reflectors = object.reflectors();
+    let step = reflectors.len().div_ceil(DOTS).max(1);
+    for r in reflectors.iter().step_by(step) {
+        painter.circle_filled(at(Place::new(r.x_metres, r.y_metres)), radius, colour);
+    }
+}
+
+/// Where something behind the array appears in the maps.
+fn ghost(painter: &Painter, at: Pos2, inks: Inks) {
+    painter.circle_stroke(at, 4.5, Stroke::new(1.0, inks.grid_text));
+}
+
+fn grip(painter: &Painter, at: Pos2, grip: Grip, colour: Color32, inks: Inks) {
+    let stroke = Stroke::new(1.5, colour);
+    match grip {
+        Grip::Spacing | Grip::SpreadX | Grip::SpreadY => {
+            let r = 5.5;
+            let diamond = vec![at + vec2(0.0, -r), at + vec2(r, 0.0), at + vec2(0.0, r), at + vec2(-r, 0.0)];
+            painter.add(Shape::convex_polygon(diamond, inks.ground, stroke));
+        }
+        _ => {
+            let square = Rect::from_center_size(at, vec2(8.0, 8.0));
+            painter.rect(square, 1.0, inks.ground, stroke, egui::StrokeKind::Middle);
+        }
+    }
+}
+
+/// Reflectors that the method found.
+pub fn found(painter: &Painter, canvas: Canvas<'_>, found: &[Reflector]) {
+    let stroke = Stroke::new(1.5, canvas.inks.found);
+    for r in found.iter().take(2000) {
+        let at = canvas.at(Place::new(r.x_metres, r.y_metres));
+        painter.line_segment([at + vec2(-5.0, -5.0), at + vec2(5.0, 5.0)], stroke);
+        painter.line_segment([at + vec2(-5.0, 5.0), at + vec2(5.0, -5.0)], stroke);
+    }
+}
+
+/// The place that the pointer has in another panel.
+pub fn cursor(painter: &Painter, canvas: Canvas<'_>, cursor: &Cursor) {
+    let at = canvas.at(cursor.place);
+    let stroke = Stroke::new(1.0, canvas.inks.selected.gamma_multiply(0.8));
+    if cursor.range_metres <= canvas.radar.max_range_metres() {
+        let origin = Place::new(0.0, 0.0);
+        painter.add(Shape::line(half_disc(canvas.view, canvas.rect, origin, cursor.range_metres), stroke));
+        painter.line_segment([canvas.at(origin), at], stroke);
+    }
+    painter.circle_stroke(at, 6.0, stroke);
+}
+
+/// The box that is being drawn to select what lies in it.
+pub fn selection_box(painter: &Painter, canvas: Canvas<'_>, corner: Place, pointer: Pos2) {
+    let colour = canvas.inks.selected;
+    let rect = Rect::from_two_pos(canvas.at(corner), pointer);
+    painter.rect(rect, 0.0, colour.gamma_multiply(0.12), Stroke::new(1.0, colour), egui::StrokeKind::Middle);
+}
+
+/// How many metres a bar of the scale stands for, in the corner.
+pub fn scale_bar(painter: &Painter, canvas: Canvas<'_>) {
+    let Canvas { rect, view, inks, .. } = canvas;
+    let wanted = 70.0 * view.metres_per_point;
+    let Some(length) = axes::ticks(0.0, wanted, 1.0).into_iter().rev().find(|v| *v > 0.0) else { return };
+    let width = (length / view.metres_per_point) as f32;
+    let left = pos2(rect.left() + 10.0, rect.top() + 14.0);
+    painter.line_segment([left, left + vec2(width, 0.0)], Stroke::new(2.0, inks.grid_text));
+    let text = format!("{} m", axes::tick_text(length, length));
+    axes::text(painter, left + vec2(width + 5.0, 0.0), Align2::LEFT_CENTER, &text, inks.grid_text);
+}

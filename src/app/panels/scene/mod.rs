@@ -1,0 +1,314 @@
+//! The scene's canvas: what the pointer does in it.
+
+mod canvas;
+
+use crate::app::state::{Command, Cursor, NewObject, SceneView};
+use crate::app::widgets::entry::entry;
+use crate::app::widgets::theme::Inks;
+use crate::interact::{Editor, Grip, Place, SelectionMode, Snap, grips, hit};
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use canvas::{Canvas, Look};
+use eframe::egui;
+use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, Response, Sense, Ui, vec2};
+
+/// What the canvas shows beside the scene.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Where dragged objects come to rest.
+    pub snap: Snap,
+    /// Whether the ends' fields of view are drawn.
+    pub fields_of_view: bool,
+    /// Reflectors that the method found, where they are drawn.
+    pub found: &'a [Reflector],
+    /// Where the pointer is, in whichever panel.
+    pub cursor: Option<Cursor>,
+    /// Why the scene can't be computed.
+    pub error: Option<&'a str>,
+}
+
+/// Draws the canvas. Drags and selections go straight to the editor: as commands they would lag a frame.
+pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut SceneView) -> Vec<Command> {
+    let mut asked = Vec::new();
+    let rect = ui.available_rect_before_wrap();
+    fit(input.radar, editor, view, rect);
+    // `Sense::drag` alone: a drag starts with the first pixel.
+    let response = ui.interact(rect, ui.scope_id().with("scene canvas"), Sense::drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
+    navigate(view, ui, rect, &response);
+    pointer(ui, &input, editor, view, rect, &response, &mut asked);
+    let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
+    let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
+    let painter = ui.painter().with_clip_rect(rect);
+    let canvas = Canvas { rect, view: *view, radar: input.radar, inks: Inks::of(ui.visuals()) };
+    canvas::ground(&painter, canvas, input.fields_of_view);
+    for (index, object) in editor.scene().objects.iter().enumerate() {
+        let hovered = hovered.is_some_and(|h| h.object == index);
+        let look = Look { selected: editor.selection().contains(index), hovered };
+        canvas::object(&painter, canvas, object, look);
+    }
+    canvas::found(&painter, canvas, input.found);
+    label_handles(editor, *view, ui, rect);
+    if let (Some(start), Some(pos)) = (view.box_start, ui.input(|i| i.pointer.interact_pos())) {
+        canvas::selection_box(&painter, canvas, start, pos);
+    }
+    match (hover, input.cursor) {
+        (Some(place), _) => asked.push(Command::Hover(Cursor::at_place(input.radar, place))),
+        (None, Some(cursor)) => canvas::cursor(&painter, canvas, &cursor),
+        (None, None) => {}
+    }
+    canvas::scale_bar(&painter, canvas);
+    say(ui, &painter, rect, editor.scene().objects.is_empty(), input.error);
+    if let Some(hit) = editor.dragged().or(hovered) {
+        ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
+            (Grip::Body, Some(_)) => CursorIcon::Grabbing,
+            (Grip::Body, None) => CursorIcon::Grab,
+            (Grip::SpreadX, _) => CursorIcon::ResizeHorizontal,
+            _ => CursorIcon::ResizeVertical,
+        });
+    }
+    context_menu(editor, *view, ui, rect, &response, &mut asked);
+    asked
+}
+
+/// What an empty scene offers, and what is wrong with this one.
+fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>) {
+    if empty {
+        let ink = ui.visuals().weak_text_color();
+        let text = "Empty scene: double-click to add a point";
+        painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(14.0), ink);
+    }
+    if let Some(error) = error {
+        let text = format!("Not computed: {error}");
+        let ink = ui.visuals().error_fg_color;
+        let galley = painter.layout(text, egui::FontId::proportional(12.0), ink, rect.width() - 24.0);
+        let at = rect.left_bottom() + vec2(12.0, -8.0 - galley.size().y);
+        painter.rect_filled(Rect::from_min_size(at, galley.size()).expand(4.0), 3.0, ui.visuals().extreme_bg_color);
+        painter.galley(at, galley, ink);
+    }
+}
+
+/// Shows everything the radar can see, and whatever else the scene holds nearby.
+fn fit(radar: &Radar, editor: &Editor, view: &mut SceneView, rect: Rect) {
+    let resized = view.fitted.is_some_and(|size| size != rect.size()) && editor.dragged().is_none();
+    if !(view.fit || resized) || rect.width() < 40.0 || rect.height() < 40.0 {
+        return;
+    }
+    let extent = radar.max_range_metres();
+    let (mut low, mut high) = (Place::new(-extent, -0.08 * extent), Place::new(extent, 1.07 * extent));
+    if let Some((a, b)) = editor.bounds() {
+        // Things at a kilometre would make everything else a dot.
+        let limit = 3.0 * extent;
+        low.x_metres = low.x_metres.min(a.x_metres.max(-limit));
+        low.y_metres = low.y_metres.min(a.y_metres.max(-limit) - 0.03 * extent);
+        high.x_metres = high.x_metres.max(b.x_metres.min(limit));
+        high.y_metres = high.y_metres.max(b.y_metres.min(limit));
+    }
+    view.show(rect, low, high);
+    (view.fit, view.fitted) = (false, Some(rect.size()));
+}
+
+fn navigate(view: &mut SceneView, ui: &Ui, rect: Rect, response: &Response) {
+    if let Some(pos) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let factor = f64::from(pinch * (scroll / 200.0).exp());
+        if factor != 1.0 {
+            view.zoom(factor, rect, pos);
+            view.fitted = None;
+        }
+    }
+    if response.dragged_by(PointerButton::Middle) || response.dragged_by(PointerButton::Secondary) {
+        let delta = response.drag_delta();
+        view.fitted = None;
+        view.centre.x_metres -= f64::from(delta.x) * view.metres_per_point;
+        view.centre.y_metres += f64::from(delta.y) * view.metres_per_point;
+    }
+}
+
+/// Selects, drags, draws boxes, adds points.
+fn pointer(
+    ui: &Ui,
+    input: &Input<'_>,
+    editor: &mut Editor,
+    view: &mut SceneView,
+    rect: Rect,
+    response: &Response,
+    asked: &mut Vec<Command>,
+) {
+    let (origin, now, modifiers) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers));
+    // A tap can come and go within one frame: then there is no drag, but still something to select.
+    let tapped = ui.input(|i| i.pointer.primary_pressed() && i.pointer.primary_released() && !i.pointer.primary_down());
+    let began = response.drag_started_by(PointerButton::Primary) || (tapped && response.contains_pointer());
+    if began && let Some(origin) = origin.or(now) {
+        ui.memory_mut(|m| m.stop_text_input());
+        let place = view.to_scene(rect, origin);
+        let mode = if modifiers.shift || modifiers.command { SelectionMode::Toggle } else { SelectionMode::Replace };
+        match editor.hit(place, view.metres_per_point) {
+            Some(hit) if tapped || mode == SelectionMode::Toggle => editor.select([hit.object], mode),
+            Some(hit) => editor.begin_drag(hit, place),
+            None => {
+                if mode == SelectionMode::Replace {
+                    editor.select([], mode);
+                }
+                view.box_start = (!tapped).then_some(place);
+            }
+        }
+    }
+    if let (Some(_), Some(now)) = (editor.dragged(), now) {
+        editor.drag_to(view.to_scene(rect, now), input.snap, input.radar);
+    }
+    if response.drag_stopped_by(PointerButton::Primary) {
+        editor.end_drag();
+        if let (Some(start), Some(now)) = (view.box_start.take(), now) {
+            let inside = hit::in_box(editor.scene(), start, view.to_scene(rect, now));
+            editor.select(inside, SelectionMode::Add);
+        }
+    }
+    let double = ui.input(|i| i.pointer.button_double_clicked(PointerButton::Primary));
+    if let Some(pos) = now.filter(|_| double && response.contains_pointer()) {
+        let place = view.to_scene(rect, pos);
+        if editor.hit(place, view.metres_per_point).is_none() {
+            let place = input.snap.apply(input.radar, place);
+            asked.push(Command::Add(NewObject::Point, Some(place)));
+        }
+    }
+}
+
+/// Gives every handle a name and a place that screen readers and tests can find.
+fn label_handles(editor: &Editor, view: SceneView, ui: &Ui, rect: Rect) {
+    for (index, object) in editor.scene().objects.iter().enumerate() {
+        let selected = editor.selection().contains(index);
+        for g in grips(object, view.metres_per_point) {
+            if g.grip != Grip::Body && !selected {
+                continue;
+            }
+            let at = view.to_screen(rect, g.place);
+            if !rect.contains(at) {
+                continue;
+            }
+            let response = ui.interact(
+                Rect::from_center_size(at, vec2(18.0, 18.0)),
+                Id::unique(("handle", index, g.grip)),
+                Sense::hover(),
+            );
+            response.widget_info(|| {
+                let name = format!("{} {}: {}", object.kind(), index + 1, g.grip.describe());
+                egui::WidgetInfo::selected(egui::Role::Button, true, selected, name)
+            });
+            if editor.dragged().is_none() {
+                let [x, y] = object.centre_metres();
+                response.on_hover_text(format!(
+                    "{} {} at x {x:.2} m, y {y:.2} m\ndrag to {}",
+                    object.kind(),
+                    index + 1,
+                    g.grip.describe()
+                ));
+            }
+        }
+    }
+}
+
+fn context_menu(
+    editor: &mut Editor,
+    view: SceneView,
+    ui: &Ui,
+    rect: Rect,
+    response: &Response,
+    asked: &mut Vec<Command>,
+) {
+    let id = ui.scope_id().with("context place");
+    let clicked = ui.input(|i| i.pointer.button_clicked(PointerButton::Secondary));
+    if clicked && let Some(pos) = response.hover_pos() {
+        let place = view.to_scene(rect, pos);
+        ui.data_mut(|d| d.insert_temp(id, [place.x_metres, place.y_metres]));
+        if let Some(hit) = editor.hit(place, view.metres_per_point)
+            && !editor.selection().contains(hit.object)
+        {
+            editor.select([hit.object], SelectionMode::Replace);
+        }
+    }
+    let popup = egui::Popup::menu(response).id(ui.scope_id().with("scene menu")).at_pointer_fixed();
+    let popup = popup.open_memory(clicked.then_some(egui::SetOpenCommand::Bool(response.hovered())));
+    popup.show(|ui| {
+        let place = ui.data(|d| d.get_temp::<[f64; 2]>(id)).map(Place::from);
+        for kind in [NewObject::Point, NewObject::Line, NewObject::Cluster] {
+            entry(ui, Command::Add(kind, place), true, asked);
+        }
+        ui.separator();
+        let selected = !editor.selection().is_empty();
+        for command in [Command::Cut, Command::Copy, Command::Duplicate, Command::Delete] {
+            entry(ui, command, selected, asked);
+        }
+        entry(ui, Command::Paste, true, asked);
+        ui.separator();
+        entry(ui, Command::FitScene, true, asked);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Held {
+        editor: Editor,
+        view: SceneView,
+        asked: Vec<Command>,
+    }
+
+    fn panel(scene: Scene) -> Harness<'static, Held> {
+        let radar = Radar::default();
+        let draw = move |ui: &mut Ui, held: &mut Held| {
+            let input = Input {
+                radar: &radar,
+                snap: Snap::Off,
+                fields_of_view: false,
+                found: &[],
+                cursor: None,
+                error: Some("too far"),
+            };
+            let commands = show(ui, input, &mut held.editor, &mut held.view);
+            held.asked.extend(commands);
+        };
+        let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
+        let mut panel = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, held);
+        panel.step();
+        panel
+    }
+
+    #[test]
+    fn a_drag_moves_the_object_and_the_pointer_is_told() {
+        let mut scene = panel(Scene::of_points([(0.0, 20.0)]));
+        let from = scene.get_by_label("point 1: move").rect().center();
+        scene.hover_at(from);
+        scene.step();
+        scene.drag_at(from);
+        scene.step();
+        scene.hover_at(from + vec2(40.0, 0.0));
+        scene.step();
+        scene.drop_at(from + vec2(40.0, 0.0));
+        scene.step();
+        let held = scene.state();
+        let moved = held.editor.scene().objects[0].centre_metres()[0];
+        assert!((moved - 40.0 * held.view.metres_per_point).abs() < 1e-6, "{moved}");
+        assert!(held.asked.iter().all(|c| matches!(c, Command::Hover(_))) && !held.asked.is_empty());
+    }
+
+    #[test]
+    fn a_double_click_asks_for_a_point_there() {
+        let mut scene = panel(Scene::default());
+        let at = scene.get_by_label("Scene").rect().center();
+        for _ in 0..2 {
+            scene.hover_at(at);
+            scene.drag_at(at);
+            scene.drop_at(at);
+            scene.step();
+        }
+        let held = scene.state();
+        let place = held.view.to_scene(scene.get_by_label("Scene").rect(), at);
+        assert!(held.asked.contains(&Command::Add(NewObject::Point, Some(place))), "{:?}", held.asked);
+    }
+}

@@ -1,0 +1,105 @@
+//! What each stage of the last update cost, and what was skipped and why.
+
+use crate::app::state::Command;
+use crate::live::{Outcome, Report};
+use eframe::egui;
+use eframe::egui::{Grid, ScrollArea, Ui};
+use std::time::Duration;
+
+/// What is shown.
+pub struct Input<'a> {
+    /// The last update, if there was one.
+    pub update: Option<Update<'a>>,
+}
+
+/// An update of the maps.
+pub struct Update<'a> {
+    /// Stage by stage.
+    pub report: &'a Report,
+    /// Time with pictures.
+    pub took: Duration,
+    /// Pictures painted since the start.
+    pub painted: u64,
+    /// The method whose output is shown, and its time.
+    pub output: Option<(&'static str, Duration)>,
+    /// Whether that output is of an earlier scene.
+    pub outdated: bool,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    let Some(update) = input.update else {
+        ui.weak("No update yet.");
+        return Vec::new();
+    };
+    egui::Frame::NONE.inner_margin(8).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| table(ui, &update));
+        });
+    });
+    Vec::new()
+}
+
+fn milliseconds(took: Duration) -> String {
+    format!("{:.2}", took.as_secs_f64() * 1e3)
+}
+
+fn table(ui: &mut Ui, update: &Update<'_>) {
+    for heading in ["stage", "ms", "what"] {
+        ui.strong(heading);
+    }
+    ui.end_row();
+    for stage in &update.report.stages {
+        ui.label(stage.stage.to_string());
+        match &stage.outcome {
+            Outcome::Computed(what) => {
+                ui.monospace(milliseconds(stage.took));
+                ui.label(what);
+            }
+            Outcome::Skipped(why) => {
+                ui.weak("–");
+                ui.weak(format!("skipped: {why}"));
+            }
+        }
+        ui.end_row();
+    }
+    ui.label("engine");
+    ui.monospace(milliseconds(update.report.total));
+    ui.end_row();
+    ui.label("with pictures");
+    ui.monospace(milliseconds(update.took));
+    ui.label(format!("{} pictures painted since the start", update.painted));
+    ui.end_row();
+    if let Some((method, took)) = update.output {
+        ui.label(method);
+        ui.monospace(milliseconds(took));
+        ui.label(if update.outdated { "of an earlier scene" } else { "on a thread of its own" });
+        ui.end_row();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::{Engine, Wanted};
+    use crate::radar::Radar;
+    use crate::scene::Scene;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn an_output_of_an_earlier_scene_is_told() {
+        let mut engine = Engine::new(Radar { elements: 64, samples: 32, ..Radar::default() });
+        let frame = engine.update(&Scene::of_points([(0.0, 10.0)]).into(), &Wanted::default()).unwrap();
+        let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let took = Duration::from_millis(12);
+            let update =
+                Update { report: &frame.report, took, painted: 7, output: Some(("capon", took)), outdated: true };
+            asked.extend(show(ui, Input { update: Some(update) }));
+        };
+        let timing = Harness::new_ui_state(draw, Vec::new());
+        let _told = timing.get_by_label("of an earlier scene");
+        let _counted = timing.get_by_label("7 pictures painted since the start");
+        assert!(timing.state().is_empty());
+    }
+}

@@ -1,0 +1,160 @@
+//! A training watched: its loss, and how far it is.
+
+use crate::app::jobs::Log;
+use crate::app::state::Command;
+use crate::app::widgets::entry::button;
+use crate::app::widgets::progress::progress;
+use eframe::egui;
+use eframe::egui::{Color32, Grid, Ui};
+use egui_plot::{Legend, Line, Plot, PlotPoints};
+use std::path::Path;
+
+/// What is watched.
+pub struct Input<'a> {
+    /// The log that is followed.
+    pub path: Option<&'a Path>,
+    /// What it says.
+    pub log: Option<&'a Log>,
+    /// What is wrong with it, or how the training ended.
+    pub note: Option<&'a str>,
+    /// The part that is done of a training started from here.
+    pub running: Option<f32>,
+}
+
+/// A recipe that a training can be started by.
+struct Listed {
+    name: &'static str,
+    description: String,
+}
+
+/// The recipes, read once.
+pub struct Memory {
+    recipes: Vec<Listed>,
+}
+
+impl Default for Memory {
+    #[cfg(feature = "network")]
+    fn default() -> Self {
+        use crate::network::recipe::{Recipe, SHIPPED};
+        let read = |(name, text): &(&'static str, &'static str)| {
+            Recipe::parse(name, text).ok().map(|recipe| Listed { name, description: recipe.description })
+        };
+        Memory { recipes: SHIPPED.iter().filter_map(read).collect() }
+    }
+
+    #[cfg(not(feature = "network"))]
+    fn default() -> Self {
+        Memory { recipes: Vec::new() }
+    }
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            button(ui, "Open training log…", Command::OpenLog, true, &mut asked);
+            match input.running {
+                Some(part) => {
+                    if progress(ui, part, 140.0, "Stop the training; its last checkpoint stays") {
+                        asked.push(Command::CancelTraining);
+                    }
+                }
+                None => start(ui, memory, &mut asked),
+            }
+        });
+        if let Some(note) = input.note {
+            ui.colored_label(ui.visuals().warn_fg_color, note);
+        }
+        match input.log.filter(|l| !l.loss.is_empty()) {
+            Some(log) => curves(ui, log),
+            None => _ = ui.weak(waiting(&input)),
+        }
+    });
+    asked
+}
+
+/// What stands where there is no curve yet.
+fn waiting(input: &Input<'_>) -> String {
+    match input.path {
+        // Who was told how it ended waits for nothing.
+        Some(path) if input.note.is_none() => format!("Waiting for the first line of {}…", path.display()),
+        Some(path) => format!("{} has no line.", path.display()),
+        None => "Open the log.csv of a run of `apertura train`, and watch its loss while it learns.".to_owned(),
+    }
+}
+
+fn curves(ui: &mut Ui, log: &Log) {
+    Grid::new("last").num_columns(8).spacing([10.0, 2.0]).show(ui, |ui| {
+        for (i, (name, value)) in log.last.iter().enumerate() {
+            ui.weak(name.replace('_', " "));
+            ui.monospace(value.parse::<f64>().map_or_else(|_| value.clone(), short));
+            if i % 4 == 3 {
+                ui.end_row();
+            }
+        }
+    });
+    let log10 = |points: &[[f64; 2]]| -> PlotPoints<'static> {
+        points.iter().filter(|p| p[1] > 0.0).map(|p| [p[0], p[1].log10()]).collect()
+    };
+    Plot::new("loss")
+        .x_axis_label("step")
+        .y_axis_label("loss, powers of ten")
+        .legend(Legend::default().background_alpha(0.7))
+        .allow_scroll(false)
+        .y_axis_min_width(36.0)
+        .show(ui, |plot| {
+            plot.line(Line::new("loss", log10(&log.loss)).color(Color32::GRAY).width(1.0));
+            plot.line(Line::new("smoothed", log10(&log.smoothed)).color(Color32::from_rgb(255, 170, 40)).width(1.8));
+        });
+}
+
+/// A number with as many digits as one looks at.
+fn short(value: f64) -> String {
+    if value == value.trunc() && value.abs() < 1e9 { format!("{value}") } else { format!("{value:.4e}") }
+}
+
+/// A menu of the recipes that can be started.
+fn start(ui: &mut Ui, memory: &Memory, asked: &mut Vec<Command>) {
+    if memory.recipes.is_empty() {
+        ui.weak("This build can't train.");
+        return;
+    }
+    let menu = ui.menu_button("Train…", |ui| {
+        ui.weak("Starts a training on this machine's processor, which it will keep busy for long.");
+        for recipe in &memory.recipes {
+            if ui.button(recipe.name).on_hover_text(&recipe.description).clicked() {
+                ui.close();
+                asked.push(Command::Train(recipe.name));
+            }
+        }
+    });
+    menu.response.on_hover_text("Start a training by a recipe and watch it");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn panel(note: Option<&'static str>, running: Option<f32>) -> Harness<'static, (Memory, Vec<Command>)> {
+        let draw = move |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+            let input = Input { path: Some(Path::new("log.csv")), log: None, note, running };
+            let commands = show(ui, input, &mut state.0);
+            state.1.extend(commands);
+        };
+        Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Default::default())
+    }
+
+    #[test]
+    fn a_training_that_was_stopped_waits_for_nothing() {
+        let mut waits = panel(None, Some(0.0));
+        let _waiting = waits.get_by_label_contains("Waiting for the first line");
+        waits.get_by_label("Cancel").click();
+        waits.step();
+        assert_eq!(waits.state().1, [Command::CancelTraining]);
+        let stopped = panel(Some("stopped"), None);
+        assert!(stopped.query_by_label_contains("Waiting").is_none());
+    }
+}

@@ -1,0 +1,155 @@
+//! Where the panels are: tiles that can be moved, resized, hidden and maximised.
+
+use super::panel::{MapKind, Panel};
+use eframe::egui;
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// Where the panels are.
+#[derive(Serialize, Deserialize)]
+pub struct Arrangement {
+    tree: Tree<Panel>,
+    maximised: Option<Panel>,
+    /// Panels drawn in the last frame: only these are computed.
+    #[serde(skip)]
+    shown: BTreeSet<Panel>,
+}
+
+impl Default for Arrangement {
+    fn default() -> Self {
+        let mut tiles = Tiles::default();
+        let mut pane = |panel| tiles.insert_pane(panel);
+        let [scene, controls, inspector] = [Panel::Scene, Panel::Controls, Panel::Inspector].map(&mut pane);
+        let [in0, in1, target, output, target_above, output_above, difference] =
+            MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
+        let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
+        let [guide, tools @ ..] = Panel::TOOLS.map(pane);
+        for closed in [timing, guide].iter().chain(&tools) {
+            tiles.set_visible(*closed, false);
+        }
+        let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
+        let scene = tabs(&mut tiles, vec![scene]);
+        let controls = tabs(&mut tiles, vec![controls, timing, guide]);
+        let inspector = tabs(&mut tiles, vec![inspector]);
+        let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
+        let first = tabs(&mut tiles, vec![in0]);
+        let second = tabs(&mut tiles, vec![target]);
+        let third = tabs(&mut tiles, vec![target_above, cuts]);
+        let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
+        let first = tabs(&mut tiles, vec![in1]);
+        let second = tabs(&mut tiles, vec![output, difference]);
+        let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
+        let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
+        let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, left_maps, right_maps], &[1.1, 1.0, 1.0]);
+        Arrangement {
+            tree: Tree::new(egui::Id::unique("panels"), root, tiles),
+            maximised: None,
+            shown: BTreeSet::new(),
+        }
+    }
+}
+
+fn column(tiles: &mut Tiles<Panel>, children: Vec<TileId>, shares: &[f32]) -> TileId {
+    linear(tiles, LinearDir::Vertical, children, shares)
+}
+
+fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<TileId>, shares: &[f32]) -> TileId {
+    let mut linear = Linear::new(dir, children.clone());
+    for (child, share) in children.into_iter().zip(shares) {
+        linear.shares.set_share(child, *share);
+    }
+    tiles.insert_container(Container::Linear(linear))
+}
+
+impl Arrangement {
+    /// An arrangement of nothing, to stand in for one that is being drawn.
+    pub fn empty() -> Self {
+        let tree = Tree::empty(egui::Id::unique("no panels"));
+        Arrangement { tree, maximised: None, shown: BTreeSet::new() }
+    }
+
+    /// The tiles.
+    pub fn tree_mut(&mut self) -> &mut Tree<Panel> {
+        &mut self.tree
+    }
+
+    /// Says which panels this frame drew; whether they are others than before.
+    pub fn set_shown(&mut self, shown: BTreeSet<Panel>) -> bool {
+        let changed = shown != self.shown;
+        self.shown = shown;
+        changed
+    }
+
+    /// Panels drawn in the last frame.
+    pub fn shown(&self) -> &BTreeSet<Panel> {
+        &self.shown
+    }
+
+    /// The panel that fills the window, if one does.
+    pub fn maximised(&self) -> Option<Panel> {
+        self.maximised
+    }
+
+    /// Lets `panel` fill the window, or ends that.
+    pub fn toggle_maximised(&mut self, panel: Panel) {
+        self.maximised = if self.maximised == Some(panel) { None } else { Some(panel) };
+    }
+
+    /// Ends that a panel fills the window.
+    pub fn restore(&mut self) {
+        self.maximised = None;
+    }
+
+    /// Whether a panel has a visible tile (its tab may be behind another).
+    pub fn is_open(&self, panel: Panel) -> bool {
+        self.tree.tiles.find_pane(&panel).is_some_and(|id| self.tree.tiles.is_visible(id))
+    }
+
+    /// Hides a panel that is in sight; shows any other, its tab in front.
+    pub fn toggle(&mut self, panel: Panel) {
+        let in_sight = self.is_open(panel) && self.shown.contains(&panel);
+        self.set_open(panel, !in_sight);
+    }
+
+    /// Shows or hides a panel; a shown one comes to the front.
+    pub fn set_open(&mut self, panel: Panel, open: bool) {
+        self.maximised = None;
+        match self.tree.tiles.find_pane(&panel) {
+            Some(id) => {
+                self.tree.tiles.set_visible(id, open);
+                if open {
+                    self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
+                }
+            }
+            // A layout kept from an older version may lack a panel.
+            None if open => {
+                let id = self.tree.tiles.insert_pane(panel);
+                if let Some(root) = self.tree.root() {
+                    self.tree.move_tile_to_container(id, root, usize::MAX, false);
+                }
+            }
+            None => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_panel_is_there_and_the_tools_are_closed() {
+        let mut arrangement = Arrangement::default();
+        for panel in Panel::all() {
+            let closed = panel == Panel::Timing || Panel::TOOLS.contains(&panel);
+            assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
+        }
+        arrangement.toggle(Panel::Timing);
+        arrangement.toggle(Panel::Cuts);
+        assert!(arrangement.is_open(Panel::Cuts), "it was behind another tab");
+        arrangement.shown.insert(Panel::Cuts);
+        arrangement.toggle(Panel::Cuts);
+        assert!(arrangement.is_open(Panel::Timing) && !arrangement.is_open(Panel::Cuts));
+    }
+}

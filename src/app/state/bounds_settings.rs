@@ -1,0 +1,69 @@
+//! What the bounds of a reflector are computed for.
+
+use crate::radar::{Decibels, End, Layout, LayoutError, Mimo, Radar};
+use serde::{Deserialize, Serialize};
+
+/// Which elements listen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Elements {
+    /// Both ends of the array.
+    #[default]
+    TwoEnds,
+    /// The first end alone.
+    OneEnd,
+    /// So many elements at random places of the aperture.
+    Random(usize),
+    /// The 12 virtual elements of 3 transmitters and 4 receivers.
+    Mimo,
+    /// Every element.
+    All,
+}
+
+impl Elements {
+    /// Name of the choice.
+    pub fn name(self) -> &'static str {
+        match self {
+            Elements::TwoEnds => "the two ends",
+            Elements::OneEnd => "the first end alone",
+            Elements::Random(_) => "random elements",
+            Elements::Mimo => "3 × 4 MIMO",
+            Elements::All => "the whole array",
+        }
+    }
+
+    /// Where they stand.
+    ///
+    /// # Errors
+    /// [`LayoutError`] for more random elements than the array has.
+    pub fn layout(self, radar: &Radar, seed: u64) -> Result<Layout, LayoutError> {
+        Ok(match self {
+            Elements::TwoEnds => Layout::two_ends(radar),
+            Elements::OneEnd => Layout::one_end(radar, End::First),
+            Elements::Random(count) => return Layout::random(radar, count, seed),
+            Elements::Mimo => Mimo::filled(radar, 3, 4).layout(),
+            Elements::All => Layout::uniform(radar),
+        })
+    }
+}
+
+/// What the user chose to look at.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BoundsSettings {
+    /// Which elements listen.
+    pub elements: Elements,
+    /// Seed of random elements.
+    pub seed: u64,
+    /// Signal-to-noise ratio of a sample.
+    pub snr: Decibels,
+    /// Columns to each side of the reflector.
+    pub columns: f64,
+    /// Range bins to each side.
+    pub bins: f64,
+}
+
+impl Default for BoundsSettings {
+    fn default() -> Self {
+        BoundsSettings { elements: Elements::TwoEnds, seed: 0, snr: Decibels(20.0), columns: 12.0, bins: 4.0 }
+    }
+}

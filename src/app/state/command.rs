@@ -1,0 +1,199 @@
+//! Everything a button, a menu entry, a shortcut, the palette or a panel can ask for.
+
+use super::bounds_settings::BoundsSettings;
+use super::panel::Panel;
+use super::settings::Projection;
+use super::view::Cursor;
+use crate::interact::{Place, Snap};
+use crate::maps::Normalisation;
+use crate::picture::ColourMap;
+use crate::radar::{Carrier, WindowFunction};
+use crate::scene::generate::Kind;
+use crate::signal::Floor;
+use std::path::PathBuf;
+
+/// A kind of object to add.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NewObject {
+    /// One reflector.
+    Point,
+    /// A vertical line.
+    Line,
+    /// A Gaussian cluster.
+    Cluster,
+}
+
+/// Which methods are to be evaluated, and on what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EvaluationChoice {
+    /// Names of methods.
+    pub methods: Vec<&'static str>,
+    /// Test sets, 1 to 3.
+    pub sets: Vec<usize>,
+    /// Scenes of each set.
+    pub count: u32,
+    /// Seed of the scenes.
+    pub seed: u64,
+}
+
+/// Something the app can do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// Start with an empty scene.
+    New,
+    /// Ask for a scene file and open it.
+    Open,
+    /// Open this scene file.
+    OpenPath(PathBuf),
+    /// Save the scene where it came from, or ask where.
+    Save,
+    /// Ask where to save the scene.
+    SaveAs,
+    /// Save the scene in this file.
+    SaveTo(PathBuf),
+    /// Open a scene that comes with the program.
+    Preset(usize),
+    /// Make a random test scene.
+    RandomScene(Kind),
+    /// Which random scene is next.
+    SetNextRandom {
+        /// Seed of its stream.
+        seed: u64,
+        /// Its number in the stream.
+        number: u32,
+    },
+    /// Ask for the log of a training and watch it.
+    OpenLog,
+    /// Watch this log of a training.
+    WatchLog(PathBuf),
+    /// Start a training by the recipe of this name, and watch it.
+    Train(&'static str),
+    /// Stop the training that was started here.
+    CancelTraining,
+    /// Ask where to save the window as a picture, or the scene's panels as a drawing.
+    ExportPicture,
+    /// Save the window (.png) or the scene's panels (.svg) in this file.
+    ExportPictureTo(PathBuf),
+    /// Ask where to save the maps as NumPy arrays.
+    ExportMaps,
+    /// Save the maps in this file.
+    ExportMapsTo(PathBuf),
+    /// Ask where to save the figures as CSV.
+    ExportMetrics,
+    /// Save the figures in this file.
+    ExportMetricsTo(PathBuf),
+    /// Undo the last change of the scene.
+    Undo,
+    /// Redo what was undone.
+    Redo,
+    /// End the current undo step, as when the mouse button is let go.
+    Seal,
+    /// Cut the selected objects to the clipboard.
+    Cut,
+    /// Copy the selected objects as TOML.
+    Copy,
+    /// Ask the system for the clipboard and add its objects.
+    Paste,
+    /// Add the objects in this text.
+    PasteText(String),
+    /// Copy the selected objects a little aside.
+    Duplicate,
+    /// Delete the selected objects.
+    Delete,
+    /// Select every object.
+    SelectAll,
+    /// Select nothing, end maximising, close the palette.
+    Escape,
+    /// Add an object, at a place or where there is room.
+    Add(NewObject, Option<Place>),
+    /// Move the selected objects.
+    Nudge {
+        /// Along the array.
+        dx_metres: f64,
+        /// Ahead of it.
+        dy_metres: f64,
+    },
+    /// The pointer is here, in whichever panel.
+    Hover(Cursor),
+    /// Show the whole scene.
+    FitScene,
+    /// Show whole maps.
+    ResetMaps,
+    /// Hide a panel that is in sight, or bring it into sight.
+    TogglePanel(Panel),
+    /// Hide a panel.
+    ClosePanel(Panel),
+    /// Show a panel, in front.
+    OpenPanel(Panel),
+    /// Let a panel fill the window, or end that.
+    Maximise(Panel),
+    /// Put all panels where they were at first.
+    ResetLayout,
+    /// Range-angle or Cartesian maps, the other way round.
+    ToggleProjection,
+    /// Range-angle or Cartesian maps.
+    SetProjection(Projection),
+    /// Colours of the maps.
+    Colours(ColourMap),
+    /// How maps are normalised.
+    Normalise(Normalisation),
+    /// What lies beneath the reflectors.
+    SetFloor(Floor),
+    /// Seed of the floor's noise.
+    SetNoiseSeed(u64),
+    /// How the carrier's phase is read.
+    SetCarrier(Carrier),
+    /// Which window both transforms use.
+    SetWindow(WindowFunction),
+    /// eta', the threshold of the target.
+    SetTargetEta(f32),
+    /// eta of the method of this name; its own where `None`.
+    SetMethodEta(&'static str, Option<f32>),
+    /// Where dragged objects come to rest.
+    SetSnap(Snap),
+    /// What bounds are computed for.
+    SetBounds(BoundsSettings),
+    /// Draw true reflectors over the maps.
+    MarkReflectors,
+    /// Draw true reflectors over the maps or not.
+    ToggleReflectors,
+    /// Draw the reflectors that the method found or not.
+    ToggleFound,
+    /// Draw the ends' fields of view or not.
+    ToggleFieldsOfView,
+    /// Reconstruct with the method of this name.
+    Method(&'static str),
+    /// The next reconstruction method.
+    NextMethod,
+    /// Stop the reconstruction that runs.
+    CancelMethod,
+    /// Evaluate methods on test sets.
+    Evaluate(EvaluationChoice),
+    /// Stop the evaluation.
+    CancelEvaluation,
+    /// Copy what the evaluation found, as CSV.
+    CopyEvaluation,
+    /// Measure run time against error.
+    Measure {
+        /// Every algorithm and more reflectors, for about a minute.
+        thorough: bool,
+    },
+    /// Stop measuring.
+    CancelMeasurement,
+    /// Do these for the guide: undo takes back the settings they change, too.
+    Guided(Vec<Command>),
+    /// Close every message.
+    CloseMessages,
+    /// Light or dark.
+    ToggleTheme,
+    /// Larger interface.
+    ZoomIn,
+    /// Smaller interface.
+    ZoomOut,
+    /// Interface at its normal size.
+    ZoomReset,
+    /// Show or hide the palette of commands.
+    Palette,
+    /// Close the window.
+    Quit,
+}

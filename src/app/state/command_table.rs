@@ -1,0 +1,247 @@
+//! The one list of commands: what each is called, what it does, and its key. Menus, tooltips, shortcuts and the palette read it.
+
+use super::command::{Command, NewObject};
+use super::panel::Panel;
+use super::settings::Projection;
+use crate::maps::Normalisation;
+use crate::picture::ColourMap;
+use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::scene::generate::Kind;
+use crate::scene::presets;
+use crate::signal::Floor;
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+/// A command that needs nothing more than to be chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// What it is.
+    pub command: Command,
+    /// Name in menus and the palette.
+    pub name: Cow<'static, str>,
+    /// One sentence for tooltips.
+    pub tooltip: &'static str,
+    /// The key that runs it, if one does.
+    pub key: Option<KeyboardShortcut>,
+}
+
+const fn entry(command: Command, name: &'static str, tooltip: &'static str, key: Option<KeyboardShortcut>) -> Entry {
+    Entry { command, name: Cow::Borrowed(name), tooltip, key }
+}
+
+const fn key(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn command(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
+}
+
+const fn command_shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
+}
+
+/// Every command whose name isn't that of a panel, a scene or a method.
+const TABLE: &[Entry] = {
+    use Command::*;
+    &[
+        entry(Add(NewObject::Point, None), "Add point", "Add one reflector", key(Key::P)),
+        entry(Add(NewObject::Line, None), "Add line", "Add a vertical line of 75 reflectors", key(Key::L)),
+        entry(Add(NewObject::Cluster, None), "Add cluster", "Add a Gaussian cluster of 40 reflectors", key(Key::G)),
+        entry(New, "New scene", "Start with an empty scene; undo brings this one back", command(Key::N)),
+        entry(Open, "Open…", "Open a scene (.toml or .npz)", command(Key::O)),
+        entry(Save, "Save", "Save the scene as TOML", command(Key::S)),
+        entry(SaveAs, "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S)),
+        entry(OpenLog, "Open training log…", "Watch the loss of a training (its log.csv)", None),
+        entry(ExportPicture, "Export picture…", "Save the window as PNG, or all panels as SVG", command(Key::E)),
+        entry(ExportMaps, "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),
+        entry(ExportMetrics, "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None),
+        entry(Undo, "Undo", "Undo the last change of the scene", command(Key::Z)),
+        entry(Redo, "Redo", "Redo what was undone", command_shift(Key::Z)),
+        entry(Cut, "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X)),
+        entry(Copy, "Copy", "Copy the selected objects to the clipboard, as TOML", command(Key::C)),
+        entry(Paste, "Paste", "Add the objects on the clipboard", command(Key::V)),
+        entry(Duplicate, "Duplicate", "Copy the selected objects a metre aside", command(Key::D)),
+        entry(Delete, "Delete", "Delete the selected objects", key(Key::Delete)),
+        entry(SelectAll, "Select all", "Select every object", command(Key::A)),
+        entry(Escape, "Deselect", "Cancel a drag, show all panels, select nothing", key(Key::Escape)),
+        entry(FitScene, "Fit scene", "Show the whole scene", key(Key::F)),
+        entry(ResetMaps, "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
+        entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
+        entry(
+            ToggleProjection,
+            "Cartesian / range-angle",
+            "Draw maps over x and y, or over cos θ and range",
+            key(Key::C),
+        ),
+        entry(SetProjection(Projection::RangeAngle), "Maps: range-angle", "Draw maps over cos θ and range", None),
+        entry(SetProjection(Projection::Cartesian), "Maps: Cartesian", "Draw maps over x and y", None),
+        entry(
+            Normalise(Normalisation::MinMax),
+            "Normalise: min-max",
+            "Λ is 0 at the smallest cell and 1 at the largest (the thesis)",
+            key(Key::M),
+        ),
+        entry(
+            Normalise(Normalisation::DynamicRange(Decibels(60.0))),
+            "Normalise: 60 dB",
+            "Λ is 0 at 60 dB below the peak",
+            None,
+        ),
+        entry(
+            Normalise(Normalisation::DynamicRange(Decibels(100.0))),
+            "Normalise: 100 dB",
+            "Λ is 0 at 100 dB below the peak",
+            key(Key::B),
+        ),
+        entry(SetFloor(Floor::Thesis), "Floor: thesis", "The rounding noise of the thesis' f64 evaluation", None),
+        entry(SetFloor(Floor::Exact), "Floor: exact", "No noise at all", None),
+        entry(
+            SetFloor(Floor::Snr(Decibels(20.0))),
+            "Floor: thermal noise",
+            "White noise at a signal-to-noise ratio",
+            None,
+        ),
+        entry(SetCarrier(Carrier::OneWay), "Carrier: one-way", "Unambiguous over all of cos θ", None),
+        entry(SetCarrier(Carrier::TwoWay), "Carrier: two-way", "As equation 3.1 is printed: cos θ folds twice", None),
+        entry(SetWindow(WindowFunction::Hann), "Window: Hann", "Side lobes that fall fast (the thesis)", None),
+        entry(
+            SetWindow(WindowFunction::Hamming),
+            "Window: Hamming",
+            "The first side lobes lower, the far ones higher",
+            None,
+        ),
+        entry(
+            SetWindow(WindowFunction::Blackman),
+            "Window: Blackman",
+            "Lower side lobes still, a wider main lobe",
+            None,
+        ),
+        entry(
+            SetWindow(WindowFunction::Rectangular),
+            "Window: rectangular",
+            "No weights: the narrowest main lobe, the highest side lobes",
+            None,
+        ),
+        entry(Colours(ColourMap::Grey), "Colours: grey", "The thesis' grey", None),
+        entry(Colours(ColourMap::Viridis), "Colours: viridis", "Colours of even brightness steps", None),
+        entry(Colours(ColourMap::Diverging), "Colours: diverging", "Blue below the middle, red above", None),
+        entry(Colours(ColourMap::Inferno), "Colours: inferno", "Dark to bright through red", None),
+        entry(ToggleReflectors, "Mark true reflectors", "Draw the scene's reflectors over the maps", key(Key::R)),
+        entry(ToggleFound, "Mark found reflectors", "Draw the reflectors that the method believes in", None),
+        entry(ToggleFieldsOfView, "Fields of view", "Draw what each end can see in the scene", key(Key::V)),
+        entry(NextMethod, "Next method", "Reconstruct with the next method", key(Key::N)),
+        entry(CancelMethod, "Cancel reconstruction", "Stop the reconstruction that runs", None),
+        entry(CloseMessages, "Close messages", "Close every message in the corner", None),
+        entry(ToggleTheme, "Light / dark", "Switch between light and dark", command(Key::T)),
+        entry(ZoomIn, "Zoom in", "Larger interface", command(Key::Plus)),
+        entry(ZoomOut, "Zoom out", "Smaller interface", command(Key::Minus)),
+        entry(ZoomReset, "Normal size", "Interface at its normal size", command(Key::Num0)),
+        entry(Palette, "Command palette", "Find any command by name", command(Key::K)),
+        entry(Quit, "Quit", "Close the window; an unsaved scene is restored at the next start", command(Key::Q)),
+    ]
+};
+
+/// Keys that show or hide a panel.
+const PANEL_KEYS: &[(Panel, Key)] = &[
+    (Panel::Guide, Key::F1),
+    (Panel::Controls, Key::F2),
+    (Panel::Inspector, Key::F3),
+    (Panel::Cuts, Key::F4),
+    (Panel::Roc, Key::F6),
+    (Panel::Timing, Key::F7),
+    (Panel::Bounds, Key::F8),
+    (Panel::Evaluation, Key::F9),
+    (Panel::RunTime, Key::F10),
+    (Panel::Training, Key::F12),
+];
+
+/// Every command of the table, of every panel, of every kind of random scene and of every preset, in the order the palette lists them. The methods are not among
+/// them: they are the app's.
+pub fn listed() -> &'static [Entry] {
+    static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
+    LISTED.get_or_init(|| {
+        let named = |command, name: String, tooltip, key| Entry { command, name: name.into(), tooltip, key };
+        let panel_key = |panel| PANEL_KEYS.iter().find(|(p, _)| *p == panel).and_then(|(_, k)| key(*k));
+        let toggle = |panel: Panel| {
+            let name = format!("Show or hide: {}", panel.title());
+            named(Command::TogglePanel(panel), name, panel.describe(), panel_key(panel))
+        };
+        let maximise = |panel: Panel| {
+            named(Command::Maximise(panel), format!("Maximise: {}", panel.title()), panel.describe(), None)
+        };
+        let preset = |(index, preset): (usize, &presets::Preset)| {
+            let name = format!("Preset: {}", preset.id.replace('-', " "));
+            named(Command::Preset(index), name, "Open a scene the thesis talks about", None)
+        };
+        let random = |kind: Kind| {
+            let keys = [Key::Num1, Key::Num2, Key::Num3];
+            let (tooltip, key) = match kind.test_set() {
+                Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
+                None => ("A scene of a kind that the thesis' sets leave out", None),
+            };
+            named(Command::RandomScene(kind), format!("Random scene: {}", kind.description()), tooltip, key)
+        };
+        let mut all = TABLE.to_vec();
+        all.extend(Kind::all().map(random));
+        all.extend(Panel::all().into_iter().map(toggle));
+        all.extend(Panel::all().into_iter().map(maximise));
+        all.extend(presets::ALL.iter().enumerate().map(preset));
+        all
+    })
+}
+
+/// The commands that have a key, longer shortcuts first: Ctrl+Shift+Z would also match Ctrl+Z.
+pub fn shortcuts() -> &'static [(KeyboardShortcut, Command)] {
+    static SHORTCUTS: OnceLock<Vec<(KeyboardShortcut, Command)>> = OnceLock::new();
+    SHORTCUTS.get_or_init(|| {
+        let mut all: Vec<_> = listed().iter().filter_map(|e| Some((e.key?, e.command.clone()))).collect();
+        all.sort_by_key(|(key, _)| !(key.modifiers.shift || key.modifiers.alt));
+        all
+    })
+}
+
+impl Command {
+    /// Its line of the list, where it has one: what is added or closed somewhere in particular is called as anywhere.
+    pub fn entry(&self) -> Option<&'static Entry> {
+        let like = match self {
+            Command::Add(kind, _) => Command::Add(*kind, None),
+            Command::OpenPanel(panel) | Command::ClosePanel(panel) => Command::TogglePanel(*panel),
+            other => other.clone(),
+        };
+        listed().iter().find(|e| e.command == like)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::panel::MapKind;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn no_two_commands_share_a_key_or_a_name() {
+        let (mut keys, mut names) = (BTreeMap::new(), BTreeMap::new());
+        for entry in listed() {
+            assert!(names.insert(entry.name.clone(), ()).is_none(), "{} twice", entry.name);
+            assert!(!entry.tooltip.is_empty());
+            if let Some(key) = entry.key {
+                let text = format!("{key:?}");
+                assert!(keys.insert(text, entry.name.clone()).is_none(), "{} shares its key", entry.name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_choice_of_a_window_and_of_colours_is_listed() {
+        for window in WindowFunction::ALL {
+            assert!(Command::SetWindow(window).entry().is_some(), "{window:?}");
+        }
+        for colours in ColourMap::ALL {
+            assert!(Command::Colours(colours).entry().is_some(), "{colours:?}");
+        }
+        let map = Panel::Map(MapKind::Target);
+        assert_eq!(Command::ClosePanel(map).entry(), Command::TogglePanel(map).entry());
+    }
+}

@@ -1,0 +1,41 @@
+//! The reconstruction methods that the app offers.
+
+use crate::reconstruct::Reconstructor;
+use std::sync::Arc;
+
+/// Methods that work for any radar and any scene, best first.
+const ROBUST: [&str; 2] = ["capon", "baseline"];
+
+/// Every method, in order, and which is shown where nobody chose one.
+pub struct Methods {
+    /// Every method, in order.
+    pub all: Vec<Arc<dyn Reconstructor>>,
+    /// Name of the method that is used where nobody chose one.
+    preferred: &'static str,
+}
+
+impl Methods {
+    /// Offers `all`.
+    pub fn new(all: Vec<Arc<dyn Reconstructor>>) -> Self {
+        Methods { all, preferred: crate::methods::preferred().name() }
+    }
+
+    /// The method called `name`, or else the preferred one, or else the first.
+    pub fn named(&self, name: &str) -> Option<&Arc<dyn Reconstructor>> {
+        let named = |name: &str| self.all.iter().find(|m| m.name() == name);
+        named(name).or_else(|| named(self.preferred)).or_else(|| self.all.first())
+    }
+
+    /// A method that works where the one called `name` didn't, if there is one.
+    pub fn instead_of(&self, name: &str) -> Option<&'static str> {
+        let robust = ROBUST.iter().find(|robust| **robust != name && self.all.iter().any(|m| m.name() == **robust));
+        robust.copied()
+    }
+
+    /// The method after the one called `name`; the first after the last.
+    pub fn after(&self, name: &str) -> Option<&'static str> {
+        let index = self.all.iter().position(|m| m.name() == name).unwrap_or(0);
+        let next = (index + 1) % self.all.len().max(1);
+        self.all.get(next).map(|m| m.name())
+    }
+}

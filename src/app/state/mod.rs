@@ -1,0 +1,153 @@
+//! What the app holds, without any drawing and without any work: the scene, what the user chose, where the panels are, and every
+//! command by name.
+
+mod arrangement;
+mod bounds_settings;
+mod command;
+mod command_table;
+mod guided;
+mod methods;
+mod notices;
+mod panel;
+mod settings;
+mod view;
+
+pub use arrangement::Arrangement;
+pub use bounds_settings::{BoundsSettings, Elements};
+pub use command::{Command, EvaluationChoice, NewObject};
+pub use command_table::{listed, shortcuts};
+pub use guided::{Guided, Setup};
+pub use methods::Methods;
+pub use notices::{Notice, NoticeKind, Notices};
+pub use panel::{MapKind, Panel};
+pub use settings::{Brightness, Projection, Settings};
+pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
+
+use crate::interact::Editor;
+use crate::radar::Radar;
+use crate::reconstruct::Reconstructor;
+use crate::scene::Scene;
+use crate::scene::file::SceneFile;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How many recent files are remembered.
+const RECENT: usize = 10;
+
+/// Everything that commands change.
+pub struct State {
+    /// The scene being edited.
+    pub editor: Editor,
+    /// The radar before it. Carrier and window live here alone.
+    pub radar: Radar,
+    /// What the user chose.
+    pub settings: Settings,
+    /// The reconstruction methods.
+    pub methods: Methods,
+    /// Where the panels are.
+    pub arrangement: Arrangement,
+    /// Messages on screen.
+    pub notices: Notices,
+    /// What part of the scene is shown.
+    pub scene_view: SceneView,
+    /// What part of the maps is shown.
+    pub map_views: MapViews,
+    /// Where the pointer is.
+    pub pointer: Pointer,
+    /// What the guide did.
+    pub guided: Guided,
+    /// The scene's own file, if it has one.
+    pub path: Option<PathBuf>,
+    /// Files opened or saved lately, latest first.
+    pub recent: Vec<PathBuf>,
+    /// Whether the window is dark at the moment.
+    pub dark: bool,
+}
+
+impl State {
+    /// Puts another scene on screen; undo brings the last one back.
+    pub fn set_scene(&mut self, label: &str, file: SceneFile) {
+        self.editor.open(label, file.scene);
+        self.radar = file.radar;
+        self.scene_view.fit = true;
+    }
+
+    /// The scene with its radar, as a file holds them.
+    pub fn scene_file(&self) -> SceneFile {
+        SceneFile { scene: Scene::clone(self.editor.scene()), radar: self.radar.clone() }
+    }
+
+    /// Everything that the guide may change, as it is.
+    pub fn setup(&self) -> Setup {
+        Setup {
+            settings: self.settings.clone(),
+            radar: self.radar.clone(),
+            scene: self.editor.scene().clone(),
+            depth: self.editor.history().depth(),
+        }
+    }
+
+    /// Whether there is something to undo.
+    pub fn can_undo(&self) -> bool {
+        self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup())
+    }
+
+    /// Undoes the last change of the scene, or all that a button of the guide did.
+    pub fn undo(&mut self) {
+        let Some(step) = self.guided.undo(&self.setup()) else {
+            self.editor.undo();
+            return;
+        };
+        while self.editor.history().depth() > step.before.depth && self.editor.undo() {}
+        self.settings.take_back(&step.before.settings, &step.after.settings);
+        self.radar = step.before.radar;
+    }
+
+    /// Does again what was undone last.
+    pub fn redo(&mut self) {
+        let Some(step) = self.guided.redo(&self.setup()) else {
+            self.editor.redo();
+            return;
+        };
+        while self.editor.history().depth() < step.after.depth && self.editor.redo() {}
+        self.settings.take_back(&step.after.settings, &step.before.settings);
+        self.radar = step.after.radar;
+    }
+
+    /// Makes a file the scene's own.
+    pub fn remember(&mut self, path: &Path) {
+        let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        self.recent.retain(|p| *p != path);
+        self.recent.insert(0, path.clone());
+        self.recent.truncate(RECENT);
+        self.path = Some(path);
+    }
+
+    /// Title of the window.
+    pub fn title(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        let name = name.map_or_else(|| "untitled".into(), |n| n.to_string_lossy());
+        let mark = if self.editor.is_modified() { " •" } else { "" };
+        format!("{name}{mark} — apertura")
+    }
+
+    /// The method in use.
+    pub fn method(&self) -> Option<&Arc<dyn Reconstructor>> {
+        self.methods.named(&self.settings.method)
+    }
+
+    /// eta of the method in use: the user's, or the method's own.
+    pub fn output_eta(&self) -> f32 {
+        let Some(method) = self.method() else { return crate::evaluate::TARGET_ETA };
+        self.settings.method_eta.get(method.name()).copied().unwrap_or_else(|| method.eta())
+    }
+
+    /// Where cuts are taken: under the pointer, where it was last, or through the first object.
+    pub fn cut_cursor(&self) -> Cursor {
+        let first =
+            || self.editor.scene().objects.first().map(|o| Cursor::at_place(&self.radar, o.centre_metres().into()));
+        let inside = |c: &Cursor| c.cell(&self.radar).is_some();
+        let last = self.pointer.last().or_else(first).filter(inside);
+        last.unwrap_or_else(|| Cursor::at_cell(&self.radar, 0.0, 0.0))
+    }
+}

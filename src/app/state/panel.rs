@@ -1,0 +1,146 @@
+//! Everything that can be shown in a tile, by name.
+
+use serde::{Deserialize, Serialize};
+
+/// Everything that can be shown in a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Panel {
+    /// The scene's canvas.
+    Scene,
+    /// Radar, display and reconstruction settings.
+    Controls,
+    /// Numbers of the selected objects.
+    Inspector,
+    /// A map.
+    Map(MapKind),
+    /// Range profile and angle cut through the cursor.
+    Cuts,
+    /// P_D against P_FA.
+    Roc,
+    /// What each stage cost and what was skipped.
+    Timing,
+    /// Ambiguity function and Cramer-Rao bound.
+    Bounds,
+    /// Methods on the tables' test sets.
+    Evaluation,
+    /// Run time against error.
+    #[serde(alias = "Front")]
+    RunTime,
+    /// A training watched.
+    Training,
+    /// What the maps show and why.
+    Guide,
+}
+
+impl Panel {
+    /// Panels that are closed at first: each is a tool for a question of its own.
+    pub const TOOLS: [Panel; 5] = [Panel::Guide, Panel::Bounds, Panel::Evaluation, Panel::RunTime, Panel::Training];
+
+    /// All panels, in the order menus list them.
+    pub fn all() -> Vec<Panel> {
+        let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector];
+        all.extend(MapKind::ALL.map(Panel::Map));
+        all.extend([Panel::Cuts, Panel::Roc, Panel::Timing]);
+        all.extend(Panel::TOOLS);
+        all
+    }
+
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Panel::Scene => "Scene",
+            Panel::Controls => "Settings",
+            Panel::Inspector => "Inspector",
+            Panel::Map(kind) => kind.title(),
+            Panel::Cuts => "Cuts",
+            Panel::Roc => "ROC",
+            Panel::Timing => "Timing",
+            Panel::Bounds => "Bounds",
+            Panel::Evaluation => "Evaluation",
+            Panel::RunTime => "Run time",
+            Panel::Training => "Training",
+            Panel::Guide => "Guide",
+        }
+    }
+
+    /// What it is for.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Panel::Scene => "The reflectors before the radar; drag them",
+            Panel::Controls => "Radar, display and reconstruction settings",
+            Panel::Inspector => "Numbers of what is selected",
+            Panel::Map(kind) => kind.describe(),
+            Panel::Cuts => "Range profile and angle cut of all maps through the cursor",
+            Panel::Roc => "Detection against false alarm of this scene, over every threshold",
+            Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
+            Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
+            Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
+            Panel::RunTime => "Run time against error of the simulation on this machine",
+            Panel::Training => "The loss of a network while it is trained",
+            Panel::Guide => "What the maps show and why, with something to try",
+        }
+    }
+}
+
+/// One of the maps on screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum MapKind {
+    /// The first end's map.
+    Input0,
+    /// The last end's map.
+    Input1,
+    /// The whole array's map.
+    Target,
+    /// The map that the chosen method makes from the two ends.
+    Output,
+    /// Target > eta'.
+    TargetAbove,
+    /// Output > eta.
+    OutputAbove,
+    /// Output minus target.
+    Difference,
+}
+
+impl MapKind {
+    /// All of them, in reading order.
+    pub const ALL: [MapKind; 7] = [
+        MapKind::Input0,
+        MapKind::Input1,
+        MapKind::Target,
+        MapKind::Output,
+        MapKind::TargetAbove,
+        MapKind::OutputAbove,
+        MapKind::Difference,
+    ];
+
+    /// Title of its panel.
+    pub fn title(self) -> &'static str {
+        match self {
+            MapKind::Input0 => "Input 0",
+            MapKind::Input1 => "Input 1",
+            MapKind::Target => "Target",
+            MapKind::Output => "Output",
+            MapKind::TargetAbove => "Target > η'",
+            MapKind::OutputAbove => "Output > η",
+            MapKind::Difference => "Difference",
+        }
+    }
+
+    /// What it shows, for tooltips.
+    pub fn describe(self) -> &'static str {
+        match self {
+            MapKind::Input0 => "What the 12 elements at the left end of the array see",
+            MapKind::Input1 => "What the 12 elements at the right end of the array see",
+            MapKind::Target => "What all 1024 elements see: the map that a reconstruction aims for",
+            MapKind::Output => "What the chosen method makes of the two ends",
+            MapKind::TargetAbove => "Cells where the target exceeds η'",
+            MapKind::OutputAbove => "Cells where the output exceeds η: the detections",
+            MapKind::Difference => "Output minus target: red where the output is too bright, blue where it is too dark",
+        }
+    }
+
+    /// Whether it is made of the method's output.
+    pub fn needs_output(self) -> bool {
+        matches!(self, MapKind::Output | MapKind::OutputAbove | MapKind::Difference)
+    }
+}

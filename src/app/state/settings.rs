@@ -1,0 +1,113 @@
+//! What the user chose: kept from one start to the next. What the radar is belongs to the scene's file instead.
+
+use super::bounds_settings::BoundsSettings;
+use crate::interact::Snap;
+use crate::maps::Normalisation;
+use crate::picture::ColourMap;
+use crate::radar::Decibels;
+use crate::signal::Floor;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Coordinates of the maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub enum Projection {
+    /// cos(theta) across, range up.
+    #[default]
+    RangeAngle,
+    /// x across, y up, as in the scene.
+    Cartesian,
+}
+
+/// Light or dark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Brightness {
+    /// As the system says.
+    #[default]
+    System,
+    /// Light.
+    Light,
+    /// Dark.
+    Dark,
+}
+
+/// Everything the user chose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// What lies beneath the reflectors.
+    pub floor: Floor,
+    /// Seed of the floor's noise.
+    pub seed: u64,
+    /// How the maps are normalised.
+    pub normalisation: Normalisation,
+    /// The range last used with [`Normalisation::DynamicRange`].
+    pub dynamic_range: Decibels,
+    /// The ratio last used with [`Floor::Snr`].
+    pub snr: Decibels,
+    /// Colours of the maps.
+    pub colours: ColourMap,
+    /// Coordinates of the maps.
+    pub projection: Projection,
+    /// eta', the threshold of the target.
+    pub target_eta: f32,
+    /// eta for each method, where it differs from the method's own.
+    pub method_eta: BTreeMap<String, f32>,
+    /// Name of the reconstruction method.
+    pub method: String,
+    /// Whether true reflectors are drawn over the maps.
+    pub show_reflectors: bool,
+    /// Whether the reflectors that the method found are drawn.
+    pub show_found: bool,
+    /// Whether the ends' fields of view are drawn in the scene.
+    pub show_fields_of_view: bool,
+    /// Where dragged objects come to rest.
+    pub snap: Snap,
+    /// Light or dark.
+    pub theme: Brightness,
+    /// What the bounds are computed for.
+    pub bounds: BoundsSettings,
+    /// Seed of the next random scene.
+    pub random_seed: u64,
+    /// Its number among the scenes of that seed.
+    pub random_number: u32,
+}
+
+impl Settings {
+    /// Where the guide changed a setting from `before` to `after` and nobody changed it since, puts back what it was.
+    pub fn take_back(&mut self, before: &Settings, after: &Settings) {
+        macro_rules! take_back {
+            ($($field:ident),*) => {
+                $(if self.$field == after.$field {
+                    self.$field.clone_from(&before.$field);
+                })*
+            };
+        }
+        take_back!(floor, normalisation, dynamic_range, snr, projection, method, show_reflectors);
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            floor: Floor::Thesis,
+            seed: 0,
+            normalisation: Normalisation::MinMax,
+            dynamic_range: Decibels(100.0),
+            snr: Decibels(20.0),
+            colours: ColourMap::default(),
+            projection: Projection::default(),
+            target_eta: crate::evaluate::TARGET_ETA,
+            method_eta: BTreeMap::new(),
+            method: String::new(),
+            show_reflectors: false,
+            show_found: false,
+            show_fields_of_view: false,
+            snap: Snap::Off,
+            theme: Brightness::System,
+            bounds: BoundsSettings::default(),
+            random_seed: 0,
+            random_number: 0,
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! What part of the maps and of the scene is shown, and where the pointer is in all of them.
+
+use super::settings::Projection;
+use crate::interact::Place;
+use crate::radar::{Polar, Radar};
+use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
+
+/// The visible part of a map, as fractions of its width and height; y counts upwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapView {
+    /// Its lower left corner.
+    pub low: Pos2,
+    /// Its upper right corner.
+    pub high: Pos2,
+}
+
+impl Default for MapView {
+    fn default() -> Self {
+        MapView { low: pos2(0.0, 0.0), high: pos2(1.0, 1.0) }
+    }
+}
+
+impl MapView {
+    fn size(&self) -> Vec2 {
+        self.high - self.low
+    }
+
+    /// Fraction at a place of `rect`.
+    pub fn at(&self, rect: Rect, pos: Pos2) -> Pos2 {
+        let part = vec2((pos.x - rect.left()) / rect.width(), (rect.bottom() - pos.y) / rect.height());
+        self.low + part * self.size()
+    }
+
+    /// Place in `rect` of a fraction.
+    pub fn to_screen(self, rect: Rect, fraction: Pos2) -> Pos2 {
+        let part = (fraction - self.low) / self.size();
+        pos2(rect.left() + part.x * rect.width(), rect.bottom() - part.y * rect.height())
+    }
+
+    /// Zooms by `factor`, keeping `fixed` where it is.
+    pub fn zoom(&mut self, factor: f32, fixed: Pos2) {
+        let size = (self.size() / factor).clamp(Vec2::splat(0.01), Vec2::splat(1.0));
+        let part = (fixed - self.low) / self.size();
+        self.low = fixed - part * size;
+        self.high = self.low + size;
+        self.keep_inside();
+    }
+
+    /// Moves by a fraction of the whole map.
+    pub fn pan(&mut self, by: Vec2) {
+        self.low += by;
+        self.high += by;
+        self.keep_inside();
+    }
+
+    fn keep_inside(&mut self) {
+        let size = self.size();
+        self.low = self.low.clamp(Pos2::ZERO, pos2(1.0, 1.0) - size);
+        self.high = self.low + size;
+    }
+}
+
+/// The visible part of the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneView {
+    /// What is in the middle.
+    pub centre: Place,
+    /// What a point on screen covers.
+    pub metres_per_point: f64,
+    /// Fit to the window at the next opportunity.
+    pub fit: bool,
+    /// Size on screen that it was fitted to, until the user zooms or pans: it is fitted again when that changes.
+    pub fitted: Option<Vec2>,
+    /// Corner where a selection box began, while one is drawn.
+    pub box_start: Option<Place>,
+}
+
+impl Default for SceneView {
+    fn default() -> Self {
+        SceneView { centre: Place::new(0.0, 18.0), metres_per_point: 0.1, fit: true, fitted: None, box_start: None }
+    }
+}
+
+impl SceneView {
+    /// Place on screen of a place of the scene; y points up.
+    pub fn to_screen(self, rect: Rect, place: Place) -> Pos2 {
+        let dx = (place.x_metres - self.centre.x_metres) / self.metres_per_point;
+        let dy = (place.y_metres - self.centre.y_metres) / self.metres_per_point;
+        rect.center() + vec2(dx as f32, -dy as f32)
+    }
+
+    /// Place of the scene at a place on screen.
+    pub fn to_scene(self, rect: Rect, pos: Pos2) -> Place {
+        let d = pos - rect.center();
+        Place::new(
+            self.centre.x_metres + f64::from(d.x) * self.metres_per_point,
+            self.centre.y_metres - f64::from(d.y) * self.metres_per_point,
+        )
+    }
+
+    /// Shows everything between two corners, with a little room around.
+    pub fn show(&mut self, rect: Rect, low: Place, high: Place) {
+        let width = (high.x_metres - low.x_metres).max(1.0);
+        let height = (high.y_metres - low.y_metres).max(1.0);
+        self.metres_per_point =
+            (width / f64::from(rect.width().max(1.0))).max(height / f64::from(rect.height().max(1.0))).clamp(1e-4, 1e3);
+        self.centre = Place::new((low.x_metres + high.x_metres) / 2.0, (low.y_metres + high.y_metres) / 2.0);
+    }
+
+    /// Zooms by `factor`, keeping the place under `pos`.
+    pub fn zoom(&mut self, factor: f64, rect: Rect, pos: Pos2) {
+        let fixed = self.to_scene(rect, pos);
+        self.metres_per_point = (self.metres_per_point / factor).clamp(1e-4, 1.0);
+        let now = self.to_scene(rect, pos);
+        self.centre.x_metres += fixed.x_metres - now.x_metres;
+        self.centre.y_metres += fixed.y_metres - now.y_metres;
+    }
+}
+
+/// Where the pointer is, in the coordinates of all panels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cursor {
+    /// In the scene.
+    pub place: Place,
+    /// From the middle of the array.
+    pub range_metres: f64,
+    /// Cosine of the angle to the array's axis: the true one, not that of the column.
+    pub cos_theta: f64,
+    /// Range bin, fractional; beyond the last one for what is out of range.
+    pub bin: f64,
+    /// Column, fractional.
+    pub column: f64,
+}
+
+/// The visible part of the maps, in either kind of coordinates.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MapViews {
+    /// Over cos(theta) and range.
+    pub range_angle: MapView,
+    /// Over x and y.
+    pub cartesian: MapView,
+}
+
+impl MapViews {
+    /// The one that is on screen.
+    pub fn of(&mut self, projection: Projection) -> &mut MapView {
+        match projection {
+            Projection::RangeAngle => &mut self.range_angle,
+            Projection::Cartesian => &mut self.cartesian,
+        }
+    }
+}
+
+/// Where the pointer is and was.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pointer {
+    /// In the last frame: what every panel draws.
+    pub now: Option<Cursor>,
+    /// Said by a panel of this frame.
+    next: Option<Cursor>,
+    /// Where it was last within the maps, for panels that need a place even when it is elsewhere.
+    last: Option<Cursor>,
+}
+
+impl Pointer {
+    /// A panel has it.
+    pub fn hover(&mut self, cursor: Cursor) {
+        self.next = Some(cursor);
+    }
+
+    /// Ends a frame; whether the pointer moved, so that panels drawn before the one under it still show the old place.
+    pub fn turn(&mut self, radar: &Radar) -> bool {
+        let moved = self.next != self.now;
+        self.now = self.next.take();
+        self.last = self.now.filter(|c| c.cell(radar).is_some()).or(self.last);
+        moved
+    }
+
+    /// Where it was last within the maps.
+    pub fn last(&self) -> Option<Cursor> {
+        self.last
+    }
+}
+
+impl Cursor {
+    /// At a place of the scene: in the cell where the whole array's map shows what stands there.
+    pub fn at_place(radar: &Radar, place: Place) -> Self {
+        let (polar, blob) =
+            (radar.polar_of(place.x_metres, place.y_metres), radar.blob_of(0.0, place.x_metres, place.y_metres));
+        Cursor {
+            place,
+            range_metres: polar.range_metres,
+            cos_theta: polar.cos_theta,
+            bin: radar.bin_of_range(polar.range_metres),
+            column: radar.column_of_cos(blob.cos_theta),
+        }
+    }
+
+    /// At a cell of a map: where the reflector stands whose blob is there.
+    pub fn at_cell(radar: &Radar, bin: f64, column: f64) -> Self {
+        let blob = Polar { range_metres: radar.range_of_bin_metres(bin), cos_theta: radar.cos_of_column(column) };
+        Cursor { column, ..Cursor::at_blob(radar, blob) }
+    }
+
+    /// At a range and direction of a map.
+    pub fn at_blob(radar: &Radar, blob: Polar) -> Self {
+        let Polar { range_metres, cos_theta } = blob;
+        let column = radar.column_of_cos(cos_theta);
+        let cos_theta = radar.cos_of_blob(cos_theta);
+        let place = Place::new(range_metres * cos_theta, range_metres * (1.0 - cos_theta * cos_theta).sqrt());
+        Cursor { place, range_metres, cos_theta, bin: radar.bin_of_range(range_metres), column }
+    }
+
+    /// The cell it lies in, if the maps have it.
+    pub fn cell(&self, radar: &Radar) -> Option<(usize, usize)> {
+        let bin = self.bin.round();
+        let inside = bin >= 0.0 && bin < radar.samples as f64;
+        inside.then(|| (bin as usize, self.column.round() as usize % radar.elements))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_zoom_around_a_fixed_place_and_stay_inside() {
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 100.0));
+        let mut w = MapView::default();
+        let pointer = pos2(60.0, 45.0);
+        let fixed = w.at(rect, pointer);
+        w.zoom(3.0, fixed);
+        assert!((w.to_screen(rect, fixed) - pointer).length() < 1e-3);
+        w.pan(vec2(9.0, -9.0));
+        assert!(w.low.x >= 0.0 && w.high.x <= 1.0 + 1e-6 && w.low.y >= 0.0);
+        w.zoom(1e-6, fixed);
+        assert_eq!(w, MapView::default());
+    }
+
+    #[test]
+    fn scene_views_zoom_around_the_pointer() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 200.0));
+        let mut v = SceneView::default();
+        let before = v.to_scene(rect, pos2(33.0, 44.0));
+        v.zoom(2.0, rect, pos2(33.0, 44.0));
+        assert!(before.distance_metres(v.to_scene(rect, pos2(33.0, 44.0))) < 1e-9);
+    }
+
+    #[test]
+    fn cursors_agree_between_scene_and_map() {
+        let radar = Radar::default();
+        let a = Cursor::at_place(&radar, Place::new(3.0, 14.0));
+        let b = Cursor::at_cell(&radar, a.bin, a.column);
+        assert!(a.place.distance_metres(b.place) < 1e-9);
+        assert_eq!(Cursor::at_place(&radar, Place::new(0.0, 99.0)).cell(&radar), None);
+    }
+}

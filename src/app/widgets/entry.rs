@@ -1,0 +1,31 @@
+//! Menu entries and buttons of commands: name, tooltip and key come from the one list.
+
+use crate::app::state::Command;
+use eframe::egui::{Button, Ui};
+
+/// A menu entry; a click asks for the command and closes the menu.
+pub fn entry(ui: &mut Ui, command: Command, enabled: bool, asked: &mut Vec<Command>) {
+    let Some(listed) = command.entry() else { return };
+    let mut button = Button::new(listed.name.as_ref());
+    if let Some(key) = &listed.key {
+        button = button.shortcut_text(ui.ctx().format_shortcut(key));
+    }
+    if ui.add_enabled(enabled, button).on_hover_text(listed.tooltip).clicked() {
+        asked.push(command);
+        ui.close();
+    }
+}
+
+/// A button with a label of its own where there is no room for the command's name; its tooltip tells the key.
+pub fn button(ui: &mut Ui, label: &str, command: Command, enabled: bool, asked: &mut Vec<Command>) {
+    if ui.add_enabled(enabled, Button::new(label)).on_hover_text(tooltip(ui, &command)).clicked() {
+        asked.push(command);
+    }
+}
+
+/// What a command does, and its key.
+pub fn tooltip(ui: &Ui, command: &Command) -> String {
+    let Some(listed) = command.entry() else { return String::new() };
+    let key = listed.key.map(|key| format!(" ({})", ui.ctx().format_shortcut(&key))).unwrap_or_default();
+    format!("{}{key}", listed.tooltip)
+}

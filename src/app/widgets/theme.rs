@@ -1,0 +1,96 @@
+//! Colours and spacing of the interface.
+
+use crate::app::state::Brightness;
+use eframe::egui;
+use eframe::egui::{Color32, Context, CornerRadius, Visuals};
+
+/// Colours of the scene and of marks over maps.
+#[derive(Debug, Clone, Copy)]
+pub struct Inks {
+    /// Ground that the radar can see.
+    pub ground: Color32,
+    /// Ground beyond it.
+    pub beyond: Color32,
+    /// Range rings and angle spokes.
+    pub grid: Color32,
+    /// Labels of the grid.
+    pub grid_text: Color32,
+    /// Reflectors.
+    pub reflector: Color32,
+    /// What is selected.
+    pub selected: Color32,
+    /// The array's first and last end.
+    pub ends: [Color32; 2],
+    /// The rest of the array.
+    pub array: Color32,
+    /// Reflectors that a method found.
+    pub found: Color32,
+}
+
+impl Inks {
+    /// The inks for light or dark.
+    pub fn of(visuals: &Visuals) -> Self {
+        let rgb = Color32::from_rgb;
+        if visuals.dark_mode {
+            Inks {
+                ground: rgb(24, 28, 36),
+                beyond: rgb(14, 16, 20),
+                grid: rgb(54, 61, 75),
+                grid_text: rgb(140, 150, 168),
+                reflector: rgb(236, 240, 248),
+                selected: rgb(255, 176, 59),
+                ends: [rgb(92, 184, 255), rgb(255, 122, 148)],
+                array: rgb(140, 150, 168),
+                found: rgb(120, 230, 140),
+            }
+        } else {
+            Inks {
+                ground: rgb(252, 253, 255),
+                beyond: rgb(226, 230, 237),
+                grid: rgb(206, 212, 222),
+                grid_text: rgb(92, 102, 120),
+                reflector: rgb(30, 38, 52),
+                selected: rgb(214, 110, 0),
+                ends: [rgb(0, 112, 206), rgb(204, 32, 84)],
+                array: rgb(92, 102, 120),
+                found: rgb(0, 138, 62),
+            }
+        }
+    }
+}
+
+/// Marks over maps: readable on any colour map.
+pub const MARK: Color32 = Color32::WHITE;
+pub const MARK_EDGE: Color32 = Color32::from_black_alpha(200);
+
+/// Signs of messages.
+pub const INFO: Color32 = Color32::from_rgb(92, 164, 240);
+pub const ERROR: Color32 = Color32::from_rgb(240, 96, 96);
+
+/// Sets both themes up and chooses one.
+pub fn apply(ctx: &Context, theme: Brightness) {
+    for of in [egui::Theme::Dark, egui::Theme::Light] {
+        ctx.style_mut_of(of, |style| {
+            style.visuals.widgets.noninteractive.corner_radius = CornerRadius::same(4);
+            style.spacing.item_spacing = egui::vec2(6.0, 4.0);
+            style.spacing.slider_width = 110.0;
+            if of == egui::Theme::Dark {
+                style.visuals.panel_fill = Color32::from_rgb(30, 33, 40);
+                style.visuals.extreme_bg_color = Color32::from_rgb(18, 20, 25);
+                style.visuals.override_text_color = Some(Color32::from_rgb(218, 223, 232));
+                style.visuals.weak_text_color = Some(Color32::from_rgb(154, 162, 176));
+                style.visuals.selection.bg_fill = Color32::from_rgb(38, 92, 150);
+            } else {
+                style.visuals.panel_fill = Color32::from_rgb(245, 247, 250);
+                style.visuals.override_text_color = Some(Color32::from_rgb(34, 40, 52));
+                style.visuals.weak_text_color = Some(Color32::from_rgb(88, 98, 116));
+                style.visuals.selection.bg_fill = Color32::from_rgb(176, 210, 250);
+            }
+        });
+    }
+    ctx.set_theme(match theme {
+        Brightness::System => egui::ThemePreference::System,
+        Brightness::Light => egui::ThemePreference::Light,
+        Brightness::Dark => egui::ThemePreference::Dark,
+    });
+}
