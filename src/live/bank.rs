@@ -105,7 +105,7 @@ struct Built {
 impl<T: Real, const W: usize> Bank<T, W> {
     pub fn new(radar: &Radar) -> Self {
         Bank {
-            makers: MapMaker::new(radar, Simd::best()),
+            makers: MapMaker::new(radar, Simd::chosen()),
             syntheses: Vec::new(),
             rest: Group::empty(radar),
             active: Group::empty(radar),

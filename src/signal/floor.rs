@@ -81,7 +81,7 @@ fn powers(radar: &Radar, reflectors: &[Reflector], factor: f64, radians_per_metr
     let mut out = vec![0.0; radar.elements];
     out.par_chunks_mut(LANES_F64).enumerate().for_each(|(block, out)| {
         let first_element = block * LANES_F64;
-        let block = Simd::best().run(BlockPowers { radar, reflectors, factor, radians_per_metre, first_element });
+        let block = Simd::chosen().run(BlockPowers { radar, reflectors, factor, radians_per_metre, first_element });
         out.iter_mut().zip(block.0).for_each(|(out, power)| *out = power);
     });
     out

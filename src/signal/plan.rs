@@ -129,7 +129,7 @@ impl Recipe {
             algorithm: if gridded { Algorithm::Gridded } else { Algorithm::Split },
             precision: if single { Precision::F32 } else { Precision::F64 },
             tolerance,
-            simd: Simd::best(),
+            simd: Simd::chosen(),
         }
     }
 

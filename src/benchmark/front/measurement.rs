@@ -43,7 +43,7 @@ pub fn measure(
     let mut front = Front {
         bare_fft_ms: bare_fft_ms(repeats.max(9)),
         threads: rayon::current_num_threads(),
-        simd: Simd::best(),
+        simd: Simd::chosen(),
         rows: Vec::new(),
     };
     for (i, count) in request.reflectors.iter().enumerate() {

@@ -21,7 +21,7 @@ use ndarray::Array2;
 use num_complex::Complex;
 use pruned::Pruned;
 use rayon::prelude::*;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Rows that are gathered from the blocks at a time: neighbours share cache lines and pages.
@@ -96,8 +96,8 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
             radar: radar.clone(),
             simd,
             window: radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect(),
-            fft: FftPlanner::new().plan_fft_forward(radar.elements),
-            ends: Pruned::new(radar),
+            fft: simd.forward_fft(radar.elements),
+            ends: Pruned::new(radar, simd),
         }
     }
 

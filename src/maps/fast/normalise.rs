@@ -20,7 +20,7 @@ pub fn normalise_into(maps: Vec<(&Decades, &mut RangeAngleMap)>, normalisation: 
             parts.extend(chunks.map(|(cells, lambda)| Part { cells, lambda, floor, slope }));
         }
     }
-    parts.into_par_iter().for_each(|part| Simd::best().run(part));
+    parts.into_par_iter().for_each(|part| Simd::chosen().run(part));
 }
 
 struct Part<'a> {
