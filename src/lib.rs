@@ -44,6 +44,7 @@
 //! | [`maps`] | the beat signal | range-angle maps, Lambda, masks, Cartesian views |
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
 //! | [`bounds`] | a layout and a noise level | how well any estimator can do |
+//! | [`theory`] | a radar and a place | what the formulas predict of the map: peak, beam width, lobes, comb, streak, squint |
 //! | [`evaluate`] | target and output | SE, P_D, P_FA, ROC, the thesis' tables |
 //! | [`benchmark`] | scenes of any size | run time against error, and whether numerics hold |
 //! | [`live`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
@@ -71,3 +72,4 @@ pub mod recording;
 pub mod scene;
 pub mod signal;
 pub mod task;
+pub mod theory;
