@@ -76,15 +76,18 @@ mod tests {
             let moved = |polar: Polar| { let r = at(polar); Reflector { x_metres: r.x_metres + x, ..r } };
             // Far out, so that waves are plane over the end.
             let far = Polar { range_metres: local.range_metres + 40.0 * radar.max_range_metres(), ..local };
-            let here = blob(&moved(far)).peak;
+            let (here, columns) = (blob(&moved(far)).peak, blob(&moved(far)).columns);
+            // Where one weight is all of the window, every direction is alike.
+            prop_assume!(columns[0] < radar.elements as f64 / 2.0);
             for cos_theta in fold_partners(&radar, far.cos_theta) {
                 let (bins, columns) = blob(&moved(Polar { cos_theta, ..far })).peak.offset_to(&here, &radar);
                 prop_assert!(bins.abs() <= 0.5 && columns.abs() <= 0.5, "{cos_theta}: {bins}, {columns}");
             }
             let farthest = far.range_metres + 2.5 * radar.max_range_metres();
             let partners = wrap_partners(&radar, far, farthest);
-            prop_assert_eq!(partners.len(), 42);
-            for partner in &partners[39..] {
+            prop_assert!(partners.len() == 42 || partners.len() == 43, "{} partners", partners.len());
+            prop_assert!(partners.iter().all(|p| (p.range_metres - far.range_metres).abs() > 0.9 * radar.max_range_metres()));
+            for partner in &partners[partners.len() - 4..] {
                 let (bins, columns) = blob(&moved(*partner)).peak.offset_to(&here, &radar);
                 prop_assert!(bins.abs() <= 0.5 && columns.abs() <= 0.5, "{partner:?}: {bins}, {columns}");
             }

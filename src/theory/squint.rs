@@ -24,8 +24,8 @@ pub fn squint_factor(radar: &Radar) -> f64 {
 /// Where the blob of a reflector at (`x_metres`, `y_metres`) stands on the map of an aperture: the range from the aperture's middle,
 /// and the squinted cosine seen from there.
 ///
-/// The middle of the streak of a near reflector; [`super::Blob`] finds the very peak, which lies up to a cell or two beside it where a
-/// reflector is much nearer than the aperture's far field.
+/// The middle of the streak of a near reflector; [`super::Blob`] finds the very peak, which for table 3.1 lies up to half a bin and one
+/// column beside it where the reflector is much nearer than the aperture's far field.
 pub fn blob_cell(radar: &Radar, x_metres: f64, y_metres: f64, aperture: Aperture) -> Cell {
     cell_seen_from(radar, x_metres, y_metres, centre_metres(radar, aperture))
 }
