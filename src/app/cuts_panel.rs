@@ -45,7 +45,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
 fn maps(app: &App) -> Vec<(MapKind, Color32, Arc<RangeAngleMap>)> {
     let Some(result) = &app.pipeline.result else { return Vec::new() };
     let frame = &result.frame;
-    let lambda = |m: &Option<crate::live::LiveMap>| m.as_ref().map(|m| m.lambda.clone());
+    let lambda = |m: &Option<crate::engine::ReadyMap>| m.as_ref().map(|m| m.lambda.clone());
     [
         (MapKind::Input0, Color32::from_rgb(64, 156, 255), lambda(&frame.first)),
         (MapKind::Input1, Color32::from_rgb(240, 96, 128), lambda(&frame.last)),

@@ -6,8 +6,8 @@ use super::layout::Layout;
 use super::pictures::MapKind;
 use super::settings::Settings;
 use crate::bounds::PositionBound;
+use crate::engine::Report;
 use crate::interact::Editor;
-use crate::live::Report;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.

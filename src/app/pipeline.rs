@@ -8,8 +8,8 @@
 
 use super::pictures::{MapKind, Paint, Painter, Picture, Subject};
 use super::settings::{Projection, Settings};
+use crate::engine::{Engine, Frame, Wanted};
 use crate::evaluate::{Metrics, Roc, RocPoint};
-use crate::live::{Engine, Frame, Wanted};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
 use crate::radar::Radar;
@@ -103,7 +103,7 @@ fn live_work(state: &mut LiveState, request: LiveRequest) -> Result<LiveResult, 
         slot => slot.insert(Engine::new(request.radar.clone())),
     };
     let frame = engine.update(&request.scene, &request.wanted)?;
-    let lambda = |map: &Option<crate::live::LiveMap>| map.as_ref().map(|m| m.lambda.clone());
+    let lambda = |map: &Option<crate::engine::ReadyMap>| map.as_ref().map(|m| m.lambda.clone());
     let target = lambda(&frame.full);
     let subject = |kind: MapKind| {
         let (map, minus, paint) = match kind {

@@ -1,7 +1,7 @@
 //! What each stage of the last update cost, and what was skipped and why.
 
 use super::application::App;
-use crate::live::Outcome;
+use crate::engine::Outcome;
 use eframe::egui;
 use eframe::egui::{Grid, ScrollArea, Ui};
 

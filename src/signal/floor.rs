@@ -2,7 +2,7 @@
 //!
 //! A map normalised by its minimum shows its floor as much as its peaks, so the floor is always named: no function picks one silently.
 
-use super::BeatSignal;
+use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
@@ -100,10 +100,10 @@ impl Kernel for BlockPowers<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let element_x = Lanes(std::array::from_fn(|i| self.radar.element_x_metres(self.first_element + i)));
+        let element_x_metres = Lanes(std::array::from_fn(|i| self.radar.element_x_metres(self.first_element + i)));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
-            let dx = element_x - Lanes::splat(r.x_metres);
+            let dx = element_x_metres - Lanes::splat(r.x_metres);
             let square = dx * dx + Lanes::splat(r.y_metres * r.y_metres);
             let scale = self.radar.transmit_power_watts * r.reflectivity;
             let mut amplitude = square.map(|s| scale / s);

@@ -86,13 +86,15 @@ pub struct Gridding<T: Real> {
 pub struct Scratch<T, const W: usize> {
     grid: Vec<ComplexLanes<T, W>>,
     spare: Vec<ComplexLanes<T, W>>,
+    /// What additions to long sums have rounded off; empty until there is one.
+    lost: Vec<ComplexLanes<T, W>>,
 }
 
 impl<T: Real, const W: usize> Scratch<T, W> {
     /// For chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
-        Scratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
+        Scratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples], lost: Vec::new() }
     }
 }
 
@@ -124,35 +126,51 @@ impl<T: Real> Gridding<T> {
 
 /// Reflectors that are added up at a time: sums of sums lose fewer digits than one long sum.
 const CHUNK: usize = 64;
+/// From so many reflectors on, what is rounded off when chunks are added up is kept and added at the end (Kahan, Commun. ACM 8, 1965),
+/// so that a sum of any length is as good as one of a few chunks.
+const LONG: usize = 1024;
 
-/// Beat signal of `reflectors` at the `W` elements at `element_x` metres, written to `out`, one vector a sample.
+/// Beat signal of `reflectors` at the `W` elements at `element_x_metres` metres, written to `out`, one vector a sample.
 #[inline(always)]
 pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
-    element_x: Lanes<f64, W>,
+    element_x_metres: Lanes<f64, W>,
     reflectors: &[Reflector],
     scratch: &mut Scratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
-    let Scratch { grid, spare } = scratch;
+    let Scratch { grid, spare, lost } = scratch;
+    let long = reflectors.len() > LONG;
     grid.fill(ComplexLanes::zero());
     if reflectors.len() > CHUNK {
         spare.fill(ComplexLanes::zero());
     }
+    if long {
+        lost.clear();
+        lost.resize(grid.len(), ComplexLanes::zero());
+    }
     for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
-        if i > 0 {
+        if i > 0 && long {
+            for ((total, lost), cell) in spare.iter_mut().zip(lost.iter_mut()).zip(grid.iter_mut()) {
+                *lost = *lost + add_exactly(total, *cell);
+                *cell = ComplexLanes::zero();
+            }
+        } else if i > 0 {
             for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
                 *total = *total + *cell;
                 *cell = ComplexLanes::zero();
             }
         }
         for r in chunk {
-            spread::<T, W, FMA>(plan, model, element_x, r, grid);
+            spread::<T, W, FMA>(plan, model, element_x_metres, r, grid);
         }
     }
     if reflectors.len() > CHUNK {
         grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
+    }
+    if long {
+        grid.iter_mut().zip(lost.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
     }
     plan.fft.process::<W, FMA>(grid, spare);
     let half = plan.samples / 2;
@@ -164,32 +182,25 @@ pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     }
 }
 
+/// Adds `more` to `total`; returns what the rounded sum lacks (Knuth's two-sum).
 #[inline(always)]
-fn spread<T: Real, const W: usize, const FMA: bool>(
-    plan: &Gridding<T>,
-    model: &EchoModel,
-    element_x: Lanes<f64, W>,
-    r: &Reflector,
-    grid: &mut [ComplexLanes<T, W>],
-) {
-    let of = Lanes::<f64, W>::splat;
-    let cells = plan.grid as f64;
-    let echo = model.echo_lanes::<W, FMA>(element_x, r);
-    // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
-    let middle = (plan.samples / 2) as f64;
-    let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);
-    let amplitude = echo.amplitude.round_to();
-    let value = ComplexLanes { re: p.re * amplitude, im: -(p.im * amplitude) };
+fn add_exactly<T: Real, const W: usize>(
+    total: &mut ComplexLanes<T, W>,
+    more: ComplexLanes<T, W>,
+) -> ComplexLanes<T, W> {
+    let before = *total;
+    let sum = before + more;
+    let added = sum - before;
+    *total = sum;
+    (before - (sum - added)) + (more - added)
+}
 
-    // Grid position, on the same side of the wrap as the first lane's.
-    let position = echo.beat_turns * of(cells);
-    let first = of(position.0[0]);
-    let wraps = ((position - first) * of(1.0 / cells)).nearest();
-    let position = position - wraps * of(cells);
-    let edge = position - of(plan.width as f64 / 2.0);
-    let left = (edge + of(0.5)).nearest();
-    // In [-1, 1] up to rounding; `left` lies within half a cell of `edge + 1/2`.
-    let t: Lanes<T, W> = ((left - edge - echo.beat_turns_low * of(cells)) * of(2.0) - of(1.0)).round_to();
+/// The kernel over its cells, `t` in [-1, 1] from one side of a cell to the other.
+#[inline(always)]
+fn kernel_values<T: Real, const W: usize, const FMA: bool>(
+    plan: &Gridding<T>,
+    t: Lanes<T, W>,
+) -> [Lanes<T, W>; MAX_WIDTH] {
     let t2 = t * t;
 
     let mut values = [Lanes::splat(T::default()); MAX_WIDTH];
@@ -205,6 +216,36 @@ fn spread<T: Real, const W: usize, const FMA: bool>(
         values[cell] = even + odd;
         values[plan.width - 1 - cell] = even - odd;
     }
+    values
+}
+
+#[inline(always)]
+fn spread<T: Real, const W: usize, const FMA: bool>(
+    plan: &Gridding<T>,
+    model: &EchoModel,
+    element_x_metres: Lanes<f64, W>,
+    r: &Reflector,
+    grid: &mut [ComplexLanes<T, W>],
+) {
+    let of = Lanes::<f64, W>::splat;
+    let cells = plan.grid as f64;
+    let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
+    // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
+    let middle = (plan.samples / 2) as f64;
+    let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);
+    let amplitude = echo.amplitude.round_to();
+    let value = ComplexLanes { re: p.re * amplitude, im: -(p.im * amplitude) };
+
+    // Grid position, on the same side of the wrap as the first lane's.
+    let position = echo.beat_turns * of(cells);
+    let first = of(position.0[0]);
+    let wraps = ((position - first) * of(1.0 / cells)).nearest();
+    let position = position - wraps * of(cells);
+    let edge = position - of(plan.width as f64 / 2.0);
+    let left = (edge + of(0.5)).nearest();
+    // In [-1, 1] up to rounding; `left` lies within half a cell of `edge + 1/2`.
+    let t: Lanes<T, W> = ((left - edge - echo.beat_turns_low * of(cells)) * of(2.0) - of(1.0)).round_to();
+    let values = kernel_values::<T, W, FMA>(plan, t);
 
     let lowest = left.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
     let highest = left.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
