@@ -86,15 +86,13 @@ pub struct Gridding<T: Real> {
 pub struct Scratch<T, const W: usize> {
     grid: Vec<ComplexLanes<T, W>>,
     spare: Vec<ComplexLanes<T, W>>,
-    /// What additions to long sums have rounded off; empty until there is one.
-    lost: Vec<ComplexLanes<T, W>>,
 }
 
 impl<T: Real, const W: usize> Scratch<T, W> {
     /// For chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
-        Scratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples], lost: Vec::new() }
+        Scratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
     }
 }
 
@@ -124,11 +122,11 @@ impl<T: Real> Gridding<T> {
     }
 }
 
-/// Reflectors that are added up at a time: sums of sums lose fewer digits than one long sum.
+/// Reflectors that are added up at a time in f64: sums of sums lose fewer digits than one long sum.
 const CHUNK: usize = 64;
-/// From so many reflectors on, what is rounded off when chunks are added up is kept and added at the end (Kahan, Commun. ACM 8, 1965),
-/// so that a sum of any length is as good as one of a few chunks.
-const LONG: usize = 1024;
+/// Reflectors up to which f32 keeps its promise without more ado, even where all roundings agree as they do for coincident points. Beyond,
+/// what every addition rounds off is kept and added at the end (Kahan, Commun. ACM 8, 1965): a sum of any length is as good as a short one.
+const SHORT: usize = 16;
 
 /// Beat signal of `reflectors` at the `W` elements at `element_x_metres` metres, written to `out`, one vector a sample.
 #[inline(always)]
@@ -140,37 +138,31 @@ pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     scratch: &mut Scratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
-    let Scratch { grid, spare, lost } = scratch;
-    let long = reflectors.len() > LONG;
+    let Scratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
-    if reflectors.len() > CHUNK {
+    if reflectors.len() > SHORT {
         spare.fill(ComplexLanes::zero());
     }
-    if long {
-        lost.clear();
-        lost.resize(grid.len(), ComplexLanes::zero());
-    }
-    for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
-        if i > 0 && long {
-            for ((total, lost), cell) in spare.iter_mut().zip(lost.iter_mut()).zip(grid.iter_mut()) {
-                *lost = *lost + add_exactly(total, *cell);
-                *cell = ComplexLanes::zero();
+    if T::EPSILON > f64::EPSILON && reflectors.len() > SHORT {
+        for r in reflectors {
+            spread::<T, W, FMA, true>(plan, model, element_x_metres, r, grid, spare);
+        }
+        grid.iter_mut().zip(spare.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
+    } else {
+        for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
+            if i > 0 {
+                for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
+                    *total = *total + *cell;
+                    *cell = ComplexLanes::zero();
+                }
             }
-        } else if i > 0 {
-            for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
-                *total = *total + *cell;
-                *cell = ComplexLanes::zero();
+            for r in chunk {
+                spread::<T, W, FMA, false>(plan, model, element_x_metres, r, grid, &mut []);
             }
         }
-        for r in chunk {
-            spread::<T, W, FMA>(plan, model, element_x_metres, r, grid);
+        if reflectors.len() > CHUNK {
+            grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
         }
-    }
-    if reflectors.len() > CHUNK {
-        grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
-    }
-    if long {
-        grid.iter_mut().zip(lost.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
     }
     plan.fft.process::<W, FMA>(grid, spare);
     let half = plan.samples / 2;
@@ -219,13 +211,15 @@ fn kernel_values<T: Real, const W: usize, const FMA: bool>(
     values
 }
 
+/// Adds one reflector to `grid`; what is rounded off goes to `lost`, cell for cell, if it is to be kept (`KEEP`).
 #[inline(always)]
-fn spread<T: Real, const W: usize, const FMA: bool>(
+fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
     element_x_metres: Lanes<f64, W>,
     r: &Reflector,
     grid: &mut [ComplexLanes<T, W>],
+    lost: &mut [ComplexLanes<T, W>],
 ) {
     let of = Lanes::<f64, W>::splat;
     let cells = plan.grid as f64;
@@ -263,8 +257,12 @@ fn spread<T: Real, const W: usize, const FMA: bool>(
                 cell -= plan.grid;
             }
             let sum = &mut grid[cell];
-            sum.re = value.re.mul_add::<FMA>(*kernel, sum.re);
-            sum.im = value.im.mul_add::<FMA>(*kernel, sum.im);
+            if KEEP {
+                lost[cell] = lost[cell] + add_exactly(sum, value.scaled(*kernel));
+            } else {
+                sum.re = value.re.mul_add::<FMA>(*kernel, sum.re);
+                sum.im = value.im.mul_add::<FMA>(*kernel, sum.im);
+            }
             cell += 1;
         }
         start += 1.0;

@@ -38,7 +38,7 @@ fn most_in_f32(algorithm: Algorithm) -> usize {
     match algorithm {
         // One long sum.
         Algorithm::ClosedForm => 60,
-        // Sums of sums, and what they round off is kept.
+        // What the sum rounds off is kept.
         Algorithm::Gridded => usize::MAX,
         // Sums of eight.
         Algorithm::Direct | Algorithm::Exact | Algorithm::Split => 1024,

@@ -3,7 +3,7 @@
 //! | file | what it says |
 //! |---|---|
 //! | [`squint`] | the column of a blob, off broadside not quite that of the true direction |
-//! | [`pattern`] | beam width and first side lobe of a window |
+//! | [`pattern`] | beam width and highest side lobe of a window |
 //! | [`response`] | the map of one reflector at any fraction of a bin and column, in closed form |
 //! | [`blob`] | its peak, half-power widths and first side lobes |
 //! | [`streak`] | how far a near reflector is drawn out over columns and bins |

@@ -64,11 +64,12 @@ impl Pattern {
         Some(low + high)
     }
 
-    /// The first side lobe; `None` where there is none.
-    pub fn first_side_lobe(&self) -> Option<Lobe> {
+    /// The highest side lobe; `None` where there is none.
+    pub fn highest_side_lobe(&self) -> Option<Lobe> {
         let size = |at: f64| self.at(at).abs();
         let valley = self.first(|at| size(at + 1.0 / STEPS) > size(at))?;
-        let peak = self.first(|at| at > valley && size(at + 1.0 / STEPS) < size(at))?;
+        let steps = (valley * STEPS) as usize..(self.len as f64 / 2.0 * STEPS) as usize;
+        let peak = steps.map(|step| step as f64 / STEPS).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
         let (mut low, mut high) = (peak - 1.0 / STEPS, peak + 1.0 / STEPS);
         for _ in 0..40 {
             let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
@@ -108,11 +109,12 @@ mod tests {
         for (window, width, level) in [
             (WindowFunction::Rectangular, 0.89, -13.0),
             (WindowFunction::Hann, 1.44, -32.0),
+            (WindowFunction::Hamming, 1.30, -43.0),
             (WindowFunction::Blackman, 1.68, -58.0),
         ] {
             let pattern = Pattern::new(window, 1024);
             assert!((pattern.main_lobe_bins(Decibels(3.01)).unwrap() - width).abs() < 0.04, "{window:?}");
-            let lobe = pattern.first_side_lobe().unwrap();
+            let lobe = pattern.highest_side_lobe().unwrap();
             assert!((lobe.level.0 - level).abs() < 1.0, "{window:?}: {lobe:?}");
         }
         assert_eq!(Pattern::new(WindowFunction::Hann, 3).main_lobe_bins(Decibels(3.0)), None, "one weight");
