@@ -44,9 +44,10 @@
 //! | [`maps`] | the beat signal | range-angle maps, Lambda, masks, Cartesian views |
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
 //! | [`bounds`] | a layout and a noise level | how well any estimator can do |
+//! | [`theory`] | a radar and a place | what the formulas predict of the map: peak, beam width, lobes, comb, streak, squint |
 //! | [`evaluate`] | target and output | SE, P_D, P_FA, ROC, the thesis' tables |
 //! | [`benchmark`] | scenes of any size | run time against error, and whether numerics hold |
-//! | [`live`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
+//! | [`engine`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
 //! | [`picture`] | a scene and its maps | colours and panels, without a display |
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |
 #![warn(missing_docs)]
@@ -56,10 +57,10 @@ pub mod app;
 pub mod benchmark;
 pub mod bounds;
 pub mod commands;
+pub mod engine;
 pub mod evaluate;
 pub mod files;
 pub mod interact;
-pub mod live;
 pub mod maps;
 pub mod methods;
 #[cfg(feature = "network")]
@@ -71,3 +72,4 @@ pub mod recording;
 pub mod scene;
 pub mod signal;
 pub mod task;
+pub mod theory;

@@ -8,7 +8,7 @@ use super::panels::{
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
-use crate::live::LiveMap;
+use crate::engine::ReadyMap;
 use crate::scene::{Reflector, Scene};
 use eframe::egui::{TextureFilter, TextureOptions, Ui};
 use std::collections::BTreeMap;
@@ -249,7 +249,7 @@ fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
     }
 }
 
-fn cells_of(map: &LiveMap) -> map::Cells<'_> {
+fn cells_of(map: &ReadyMap) -> map::Cells<'_> {
     map::Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
 }
 

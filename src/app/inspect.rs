@@ -5,7 +5,7 @@ use super::state::{Arrangement, Command, MapKind, Settings};
 use crate::bounds::PositionBound;
 use crate::evaluate::Metrics;
 use crate::interact::Editor;
-use crate::live::Report;
+use crate::engine::Report;
 use crate::radar::Radar;
 
 impl App {

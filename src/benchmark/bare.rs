@@ -1,7 +1,8 @@
 //! The bare two-dimensional transform that every run time is measured in.
 
+use crate::signal::simd::Simd;
 use num_complex::Complex32;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -21,8 +22,7 @@ pub struct BareTransform {
 
 impl Default for BareTransform {
     fn default() -> Self {
-        let mut planner = FftPlanner::new();
-        let (over_rows, over_columns) = (planner.plan_fft_forward(COLUMNS), planner.plan_fft_forward(ROWS));
+        let (over_rows, over_columns) = (Simd::chosen().forward_fft(COLUMNS), Simd::chosen().forward_fft(ROWS));
         let scratch = over_rows.get_inplace_scratch_len().max(over_columns.get_inplace_scratch_len());
         BareTransform {
             over_rows,

@@ -24,6 +24,7 @@ mod worsen;
 pub use error::CommandError;
 pub use output::print;
 
+use crate::signal::simd::Simd;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -32,7 +33,7 @@ use std::process::ExitCode;
 /// Without a command the app opens, on SCENE where one is given. Where there is no display, the scene's panels are drawn to
 /// apertura.png instead.
 #[derive(Debug, Parser)]
-#[command(version, about, args_conflicts_with_subcommands = true)]
+#[command(version, about, args_conflicts_with_subcommands = true, after_help = ENVIRONMENT)]
 struct Cli {
     #[command(flatten)]
     open: open::Args,
@@ -40,6 +41,11 @@ struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
 }
+
+/// What the environment decides.
+const ENVIRONMENT: &str = "Environment:
+  APERTURA_SIMD  portable, avx2 or avx512: compute with these instructions (default: the best that the processor has)
+  APERTURA_LOG   what is told on standard error, such as debug (default: warnings)";
 
 /// What the program can do beside opening its window.
 #[derive(Debug, Subcommand)]
@@ -79,10 +85,10 @@ impl Command {
 pub fn main() -> ExitCode {
     log_to_stderr();
     let cli = Cli::parse();
-    let result = match cli.command {
+    let result = Simd::requested().map_err(CommandError::failed).and_then(|_| match cli.command {
         Some(command) => command.run(),
         None => cli.open.run(),
-    };
+    });
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -86,9 +86,10 @@ fn print_table(report: &StressReport) -> Result<(), CommandError> {
     let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
     let resident = |bytes: Option<u64>| bytes.map_or("unknown".to_owned(), mib);
     print(&format!(
-        "{} random edits, f64: at most {:.1e} from a fresh build; caches {} early, {} in the end; process {} early, {} in the end",
+        "{} random edits, f64: at most {:.1e} from a fresh build, {:.1e} allowed; caches {} early, {} in the end; process {} early, {} in the end",
         e.edits,
         e.worst_difference,
+        e.most_difference,
         mib(e.cache_bytes_early as u64),
         mib(e.cache_bytes as u64),
         resident(e.resident_bytes_early),

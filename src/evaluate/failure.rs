@@ -10,7 +10,8 @@ use super::blobs::Blobs;
 use crate::maps::{Aperture, LambdaScale, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
-use crate::signal::plan::{self, Recipe};
+use crate::signal::plan::amplitude_bound;
+use crate::signal::{Plan, beat_signal};
 use ndarray::Axis;
 
 /// Part of a footprint that must be detected for the object to count as found.
@@ -202,9 +203,9 @@ fn moved(column: usize, by: i32, columns: usize) -> usize {
 /// The cells that `object` alone, without noise, lifts above `level` (a magnitude).
 fn footprint(radar: &Radar, object: &Object, level: f64) -> Vec<Cell> {
     let reflectors = object.reflectors();
-    let amplitude = plan::amplitude_bound(radar, &reflectors);
-    let recipe = Recipe::plan(reflectors.len(), amplitude, TOLERANCE);
-    let profiles = range_transform(radar, &plan::beat_signal(radar, &reflectors, &recipe)).profiles;
+    let amplitude = amplitude_bound(radar, &reflectors);
+    let plan = Plan::cheapest(reflectors.len(), amplitude, TOLERANCE);
+    let profiles = range_transform(radar, &beat_signal(radar, &reflectors, &plan)).profiles;
     // No cell of a row can exceed what its profiles add up to.
     let scale = (radar.elements as f64).sqrt().recip();
     let window = radar.window.weights(radar.elements);

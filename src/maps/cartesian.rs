@@ -81,9 +81,39 @@ pub fn project(radar: &Radar, map: &RangeAngleMap, rows: usize) -> CartesianMap 
     Projector::new(radar, rows).project(map)
 }
 
+/// Draws a Cartesian picture back onto range and cos(theta), `[rows, 2 * rows]` to `[samples, elements]` of `radar`: every cell takes the
+/// pixel it lies in.
+pub fn to_polar(radar: &Radar, cartesian: &Array2<f32>) -> Array2<f32> {
+    let (rows, columns) = cartesian.dim();
+    let pixel_metres = radar.max_range_metres() / rows.max(1) as f64;
+    Array2::from_shape_fn((radar.samples, radar.elements), |(bin, column)| {
+        let range = radar.range_of_bin_metres(bin as f64);
+        let cos = radar.cos_of_column(column as f64).clamp(-1.0, 1.0);
+        let (x, y) = (range * cos, range * (1.0 - cos * cos).sqrt());
+        let row = ((y / pixel_metres) as usize).min(rows.saturating_sub(1));
+        let across = ((x + radar.max_range_metres()) / pixel_metres).max(0.0) as usize;
+        cartesian.get((row, across.min(columns.saturating_sub(1)))).copied().unwrap_or(f32::NAN)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_projected_map_comes_back_from_its_picture() {
+        let radar = Radar { samples: 64, elements: 32, end_elements: 4, ..Radar::default() };
+        let lambda = Array2::from_shape_fn((64, 32), |(bin, column)| (bin as f32 + column as f32) / 96.0);
+        let back = to_polar(&radar, &project(&radar, &RangeAngleMap { lambda: lambda.clone() }, 512).lambda);
+        for ((bin, column), expected) in lambda.indexed_iter() {
+            // The last row and the end-fire columns lie at the edge of the picture.
+            if (1..63).contains(&bin) && (2..31).contains(&column) {
+                let found = back[[bin, column]];
+                assert!((found - expected).abs() < 0.03, "bin {bin}, column {column}: {found} for {expected}");
+            }
+        }
+        assert!(to_polar(&radar, &Array2::zeros((0, 0))).iter().all(|v| v.is_nan()));
+    }
 
     #[test]
     fn a_bright_cell_lands_at_its_place() {

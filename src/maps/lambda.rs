@@ -49,9 +49,9 @@ impl fmt::Display for Normalisation {
 /// The straight line from decades to Lambda.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LambdaScale {
-    /// Decades where Lambda is 0.
+    /// FastLogMap where Lambda is 0.
     pub floor: f64,
-    /// Decades where Lambda is 1.
+    /// FastLogMap where Lambda is 1.
     pub peak: f64,
 }
 

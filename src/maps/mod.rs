@@ -9,6 +9,7 @@ mod lambda;
 mod log_map;
 pub mod network_input;
 mod spectra;
+pub mod tolerance;
 mod transform;
 
 pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};

@@ -1,9 +1,10 @@
 //! Plain transforms for reconstructions that form their own beams: any length, no scaling, no window.
 
+use crate::signal::simd::Simd;
 use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// A forward DFT of fixed length, `X[k] = sum_n x[n] exp(-2 pi j k n / len)`; not scaled.
@@ -15,7 +16,7 @@ pub struct Spectrum {
 impl Spectrum {
     /// The transform of `len` points.
     pub fn new(len: usize) -> Self {
-        Spectrum { fft: FftPlanner::new().plan_fft_forward(len) }
+        Spectrum { fft: Simd::chosen().forward_fft(len) }
     }
 
     /// Number of points.

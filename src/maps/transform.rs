@@ -3,10 +3,10 @@
 use super::log_map::{LOG_GUARD, LogMap};
 use crate::radar::{End, Radar};
 use crate::signal::BeatSignal;
+use crate::signal::simd::Simd;
 use ndarray::{Array2, ArrayView2, s};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use rustfft::FftPlanner;
 
 /// Which elements a map is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,7 +43,7 @@ pub fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64
 
 /// Range profiles of any channels under a window of `radar.samples` weights.
 pub fn windowed_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>, window: &[f64]) -> RangeProfiles {
-    let fft = FftPlanner::new().plan_fft_forward(radar.samples);
+    let fft = Simd::chosen().forward_fft(radar.samples);
     let scale = (radar.samples as f64).sqrt().recip();
     let window: Vec<f64> = window.iter().map(|w| w * scale).collect();
     let mut profiles = samples.as_standard_layout().into_owned();
@@ -78,7 +78,7 @@ pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> Comple
 /// Windows the channels, pads them with zeros to N_a, transforms, and rolls by N_a / 2 so that cos(theta) rises with the column.
 fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> ComplexMap {
     let columns = radar.elements;
-    let fft = FftPlanner::new().plan_fft_forward(columns);
+    let fft = Simd::chosen().forward_fft(columns);
     let scale = (columns as f64).sqrt().recip();
     let window: Vec<f64> = radar.window.weights(profiles.nrows()).into_iter().map(|w| w * scale).collect();
     let mut cells = Array2::zeros((profiles.ncols(), columns));

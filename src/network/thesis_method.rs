@@ -6,6 +6,7 @@ use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};
 use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
+use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends, silence, unit_gain};
 use crate::signal::TwoEnds;
@@ -144,15 +145,7 @@ impl Reconstructor for UnetMethod {
         let rows = self.config.rows;
         let cartesian =
             estimate(&self.network, Unet::NAME, Unet::input(&tables, &ends)?, [rows, 2 * rows], &self.device)?;
-        let pixel = radar.max_range_metres() / rows as f64;
-        let lambda = Array2::from_shape_fn((radar.samples, radar.elements), |(bin, column)| {
-            let range = radar.range_of_bin_metres(bin as f64);
-            let cos = radar.cos_of_column(column as f64).clamp(-1.0, 1.0);
-            let (x, y) = (range * cos, range * (1.0 - cos * cos).sqrt());
-            let row = ((y / pixel) as usize).min(rows - 1);
-            let column = (((x + radar.max_range_metres()) / pixel).max(0.0) as usize).min(2 * rows - 1);
-            cartesian[[row, column]]
-        });
+        let lambda = to_polar(radar, &cartesian);
         Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new() })
     }
 }

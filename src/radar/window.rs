@@ -35,16 +35,21 @@ impl WindowFunction {
         }
     }
 
-    /// The symmetric window of `len` points: a sum of cosines over `2 pi n / (len - 1)`.
-    ///
-    /// One point or none gives ones, as NumPy's windows do.
-    pub fn weights(self, len: usize) -> Vec<f64> {
-        let [a, b, c] = match self {
+    /// Weights of the cosines it is the sum of: `a - b cos(2 pi n / (len - 1)) + c cos(4 pi n / (len - 1))`.
+    pub fn cosines(self) -> [f64; 3] {
+        match self {
             WindowFunction::Hann => [0.5, 0.5, 0.0],
             WindowFunction::Hamming => [0.54, 0.46, 0.0],
             WindowFunction::Blackman => [0.42, 0.5, 0.08],
             WindowFunction::Rectangular => [1.0, 0.0, 0.0],
-        };
+        }
+    }
+
+    /// The symmetric window of `len` points ([`WindowFunction::cosines`]).
+    ///
+    /// One point or none gives ones, as NumPy's windows do.
+    pub fn weights(self, len: usize) -> Vec<f64> {
+        let [a, b, c] = self.cosines();
         if len < 2 {
             return vec![1.0; len];
         }

@@ -79,17 +79,17 @@ impl<T: Real> ClosedForm<T> {
         rows
     }
 
-    /// Adds the range profiles of `reflectors` at the `W` elements at `element_x` metres to `cells`, `[range bins]`.
+    /// Adds the range profiles of `reflectors` at the `W` elements at `element_x_metres` metres to `cells`, `[range bins]`.
     #[inline(always)]
     pub fn add_block<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
-        element_x: Lanes<f64, W>,
+        element_x_metres: Lanes<f64, W>,
         reflectors: &[Reflector],
         cells: &mut [ComplexLanes<T, W>],
     ) {
         for r in reflectors {
-            self.add::<W, FMA>(model, element_x, r, cells);
+            self.add::<W, FMA>(model, element_x_metres, r, cells);
         }
     }
 
@@ -97,13 +97,13 @@ impl<T: Real> ClosedForm<T> {
     fn add<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
-        element_x: Lanes<f64, W>,
+        element_x_metres: Lanes<f64, W>,
         r: &Reflector,
         cells: &mut [ComplexLanes<T, W>],
     ) {
         let of = Lanes::<f64, W>::splat;
         let bins = self.samples as f64;
-        let echo = model.echo_lanes::<W, FMA>(element_x, r);
+        let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
         // Range in bins, on the same side of the wrap as the first lane's, from the bin nearest to that.
         let position = echo.beat_turns * of(bins);
         let wraps = ((position - of(position.0[0])) * of(1.0 / bins)).nearest();
@@ -213,8 +213,9 @@ fn far<T: Real, const W: usize, const FMA: bool>(distance: Lanes<T, W>, bins: f6
 
 #[cfg(test)]
 mod tests {
+    use super::super::algorithm::{Algorithm, Precision};
     use super::super::exact;
-    use super::super::plan::{Algorithm, Precision, Recipe};
+    use super::super::plan::Plan;
     use super::super::simd::{LANES_F32, LANES_F64, Simd};
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
@@ -222,29 +223,29 @@ mod tests {
     use crate::scene::Scene;
 
     /// Largest error of a cell relative to the largest cell, by either precision.
-    fn error(radar: &Radar, reflectors: &[Reflector], recipe: Recipe) -> f64 {
+    fn error(radar: &Radar, reflectors: &[Reflector], plan: Plan) -> f64 {
         let expected = range_transform(radar, &exact::beat_signal(radar, reflectors)).profiles;
         let peak = expected.iter().fold(0.0f64, |m, v| m.max(v.norm()));
         let worst = |profile: &dyn Fn(usize) -> Vec<num_complex::Complex64>| {
             let of = |n: usize| profile(n).iter().zip(expected.row(n)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             (0..radar.elements).map(of).fold(0.0, f64::max) / peak
         };
-        match recipe.precision {
+        match plan.precision {
             Precision::F32 => {
                 let mut out = BlockProfiles::silence(radar);
-                Synthesis::<f32, LANES_F32>::new(radar, recipe).range_profiles(reflectors, &mut out);
+                Synthesis::<f32, LANES_F32>::new(radar, plan).range_profiles(reflectors, &mut out);
                 worst(&|n| out.profile(n).unwrap())
             }
             Precision::F64 => {
                 let mut out = BlockProfiles::silence(radar);
-                Synthesis::<f64, LANES_F64>::new(radar, recipe).range_profiles(reflectors, &mut out);
+                Synthesis::<f64, LANES_F64>::new(radar, plan).range_profiles(reflectors, &mut out);
                 worst(&|n| out.profile(n).unwrap())
             }
         }
     }
 
-    fn recipe(tolerance: f64, simd: Simd) -> Recipe {
-        Recipe { simd, ..Recipe::plan(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
+    fn plan(tolerance: f64, simd: Simd) -> Plan {
+        Plan { simd, ..Plan::cheapest(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
     }
 
     #[test]
@@ -255,7 +256,7 @@ mod tests {
             let reflectors = Scene::of_points([(x, y)]).reflectors();
             for simd in Simd::available() {
                 for tolerance in [1e-3, 1e-6, 1e-9, 1e-14] {
-                    let e = error(&radar, &reflectors, recipe(tolerance, simd));
+                    let e = error(&radar, &reflectors, plan(tolerance, simd));
                     assert!(e < tolerance, "({x}, {y}) at {tolerance:e} with {simd:?}: {e:e}");
                 }
             }
@@ -270,7 +271,7 @@ mod tests {
         let bin = radar.range_resolution_metres();
         for offset in [0.0, 1e-14, 1e-9, 1e-4, -1e-12, 0.5, 64.0 / 63.0 - 1.0, 1.0 - 64.0 / 63.0, 0.499_999_99] {
             let reflectors = Scene::of_points([(0.0, (20.0 + offset) * bin)]).reflectors();
-            let e = error(&radar, &reflectors, recipe(1e-15, Simd::best()));
+            let e = error(&radar, &reflectors, plan(1e-15, Simd::best()));
             assert!(e < 3e-15, "{offset}: {e:e}");
         }
     }
@@ -279,8 +280,8 @@ mod tests {
     fn other_windows_have_none() {
         let radar = Radar { window: WindowFunction::Blackman, elements: 16, end_elements: 3, ..Radar::default() };
         let reflectors = Scene::of_points([(0.5, 9.0)]).reflectors();
-        assert_eq!(Recipe::plan(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
-        let e = error(&radar, &reflectors, recipe(1e-3, Simd::best()));
+        assert_eq!(Plan::cheapest(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
+        let e = error(&radar, &reflectors, plan(1e-3, Simd::best()));
         assert!(e < 1e-6, "forced, it is evaluated by phasor split: {e:e}");
     }
 
@@ -290,7 +291,7 @@ mod tests {
         let reflectors = Scene::of_points([(0.0, 15.0)]).reflectors();
         let mut out = BlockProfiles::<f64, LANES_F64>::silence(&radar);
         for (tolerance, most) in [(1e-3, 36), (1e-6, 236), (1e-12, 512)] {
-            Synthesis::new(&radar, recipe(tolerance, Simd::best())).range_profiles(&reflectors, &mut out);
+            Synthesis::new(&radar, plan(tolerance, Simd::best())).range_profiles(&reflectors, &mut out);
             assert!(out.touched.count() <= most, "{tolerance:e}: {}", out.touched.count());
             for element in [0, 500, 1023] {
                 for (bin, cell) in out.profile(element).unwrap().iter().enumerate() {

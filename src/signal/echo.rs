@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// Samples after which a running phasor is taken afresh, so that its rounding error stays at a few parts in 1e16.
 const RESTART: usize = 32;
 
-/// Adds `gain` times the echo of a unit reflector to `samples` of the element at `element_x` metres.
+/// Adds `gain` times the echo of a unit reflector to `samples` of the element at `element_x_metres` metres.
 pub fn add_echo(
     model: &EchoModel,
     element_x_metres: f64,

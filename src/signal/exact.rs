@@ -1,7 +1,7 @@
 //! Equation 3.3 in f64 with phases reduced exactly to turns: no rounding floor above the last bits of f64.
 
-use super::BeatSignal;
 use super::phase::EchoModel;
+use super::samples::BeatSignal;
 use crate::radar::Radar;
 use crate::scene::Reflector;
 use num_complex::Complex64;
@@ -15,9 +15,9 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
     let mut signal = BeatSignal::silence(radar);
     let model = EchoModel::new(radar);
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
-        let element_x = radar.element_x_metres(n);
+        let element_x_metres = radar.element_x_metres(n);
         for r in reflectors {
-            let echo = model.echo(element_x, r);
+            let echo = model.echo(element_x_metres, r);
             for (n1, sample) in row.iter_mut().enumerate() {
                 *sample += Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(n1));
             }

@@ -2,7 +2,7 @@
 //!
 //! A map normalised by its minimum shows its floor as much as its peaks, so the floor is always named: no function picks one silently.
 
-use super::BeatSignal;
+use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
@@ -81,7 +81,7 @@ fn powers(radar: &Radar, reflectors: &[Reflector], factor: f64, radians_per_metr
     let mut out = vec![0.0; radar.elements];
     out.par_chunks_mut(LANES_F64).enumerate().for_each(|(block, out)| {
         let first_element = block * LANES_F64;
-        let block = Simd::best().run(BlockPowers { radar, reflectors, factor, radians_per_metre, first_element });
+        let block = Simd::chosen().run(BlockPowers { radar, reflectors, factor, radians_per_metre, first_element });
         out.iter_mut().zip(block.0).for_each(|(out, power)| *out = power);
     });
     out
@@ -100,10 +100,10 @@ impl Kernel for BlockPowers<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let element_x = Lanes(std::array::from_fn(|i| self.radar.element_x_metres(self.first_element + i)));
+        let element_x_metres = Lanes(std::array::from_fn(|i| self.radar.element_x_metres(self.first_element + i)));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
-            let dx = element_x - Lanes::splat(r.x_metres);
+            let dx = element_x_metres - Lanes::splat(r.x_metres);
             let square = dx * dx + Lanes::splat(r.y_metres * r.y_metres);
             let scale = self.radar.transmit_power_watts * r.reflectivity;
             let mut amplitude = square.map(|s| scale / s);

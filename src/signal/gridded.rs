@@ -122,37 +122,47 @@ impl<T: Real> Gridding<T> {
     }
 }
 
-/// Reflectors that are added up at a time: sums of sums lose fewer digits than one long sum.
+/// Reflectors that are added up at a time in f64: sums of sums lose fewer digits than one long sum.
 const CHUNK: usize = 64;
+/// Reflectors up to which f32 keeps its promise without more ado, even where all roundings agree as they do for coincident points. Beyond,
+/// what every addition rounds off is kept and added at the end (Kahan, Commun. ACM 8, 1965): a sum of any length is as good as a short one.
+const SHORT: usize = 16;
 
-/// Beat signal of `reflectors` at the `W` elements at `element_x` metres, written to `out`, one vector a sample.
+/// Beat signal of `reflectors` at the `W` elements at `element_x_metres` metres, written to `out`, one vector a sample.
 #[inline(always)]
 pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
-    element_x: Lanes<f64, W>,
+    element_x_metres: Lanes<f64, W>,
     reflectors: &[Reflector],
     scratch: &mut Scratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
     let Scratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
-    if reflectors.len() > CHUNK {
+    if reflectors.len() > SHORT {
         spare.fill(ComplexLanes::zero());
     }
-    for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
-        if i > 0 {
-            for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
-                *total = *total + *cell;
-                *cell = ComplexLanes::zero();
+    if T::EPSILON > f64::EPSILON && reflectors.len() > SHORT {
+        for r in reflectors {
+            spread::<T, W, FMA, true>(plan, model, element_x_metres, r, grid, spare);
+        }
+        grid.iter_mut().zip(spare.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
+    } else {
+        for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
+            if i > 0 {
+                for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
+                    *total = *total + *cell;
+                    *cell = ComplexLanes::zero();
+                }
+            }
+            for r in chunk {
+                spread::<T, W, FMA, false>(plan, model, element_x_metres, r, grid, &mut []);
             }
         }
-        for r in chunk {
-            spread::<T, W, FMA>(plan, model, element_x, r, grid);
+        if reflectors.len() > CHUNK {
+            grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
         }
-    }
-    if reflectors.len() > CHUNK {
-        grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
     }
     plan.fft.process::<W, FMA>(grid, spare);
     let half = plan.samples / 2;
@@ -164,32 +174,25 @@ pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     }
 }
 
+/// Adds `more` to `total`; returns what the rounded sum lacks (Knuth's two-sum).
 #[inline(always)]
-fn spread<T: Real, const W: usize, const FMA: bool>(
-    plan: &Gridding<T>,
-    model: &EchoModel,
-    element_x: Lanes<f64, W>,
-    r: &Reflector,
-    grid: &mut [ComplexLanes<T, W>],
-) {
-    let of = Lanes::<f64, W>::splat;
-    let cells = plan.grid as f64;
-    let echo = model.echo_lanes::<W, FMA>(element_x, r);
-    // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
-    let middle = (plan.samples / 2) as f64;
-    let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);
-    let amplitude = echo.amplitude.round_to();
-    let value = ComplexLanes { re: p.re * amplitude, im: -(p.im * amplitude) };
+fn add_exactly<T: Real, const W: usize>(
+    total: &mut ComplexLanes<T, W>,
+    more: ComplexLanes<T, W>,
+) -> ComplexLanes<T, W> {
+    let before = *total;
+    let sum = before + more;
+    let added = sum - before;
+    *total = sum;
+    (before - (sum - added)) + (more - added)
+}
 
-    // Grid position, on the same side of the wrap as the first lane's.
-    let position = echo.beat_turns * of(cells);
-    let first = of(position.0[0]);
-    let wraps = ((position - first) * of(1.0 / cells)).nearest();
-    let position = position - wraps * of(cells);
-    let edge = position - of(plan.width as f64 / 2.0);
-    let left = (edge + of(0.5)).nearest();
-    // In [-1, 1] up to rounding; `left` lies within half a cell of `edge + 1/2`.
-    let t: Lanes<T, W> = ((left - edge - echo.beat_turns_low * of(cells)) * of(2.0) - of(1.0)).round_to();
+/// The kernel over its cells, `t` in [-1, 1] from one side of a cell to the other.
+#[inline(always)]
+fn kernel_values<T: Real, const W: usize, const FMA: bool>(
+    plan: &Gridding<T>,
+    t: Lanes<T, W>,
+) -> [Lanes<T, W>; MAX_WIDTH] {
     let t2 = t * t;
 
     let mut values = [Lanes::splat(T::default()); MAX_WIDTH];
@@ -205,6 +208,38 @@ fn spread<T: Real, const W: usize, const FMA: bool>(
         values[cell] = even + odd;
         values[plan.width - 1 - cell] = even - odd;
     }
+    values
+}
+
+/// Adds one reflector to `grid`; what is rounded off goes to `lost`, cell for cell, if it is to be kept (`KEEP`).
+#[inline(always)]
+fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
+    plan: &Gridding<T>,
+    model: &EchoModel,
+    element_x_metres: Lanes<f64, W>,
+    r: &Reflector,
+    grid: &mut [ComplexLanes<T, W>],
+    lost: &mut [ComplexLanes<T, W>],
+) {
+    let of = Lanes::<f64, W>::splat;
+    let cells = plan.grid as f64;
+    let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
+    // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
+    let middle = (plan.samples / 2) as f64;
+    let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);
+    let amplitude = echo.amplitude.round_to();
+    let value = ComplexLanes { re: p.re * amplitude, im: -(p.im * amplitude) };
+
+    // Grid position, on the same side of the wrap as the first lane's.
+    let position = echo.beat_turns * of(cells);
+    let first = of(position.0[0]);
+    let wraps = ((position - first) * of(1.0 / cells)).nearest();
+    let position = position - wraps * of(cells);
+    let edge = position - of(plan.width as f64 / 2.0);
+    let left = (edge + of(0.5)).nearest();
+    // In [-1, 1] up to rounding; `left` lies within half a cell of `edge + 1/2`.
+    let t: Lanes<T, W> = ((left - edge - echo.beat_turns_low * of(cells)) * of(2.0) - of(1.0)).round_to();
+    let values = kernel_values::<T, W, FMA>(plan, t);
 
     let lowest = left.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
     let highest = left.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
@@ -222,8 +257,12 @@ fn spread<T: Real, const W: usize, const FMA: bool>(
                 cell -= plan.grid;
             }
             let sum = &mut grid[cell];
-            sum.re = value.re.mul_add::<FMA>(*kernel, sum.re);
-            sum.im = value.im.mul_add::<FMA>(*kernel, sum.im);
+            if KEEP {
+                lost[cell] = lost[cell] + add_exactly(sum, value.scaled(*kernel));
+            } else {
+                sum.re = value.re.mul_add::<FMA>(*kernel, sum.re);
+                sum.im = value.im.mul_add::<FMA>(*kernel, sum.im);
+            }
             cell += 1;
         }
         start += 1.0;

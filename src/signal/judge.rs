@@ -2,7 +2,7 @@
 //!
 //! Slow and simple. Its own trust comes from known values and from agreeing with [`super::direct`] where phases are small.
 
-use super::BeatSignal;
+use super::samples::BeatSignal;
 use crate::radar::Radar;
 use crate::scene::Reflector;
 use num_complex::Complex64;
@@ -24,9 +24,9 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
 pub fn element_signal(radar: &Radar, reflectors: &[Reflector], element: usize) -> Vec<Complex64> {
     let zero = TwoFloat::from(0.0);
     let mut sums = vec![Phasor { re: zero, im: zero }; radar.samples];
-    let element_x = radar.element_x_metres(element);
+    let element_x_metres = radar.element_x_metres(element);
     for r in reflectors {
-        let dx = TwoFloat::new_sub(element_x, r.x_metres);
+        let dx = TwoFloat::new_sub(element_x_metres, r.x_metres);
         let square = dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres);
         let distance = root(square);
         let amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / square;

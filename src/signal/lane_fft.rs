@@ -2,9 +2,9 @@
 //!
 //! Powers of two go through Stockham's radix-4 algorithm; any other length through rustfft, one lane after the other.
 
-use super::simd::{ComplexLanes, Lanes, Real};
+use super::simd::{ComplexLanes, Lanes, Real, Simd};
 use num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ impl<T: Real> LaneFft<T> {
     /// Plans transforms of `len` points.
     pub fn new(len: usize) -> Self {
         if !len.is_power_of_two() {
-            return LaneFft { len, method: Method::Rustfft(FftPlanner::new().plan_fft_forward(len)) };
+            return LaneFft { len, method: Method::Rustfft(Simd::chosen().forward_fft(len)) };
         }
         let mut stages = Vec::new();
         let mut left = len;
@@ -126,6 +126,7 @@ fn splat<T: Real, const W: usize>(v: Complex<T>) -> ComplexLanes<T, W> {
 mod tests {
     use super::super::simd::{Kernel, LANES_F64, Simd};
     use super::*;
+    use rustfft::FftPlanner;
 
     struct Transform<'a>(&'a LaneFft<f64>, &'a mut [ComplexLanes<f64, LANES_F64>]);
 

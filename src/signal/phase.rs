@@ -128,9 +128,9 @@ impl EchoModel {
         }
     }
 
-    /// Echo of `r` at the element at `element_x` metres.
-    pub fn echo(&self, element_x: f64, r: &Reflector) -> Echo {
-        let e = self.echo_lanes::<1, false>(Lanes([element_x]), r);
+    /// Echo of `r` at the element at `element_x_metres` metres.
+    pub fn echo(&self, element_x_metres: f64, r: &Reflector) -> Echo {
+        let e = self.echo_lanes::<1, false>(Lanes([element_x_metres]), r);
         Echo {
             amplitude: e.amplitude.0[0],
             distance_metres: e.distance_metres.0[0],
@@ -140,11 +140,15 @@ impl EchoModel {
         }
     }
 
-    /// Echo of `r` at the elements at `element_x` metres.
+    /// Echo of `r` at the elements at `element_x_metres` metres.
     #[inline(always)]
-    pub fn echo_lanes<const W: usize, const FMA: bool>(&self, element_x: Lanes<f64, W>, r: &Reflector) -> EchoLanes<W> {
+    pub fn echo_lanes<const W: usize, const FMA: bool>(
+        &self,
+        element_x_metres: Lanes<f64, W>,
+        r: &Reflector,
+    ) -> EchoLanes<W> {
         let of = Lanes::<f64, W>::splat;
-        let dx = sum(element_x, of(-r.x_metres));
+        let dx = sum(element_x_metres, of(-r.x_metres));
         let x2 = product::<W, FMA>(dx.hi, dx.hi);
         let y2 = product::<W, FMA>(of(r.y_metres), of(r.y_metres));
         let s = sum(x2.hi, y2.hi);

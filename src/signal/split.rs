@@ -49,11 +49,11 @@ impl<T: Real, const W: usize> Scratch<T, W> {
     }
 }
 
-/// Beat signal of `reflectors` at the `W` elements at `element_x` metres, one vector a sample.
+/// Beat signal of `reflectors` at the `W` elements at `element_x_metres` metres, one vector a sample.
 #[inline(always)]
 pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
-    element_x: Lanes<f64, W>,
+    element_x_metres: Lanes<f64, W>,
     reflectors: &[Reflector],
     samples: usize,
     scratch: &'s mut Scratch<T, W>,
@@ -62,22 +62,22 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     padded.fill(ComplexLanes::zero());
     for chunk in reflectors.chunks(CHUNK) {
         for (r, f) in chunk.iter().zip(factors.iter_mut()) {
-            fill_factors::<T, W, FMA>(model, element_x, r, f);
+            fill_factors::<T, W, FMA>(model, element_x_metres, r, f);
         }
         add_product::<T, W, FMA>(&factors[..chunk.len()], padded);
     }
     &mut padded[..samples]
 }
 
-/// Phasors of `r` at the `W` elements at `element_x` metres.
+/// Phasors of `r` at the `W` elements at `element_x_metres` metres.
 #[inline(always)]
 pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
-    element_x: Lanes<f64, W>,
+    element_x_metres: Lanes<f64, W>,
     r: &Reflector,
     f: &mut Factors<T, W>,
 ) {
-    let echo = model.echo_lanes::<W, FMA>(element_x, r);
+    let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
     let fine: [_; STEP] = std::array::from_fn(|i| phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64)));
     for (i, columns) in f.columns.chunks_exact_mut(STEP).enumerate() {
         let coarse = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STEP) as f64));

@@ -2,12 +2,13 @@
 //!
 //! Every block is computed alone and in the same order whatever the number of threads, so results do not depend on it.
 
+use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
 use super::lane_fft::LaneFft;
 use super::phase::EchoModel;
-use super::plan::{Algorithm, Recipe};
+use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
@@ -72,12 +73,12 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
     }
 }
 
-/// A recipe made ready for one radar.
+/// A plan made ready for one radar.
 #[derive(Clone)]
 pub struct Synthesis<T: Real, const W: usize> {
     model: EchoModel,
     radar: Radar,
-    recipe: Recipe,
+    plan: Plan,
     method: Method<T>,
     window: Vec<T>,
     fft: LaneFft<T>,
@@ -107,15 +108,15 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
         let s = self.synthesis;
-        let element_x = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
+        let element_x_metres = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
         let samples = s.radar.samples;
         match (self.scratch, &s.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
-                gridded::block_signal::<T, W, FMA>(gridding, &s.model, element_x, self.reflectors, scratch, out);
+                gridded::block_signal::<T, W, FMA>(gridding, &s.model, element_x_metres, self.reflectors, scratch, out);
                 out
             }
             (Scratch::Split(scratch), _) => {
-                split::block_signal::<T, W, FMA>(&s.model, element_x, self.reflectors, samples, scratch)
+                split::block_signal::<T, W, FMA>(&s.model, element_x_metres, self.reflectors, samples, scratch)
             }
             (Scratch::Gridded(_, out), _) => out,
         }
@@ -176,24 +177,24 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let s = self.synthesis;
-        let element_x = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
-        self.plan.add_block::<W, FMA>(&s.model, element_x, self.reflectors, self.cells);
+        let element_x_metres = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
+        self.plan.add_block::<W, FMA>(&s.model, element_x_metres, self.reflectors, self.cells);
     }
 }
 
 impl<T: Real, const W: usize> Synthesis<T, W> {
-    /// Prepares `recipe` for `radar`. [`Algorithm::Gridded`] grids and [`Algorithm::ClosedForm`] makes profiles directly; every other
+    /// Prepares `plan` for `radar`. [`Algorithm::Gridded`] grids and [`Algorithm::ClosedForm`] makes profiles directly; every other
     /// algorithm is evaluated by phasor split.
-    pub fn new(radar: &Radar, recipe: Recipe) -> Self {
+    pub fn new(radar: &Radar, plan: Plan) -> Self {
         let scale = (radar.samples as f64).sqrt().recip();
         Synthesis {
             model: EchoModel::new(radar),
             radar: radar.clone(),
-            recipe,
-            method: match recipe.algorithm {
-                Algorithm::Gridded => Method::Gridded(Gridding::new(radar, recipe.tolerance)),
+            plan,
+            method: match plan.algorithm {
+                Algorithm::Gridded => Method::Gridded(Gridding::new(radar, plan.tolerance)),
                 Algorithm::ClosedForm => {
-                    ClosedForm::new(radar, recipe.tolerance).map_or(Method::Split, Method::ClosedForm)
+                    ClosedForm::new(radar, plan.tolerance).map_or(Method::Split, Method::ClosedForm)
                 }
                 Algorithm::Direct | Algorithm::Exact | Algorithm::Split => Method::Split,
             },
@@ -203,12 +204,12 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
     }
 
     /// What was prepared.
-    pub fn recipe(&self) -> &Recipe {
-        &self.recipe
+    pub fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     fn simd(&self) -> Simd {
-        self.recipe.simd
+        self.plan.simd
     }
 
     fn scratch(&self) -> Scratch<T, W> {
@@ -262,8 +263,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
 
 /// Windowed range profiles of white noise of unit variance: [`super::floor::unit_noise`] of every element.
 pub fn unit_noise_profiles<T: Real, const W: usize>(radar: &Radar, seed: u64) -> BlockProfiles<T, W> {
-    let recipe = Recipe::plan(0, 0.0, super::plan::BEST_TOLERANCE);
-    let synthesis = Synthesis::<T, W>::new(radar, recipe);
+    let synthesis = Synthesis::<T, W>::new(radar, Plan::cheapest(0, 0.0, BEST_TOLERANCE));
     let mut out = BlockProfiles::silence(radar);
     out.touched = Rows::all(radar.samples);
     let bins = radar.samples;

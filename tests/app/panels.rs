@@ -2,7 +2,7 @@
 
 use crate::session::Session;
 use apertura::app::{Command, MapKind, Panel};
-use apertura::live::Stage;
+use apertura::engine::Stage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};

@@ -39,6 +39,21 @@ y_metres = 20.0
 ";
 
 #[test]
+fn the_environment_picks_the_instructions_or_is_refused() {
+    let folder = folder();
+    std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
+    let with = |set: &str| {
+        let mut command = apertura(&folder);
+        command.env("APERTURA_SIMD", set).args(["maps", "scene.toml", "-o", "maps.npz"]);
+        command
+    };
+    with("portable").assert().success();
+    std::fs::remove_file(folder.path().join("maps.npz")).unwrap();
+    with("sse2").assert().failure().stderr(contains("\"sse2\"; expected portable, avx2 or avx512"));
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
+#[test]
 fn maps_have_the_keys_and_shapes_of_the_authors_program() {
     let folder = folder();
     std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();

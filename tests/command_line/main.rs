@@ -5,3 +5,4 @@ mod cli;
 #[cfg(feature = "network")]
 mod reconstruct;
 mod rows;
+mod same_bits;

@@ -8,7 +8,7 @@
 
 use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
 use crate::app::state::{MapKind, Panel, State};
-use crate::live::Wanted;
+use crate::engine::Wanted;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};

@@ -3,7 +3,7 @@
 use super::painter::{Paint, Painter, Picture, Subject};
 use crate::app::state::{MapKind, Projection};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs};
-use crate::live::{Engine, Frame, LiveMap, Wanted};
+use crate::engine::{Engine, Frame, ReadyMap, Wanted};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
 use crate::radar::Radar;
@@ -175,7 +175,7 @@ impl MapsState {
 
 /// What the picture of one map shows; `None` where there is no such map.
 fn subject(frame: &Frame, request: &MapsRequest, kind: MapKind) -> Option<Subject> {
-    let lambda = |map: &Option<LiveMap>| map.as_ref().map(|m| m.lambda.clone());
+    let lambda = |map: &Option<ReadyMap>| map.as_ref().map(|m| m.lambda.clone());
     let pair = request.pair.as_ref();
     let output = pair.map(|p| p.output.clone());
     let colours = Paint::Lambda(request.colours);

@@ -1,7 +1,7 @@
 //! What each stage of the last update cost, and what was skipped and why.
 
 use crate::app::state::Command;
-use crate::live::{Outcome, Report};
+use crate::engine::{Outcome, Report};
 use eframe::egui;
 use eframe::egui::{Grid, ScrollArea, Ui};
 use std::time::Duration;
@@ -81,7 +81,7 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::live::{Engine, Wanted};
+    use crate::engine::{Engine, Wanted};
     use crate::radar::Radar;
     use crate::scene::Scene;
     use egui_kittest::Harness;

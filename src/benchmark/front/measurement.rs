@@ -1,15 +1,17 @@
 //! Measuring a front, row by row.
 
 use super::super::BareTransform;
-use super::reference::{Reference, SEED, maps_of, plain_maps, profile};
+use super::reference::{Reference, SEED, maps_of, profile};
 use super::{Convention, Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError};
+use crate::engine::{Engine, Forced, Wanted};
 use crate::files::memory::{peak_resident_bytes, reset_peak_resident};
-use crate::live::{Engine, Forced, Wanted};
+use crate::maps::tolerance;
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
 use crate::signal::Floor;
-use crate::signal::plan::{self, Precision, Recipe};
+use crate::signal::plan::{self, BEST_TOLERANCE};
 use crate::signal::simd::Simd;
+use crate::signal::{Plan, Precision, beat_signal};
 use std::time::Instant;
 
 /// Updates before the timed ones: the first two moves of a drag let the dragged reflector leave the sum at rest.
@@ -17,13 +19,16 @@ const WARM_UP: usize = 3;
 /// The slow algorithms are repeated so often at most, by whether the scene is large.
 const SLOW_REPEATS: [usize; 2] = [3, 1];
 
+/// More reflectors than this take the slow algorithms minutes: they are left out.
+const MOST_PLAIN: usize = 1000;
+
 /// One row to be measured.
 #[derive(Clone, Copy)]
 struct Job {
     task: FrontTask,
     entrant: Entrant,
     precision: Precision,
-    recipe: Recipe,
+    plan: Plan,
 }
 
 /// Measures what `request` names on `radar`, on reflectors scattered before the array.
@@ -43,7 +48,7 @@ pub fn measure(
     let mut front = Front {
         bare_fft_ms: bare_fft_ms(repeats.max(9)),
         threads: rayon::current_num_threads(),
-        simd: Simd::best(),
+        simd: Simd::chosen(),
         rows: Vec::new(),
     };
     for (i, count) in request.reflectors.iter().enumerate() {
@@ -58,7 +63,7 @@ pub fn measure(
             if cancelled() {
                 return Ok(front);
             }
-            let row = match job.recipe.algorithm.is_fast() {
+            let row = match job.plan.algorithm.is_fast() {
                 true => fast_row(radar, &scene, &reference, job, repeats)?,
                 false => plain_row(radar, &reference, job, repeats),
             };
@@ -70,7 +75,7 @@ pub fn measure(
     Ok(front)
 }
 
-/// `count` reflectors on a lattice in front of the array, the same as in `benches/numpy_maps.py`.
+/// `count` reflectors on a lattice in front of the array; from the 2013th on they coincide with earlier ones.
 pub fn scattered(count: usize) -> Scene {
     let lattice = |i: usize, step: usize, span: usize| (i * step % span) as f64;
     Scene::of_points((0..count).map(|i| (lattice(i, 37, 61) - 30.0, 2.37 + lattice(i, 53, 33))))
@@ -81,7 +86,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     let amplitude = plan::amplitude_bound(radar, &reference.reflectors);
     let mut jobs = Vec::new();
     for tolerance in &request.tolerances {
-        let mut planned = Recipe::plan(count, amplitude, *tolerance);
+        let mut planned = Plan::cheapest(count, amplitude, *tolerance);
         if Convention::for_tolerance(*tolerance).floor == Floor::Exact {
             planned = planned.on_few_rows(radar, count);
         }
@@ -95,15 +100,15 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
             for precision in precisions {
                 let sum = plan::Sum { algorithm, reflectors: count, amplitude };
                 let Convention { floor, normalisation } = Convention::for_tolerance(*tolerance);
-                if plan::refusal(*precision, &sum, floor, normalisation).is_some() {
+                if tolerance::refusal(*precision, &sum, floor, normalisation).is_some() {
                     continue;
                 }
-                let recipe = Recipe { algorithm, precision: *precision, ..planned };
+                let plan = Plan { algorithm, precision: *precision, ..planned };
                 jobs.extend(request.tasks.iter().map(|task| Job {
                     task: *task,
                     entrant: *entrant,
                     precision: *precision,
-                    recipe,
+                    plan,
                 }));
             }
         }
@@ -111,11 +116,12 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     for entrant in &request.entrants {
         if let Entrant::Forced(algorithm) = *entrant
             && !algorithm.is_fast()
+            && count <= MOST_PLAIN
             && request.tasks.contains(&FrontTask::Scratch)
         {
-            let recipe = Recipe { tolerance: 1e-12, ..Recipe::plan(count, amplitude, plan::BEST_TOLERANCE) };
-            let recipe = recipe.with_algorithm(algorithm);
-            jobs.push(Job { task: FrontTask::Scratch, entrant: *entrant, precision: Precision::F64, recipe });
+            let plan = Plan { tolerance: 1e-12, ..Plan::cheapest(count, amplitude, BEST_TOLERANCE) };
+            let plan = plan.with_algorithm(algorithm);
+            jobs.push(Job { task: FrontTask::Scratch, entrant: *entrant, precision: Precision::F64, plan });
         }
     }
     jobs
@@ -135,7 +141,7 @@ fn fast_row(
     job: &Job,
     repeats: usize,
 ) -> Result<FrontRow, SceneError> {
-    let convention = Convention::for_tolerance(job.recipe.tolerance);
+    let convention = Convention::for_tolerance(job.plan.tolerance);
     let mut engine = Engine::new(radar.clone());
     engine.force(Forced {
         algorithm: match job.entrant {
@@ -143,7 +149,7 @@ fn fast_row(
             Entrant::Forced(algorithm) => Some(algorithm),
         },
         precision: Some(job.precision),
-        tolerance: Some(job.recipe.tolerance),
+        tolerance: Some(job.plan.tolerance),
     });
     reset_peak_resident();
     let mut moved = scene.clone();
@@ -172,13 +178,8 @@ fn fast_row(
     let signal_error = reference.signal_error(radar, |element| engine.range_profile(element));
     let mut lambda = Vec::new();
     for other in Convention::BOTH {
-        if other != convention {
-            frame = engine.update(scene, &wanted(other))?;
-        }
-        lambda.extend(maps_of(&frame).map(|maps| reference.lambda_error(other, maps)));
-        if other != convention {
-            frame = engine.update(scene, &wanted(convention))?;
-        }
+        let drawn = if other == convention { frame.clone() } else { engine.update(scene, &wanted(other))? };
+        lambda.extend(maps_of(&drawn).map(|maps| reference.lambda_error(other, maps)));
     }
     Ok(row(job, reference, times, signal_error, lambda, peak_bytes))
 }
@@ -186,12 +187,12 @@ fn fast_row(
 /// The plain formulas: signal, transforms and maps without any of the fast paths.
 fn plain_row(radar: &Radar, reference: &Reference, job: &Job, repeats: usize) -> FrontRow {
     let repeats = repeats.min(SLOW_REPEATS[usize::from(reference.reflectors.len() > 50)]);
-    let convention = Convention::for_tolerance(job.recipe.tolerance);
+    let convention = Convention::for_tolerance(job.plan.tolerance);
     reset_peak_resident();
     let once = || {
         let start = Instant::now();
-        let signal = plan::beat_signal(radar, &reference.reflectors, &job.recipe);
-        let maps = plain_maps(radar, &reference.reflectors, &signal, convention);
+        let signal = beat_signal(radar, &reference.reflectors, &job.plan);
+        let maps = reference.noise.plain_maps(radar, &reference.reflectors, &signal, convention);
         (1e3 * start.elapsed().as_secs_f64(), signal, maps)
     };
     let (first, signal, maps) = once();
@@ -203,7 +204,7 @@ fn plain_row(radar: &Radar, reference: &Reference, job: &Job, repeats: usize) ->
         let maps = if other == convention {
             &maps
         } else {
-            drawn = plain_maps(radar, &reference.reflectors, &signal, other);
+            drawn = reference.noise.plain_maps(radar, &reference.reflectors, &signal, other);
             &drawn
         };
         reference.lambda_error(other, maps.each_ref())
@@ -219,15 +220,15 @@ fn row(
     lambda: Vec<LambdaError>,
     peak_bytes: Option<u64>,
 ) -> FrontRow {
-    let convention = Convention::for_tolerance(job.recipe.tolerance);
+    let convention = Convention::for_tolerance(job.plan.tolerance);
     let timed = lambda.iter().find(|l| l.convention == convention);
     FrontRow {
         task: job.task,
         reflectors: reference.reflectors.len(),
         algorithm: job.entrant,
-        chosen: job.recipe.algorithm,
+        chosen: job.plan.algorithm,
         precision: job.precision,
-        tolerance: job.recipe.tolerance,
+        tolerance: job.plan.tolerance,
         convention,
         median_ms: quantile(&mut times, 0.5),
         spread_ms: quantile(&mut times, 0.75) - quantile(&mut times, 0.25),

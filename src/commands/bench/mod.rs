@@ -1,15 +1,18 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
 mod chart;
+mod growth;
+mod instructions;
 mod methods;
 mod mouse;
+mod others;
 
 use super::{CommandError, print};
-use crate::benchmark::front::{self, Entrant, Front, FrontRequest};
+use crate::benchmark::front::{self, Entrant, Front, FrontRequest, FrontRow};
 use crate::files::write_bytes;
 use crate::radar::Radar;
+use others::Equal;
 use std::path::PathBuf;
-use std::process::Command;
 
 /// Measure run time against error of every algorithm
 ///
@@ -37,13 +40,22 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeats: u32,
 
-    /// Our NumPy script (benches/numpy_maps.py), run beside; left out where there is no Python with NumPy
+    /// Our script of other tools (comparisons/maps.py), run beside on the same tasks, one thread on both sides; tools that are not
+    /// installed are named
     #[arg(long, value_name = "FILE")]
-    numpy: Option<PathBuf>,
+    others: Option<PathBuf>,
+
+    /// Measure what the planner chooses with every instruction set that this processor has, instead
+    #[arg(long, conflicts_with_all = ["algorithms", "others", "methods"])]
+    every_simd: bool,
+
+    /// Measure what the planner chooses for up to 10 000 reflectors instead; draws growth.svg and growth.png
+    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd"])]
+    growth: bool,
 
     /// Measure every reconstruction method instead, run time against squared error, and the hybrid on crowds; draws methods.svg
     /// and methods.png
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "numpy"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
     methods: bool,
 
     /// Test scenes of each set, with --methods
@@ -57,28 +69,30 @@ struct Report<'a> {
     front: &'a Front,
     /// One reflector dragged, from the pointer's move to three maps.
     mouse: Vec<mouse::MouseRow>,
-    /// Reflectors to median milliseconds of the NumPy script; none if it could not run.
-    numpy_ms: Option<serde_json::Value>,
+    /// The same tasks by other tools; none if nobody asked.
+    others: Option<Equal>,
 }
 
 impl Args {
     /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
+        let repeats = self.repeats as usize;
         if self.methods {
             return methods::run(self.count, self.json, self.output.as_deref());
         }
-        let mut request =
-            FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), self.repeats as usize);
+        if self.every_simd {
+            return instructions::run(&self.reflectors, self.repeats, self.json);
+        }
+        if self.growth {
+            return growth::run(repeats, self.json, self.output.as_deref());
+        }
+        let mut request = FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), repeats);
         if !self.algorithms.is_empty() {
             request.entrants = self.algorithms.clone();
         }
-        let bar = indicatif::ProgressBar::new(1000);
-        let front =
-            front::measure(&Radar::default(), &request, |part, _| bar.set_position((1e3 * part) as u64), || false)
-                .map_err(CommandError::failed)?;
-        bar.finish_and_clear();
-        let numpy_ms = self.numpy.as_ref().and_then(|script| self.run_numpy(script));
-        let report = Report { front: &front, mouse: mouse::measure()?, numpy_ms };
+        let front = measured(&request)?;
+        let others = self.others.as_ref().map(|script| others::measure(script, &request.reflectors, repeats));
+        let report = Report { front: &front, mouse: mouse::measure()?, others: others.transpose()? };
         let json = serde_json::to_string_pretty(&report).map_err(CommandError::failed)?;
         if let Some(folder) = &self.output {
             chart::draw(folder, &front)?;
@@ -89,60 +103,66 @@ impl Args {
     }
 
     fn print_table(&self, report: &Report<'_>) -> Result<(), CommandError> {
-        let front = report.front;
-        print(&format!(
-            "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {} threads, {:?}; medians of at most {} runs\n\
-             signal: largest error of a range cell, relative to the peak; Lambda: largest and rms error of the maps, drawn over no floor\n\
-             and 100 dB (exact db=100) and as the thesis does (thesis min-max); * marks the one that was timed\n\
-             {:7} {:>10} {:11} {:4} {:>9} {:>9} {:>8} {:>7} {:>8} {:>18} {:>18}",
-            front.bare_fft_ms,
-            front.threads,
-            front.simd,
-            self.repeats,
-            "task",
-            "reflectors",
-            "algorithm",
-            "",
-            "tolerance",
-            "median ms",
-            "spread",
-            "x bare",
-            "signal",
-            "exact db=100",
-            "thesis min-max",
-        ))?;
-        for r in &front.rows {
-            let lambda = r.lambda.iter().map(|l| {
-                let mark = if l.convention == r.convention { "*" } else { " " };
-                format!(" {:>8.1e} {:>8.1e}{mark}", l.max, l.rms)
-            });
-            print(&format!(
-                "{:7} {:>10} {:11} {:4} {:>9.0e} {:>9.3} {:>8.3} {:>7.2} {:>8.1e}{}",
-                r.task.name(),
-                r.reflectors,
-                r.algorithm,
-                r.precision,
-                r.tolerance,
-                r.median_ms,
-                r.spread_ms,
-                r.median_ms / front.bare_fft_ms,
-                r.signal_error,
-                lambda.collect::<String>(),
-            ))?;
+        print(&heading(report.front, self.repeats))?;
+        for r in &report.front.rows {
+            print(&line(r, report.front.bare_fft_ms))?;
         }
         for row in &report.mouse {
-            print(&row.line(front.bare_fft_ms))?;
+            print(&row.line(report.front.bare_fft_ms))?;
         }
-        match &report.numpy_ms {
-            Some(ms) => print(&format!("NumPy, one exp per reflector, median ms by reflectors: {ms}")),
-            None if self.numpy.is_some() => print("NumPy script left out: no Python with NumPy could run it"),
-            None => Ok(()),
-        }
+        report.others.as_ref().map_or(Ok(()), Equal::print)
     }
+}
 
-    fn run_numpy(&self, script: &std::path::Path) -> Option<serde_json::Value> {
-        let counts = self.reflectors.iter().map(u32::to_string);
-        let output = Command::new("python3").arg(script).args(counts).output().ok()?;
-        serde_json::from_slice(&output.stdout).ok().filter(|_| output.status.success())
-    }
+/// Measures `request` under a progress bar.
+fn measured(request: &FrontRequest) -> Result<Front, CommandError> {
+    let bar = indicatif::ProgressBar::new(1000);
+    let on_row = |part: f32, _: &FrontRow| bar.set_position((1e3 * part) as u64);
+    let front = front::measure(&Radar::default(), request, on_row, || false).map_err(CommandError::failed)?;
+    bar.finish_and_clear();
+    Ok(front)
+}
+
+fn heading(front: &Front, repeats: u32) -> String {
+    format!(
+        "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {} threads, {}; medians of at most {repeats} runs\n\
+         from scratch: nothing of the scene is known, the floor's noise is made beforehand and scaled inside the time, by all algorithms\n\
+         signal: largest error of a range cell, relative to the peak; Lambda: largest and rms error of the maps, drawn over no floor\n\
+         and 100 dB (exact db=100) and as the thesis does (thesis min-max); * marks the one that was timed\n\
+         {:7} {:>10} {:11} {:4} {:>9} {:>9} {:>8} {:>7} {:>8} {:>18} {:>18}",
+        front.bare_fft_ms,
+        front.threads,
+        front.simd,
+        "task",
+        "reflectors",
+        "algorithm",
+        "",
+        "tolerance",
+        "median ms",
+        "spread",
+        "x bare",
+        "signal",
+        "exact db=100",
+        "thesis min-max",
+    )
+}
+
+fn line(r: &FrontRow, bare_fft_ms: f64) -> String {
+    let lambda = r.lambda.iter().map(|l| {
+        let mark = if l.convention == r.convention { "*" } else { " " };
+        format!(" {:>8.1e} {:>8.1e}{mark}", l.max, l.rms)
+    });
+    format!(
+        "{:7} {:>10} {:11} {:4} {:>9.0e} {:>9.3} {:>8.3} {:>7.2} {:>8.1e}{}",
+        r.task.name(),
+        r.reflectors,
+        r.algorithm,
+        r.precision,
+        r.tolerance,
+        r.median_ms,
+        r.spread_ms,
+        r.median_ms / bare_fft_ms,
+        r.signal_error,
+        lambda.collect::<String>(),
+    )
 }

@@ -3,8 +3,8 @@
 
 use crate::benchmark::front::{Convention, scattered};
 use crate::commands::CommandError;
+use crate::engine::{Engine, Frame, Wanted};
 use crate::interact::{Editor, Place, Snap};
-use crate::live::{Engine, Frame, Wanted};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
 use crate::task::{Reply, Worker};

@@ -78,7 +78,7 @@ impl<const W: usize> Extremes<W> {
     }
 }
 
-/// Decades of a transformed row, rolled by half its length.
+/// FastLogMap of a transformed row, rolled by half its length.
 #[inline(always)]
 pub(super) fn log_rolled<T: Real, const W: usize, const FMA: bool>(
     row: &[Complex<T>],

@@ -2,7 +2,7 @@
 //! while a row is in the cache; the ends by a transform that knows how few of its inputs are not zero. Rows that did not change are left
 //! as they are, and rows in which there is nothing are not transformed.
 //!
-//! Decades are kept in f32 (an error of at most 4e-6 decades); [`super::LogMap`] keeps them in f64.
+//! FastLogMap are kept in f32 (an error of at most 4e-6 decades); [`super::LogMap`] keeps them in f64.
 
 mod log;
 mod normalise;
@@ -21,7 +21,7 @@ use ndarray::Array2;
 use num_complex::Complex;
 use pruned::Pruned;
 use rayon::prelude::*;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Rows that are gathered from the blocks at a time: neighbours share cache lines and pages.
@@ -29,7 +29,7 @@ const ROWS: usize = 8;
 
 /// `log10(|Y| + 1e-20)`, `[range bins, columns]`, with its extremes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Decades {
+pub struct FastLogMap {
     /// The cells.
     pub cells: Array2<f32>,
     /// Smallest cell.
@@ -40,11 +40,11 @@ pub struct Decades {
     rows: Vec<(f32, f32)>,
 }
 
-impl Decades {
+impl FastLogMap {
     /// An empty scene's map.
     pub fn silence(radar: &Radar) -> Self {
         let guard = LOG_GUARD.log10() as f32;
-        Decades {
+        FastLogMap {
             cells: Array2::from_elem((radar.samples, radar.elements), guard),
             min: guard,
             max: guard,
@@ -96,19 +96,19 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
             radar: radar.clone(),
             simd,
             window: radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect(),
-            fft: FftPlanner::new().plan_fft_forward(radar.elements),
-            ends: Pruned::new(radar),
+            fft: simd.forward_fft(radar.elements),
+            ends: Pruned::new(radar, simd),
         }
     }
 
     /// Fills `rows` of the maps that are given: first end, last end, whole array.
-    pub fn fill(&self, sources: Sources<'_, T, W>, maps: [Option<&mut Decades>; 3], rows: &Rows) {
+    pub fn fill(&self, sources: Sources<'_, T, W>, maps: [Option<&mut FastLogMap>; 3], rows: &Rows) {
         let columns = self.radar.elements;
         let groups = self.radar.samples.div_ceil(ROWS);
         let mut parts: Vec<[Option<Part<'_>>; 3]> = (0..groups).map(|_| [None, None, None]).collect();
         let mut totals = Vec::new();
         for (i, map) in maps.into_iter().enumerate() {
-            let Some(Decades { cells, min, max, rows }) = map else { continue };
+            let Some(FastLogMap { cells, min, max, rows }) = map else { continue };
             if let Some(cells) = cells.as_slice_mut() {
                 let chunks = cells.chunks_mut(ROWS * columns).zip(rows.chunks_mut(ROWS));
                 for (part, (cells, extremes)) in parts.iter_mut().zip(chunks) {
@@ -257,18 +257,18 @@ mod tests {
     use crate::radar::WindowFunction;
     use crate::scene::Scene;
     use crate::signal::simd::{LANES_F32, LANES_F64};
-    use crate::signal::{Recipe, exact, synthesis::Synthesis};
+    use crate::signal::{Plan, exact, synthesis::Synthesis};
 
     fn compare(radar: &Radar, simd: Simd) {
         let scene = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (4.0, 3.3)]);
         let reflectors = scene.reflectors();
         let expected = LogMaps::of_signal(radar, &exact::beat_signal(radar, &reflectors));
-        let recipe = Recipe { simd, ..Recipe::plan(3, 10.0, 1e-15) };
+        let plan = Plan { simd, ..Plan::cheapest(3, 10.0, 1e-15) };
         macro_rules! check {
             ($t:ty, $lanes:expr, $down:expr, $error:expr) => {{
                 let mut profiles = BlockProfiles::silence(radar);
-                Synthesis::<$t, $lanes>::new(radar, recipe).range_profiles(&reflectors, &mut profiles);
-                let mut maps = [(); 3].map(|()| Decades::silence(radar));
+                Synthesis::<$t, $lanes>::new(radar, plan).range_profiles(&reflectors, &mut profiles);
+                let mut maps = [(); 3].map(|()| FastLogMap::silence(radar));
                 let [a, b, c] = &mut maps;
                 MapMaker::<$t, $lanes>::new(radar, simd).fill(
                     Sources { profiles: &[&profiles], noise: None, bound: 1e4 },
@@ -295,13 +295,13 @@ mod tests {
         let radar = Radar { elements: 64, samples: 128, end_elements: 4, ..Radar::default() };
         let reflectors = Scene::of_points([(0.1, 1.0)]).reflectors();
         let mut profiles = BlockProfiles::<f64, LANES_F64>::silence(&radar);
-        let recipe = Recipe::plan(1, 100.0, 1e-3).on_few_rows(&radar, 1);
-        Synthesis::new(&radar, recipe).range_profiles(&reflectors, &mut profiles);
+        let plan = Plan::cheapest(1, 100.0, 1e-3).on_few_rows(&radar, 1);
+        Synthesis::new(&radar, plan).range_profiles(&reflectors, &mut profiles);
         let touched = profiles.touched.clone();
         assert!(!touched.is_empty() && touched.count() < 128);
         let maker = MapMaker::new(&radar, Simd::best());
         let sources = Sources { profiles: &[&profiles], noise: None, bound: 1e4 };
-        let mut map = Decades::silence(&radar);
+        let mut map = FastLogMap::silence(&radar);
         map.cells.fill(7.0);
         let mut half = Rows::none(128);
         half.insert_wrapped(0.0, 15.0);
@@ -313,7 +313,7 @@ mod tests {
             assert!(row.iter().all(|v| if sounds { *v >= -20.0 && *v < 7.0 } else { *v == expected }), "row {bin}");
         }
         assert!(map.cells.iter().any(|v| *v > -20.0 && *v < 7.0));
-        let mut all = Decades::silence(&radar);
+        let mut all = FastLogMap::silence(&radar);
         maker.fill(sources, [None, None, Some(&mut all)], &Rows::all(128));
         maker.fill(sources, [None, None, Some(&mut map)], &Rows::all(128));
         assert_eq!(all, map);

@@ -1,6 +1,6 @@
-//! Decades to Lambda, all maps at once.
+//! FastLogMap to Lambda, all maps at once.
 
-use super::Decades;
+use super::FastLogMap;
 use crate::maps::lambda::{Normalisation, RangeAngleMap};
 use crate::signal::simd::{Kernel, Simd};
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const CHUNK: usize = 1 << 15;
 
 /// Writes Lambda of every cell of each map to the map beside it, which has the same shape.
-pub fn normalise_into(maps: Vec<(&Decades, &mut RangeAngleMap)>, normalisation: Normalisation) {
+pub fn normalise_into(maps: Vec<(&FastLogMap, &mut RangeAngleMap)>, normalisation: Normalisation) {
     let mut parts = Vec::new();
     for (decades, map) in maps {
         let scale = decades.scale(normalisation);
@@ -20,7 +20,7 @@ pub fn normalise_into(maps: Vec<(&Decades, &mut RangeAngleMap)>, normalisation: 
             parts.extend(chunks.map(|(cells, lambda)| Part { cells, lambda, floor, slope }));
         }
     }
-    parts.into_par_iter().for_each(|part| Simd::best().run(part));
+    parts.into_par_iter().for_each(|part| Simd::chosen().run(part));
 }
 
 struct Part<'a> {

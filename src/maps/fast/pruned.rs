@@ -3,9 +3,9 @@
 use super::log::{Extremes, LogScale, log_rolled};
 use crate::radar::Radar;
 use crate::signal::lane_fft::LaneFft;
-use crate::signal::simd::{ComplexLanes, Lanes, Real};
+use crate::signal::simd::{ComplexLanes, Lanes, Real, Simd};
 use num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Transform of a few inputs padded with zeros: `columns = small * stride` splits into `stride` transforms of `small` points,
@@ -25,7 +25,7 @@ pub(super) struct Pruned<T: Real, const W: usize> {
 const MAX_POINTS: usize = 64;
 
 impl<T: Real, const W: usize> Pruned<T, W> {
-    pub(super) fn new(radar: &Radar) -> Self {
+    pub(super) fn new(radar: &Radar, simd: Simd) -> Self {
         let (inputs, columns) = (radar.end_elements, radar.elements);
         let points = inputs.next_power_of_two();
         let scale = (columns as f64).sqrt().recip();
@@ -47,12 +47,11 @@ impl<T: Real, const W: usize> Pruned<T, W> {
             twiddles: if fits { (0..stride).step_by(W).map(chunk).collect() } else { Vec::new() },
             small: LaneFft::new(points),
             points,
-            plain: (!fits)
-                .then(|| (window.iter().map(|w| T::of(*w)).collect(), FftPlanner::new().plan_fft_forward(columns))),
+            plain: (!fits).then(|| (window.iter().map(|w| T::of(*w)).collect(), simd.forward_fft(columns))),
         }
     }
 
-    /// Decades of the rolled transform of `inputs`.
+    /// FastLogMap of the rolled transform of `inputs`.
     #[inline(always)]
     pub(super) fn log_row<const FMA: bool>(
         &self,

@@ -4,12 +4,14 @@
 //! twice the variance that a draw and its mean do.
 
 use super::atom::Atom;
+use crate::maps::tolerance::tolerance_for;
 use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::reconstruct::Request;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::thesis_noise_variance;
-use crate::signal::plan::{self, Recipe};
+use crate::signal::plan::amplitude_bound;
+use crate::signal::{Plan, beat_signal};
 use ndarray::{Array2, Zip};
 use rayon::prelude::*;
 use std::f64::consts::LN_10;
@@ -44,9 +46,9 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
         // The simulator takes reflectors that touch no element.
         .map(|r| Reflector { y_metres: r.y_metres.max(MIN_ELEMENT_DISTANCE_METRES), ..r })
         .collect();
-    let tolerance = plan::tolerance_for(request.floor, request.normalisation);
-    let recipe = Recipe::plan(reflectors.len(), plan::amplitude_bound(radar, &reflectors), tolerance);
-    let signal = plan::beat_signal(radar, &reflectors, &recipe);
+    let tolerance = tolerance_for(request.floor, request.normalisation);
+    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance);
+    let signal = beat_signal(radar, &reflectors, &plan);
     let variance = match noise {
         Noise::Variance(v) => vec![v; radar.elements],
         Noise::Rounding => thesis_noise_variance(radar, &reflectors),

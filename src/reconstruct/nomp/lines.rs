@@ -80,7 +80,7 @@ impl LineDetector {
     /// What each of `count` reflectors at x, one behind the other from `start`, would have left at an end.
     fn echoes(&self, end: usize, x: f64, start: f64, spacing: f64, count: usize) -> Vec<Echo> {
         let mut echoes = vec![Echo::default(); count];
-        Simd::best().run(Column { detector: self, end, x, start, spacing, echoes: &mut echoes });
+        Simd::chosen().run(Column { detector: self, end, x, start, spacing, echoes: &mut echoes });
         echoes
     }
 

@@ -81,9 +81,9 @@ impl Sensor {
             }
         }
         if atom.reflectors() < MANY_REFLECTORS {
-            blocks.into_iter().for_each(|block| Simd::best().run(block));
+            blocks.into_iter().for_each(|block| Simd::chosen().run(block));
         } else {
-            blocks.into_par_iter().for_each(|block| Simd::best().run(block));
+            blocks.into_par_iter().for_each(|block| Simd::chosen().run(block));
         }
     }
 }

@@ -5,82 +5,12 @@
 //! A vector is 64 bytes whatever the machine, 16 f32 or 8 f64, so that data look the same everywhere; narrower machines use
 //! several registers for one.
 
+mod instructions;
+
+pub use instructions::{Kernel, SIMD_VARIABLE, Simd, SimdError};
+
 use rustfft::FftNum;
 use std::ops::{Add, Mul, Neg, Sub};
-use std::sync::OnceLock;
-
-/// An instruction set that kernels are compiled for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Simd {
-    /// What every machine of the target has; no fused multiply-add.
-    Portable,
-    /// AVX2 and FMA.
-    Avx2,
-    /// AVX-512 F, DQ, BW and VL.
-    Avx512,
-}
-
-impl Simd {
-    /// The best that this machine has.
-    pub fn best() -> Simd {
-        static BEST: OnceLock<Simd> = OnceLock::new();
-        *BEST.get_or_init(|| Simd::available().pop().unwrap_or(Simd::Portable))
-    }
-
-    /// All that this machine has, slowest first.
-    pub fn available() -> Vec<Simd> {
-        #[allow(unused_mut)] // only x86-64 has more
-        let mut found = vec![Simd::Portable];
-        #[cfg(target_arch = "x86_64")]
-        {
-            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                found.push(Simd::Avx2);
-                if is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx512dq")
-                    && is_x86_feature_detected!("avx512bw")
-                    && is_x86_feature_detected!("avx512vl")
-                {
-                    found.push(Simd::Avx512);
-                }
-            }
-        }
-        found
-    }
-
-    /// Runs `kernel` with these instructions, or with the best there are if this machine lacks them.
-    #[inline]
-    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        #[cfg(target_arch = "x86_64")]
-        {
-            #[target_feature(enable = "avx2,fma")]
-            fn avx2<K: Kernel>(kernel: K) -> K::Output {
-                kernel.run::<true>()
-            }
-            #[target_feature(enable = "avx512f,avx512dq,avx512bw,avx512vl,avx2,fma")]
-            fn avx512<K: Kernel>(kernel: K) -> K::Output {
-                kernel.run::<true>()
-            }
-            match self.min(Simd::best()) {
-                Simd::Portable => {}
-                // SAFETY: `Simd::best` has found these features on this machine.
-                Simd::Avx2 => return unsafe { avx2(kernel) },
-                // SAFETY: as above.
-                Simd::Avx512 => return unsafe { avx512(kernel) },
-            }
-        }
-        kernel.run::<false>()
-    }
-}
-
-/// Work that is compiled for several instruction sets.
-pub trait Kernel {
-    /// What it returns.
-    type Output;
-
-    /// Does the work; `FMA` says whether fused multiply-add is an instruction (elsewhere it is a slow call).
-    fn run<const FMA: bool>(self) -> Self::Output;
-}
 
 /// f32 or f64: the two precisions of everything after the phase.
 pub trait Real: FftNum + Copy + Default + PartialOrd + Sub<Output = Self> + Add<Output = Self> {

@@ -1,6 +1,6 @@
 """Times the shipped live network's forward pass in PyTorch and onnxruntime, beside what `apertura` takes.
 
-    cargo build --release && python3 benches/compare_speed.py
+    cargo build --release && python3 comparisons/network.py
 
 Anything that is not installed is skipped with a message. All times are medians of 15 runs on two threads, without the features
 (which only apertura computes inside its time).

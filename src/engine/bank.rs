@@ -1,15 +1,15 @@
 //! The sums the engine keeps, in one precision: range profiles of the objects at rest and of those being edited.
 
 use super::change::Change;
-use super::incremental::STAGES;
-use super::{Report, Stage, Wanted};
-use crate::maps::fast::{Decades, MapMaker, Noise, Sources};
+use super::frame::Wanted;
+use super::report::{Report, Stage};
+use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources};
 use crate::radar::Radar;
 use crate::scene::{Object, Reflector, Scene};
-use crate::signal::plan::{self, Algorithm, Recipe};
+use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
-use crate::signal::{Floor, Rows, floor};
+use crate::signal::{Algorithm, Floor, Plan, Rows, floor};
 use num_complex::Complex64;
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ pub(super) struct Job<'a> {
     pub radar: &'a Radar,
     pub scene: &'a Scene,
     pub wanted: &'a Wanted,
-    pub recipe: Recipe,
+    pub plan: Plan,
     pub forced: Option<Algorithm>,
     pub amplitude: f64,
     pub missing: [bool; 3],
@@ -26,7 +26,7 @@ pub(super) struct Job<'a> {
 
 /// A map's decades as they were last computed.
 pub(super) struct Kept {
-    pub decades: Decades,
+    pub decades: FastLogMap,
     /// Rows that no longer show what the sums hold.
     pub stale: Rows,
     /// Whether noise lies beneath it.
@@ -35,7 +35,7 @@ pub(super) struct Kept {
 
 impl Kept {
     fn silence(radar: &Radar) -> Self {
-        Kept { decades: Decades::silence(radar), stale: Rows::all(radar.samples), over_noise: false }
+        Kept { decades: FastLogMap::silence(radar), stale: Rows::all(radar.samples), over_noise: false }
     }
 }
 
@@ -82,7 +82,7 @@ impl<T: Real, const W: usize> Group<T, W> {
 
 /// Caches in one precision.
 pub(super) struct Bank<T: Real, const W: usize> {
-    makers: MapMaker<T, W>,
+    maker: MapMaker<T, W>,
     syntheses: Vec<Synthesis<T, W>>,
     /// Objects at rest.
     pub(super) rest: Group<T, W>,
@@ -105,7 +105,7 @@ struct Built {
 impl<T: Real, const W: usize> Bank<T, W> {
     pub fn new(radar: &Radar) -> Self {
         Bank {
-            makers: MapMaker::new(radar, Simd::best()),
+            maker: MapMaker::new(radar, Simd::chosen()),
             syntheses: Vec::new(),
             rest: Group::empty(radar),
             active: Group::empty(radar),
@@ -130,19 +130,19 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     fn synthesis(&mut self, job: &Job<'_>, count: usize) -> usize {
-        let mut recipe = Recipe::plan(count, job.amplitude, job.recipe.tolerance);
+        let mut plan = Plan::cheapest(count, job.amplitude, job.plan.tolerance);
         if job.wanted.floor == Floor::Exact {
-            recipe = recipe.on_few_rows(job.radar, count);
+            plan = plan.on_few_rows(job.radar, count);
         }
-        recipe.precision = job.recipe.precision;
-        recipe.algorithm = job.forced.unwrap_or(recipe.algorithm);
-        match self.syntheses.iter().position(|s| *s.recipe() == recipe) {
+        plan.precision = job.plan.precision;
+        plan.algorithm = job.forced.unwrap_or(plan.algorithm);
+        match self.syntheses.iter().position(|s| *s.plan() == plan) {
             Some(found) => found,
             None => {
                 if self.syntheses.len() >= 4 {
                     self.syntheses.remove(0);
                 }
-                self.syntheses.push(Synthesis::new(job.radar, recipe));
+                self.syntheses.push(Synthesis::new(job.radar, plan));
                 self.syntheses.len() - 1
             }
         }
@@ -188,7 +188,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         for (made, missing) in made.iter_mut().zip(job.missing) {
             *made = made.take().filter(|_| missing);
         }
-        self.makers.fill(Sources { profiles: &profiles, noise, bound: job.amplitude * gain }, made, &rows);
+        self.maker.fill(Sources { profiles: &profiles, noise, bound: job.amplitude * gain }, made, &rows);
 
         let took = start.elapsed();
         let count = job.missing.iter().filter(|m| **m).count() as u32;
@@ -199,10 +199,10 @@ impl<T: Real, const W: usize> Bank<T, W> {
             all if all == job.radar.samples => format!("{all} rows"),
             some => format!(
                 "{some} of {} rows, the others changed by less than {:.0e} of the peak",
-                job.radar.samples, job.recipe.tolerance
+                job.radar.samples, job.plan.tolerance
             ),
         };
-        for (stage, _) in STAGES.into_iter().zip(job.missing).filter(|(_, missing)| *missing) {
+        for (stage, _) in Stage::MAPS.into_iter().zip(job.missing).filter(|(_, missing)| *missing) {
             report.computed(stage, took / count, what.as_str());
         }
     }
@@ -211,8 +211,8 @@ impl<T: Real, const W: usize> Bank<T, W> {
     fn follow(&mut self, job: &Job<'_>) -> (String, Rows) {
         let scene = &job.scene.objects;
         let total = job.scene.reflector_count();
-        let limit = job.amplitude * (job.recipe.tolerance / 2.0).max(4.0 * T::EPSILON);
-        let usable = self.built.as_ref().filter(|b| b.tolerance <= job.recipe.tolerance && b.forced == job.forced);
+        let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
+        let usable = self.built.as_ref().filter(|b| b.tolerance <= job.plan.tolerance && b.forced == job.forced);
         let change = usable.and_then(|built| {
             let change = Change::between(&self.rest.objects, &self.active.objects, scene);
             let more = if !change.settles {
@@ -220,7 +220,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
             } else {
                 // What is taken away was evaluated another way than when it was added.
                 let leaving = amplitude(job.radar, &change.leaving);
-                2.0 * T::EPSILON * (job.amplitude + leaving) + job.recipe.tolerance * leaving
+                2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * leaving
             };
             (built.rounding + more <= limit).then_some((change, built.rounding + more))
         });
@@ -249,23 +249,27 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 }
                 self.rest.objects = change.staying;
                 changed.extend(&self.active.profiles.touched);
-                let recipe = self.syntheses[synthesis].recipe();
-                let how = format!("{} in {}", recipe.algorithm, T::NAME);
+                let plan = self.syntheses[synthesis].plan();
+                let how = format!("{} in {}", plan.algorithm, T::NAME);
                 (format!("{evaluated} of {total} reflectors, {how}, the others as before"), changed)
             }
-            _ => {
-                let synthesis = self.synthesis(job, total);
-                let mut changed = self.rest.profiles.touched.clone();
-                changed.extend(&self.active.profiles.touched);
-                self.active.clear();
-                self.rest.fill(&self.syntheses[synthesis], scene);
-                changed.extend(&self.rest.profiles.touched);
-                let (tolerance, forced) = (job.recipe.tolerance, job.forced);
-                self.built = Some(Built { tolerance, forced, rounding: 0.0 });
-                let recipe = self.syntheses[synthesis].recipe();
-                (format!("{total} reflectors from scratch, {} in {}", recipe.algorithm, T::NAME), changed)
-            }
+            _ => self.from_scratch(job),
         }
+    }
+
+    /// Makes the sum at rest hold the whole scene, and the other nothing.
+    fn from_scratch(&mut self, job: &Job<'_>) -> (String, Rows) {
+        let total = job.scene.reflector_count();
+        let synthesis = self.synthesis(job, total);
+        let mut changed = self.rest.profiles.touched.clone();
+        changed.extend(&self.active.profiles.touched);
+        self.active.clear();
+        self.rest.fill(&self.syntheses[synthesis], &job.scene.objects);
+        changed.extend(&self.rest.profiles.touched);
+        let (tolerance, forced) = (job.plan.tolerance, job.forced);
+        self.built = Some(Built { tolerance, forced, rounding: 0.0 });
+        let plan = self.syntheses[synthesis].plan();
+        (format!("{total} reflectors from scratch, {} in {}", plan.algorithm, T::NAME), changed)
     }
 
     /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.

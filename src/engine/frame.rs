@@ -1,17 +1,8 @@
-//! The live engine: what changed, what is looked at, and nothing else computed.
-//!
-//! [`Engine::update`] takes a scene and what is [`Wanted`] and gives a [`Frame`]. Results that did not change are the same
-//! [`Arc`] as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
+//! What is asked of the engine, and what it answers with.
 
-mod bank;
-mod change;
-mod incremental;
-mod report;
-
-pub use incremental::{Engine, Forced};
-pub use report::{Outcome, Report, Stage, StageReport};
-
+use super::report::Report;
 use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};
+use crate::radar::End;
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
@@ -34,6 +25,13 @@ pub struct Wanted {
     pub ends: bool,
 }
 
+impl Wanted {
+    /// Which maps are looked at: first end, last end, whole array.
+    pub(super) fn visible(&self) -> [bool; 3] {
+        [self.first, self.last, self.full]
+    }
+}
+
 impl Default for Wanted {
     /// All three maps and the samples of the ends, in the thesis' conventions.
     fn default() -> Self {
@@ -51,14 +49,14 @@ impl Default for Wanted {
 
 /// One map, ready to be drawn.
 #[derive(Debug, Clone)]
-pub struct LiveMap {
+pub struct ReadyMap {
     /// Lambda, `[range bins, columns]`.
     pub lambda: Arc<RangeAngleMap>,
     /// The straight line between decades of amplitude and Lambda.
     pub scale: LambdaScale,
 }
 
-impl LiveMap {
+impl ReadyMap {
     /// Decades of amplitude of a cell; cells below the floor of the scale read as the floor.
     ///
     /// `None` outside the map.
@@ -72,21 +70,22 @@ impl LiveMap {
 #[derive(Debug, Clone)]
 pub struct Frame {
     /// Map of the first end, if wanted.
-    pub first: Option<LiveMap>,
+    pub first: Option<ReadyMap>,
     /// Map of the last end, if wanted.
-    pub last: Option<LiveMap>,
+    pub last: Option<ReadyMap>,
     /// Map of the whole array, if wanted.
-    pub full: Option<LiveMap>,
+    pub full: Option<ReadyMap>,
     /// Samples of both ends, if wanted.
     pub ends: Option<Arc<TwoEnds>>,
+    /// Whether it was computed as every command computes it ([`super::Engine::settle`]): figures may be made of it.
+    pub settled: bool,
     /// What each stage cost, and what was skipped and why.
     pub report: Report,
 }
 
 impl Frame {
     /// The map of one aperture, if it was wanted.
-    pub fn map(&self, aperture: Aperture) -> Option<&LiveMap> {
-        use crate::radar::End;
+    pub fn map(&self, aperture: Aperture) -> Option<&ReadyMap> {
         match aperture {
             Aperture::Full => self.full.as_ref(),
             Aperture::End(End::First) => self.first.as_ref(),

@@ -1,8 +1,9 @@
+use super::super::Outcome;
 use super::*;
-use crate::maps::{Aperture, LogMaps};
-use crate::radar::Decibels;
-use crate::scene::Point;
-use crate::signal;
+use crate::maps::{Aperture, LogMaps, Normalisation, RangeAngleMap};
+use crate::radar::{Decibels, End};
+use crate::scene::{Object, Point};
+use crate::signal::{self, Floor};
 use proptest::prelude::*;
 
 fn small() -> Radar {
@@ -80,13 +81,75 @@ fn frames_agree_with_the_plain_path() {
             // In the deepest nulls of the noise even the last bits of f64 show.
             assert!(rms < 1e-3 && worst < 2e-2, "{floor} {aperture:?}: rms {rms:e}, worst {worst}");
         }
-        let ends = signal.two_ends(&radar);
-        for end in End::BOTH {
-            let off =
-                (ends.end(end) - frame.ends.as_ref().unwrap().end(end)).iter().fold(0.0f64, |m, v| m.max(v.norm()));
-            assert!(off < 1e-13 * signal.peak(), "{off:e}");
+        assert_eq!(*frame.ends.unwrap(), signal.two_ends(&radar), "not a bit off");
+    }
+}
+
+/// What every command computes of a scene: ends, and Lambda of the first end, the last end and the whole array.
+fn by_command(radar: &Radar, scene: &Scene, wanted: &Wanted) -> (signal::TwoEnds, [RangeAngleMap; 3]) {
+    let signal = signal::simulate(radar, scene, wanted.floor, wanted.seed).unwrap();
+    let maps = LogMaps::of_signal(radar, &signal);
+    let maps = [&maps.first, &maps.last, &maps.full].map(|log| log.normalise(wanted.normalisation));
+    (signal.two_ends(radar), maps)
+}
+
+/// Whatever came before, a scene at rest has the bits of the commands, and so have the samples of its ends at any time.
+#[test]
+fn a_scene_at_rest_does_not_depend_on_what_came_before() {
+    let radar = small();
+    let scene = Scene::of_points((0..9).map(|i| (0.1 * f64::from(i) - 0.4, 0.8 + 0.11 * f64::from(i))));
+    let mut moved = scene.clone();
+    moved.objects[4].translate(0.05, 0.02);
+    let other = Scene::of_points([(0.3, 1.0)]);
+    let thesis = Wanted { seed: 2, ..Wanted::default() };
+    let fixed = Wanted { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..thesis };
+    let noisy = Wanted { floor: Floor::Snr(Decibels(10.0)), ..thesis };
+    let histories: [&[(&Scene, Wanted, bool)]; 5] = [
+        &[],
+        &[(&other, thesis, true)],
+        &[(&moved, thesis, false), (&scene, thesis, false), (&moved, thesis, false)],
+        &[(&scene, fixed, true), (&scene, noisy, false), (&scene, thesis, false)],
+        &[(&other, noisy, false), (&moved, fixed, true), (&scene, fixed, true), (&scene, fixed, false)],
+    ];
+    for wanted in [thesis, fixed, noisy, Wanted { floor: Floor::Exact, ..thesis }] {
+        let (ends, maps) = by_command(&radar, &scene, &wanted);
+        for (i, history) in histories.iter().enumerate() {
+            let mut engine = Engine::new(radar.clone());
+            for (scene, wanted, rests) in *history {
+                engine.update(scene, wanted).unwrap();
+                if *rests {
+                    engine.settle(scene, wanted).unwrap();
+                }
+            }
+            let moving = engine.update(&scene, &wanted).unwrap();
+            assert_eq!(*moving.ends.unwrap(), ends, "history {i}, {wanted:?}");
+            let rests = engine.settle(&scene, &wanted).unwrap();
+            let found = [&rests.first, &rests.last, &rests.full].map(|m| (*m.as_ref().unwrap().lambda).clone());
+            assert!(rests.settled && found == maps, "history {i}, {wanted:?}");
+            assert_eq!(*rests.ends.clone().unwrap(), ends);
+            // Until something changes, this is what is shown.
+            let still = engine.update(&scene, &wanted).unwrap();
+            assert!(still.settled && Arc::ptr_eq(&lambda(&still), &lambda(&rests)));
+            assert!(!engine.update(&moved, &wanted).unwrap().settled);
         }
     }
+}
+
+#[test]
+fn a_scene_at_rest_is_computed_where_it_is_looked_at() {
+    let (radar, scene) = (small(), Scene::of_points([(0.3, 1.0)]));
+    let mut engine = Engine::new(radar);
+    let target = Wanted { first: false, last: false, ends: false, ..Wanted::default() };
+    let frame = engine.settle(&scene, &target).unwrap();
+    assert!(frame.first.is_none() && frame.last.is_none() && frame.ends.is_none() && frame.full.is_some());
+    assert!(!frame.report.ran(Stage::FirstMap) && frame.report.ran(Stage::FullMap));
+    assert!(!engine.update(&scene, &Wanted::default()).unwrap().settled, "the other maps are not at hand");
+    assert!(engine.settle(&Scene::of_points([(f64::NAN, 1.0)]), &target).is_err());
+    let held = engine.cache_bytes();
+    engine.settle(&scene, &Wanted::default()).unwrap();
+    assert!(engine.cache_bytes() > held);
+    engine.forget();
+    assert!(!engine.update(&scene, &Wanted::default()).unwrap().settled);
 }
 
 #[test]
@@ -221,8 +284,6 @@ fn results_do_not_depend_on_the_number_of_threads() {
     };
     assert_eq!(with(1).lambda, with(3).lambda);
 }
-
-use super::super::Outcome;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]

@@ -22,6 +22,11 @@ pub enum Stage {
     Normalise,
 }
 
+impl Stage {
+    /// The stages of the three maps, in the order of every triple of maps.
+    pub const MAPS: [Stage; 3] = [Stage::FirstMap, Stage::LastMap, Stage::FullMap];
+}
+
 impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

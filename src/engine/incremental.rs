@@ -1,0 +1,234 @@
+//! The incremental engine, without threads: whoever owns it decides where it runs.
+//!
+//! The signal is a sum over objects. The engine keeps the range profiles of the objects at rest and, apart, of those being
+//! edited: dragging one of many objects evaluates that one alone. Taking an object out of the sum at rest leaves rounding behind;
+//! how much is bounded as it goes, and the sum is made afresh before it could show.
+
+use super::bank::{Bank, Job};
+use super::frame::{Frame, Wanted};
+use super::report::{Report, Stage};
+use super::settled::Settled;
+use super::shown::Shown;
+use crate::maps::tolerance;
+use crate::radar::Radar;
+use crate::scene::{Scene, SceneError};
+use crate::signal::plan::{self, Sum};
+use crate::signal::simd::{LANES_F32, LANES_F64};
+use crate::signal::{Algorithm, Plan, Precision, Rows, simulate_ends};
+use num_complex::Complex64;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Keeps what it computed for one radar and recomputes only what a change touches.
+pub struct Engine {
+    radar: Radar,
+    forced: Forced,
+    single: Option<Bank<f32, LANES_F32>>,
+    double: Option<Bank<f64, LANES_F64>>,
+    /// The precision of the last maps.
+    last: Option<Precision>,
+    shown: Option<Shown>,
+    settled: Option<Settled>,
+}
+
+/// Choices taken from the planner; `None` leaves them to it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Forced {
+    /// Algorithm for every sum; [`Algorithm::Direct`] and [`Algorithm::Exact`] have no fast path and are evaluated by phasor split.
+    pub algorithm: Option<Algorithm>,
+    /// Precision; where single precision would show its rounding as the picture, double is used and the report says so ([`tolerance::refusal`]).
+    pub precision: Option<Precision>,
+    /// Error of a sample relative to the amplitudes.
+    pub tolerance: Option<f64>,
+}
+
+impl Engine {
+    /// An engine that has computed nothing yet. The radar must be valid ([`Radar::validate`]).
+    pub fn new(radar: Radar) -> Self {
+        Engine { radar, forced: Forced::default(), single: None, double: None, last: None, shown: None, settled: None }
+    }
+
+    /// Takes choices from the planner and drops every cache.
+    pub fn force(&mut self, forced: Forced) {
+        self.forced = forced;
+        self.forget();
+    }
+
+    /// Forgets everything that was computed of the last scene, but keeps the memory it lay in: the next update starts from scratch.
+    pub fn forget(&mut self) {
+        self.settled = None;
+        if let Some(shown) = &mut self.shown {
+            shown.forget(&self.radar);
+        }
+        if let Some(bank) = &mut self.single {
+            bank.forget();
+        }
+        if let Some(bank) = &mut self.double {
+            bank.forget();
+        }
+    }
+
+    /// The radar it simulates.
+    pub fn radar(&self) -> &Radar {
+        &self.radar
+    }
+
+    /// Range profile of one element as the last update left it, `[range bins]`, without the floor; `None` if it computed none.
+    pub fn range_profile(&self, element: usize) -> Option<Vec<Complex64>> {
+        match self.last? {
+            Precision::F32 => self.single.as_ref()?.profile(element),
+            Precision::F64 => self.double.as_ref()?.profile(element),
+        }
+    }
+
+    /// Largest difference between the range profiles that two engines hold, relative to the other's largest cell; `None` if either
+    /// computed none.
+    pub fn profile_difference(&self, other: &Engine) -> Option<f64> {
+        let (mut worst, mut peak) = (0.0f64, 0.0f64);
+        for element in 0..self.radar.elements {
+            for (a, b) in self.range_profile(element)?.iter().zip(other.range_profile(element)?) {
+                worst = worst.max((a - b).norm());
+                peak = peak.max(b.norm());
+            }
+        }
+        Some(if worst == 0.0 { 0.0 } else { worst / peak })
+    }
+
+    /// Bytes held in caches.
+    pub fn cache_bytes(&self) -> usize {
+        let banks = self.single.as_ref().map_or(0, Bank::bytes) + self.double.as_ref().map_or(0, Bank::bytes);
+        let cells = self.radar.samples * self.radar.elements * size_of::<f32>();
+        let shown = self
+            .shown
+            .as_ref()
+            .map_or(0, |s| s.decades.iter().flatten().count() + s.maps.iter().flatten().count() + s.spare.len());
+        // Decades in f64 and Lambda in f32.
+        let settled = self.settled.as_ref().map_or(0, Settled::maps) * 3;
+        banks + (shown + settled) * cells
+    }
+
+    /// Computes what is wanted of `scene`; what did not change since the last call is the same `Arc` as then. A scene that was settled
+    /// stays so.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
+    pub fn update(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+        let begin = Instant::now();
+        scene.validate(&self.radar)?;
+        self.settled = self.settled.take().filter(|settled| settled.has(scene, wanted));
+        let mut frame = match &mut self.settled {
+            Some(settled) => settled.frame(wanted, Report::default()),
+            None => self.follow(scene, wanted)?,
+        };
+        frame.report.total = begin.elapsed();
+        Ok(frame)
+    }
+
+    /// Computes what is wanted of `scene` as every command does, by [`crate::signal::simulate`] and the plain transforms in f64: the same
+    /// bits whatever the engine computed before. Several times slower than an update; for scenes at rest, and whenever figures are made.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
+    pub fn settle(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+        let begin = Instant::now();
+        let mut report = Report::default();
+        let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
+            Some(settled) => settled,
+            None => Settled::of(&self.radar, scene, wanted, &mut report)?,
+        };
+        let mut frame = self.settled.insert(settled).frame(wanted, report);
+        frame.report.total = begin.elapsed();
+        Ok(frame)
+    }
+
+    /// Brings what was shown last up to `scene`.
+    fn follow(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+        let mut report = Report::default();
+        let visible = wanted.visible();
+        let mut shown = self.recall(scene, wanted);
+        if wanted.ends && shown.ends.is_none() {
+            let start = Instant::now();
+            shown.ends = Some(Arc::new(simulate_ends(&self.radar, scene, wanted.floor, wanted.seed)?));
+            report.computed(Stage::Ends, start.elapsed(), "summed at the two ends");
+        } else {
+            report.skipped(Stage::Ends, if wanted.ends { "the scene did not change" } else { "not looked at" });
+        }
+        let missing = [0, 1, 2].map(|i| visible[i] && !shown.current[i]);
+        if missing.contains(&true) {
+            self.compute(scene, wanted, missing, &mut shown, &mut report);
+        } else {
+            report.skipped(Stage::Signal, "the scene did not change");
+            report.skipped(Stage::Noise, "the scene did not change");
+        }
+        for i in (0..3).filter(|i| !missing[*i]) {
+            report.skipped(Stage::MAPS[i], if visible[i] { "the scene did not change" } else { "not looked at" });
+        }
+        shown.normalise(visible, missing, wanted.normalisation, &mut report);
+
+        let map = |i: usize| shown.maps[i].clone().filter(|_| visible[i]);
+        let (first, last, full) = (map(0), map(1), map(2));
+        let ends = shown.ends.clone().filter(|_| wanted.ends);
+        self.shown = Some(shown);
+        Ok(Frame { first, last, full, ends, settled: false, report })
+    }
+
+    /// Error of a sample that the maps may have.
+    fn tolerance(&self, wanted: &Wanted) -> f64 {
+        self.forced.tolerance.unwrap_or_else(|| tolerance::tolerance_for(wanted.floor, wanted.normalisation))
+    }
+
+    /// What was shown last, if it is good enough for what is wanted; else its memory alone.
+    fn recall(&mut self, scene: &Scene, wanted: &Wanted) -> Shown {
+        let tolerance = self.tolerance(wanted);
+        // Maps that are fine at a fixed range may be a trap when normalised by their minimum.
+        let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
+        let trap = self.last == Some(Precision::F32)
+            && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
+        let same = |s: &Shown| {
+            s.objects == scene.objects
+                && s.floor == wanted.floor
+                && s.seed == wanted.seed
+                && s.tolerance <= tolerance
+                && !trap
+        };
+        match self.shown.take() {
+            Some(shown) if same(&shown) => shown,
+            other => Shown::of(scene, wanted, tolerance, other),
+        }
+    }
+
+    /// Computes those decades of `shown` that are `missing`, in the precision that the planner or somebody else chose.
+    fn compute(&mut self, scene: &Scene, wanted: &Wanted, missing: [bool; 3], shown: &mut Shown, report: &mut Report) {
+        let amplitude = scene_amplitude(&self.radar, scene);
+        let mut chosen = Plan::cheapest(scene.reflector_count(), amplitude, self.tolerance(wanted));
+        let refusal = self.forced.precision.and_then(|forced| {
+            let algorithm = self.forced.algorithm.unwrap_or(chosen.algorithm);
+            let sum = Sum { algorithm, reflectors: scene.reflector_count(), amplitude };
+            let refusal = tolerance::refusal(forced, &sum, wanted.floor, wanted.normalisation);
+            chosen.precision = if refusal.is_some() { Precision::F64 } else { forced };
+            refusal
+        });
+        let (radar, forced) = (&self.radar, self.forced.algorithm);
+        let job = Job { radar, scene, wanted, plan: chosen, forced, amplitude, missing };
+        if self.last.replace(chosen.precision) != Some(chosen.precision) {
+            // What the maps show was summed by the other bank.
+            shown.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
+        }
+        let maps = &mut shown.decades;
+        match chosen.precision {
+            Precision::F32 => self.single.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report),
+            Precision::F64 => self.double.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report),
+        }
+        if let Some(why) = refusal {
+            report.remark(Stage::Signal, why);
+        }
+        shown.current = [0, 1, 2].map(|i| shown.current[i] || missing[i]);
+    }
+}
+
+fn scene_amplitude(radar: &Radar, scene: &Scene) -> f64 {
+    scene.objects.iter().map(|o| plan::amplitude_bound(radar, &o.reflectors())).sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,20 @@
+//! The incremental engine: what changed, what is looked at, and nothing else computed.
+//!
+//! [`Engine::update`] takes a scene and what is [`Wanted`] and gives a [`Frame`]. Results that did not change are the same
+//! [`Arc`](std::sync::Arc) as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
+//!
+//! What it keeps between updates leaves its rounding in the maps: less than anybody asked to see, but not the same bits as from scratch. The
+//! samples of the ends are exempt from that, and once a scene rests [`Engine::settle`] computes its maps as every command does: the same
+//! scene, seed and settings are the same bits, whatever came before.
+
+mod bank;
+mod change;
+mod frame;
+mod incremental;
+mod report;
+mod settled;
+mod shown;
+
+pub use frame::{Frame, ReadyMap, Wanted};
+pub use incremental::{Engine, Forced};
+pub use report::{Outcome, Report, Stage, StageReport};

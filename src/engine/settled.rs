@@ -1,0 +1,89 @@
+//! A scene at rest, computed as every command computes it.
+
+use super::frame::{Frame, ReadyMap, Wanted};
+use super::report::{Report, Stage};
+use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
+use crate::radar::{End, Radar};
+use crate::scene::{Object, Scene, SceneError};
+use crate::signal::{self, Floor, TwoEnds};
+use std::sync::Arc;
+use std::time::Instant;
+
+const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
+
+/// The maps of one scene by [`signal::simulate`] and the plain transforms in f64; nothing of any other scene is in them.
+pub(super) struct Settled {
+    objects: Vec<Object>,
+    floor: Floor,
+    seed: u64,
+    ends: Arc<TwoEnds>,
+    logs: [Option<LogMap>; 3],
+    normalisation: Normalisation,
+    maps: [Option<ReadyMap>; 3],
+}
+
+impl Settled {
+    /// Computes what is wanted of `scene`, and adds to `report` what it cost.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the scene can't be simulated.
+    pub fn of(radar: &Radar, scene: &Scene, wanted: &Wanted, report: &mut Report) -> Result<Settled, SceneError> {
+        let start = Instant::now();
+        let signal = signal::simulate(radar, scene, wanted.floor, wanted.seed)?;
+        let ends = Arc::new(signal.two_ends(radar));
+        let profiles = range_transform(radar, &signal);
+        report.computed(Stage::Signal, start.elapsed(), "from scratch in f64, as every command does");
+        let mut logs = [None, None, None];
+        for (i, log) in logs.iter_mut().enumerate().filter(|(i, _)| wanted.visible()[*i]) {
+            let start = Instant::now();
+            *log = Some(angle_transform(radar, &profiles, APERTURES[i]).log_magnitude());
+            report.computed(Stage::MAPS[i], start.elapsed(), "all rows in f64");
+        }
+        let (objects, normalisation) = (scene.objects.clone(), wanted.normalisation);
+        let (floor, seed, maps) = (wanted.floor, wanted.seed, [None, None, None]);
+        Ok(Settled { objects, floor, seed, ends, logs, normalisation, maps })
+    }
+
+    /// Whether it has all that is wanted of `scene`.
+    pub fn has(&self, scene: &Scene, wanted: &Wanted) -> bool {
+        let visible = wanted.visible();
+        self.objects == scene.objects
+            && (self.floor, self.seed) == (wanted.floor, wanted.seed)
+            && (0..3).all(|i| !visible[i] || self.logs[i].is_some())
+    }
+
+    /// Maps kept.
+    pub fn maps(&self) -> usize {
+        self.logs.iter().flatten().count()
+    }
+
+    /// What is wanted; maps that were given before are the same `Arc` as then.
+    pub fn frame(&mut self, wanted: &Wanted, mut report: Report) -> Frame {
+        let start = Instant::now();
+        if self.normalisation != wanted.normalisation {
+            self.normalisation = wanted.normalisation;
+            self.maps = [None, None, None];
+        }
+        let visible = wanted.visible();
+        let mut made = 0;
+        for i in (0..3).filter(|i| visible[*i]) {
+            if let (None, Some(log)) = (&self.maps[i], &self.logs[i]) {
+                let scale = log.scale(wanted.normalisation);
+                self.maps[i] = Some(ReadyMap { lambda: Arc::new(log.normalise(wanted.normalisation)), scale });
+                made += 1;
+            }
+        }
+        for stage in [Stage::Signal, Stage::Noise, Stage::Ends].into_iter().chain(Stage::MAPS) {
+            if !report.ran(stage) {
+                report.skipped(stage, "the scene rests");
+            }
+        }
+        match made {
+            0 => report.skipped(Stage::Normalise, "unchanged"),
+            _ => report.computed(Stage::Normalise, start.elapsed(), format!("{made} maps")),
+        }
+        let map = |i: usize| self.maps[i].clone().filter(|_| visible[i]);
+        let ends = Some(self.ends.clone()).filter(|_| wanted.ends);
+        Frame { first: map(0), last: map(1), full: map(2), ends, settled: true, report }
+    }
+}

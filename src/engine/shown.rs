@@ -1,0 +1,99 @@
+//! What the last frame showed.
+
+use super::bank::Kept;
+use super::frame::{ReadyMap, Wanted};
+use super::report::{Report, Stage};
+use crate::maps::fast::{FastLogMap, normalise_into};
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::Radar;
+use crate::scene::{Object, Scene};
+use crate::signal::{Floor, Rows, TwoEnds};
+use ndarray::Array2;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What the last frame showed, and for which scene.
+pub(super) struct Shown {
+    pub objects: Vec<Object>,
+    pub floor: Floor,
+    pub seed: u64,
+    pub tolerance: f64,
+    pub normalisation: Normalisation,
+    pub ends: Option<Arc<TwoEnds>>,
+    pub decades: [Option<Kept>; 3],
+    /// Which of `decades` show these objects.
+    pub current: [bool; 3],
+    pub maps: [Option<ReadyMap>; 3],
+    /// Buffers of earlier maps, reused once nobody else holds them.
+    pub spare: Vec<Arc<RangeAngleMap>>,
+}
+
+impl Shown {
+    /// Nothing yet of a new scene; buffers come from what was shown before.
+    pub fn of(scene: &Scene, wanted: &Wanted, tolerance: f64, before: Option<Shown>) -> Self {
+        let (mut spare, mut decades) = (Vec::new(), [None, None, None]);
+        if let Some(before) = before {
+            (spare, decades) = (before.spare, before.decades);
+            spare.extend(before.maps.into_iter().flatten().map(|m| m.lambda));
+            // Whoever looks at the previous frame holds three; three more are in the making.
+            let excess = spare.len().saturating_sub(6);
+            spare.drain(..excess);
+        }
+        Shown {
+            objects: scene.objects.clone(),
+            floor: wanted.floor,
+            seed: wanted.seed,
+            tolerance,
+            normalisation: wanted.normalisation,
+            ends: None,
+            decades,
+            current: [false; 3],
+            maps: [None, None, None],
+            spare,
+        }
+    }
+
+    /// Holds nothing of any scene any more but buffers: no update is content with this tolerance.
+    pub fn forget(&mut self, radar: &Radar) {
+        self.tolerance = f64::INFINITY;
+        self.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
+    }
+
+    /// Lambda of every visible map that is new or normalised another way than before.
+    pub fn normalise(
+        &mut self,
+        visible: [bool; 3],
+        missing: [bool; 3],
+        normalisation: Normalisation,
+        report: &mut Report,
+    ) {
+        let start = Instant::now();
+        if self.normalisation != normalisation {
+            self.spare.extend(self.maps.iter_mut().filter_map(Option::take).map(|m| m.lambda));
+            self.normalisation = normalisation;
+        }
+        let mut made: Vec<(usize, &FastLogMap, Arc<RangeAngleMap>)> = Vec::new();
+        for i in 0..3 {
+            let Some(Kept { decades, .. }) = self.decades[i].as_ref().filter(|_| visible[i]) else { continue };
+            if self.maps[i].is_some() && !missing[i] {
+                continue;
+            }
+            let free = self.spare.iter_mut().position(|a| Arc::get_mut(a).is_some());
+            let lambda = match free {
+                Some(free) => self.spare.swap_remove(free),
+                None => Arc::new(RangeAngleMap { lambda: Array2::zeros(decades.cells.raw_dim()) }),
+            };
+            made.push((i, decades, lambda));
+        }
+        let pairs = made.iter_mut().filter_map(|(_, decades, lambda)| Some((*decades, Arc::get_mut(lambda)?)));
+        normalise_into(pairs.collect(), normalisation);
+        let count = made.len();
+        for (i, decades, lambda) in made {
+            self.maps[i] = Some(ReadyMap { lambda, scale: decades.scale(normalisation) });
+        }
+        match count {
+            0 => report.skipped(Stage::Normalise, "unchanged"),
+            _ => report.computed(Stage::Normalise, start.elapsed(), format!("{count} maps")),
+        }
+    }
+}

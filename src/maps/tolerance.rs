@@ -1,0 +1,58 @@
+//! How precise a signal must be so that the picture made of it doesn't show how it was computed.
+
+use super::lambda::Normalisation;
+use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, Sum};
+use crate::signal::{Floor, Precision};
+
+/// The error a signal may have, relative to its amplitudes, so that a map over `floor`, normalised so, does not show it.
+///
+/// Normalising by the minimum makes the floor part of the picture. Over the thesis' floor (1e-11 a sample) that leaves no
+/// room for f32, whose cells cancel to exact zeros; without any floor not even for gridding. Over thermal noise, or with a fixed
+/// dynamic range, f32 is ample until the noise or the range comes near its own rounding.
+pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
+    match (normalisation, floor) {
+        (Normalisation::DynamicRange(db), _) if db.0 <= 100.0 => 1e-6,
+        (Normalisation::MinMax, Floor::Snr(snr)) if snr.0 <= 40.0 => 1e-6,
+        (_, Floor::Exact) => BEST_TOLERANCE,
+        _ => FLOOR_TOLERANCE,
+    }
+}
+
+/// Why maps of this floor and normalisation must not be made in `precision`, if so.
+///
+/// Without a floor the smallest cells are rounding errors; normalised by them, a map in single precision shows its own rounding and nothing
+/// that the scene has to do with. What no picture in f32 can hold, [`plan::refusal`] says.
+pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Normalisation) -> Option<&'static str> {
+    match (precision, floor, normalisation) {
+        (Precision::F64, ..) => None,
+        (Precision::F32, Floor::Exact, Normalisation::MinMax) => {
+            Some("f64 although f32 was asked for: without a floor, min-max would show f32's own rounding")
+        }
+        (Precision::F32, ..) => plan::refusal(sum),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Decibels;
+    use crate::signal::{Algorithm, Plan};
+
+    #[test]
+    fn f32_never_meets_min_max_over_a_rounding_floor() {
+        for (floor, normalisation, precision) in [
+            (Floor::Thesis, Normalisation::MinMax, Precision::F64),
+            (Floor::Exact, Normalisation::MinMax, Precision::F64),
+            (Floor::Snr(Decibels(80.0)), Normalisation::MinMax, Precision::F64),
+            (Floor::Snr(Decibels(20.0)), Normalisation::MinMax, Precision::F32),
+            (Floor::Exact, Normalisation::DynamicRange(Decibels(60.0)), Precision::F32),
+            (Floor::Exact, Normalisation::DynamicRange(Decibels(200.0)), Precision::F64),
+        ] {
+            let recipe = Plan::cheapest(10, 1.0, tolerance_for(floor, normalisation));
+            assert_eq!(recipe.precision, precision, "{floor} {normalisation}");
+        }
+        let exact = Plan::cheapest(1000, 1.0, tolerance_for(Floor::Exact, Normalisation::MinMax));
+        assert_eq!(exact.algorithm, Algorithm::Split, "without a floor, gridding's own error would show");
+        assert_eq!(Plan::cheapest(10, 1e30, 1e-6).precision, Precision::F64, "squares of 1e30 overflow f32");
+    }
+}

@@ -1,0 +1,81 @@
+//! The algorithms by name.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// A way to evaluate equation 3.3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Algorithm {
+    /// The formula word for word ([`super::direct`]), rounding noise included.
+    Direct,
+    /// Phases reduced to turns ([`super::exact`]).
+    Exact,
+    /// Products of 16 + 32 phasors ([`super::split`]).
+    Split,
+    /// Spread on a range grid and transformed ([`super::gridded`]).
+    Gridded,
+    /// Range profiles from three Dirichlet kernels, on few rows ([`super::closed_form`]). Where samples are asked for, phasor split.
+    ClosedForm,
+}
+
+impl Algorithm {
+    /// Every algorithm.
+    pub const ALL: [Algorithm; 5] =
+        [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded, Algorithm::ClosedForm];
+
+    /// Whether it computes in blocks of elements ([`super::synthesis`]), in either precision, as fast as a tolerance allows.
+    pub fn is_fast(self) -> bool {
+        !matches!(self, Algorithm::Direct | Algorithm::Exact)
+    }
+
+    /// Name in reports and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Algorithm::Direct => "direct",
+            Algorithm::Exact => "exact",
+            Algorithm::Split => "split",
+            Algorithm::Gridded => "gridded",
+            Algorithm::ClosedForm => "closed-form",
+        }
+    }
+}
+
+impl fmt::Display for Algorithm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// An algorithm's name that is not known.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown algorithm \"{0}\"; expected direct, exact, split, gridded or closed-form")]
+pub struct UnknownAlgorithm(String);
+
+impl FromStr for Algorithm {
+    type Err = UnknownAlgorithm;
+
+    fn from_str(s: &str) -> Result<Self, UnknownAlgorithm> {
+        Algorithm::ALL.into_iter().find(|a| a.name() == s).ok_or_else(|| UnknownAlgorithm(s.to_owned()))
+    }
+}
+
+/// Precision of everything after the phase, which is always formed in f64.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Precision {
+    /// Single.
+    F32,
+    /// Double.
+    F64,
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        })
+    }
+}

@@ -1,0 +1,133 @@
+//! Running a plan.
+
+use super::algorithm::{Algorithm, Precision};
+use super::plan::Plan;
+use super::samples::BeatSignal;
+use super::simd::{LANES_F32, LANES_F64};
+use super::synthesis::Synthesis;
+use super::{direct, exact};
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use ndarray::{Array2, s};
+use num_complex::Complex64;
+use std::ops::Range;
+
+/// Runs a plan: the whole array's beat signal, noiseless.
+///
+/// The reflectors must have passed [`crate::scene::Scene::validate`].
+pub fn beat_signal(radar: &Radar, reflectors: &[Reflector], plan: &Plan) -> BeatSignal {
+    match plan.algorithm {
+        Algorithm::Direct => direct::beat_signal(radar, reflectors),
+        Algorithm::Exact => exact::beat_signal(radar, reflectors),
+        _ => BeatSignal { samples: samples_of(radar, reflectors, plan, 0..radar.elements) },
+    }
+}
+
+/// Noiseless samples of neighbouring elements by a block algorithm ([`Algorithm::is_fast`]), `[elements, samples]`, bit for bit those of
+/// the whole array.
+pub(super) fn samples_of(
+    radar: &Radar,
+    reflectors: &[Reflector],
+    plan: &Plan,
+    elements: Range<usize>,
+) -> Array2<Complex64> {
+    let lanes = if plan.precision == Precision::F32 { LANES_F32 } else { LANES_F64 };
+    // Whole blocks: what an element's neighbours in a vector are may turn its last bits.
+    let begin = elements.start / lanes * lanes;
+    let blocks = begin..elements.end.next_multiple_of(lanes).min(radar.elements);
+    let mut samples = match plan.precision {
+        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).samples(reflectors, blocks),
+        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).samples(reflectors, blocks),
+    };
+    samples.slice_collapse(s![elements.start - begin..elements.end - begin, ..]);
+    samples
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::judge;
+    use super::super::plan::BEST_TOLERANCE;
+    use super::super::simd::Simd;
+    use super::*;
+    use crate::scene::Scene;
+
+    fn worst_error(radar: &Radar, reflectors: &[Reflector], chosen: &Plan) -> f64 {
+        let signal = beat_signal(radar, reflectors, chosen);
+        let mut worst = 0.0f64;
+        let mut peak = 0.0f64;
+        for element in [0, 1, 7, 300, 511, 700, 1016, 1023] {
+            for (a, b) in signal.samples.row(element).iter().zip(judge::element_signal(radar, reflectors, element)) {
+                worst = worst.max((a - b).norm());
+                peak = peak.max(b.norm());
+            }
+        }
+        worst / peak
+    }
+
+    fn scattered(count: usize) -> Vec<Reflector> {
+        let at = |i: usize| (f64::from(i as u32 * 37 % 61) - 30.0, 2.0 + f64::from(i as u32 * 53 % 33) + 0.37);
+        Scene::of_points((0..count).map(at)).reflectors()
+    }
+
+    #[test]
+    fn every_algorithm_keeps_its_promise_on_every_instruction_set() {
+        let radar = Radar::default();
+        for count in [1, 10, 60] {
+            let reflectors = scattered(count);
+            for simd in Simd::available() {
+                for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
+                    for algorithm in [Algorithm::Split, Algorithm::Gridded] {
+                        let plan = Plan::cheapest(count, 1.0, tolerance);
+                        let chosen = Plan { simd, algorithm, ..plan };
+                        let error = worst_error(&radar, &reflectors, &chosen);
+                        assert!(error < tolerance, "{count} reflectors, {chosen:?}: {error:e}");
+                    }
+                }
+            }
+            let best = Plan::cheapest(count, 1.0, BEST_TOLERANCE);
+            assert_eq!((best.algorithm, best.precision), (Algorithm::Split, Precision::F64));
+            let error = worst_error(&radar, &reflectors, &best);
+            assert!(error < 1e-14, "{count}: {error:e}");
+        }
+    }
+
+    /// Sums of any length keep f32's promise, also where all roundings agree because all reflectors coincide.
+    #[test]
+    fn thousands_of_reflectors_keep_the_promise_in_single_precision() {
+        let radar = Radar { elements: 32, end_elements: 4, ..Radar::default() };
+        let together = |place: (f64, f64)| Scene::of_points(std::iter::repeat_n(place, 10_000)).reflectors();
+        let scenes = [
+            together((0.5, 9.0)),
+            together((-20.0, 3.3)),
+            together((3.0, 30.01)),
+            [scattered(60), together((1.0, 7.7))].concat(),
+            scattered(10_000),
+            scattered(3_000),
+        ];
+        for reflectors in scenes {
+            let count = reflectors.len();
+            let best = Plan::cheapest(count, 1.0, 1e-14);
+            let coarse = Plan::cheapest(count, 1.0, 1e-6);
+            assert_eq!((best.precision, coarse.precision), (Precision::F64, Precision::F32));
+            let expected = beat_signal(&radar, &reflectors, &best).samples;
+            let found = beat_signal(&radar, &reflectors, &coarse).samples;
+            // Relative to the amplitudes, as tolerances are.
+            let scale = crate::signal::plan::amplitude_bound(&radar, &reflectors);
+            let worst = (&found - &expected).iter().fold(0.0f64, |m, v| m.max(v.norm())) / scale;
+            assert!(worst < 1e-6, "{count}: {worst:e}");
+        }
+    }
+
+    #[test]
+    fn the_two_way_carrier_and_wrapping_ranges_keep_the_promise() {
+        let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
+        let max = radar.max_range_metres();
+        let reflectors =
+            Scene::of_points([(0.5, max / 2.0), (3.0, max - 0.01), (-20.0, 3.0 * max), (1e5, 1e4)]).reflectors();
+        for (algorithm, bound) in [(Algorithm::Split, 1e-14), (Algorithm::Gridded, 2e-13)] {
+            let chosen = Plan::cheapest(4, 1.0, 1e-14).with_algorithm(algorithm);
+            let error = worst_error(&radar, &reflectors, &chosen);
+            assert!(error < bound, "{chosen:?}: {error:e}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! From a scene to samples over a floor: what every command and every figure starts from.
+
+use super::floor::{self, Floor};
+use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
+use super::run::{beat_signal, samples_of};
+use super::samples::{BeatSignal, TwoEnds};
+use crate::radar::{End, Radar};
+use crate::scene::{Reflector, Scene, SceneError};
+
+/// Beat signal of a scene over the named floor; `seed` picks the floor's noise.
+///
+/// The fastest algorithm whose error stays far beneath the floor is used; `floor::Floor::Thesis` is exact phase and the noise that
+/// rounding leaves in the thesis' evaluation. [`super::direct::beat_signal`] makes that evaluation itself, rounding and all,
+/// [`super::exact`] and [`super::beat_signal`] any other. The same arguments give the same bits on the same instructions, whatever was
+/// computed before and on however many threads.
+///
+/// # Errors
+/// [`SceneError`] when the scene can't be simulated.
+pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
+    scene.validate(radar)?;
+    let reflectors = scene.reflectors();
+    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
+    let mut signal = beat_signal(radar, &reflectors, &plan);
+    if let Some(variance) = noise_variance(radar, &reflectors, floor) {
+        floor::add_noise(&mut signal, &variance, seed);
+    }
+    Ok(signal)
+}
+
+/// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
+///
+/// # Errors
+/// [`SceneError`] when the scene can't be simulated.
+pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<TwoEnds, SceneError> {
+    scene.validate(radar)?;
+    let reflectors = scene.reflectors();
+    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
+    let variance = noise_variance(radar, &reflectors, floor);
+    let [first, last] = End::BOTH.map(|end| {
+        let elements = radar.end_range(end);
+        let mut samples = samples_of(radar, &reflectors, &plan, elements.clone());
+        if let Some(variance) = &variance {
+            floor::add_noise_from(&mut samples, elements.start, &variance[elements], seed);
+        }
+        samples
+    });
+    Ok(TwoEnds { first, last })
+}
+
+/// Variance of the noise that is the floor, for each element, if there is any.
+fn noise_variance(radar: &Radar, reflectors: &[Reflector], floor: Floor) -> Option<Vec<f64>> {
+    match floor {
+        Floor::Exact => None,
+        Floor::Thesis => Some(floor::thesis_noise_variance(radar, reflectors)),
+        Floor::Snr(snr) => Some(floor::snr_noise_variance(radar, reflectors, snr)),
+    }
+}
+
+/// Samples are for any use and kept in f64: no error may show however they are normalised, over a loud floor none above 1e-12.
+fn tolerance(floor: Floor) -> f64 {
+    match floor {
+        Floor::Exact => BEST_TOLERANCE,
+        Floor::Snr(snr) if snr.0 <= 40.0 => 1e-12,
+        Floor::Thesis | Floor::Snr(_) => FLOOR_TOLERANCE,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Decibels;
+
+    #[test]
+    fn the_ends_alone_are_those_of_the_whole_array_bit_for_bit() {
+        let odd = Radar { elements: 90, samples: 60, end_elements: 7, ..Radar::default() };
+        for radar in [Radar::default(), odd] {
+            let max = radar.max_range_metres();
+            for count in [1, 3, 30] {
+                let place = |i: usize| (0.7 * i as f64 - 3.0, 1.0 + (0.31 * i as f64 * max) % (1.2 * max));
+                let scene = Scene::of_points((0..count).map(place));
+                for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0)), Floor::Snr(Decibels(60.0))] {
+                    let whole = simulate(&radar, &scene, floor, 3).unwrap().two_ends(&radar);
+                    assert_eq!(simulate_ends(&radar, &scene, floor, 3).unwrap(), whole, "{count} over {floor}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! The blob of one reflector: its peak, its half-power widths, its first side lobes.
+
+use super::response::{Response, Row};
+use super::squint::cell_seen_from;
+use super::{Cell, elements};
+use crate::maps::{Aperture, Spectrum};
+use crate::radar::{Decibels, Radar};
+use crate::scene::Reflector;
+
+/// Parts that a column is looked at in.
+const FINE: usize = 8;
+/// Steps to a bin while looking for the peak.
+const STEPS_PER_BIN: f64 = 4.0;
+/// Golden ratio's smaller part.
+const GOLDEN: f64 = 0.381_966_011_250_105_1;
+
+/// What one reflector leaves on the map of one aperture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blob {
+    /// The peak.
+    pub peak: Cell,
+    /// Magnitude of the peak, as on the complex map.
+    pub magnitude: f64,
+    /// From the peak to either side, the columns over which it stays above half power; half the map where it never falls so low.
+    pub columns: [f64; 2],
+    /// From the peak to nearer and farther ranges, the bins over which it stays above half power.
+    pub bins: [f64; 2],
+    /// The first side lobe at lower and at higher columns in the peak's row, where there is one.
+    pub side_lobes: [Option<SideLobe>; 2],
+}
+
+/// A side lobe in the row of a blob's peak.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SideLobe {
+    /// Columns from the peak, always positive.
+    pub columns: f64,
+    /// Height relative to the peak, below 0.
+    pub level: Decibels,
+}
+
+/// A row in fine columns, seen from its highest.
+struct Profile {
+    /// Magnitudes, the highest first, rising columns, all around the map.
+    cells: Vec<f64>,
+    /// Column of the highest.
+    column: f64,
+}
+
+impl Profile {
+    fn new(row: &Row, spectrum: &Spectrum, columns: usize) -> Self {
+        let mut cells = row.magnitudes(spectrum);
+        let highest = (0..cells.len()).max_by(|a, b| cells[*a].total_cmp(&cells[*b])).unwrap_or(0);
+        cells.rotate_left(highest);
+        Profile { column: highest as f64 * columns as f64 / cells.len().max(1) as f64, cells }
+    }
+
+    /// Magnitude `step` fine columns above or below the highest.
+    fn at(&self, step: usize, upward: bool) -> f64 {
+        let len = self.cells.len();
+        self.cells[if upward { step % len } else { (len - step % len) % len }]
+    }
+
+    /// Fine steps to where it falls below half power on one side.
+    fn half_power(&self, upward: bool) -> f64 {
+        let level = self.cells[0] * std::f64::consts::FRAC_1_SQRT_2;
+        let half = self.cells.len() / 2;
+        match (1..half).find(|step| self.at(*step, upward) < level) {
+            Some(step) => {
+                let (above, below) = (self.at(step - 1, upward), self.at(step, upward));
+                step as f64 - (level - below) / (above - below)
+            }
+            None => half as f64,
+        }
+    }
+
+    /// Fine steps to, and height of, the first side lobe on one side: the highest point beyond the first valley, if that lies below half
+    /// power. A blob drawn out by the near field ripples higher up.
+    fn side_lobe(&self, upward: bool) -> Option<(f64, f64)> {
+        let half = self.cells.len() / 2;
+        let at = |step: usize| self.at(step, upward);
+        let valley = (1..half).find(|step| at(step + 1) > at(*step))?;
+        let peak = (valley + 1..half).find(|step| at(step + 1) < at(*step))?;
+        let level = self.cells[0] * std::f64::consts::FRAC_1_SQRT_2;
+        (at(valley) < level).then(|| (peak as f64, at(peak)))
+    }
+}
+
+impl Blob {
+    /// The blob of `reflector` on the map of `aperture`; `None` for one without an echo. The radar must be valid ([`Radar::validate`]).
+    pub fn of(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Option<Blob> {
+        let response = Response::new(radar, reflector, aperture);
+        let spectrum = Spectrum::new(FINE * radar.elements);
+        let profile = |bin: f64| Profile::new(&response.row(bin), &spectrum, radar.elements);
+        let (first, last) = bins_heard(radar, reflector, aperture);
+        let highest = |bin: f64| profile(bin).cells[0];
+        let steps = ((last - first) * STEPS_PER_BIN).ceil() as usize;
+        let coarse = (0..=steps).map(|i| first + i as f64 / STEPS_PER_BIN);
+        let (around, _) = coarse.map(|bin| (bin, highest(bin))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let bin = maximum(around - 1.0 / STEPS_PER_BIN, around + 1.0 / STEPS_PER_BIN, highest);
+        let profile = profile(bin);
+        let row = response.row(bin);
+        let fine = 1.0 / FINE as f64;
+        let column = maximum(profile.column - fine, profile.column + fine, |column| row.magnitude(column));
+        let magnitude = row.magnitude(column);
+        if magnitude.is_nan() || magnitude <= 0.0 {
+            return None;
+        }
+        let sides = [false, true];
+        let along_bins = |upward: bool| {
+            let sign = if upward { fine } else { -fine };
+            let level = magnitude * std::f64::consts::FRAC_1_SQRT_2;
+            let steps = radar.samples / 2 * FINE;
+            let beyond = (1..steps).find(|i| response.magnitude(bin + sign * *i as f64, column) < level);
+            beyond.map_or(radar.samples as f64 / 2.0, |i| (i as f64 - 0.5) * fine)
+        };
+        let side_lobe = |upward: bool| {
+            let (steps, height) = profile.side_lobe(upward)?;
+            Some(SideLobe { columns: steps * fine, level: Decibels(20.0 * (height / magnitude).log10()) })
+        };
+        Some(Blob {
+            peak: Cell { bin: bin.rem_euclid(radar.samples as f64), column: column.rem_euclid(radar.elements as f64) },
+            magnitude,
+            columns: sides.map(|upward| profile.half_power(upward) * fine),
+            bins: sides.map(along_bins),
+            side_lobes: sides.map(side_lobe),
+        })
+    }
+}
+
+/// Bins from the nearest to the farthest element of `aperture`, not wrapped.
+fn bins_heard(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> (f64, f64) {
+    let elements = elements(radar, aperture);
+    let bin = |n| radar.bin_of_range((reflector.x_metres - radar.element_x_metres(n)).hypot(reflector.y_metres));
+    elements.map(bin).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
+}
+
+/// Where `f` is largest between `low` and `high`, by golden sections.
+fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..14 {
+        let (a, b) = (low + GOLDEN * (high - low), high - GOLDEN * (high - low));
+        if f(a) < f(b) { low = a } else { high = b }
+    }
+    (low + high) / 2.0
+}
+
+/// The path of a reflector's blob as the array hears it from one element of `aperture` to the next: `points` cells, from the first
+/// element to the last.
+pub(super) fn path(radar: &Radar, reflector: &Reflector, aperture: Aperture, points: usize) -> Vec<Cell> {
+    let elements = elements(radar, aperture);
+    let (left, right) =
+        (radar.element_x_metres(elements.start), radar.element_x_metres(elements.end.saturating_sub(1)));
+    let at = |i: usize| left + (right - left) * i as f64 / points.saturating_sub(1).max(1) as f64;
+    (0..points).map(|i| cell_seen_from(radar, reflector.x_metres, reflector.y_metres, at(i))).collect()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::blob_cell;
+    use super::*;
+    use crate::maps::{angle_transform, range_transform};
+    use crate::radar::{Carrier, End, WindowFunction};
+    use crate::signal::exact;
+    use ndarray::Array2;
+    use num_complex::Complex64;
+    use proptest::prelude::*;
+
+    /// Cells of a fine map to a cell of the map.
+    const PARTS: usize = 4;
+    const APERTURES: [Aperture; 3] = [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)];
+
+    /// A small valid radar of any kind, and a reflector no nearer than its array is long, ranges beyond the last bin included.
+    pub fn radar_and_place() -> impl Strategy<Value = (Radar, Reflector)> {
+        let radar = (24e9..81e9f64, 8.2..9.3f64, 0.25..1.0f64, 16..=80usize, 16..=80usize, 3..=8usize, 0..8usize)
+            .prop_map(|(carrier_hz, bandwidth, spacing, elements, samples, end_elements, kind)| Radar {
+                carrier_hz,
+                bandwidth_hz: 10f64.powf(bandwidth),
+                element_spacing_metres: spacing * crate::radar::SPEED_OF_LIGHT / carrier_hz,
+                elements,
+                samples,
+                end_elements,
+                carrier: if kind % 2 == 0 { Carrier::OneWay } else { Carrier::TwoWay },
+                window: WindowFunction::ALL[kind / 2],
+                ..Radar::default()
+            });
+        (radar, 0.1..1.3f64, -0.95..0.95f64, any::<bool>()).prop_map(|(radar, range, cos, behind)| {
+            let range = (range * radar.max_range_metres()).max(radar.aperture_metres());
+            let y_metres = range * (1.0 - cos * cos).sqrt() * if behind { -1.0 } else { 1.0 };
+            (radar, Reflector { x_metres: range * cos, y_metres, reflectivity: 1.0 })
+        })
+    }
+
+    /// Magnitudes of the simulated map, `[bins, columns]`.
+    pub fn simulated(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Array2<f64> {
+        let profiles = range_transform(radar, &exact::beat_signal(radar, &[*reflector]));
+        angle_transform(radar, &profiles, aperture).cells.mapv(Complex64::norm)
+    }
+
+    /// The same map with [`PARTS`] cells where it has one, from the simulated samples alone.
+    fn simulated_finely(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Array2<f64> {
+        let signal = exact::beat_signal(radar, &[*reflector]).samples;
+        let channels: Vec<usize> = elements(radar, aperture).collect();
+        let (over_range, over_angle) = (radar.window.weights(radar.samples), radar.window.weights(channels.len()));
+        let (range, angle) = (Spectrum::new(PARTS * radar.samples), Spectrum::new(PARTS * radar.elements));
+        let profiles: Vec<Vec<Complex64>> =
+            channels.iter().map(|n| range.of(signal.row(*n).iter().zip(&over_range).map(|(v, w)| v * w))).collect();
+        let scale = ((radar.samples * radar.elements) as f64).sqrt().recip();
+        let mut map = Array2::zeros((range.len(), angle.len()));
+        for (bin, mut row) in map.outer_iter_mut().enumerate() {
+            let cells = angle.of(profiles.iter().zip(&over_angle).map(|(p, w)| p[bin] * w * scale));
+            for (k, v) in cells.iter().enumerate() {
+                row[(k + PARTS * (radar.elements / 2)) % angle.len()] = v.norm();
+            }
+        }
+        map
+    }
+
+    /// A row of it at any fraction of a bin, [`FINE`] cells to a column.
+    fn simulated_row(radar: &Radar, reflector: &Reflector, aperture: Aperture, bin: f64) -> Vec<f64> {
+        let signal = exact::beat_signal(radar, &[*reflector]).samples;
+        let channels: Vec<usize> = elements(radar, aperture).collect();
+        let turn = |n: usize| Complex64::cis(-std::f64::consts::TAU * n as f64 * bin / radar.samples as f64);
+        let over_range: Vec<Complex64> =
+            radar.window.weights(radar.samples).iter().enumerate().map(|(n, w)| w * turn(n)).collect();
+        let cell = |n: &usize| signal.row(*n).iter().zip(&over_range).map(|(v, w)| v * w).sum::<Complex64>();
+        let window = radar.window.weights(channels.len());
+        let spectrum = Spectrum::new(FINE * radar.elements);
+        spectrum.of(channels.iter().zip(window).map(|(n, w)| cell(n) * w)).iter().map(|v| v.norm()).collect()
+    }
+
+    /// Holds the predicted blob to the simulated map, all within half a cell.
+    fn hold(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Result<(), TestCaseError> {
+        let map = simulated_finely(radar, reflector, aperture);
+        let blob = Blob::of(radar, reflector, aperture).expect("it has an echo");
+        let ((bin, column), highest) = map.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let fine = |v: f64, len: usize| ((v * PARTS as f64).round() as usize) % len;
+        let (fine_bin, fine_column) = (fine(blob.peak.bin, map.nrows()), fine(blob.peak.column, map.ncols()));
+        let at_prediction = map[[fine_bin, fine_column]];
+        let seen = Cell { bin: bin as f64 / PARTS as f64, column: column as f64 / PARTS as f64 };
+        let (bins_off, columns_off) = blob.peak.offset_to(&seen, radar);
+        // Of two peaks of the same height either will do.
+        let same_height = at_prediction > 0.99 * highest && blob.magnitude >= *highest;
+        prop_assert!(same_height || (bins_off.abs() <= 0.5 && columns_off.abs() <= 0.5), "{blob:?}, seen at {seen:?}");
+        prop_assert!((blob.magnitude / highest - 1.0).abs() < 0.05, "{blob:?}, seen {highest}");
+
+        let level = blob.magnitude * std::f64::consts::FRAC_1_SQRT_2;
+        let reach = |along: &dyn Fn(i64) -> f64, len: usize| {
+            [-1, 1].map(|side| {
+                let beyond = (1..len as i64 / 2).find(|i| along(side * i) < level);
+                beyond.map_or(len as f64 / 2.0, |i| i as f64 - 0.5) / PARTS as f64
+            })
+        };
+        let (rows, columns) = (map.nrows() as i64, map.ncols() as i64);
+        let in_row = |i: i64| map[[fine_bin, (fine_column as i64 + i).rem_euclid(columns) as usize]];
+        let in_column = |i: i64| map[[(fine_bin as i64 + i).rem_euclid(rows) as usize, fine_column]];
+        for (predicted, seen) in
+            [(blob.columns, reach(&in_row, map.ncols())), (blob.bins, reach(&in_column, map.nrows()))]
+        {
+            for side in 0..2 {
+                prop_assert!((predicted[side] - seen[side]).abs() <= 0.5, "{blob:?}: {predicted:?}, seen {seen:?}");
+            }
+        }
+        let row = simulated_row(radar, reflector, aperture, blob.peak.bin);
+        let half = row.len() as i64 / 2;
+        let top = (0..row.len()).max_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap() as i64;
+        for (side, lobe) in [-1, 1].into_iter().zip(blob.side_lobes) {
+            let Some(lobe) = lobe else { continue };
+            let at = |i: i64| row[(top + side * i).rem_euclid(2 * half) as usize];
+            let valley = (1..half).find(|i| at(i + 1) > at(*i)).unwrap();
+            let peak = (valley + 1..half).find(|i| at(i + 1) < at(*i)).unwrap();
+            let level = 20.0 * (at(peak) / at(0)).log10();
+            let columns = peak as f64 / FINE as f64;
+            prop_assert!((columns - lobe.columns).abs() <= 0.5, "{lobe:?}, seen {columns} columns off");
+            prop_assert!((level - lobe.level.0).abs() < 0.5, "{lobe:?}, seen {level} dB");
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(6))]
+        #[test]
+        fn blobs_stand_where_the_map_has_them((radar, reflector) in radar_and_place()) {
+            for aperture in APERTURES {
+                hold(&radar, &reflector, aperture)?;
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+        #[test]
+        #[ignore = "200 radars and places take a minute"]
+        fn two_hundred_blobs_stand_where_the_map_has_them((radar, reflector) in radar_and_place()) {
+            for aperture in APERTURES {
+                hold(&radar, &reflector, aperture)?;
+            }
+        }
+    }
+
+    #[test]
+    fn the_formula_alone_is_within_a_column_for_table_3_1() {
+        let radar = Radar::default();
+        for (range, cos) in [(5.0, 0.0), (8.0, 0.5), (12.0, -0.832), (20.0, 0.9), (35.0, -0.3)] {
+            let r = Reflector {
+                x_metres: range * cos,
+                y_metres: range * (1.0 - f64::powi(cos, 2)).sqrt(),
+                reflectivity: 1.0,
+            };
+            for aperture in APERTURES {
+                let blob = Blob::of(&radar, &r, aperture).unwrap();
+                let (bins, columns) = blob_cell(&radar, r.x_metres, r.y_metres, aperture).offset_to(&blob.peak, &radar);
+                assert!(bins.abs() < 0.5 && columns.abs() < 1.0, "{range} m, {cos}, {aperture:?}: {bins} {columns}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_echo_has_no_blob() {
+        let silent = Reflector { x_metres: 1.0, y_metres: 5.0, reflectivity: 0.0 };
+        assert_eq!(Blob::of(&Radar::default(), &silent, Aperture::End(End::First)), None);
+    }
+}

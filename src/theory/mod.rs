@@ -1,0 +1,72 @@
+//! What the formulas say about one reflector, or about a radar alone: where a blob stands, how wide it is, what else looks like it.
+//!
+//! | file | what it says |
+//! |---|---|
+//! | [`squint`] | the column of a blob, off broadside not quite that of the true direction |
+//! | [`pattern`] | beam width and highest side lobe of a window |
+//! | [`response`] | the map of one reflector at any fraction of a bin and column, in closed form |
+//! | [`blob`] | its peak, half-power widths and first side lobes |
+//! | [`streak`] | how far a near reflector is drawn out over columns and bins |
+//! | [`comb`] | the teeth of two ends that listen together |
+//! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
+//! | [`ellipse`] | the area that no estimator's error can stay below |
+//! | [`consequences`] | what a radar's constants mean before it sees anything |
+//!
+//! Nothing here looks at a simulated map; tests hold every prediction to one.
+
+pub mod aliases;
+pub mod blob;
+pub mod comb;
+pub mod consequences;
+pub mod ellipse;
+pub mod pattern;
+pub mod response;
+pub mod squint;
+pub mod streak;
+
+pub use aliases::{fold_partners, fold_period_cos, wrap_partners};
+pub use blob::{Blob, SideLobe};
+pub use comb::comb_teeth;
+pub use consequences::Consequences;
+pub use ellipse::Ellipse;
+pub use pattern::Pattern;
+pub use response::Response;
+pub use squint::{blob_cell, squint_factor};
+pub use streak::Streak;
+
+use crate::maps::Aperture;
+use crate::radar::Radar;
+use std::ops::Range;
+
+/// A place on a map, between its cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Row: range bins from the array, wrapped into `0..samples`.
+    pub bin: f64,
+    /// Column, wrapped into `0..elements`.
+    pub column: f64,
+}
+
+impl Cell {
+    /// Bins and columns from here to `other`, the short way around the map.
+    pub fn offset_to(&self, other: &Cell, radar: &Radar) -> (f64, f64) {
+        let short = |d: f64, len: usize| d - (d / len as f64).round() * len as f64;
+        (short(other.bin - self.bin, radar.samples), short(other.column - self.column, radar.elements))
+    }
+}
+
+/// Elements that a map is made of.
+fn elements(radar: &Radar, aperture: Aperture) -> Range<usize> {
+    match aperture {
+        Aperture::Full => 0..radar.elements,
+        Aperture::End(end) => radar.end_range(end),
+    }
+}
+
+/// Position of the middle of an aperture on the x axis, metres.
+fn centre_metres(radar: &Radar, aperture: Aperture) -> f64 {
+    match aperture {
+        Aperture::Full => 0.0,
+        Aperture::End(end) => radar.end_centre_metres(end),
+    }
+}

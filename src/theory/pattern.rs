@@ -1,0 +1,122 @@
+//! The transform of a window: main lobe and side lobes that every blob inherits.
+//!
+//! F. J. Harris, "On the Use of Windows for Harmonic Analysis with the Discrete Fourier Transform", Proceedings of the IEEE, 1978.
+
+use crate::radar::{Decibels, WindowFunction};
+use std::f64::consts::PI;
+
+/// Steps to a bin while looking for lobes.
+const STEPS: f64 = 64.0;
+
+/// The transform of a symmetric window over a few points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pattern {
+    cosines: [f64; 3],
+    len: usize,
+}
+
+/// A lobe beside the main one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lobe {
+    /// Distance from the main lobe's middle, in bins of the window's own length.
+    pub bins: f64,
+    /// Height relative to the main lobe's, below 0.
+    pub level: Decibels,
+}
+
+impl Pattern {
+    /// The pattern of `window` over `len` points; fewer than two points count as no weights at all, as in [`WindowFunction::weights`].
+    pub fn new(window: WindowFunction, len: usize) -> Self {
+        let window = if len < 2 { WindowFunction::Rectangular } else { window };
+        Pattern { cosines: window.cosines(), len: len.max(1) }
+    }
+
+    /// `sum_n w[n] cos(2 pi (n - (len - 1)/2) bins / len)`, real since the window is symmetric; exact.
+    pub fn at(&self, bins: f64) -> f64 {
+        let [a, b, c] = self.cosines;
+        let len = self.len as f64;
+        let dirichlet = |bins: f64| {
+            let below = (PI * bins / len).sin();
+            // At whole periods the ratio of both sines' slopes.
+            if below.abs() < 1e-9 {
+                len * (PI * bins).cos() / (PI * bins / len).cos()
+            } else {
+                (PI * bins).sin() / below
+            }
+        };
+        let apart = len / (len - 1.0).max(1.0);
+        let pair = |offset: f64| (dirichlet(bins - offset) + dirichlet(bins + offset)) / 2.0;
+        a * dirichlet(bins)
+            + if b == 0.0 { 0.0 } else { b * pair(apart) }
+            + if c == 0.0 { 0.0 } else { c * pair(2.0 * apart) }
+    }
+
+    /// Width of the main lobe between the points `down` below its top, in bins of the window's own length; `None` where it never falls so
+    /// low (a window of one weight hears all directions alike).
+    pub fn main_lobe_bins(&self, down: Decibels) -> Option<f64> {
+        let level = self.at(0.0) / 10f64.powf(down.amplitude_decades());
+        let outside = self.first(|at| self.at(at) < level)?;
+        let (mut low, mut high) = (outside - 1.0 / STEPS, outside);
+        for _ in 0..40 {
+            let middle = (low + high) / 2.0;
+            if self.at(middle) < level { high = middle } else { low = middle }
+        }
+        Some(low + high)
+    }
+
+    /// The highest side lobe; `None` where there is none.
+    pub fn highest_side_lobe(&self) -> Option<Lobe> {
+        let size = |at: f64| self.at(at).abs();
+        let valley = self.first(|at| size(at + 1.0 / STEPS) > size(at))?;
+        let steps = (valley * STEPS) as usize..(self.len as f64 / 2.0 * STEPS) as usize;
+        let peak = steps.map(|step| step as f64 / STEPS).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+        let (mut low, mut high) = (peak - 1.0 / STEPS, peak + 1.0 / STEPS);
+        for _ in 0..40 {
+            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if size(a) < size(b) { low = a } else { high = b }
+        }
+        let bins = (low + high) / 2.0;
+        Some(Lobe { bins, level: Decibels(20.0 * (size(bins) / size(0.0)).log10()) })
+    }
+
+    /// The first step away from the main lobe's middle, and at most half the period, that `is`.
+    fn first(&self, is: impl Fn(f64) -> bool) -> Option<f64> {
+        (1..(self.len as f64 / 2.0 * STEPS) as usize).map(|step| step as f64 / STEPS).find(|at| is(*at))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_are_the_transform_of_their_weights() {
+        for window in WindowFunction::ALL {
+            for len in [1, 2, 3, 12, 33] {
+                let pattern = Pattern::new(window, len);
+                for bins in [0.0, 0.3, 1.0, 1.5, 7.25, len as f64 - 0.1, len as f64, 40.3] {
+                    let turn = |n: usize| 2.0 * PI * (n as f64 - (len as f64 - 1.0) / 2.0) * bins / len as f64;
+                    let sum: f64 = window.weights(len).iter().enumerate().map(|(n, w)| w * turn(n).cos()).sum();
+                    assert!((pattern.at(bins) - sum).abs() < 1e-9 * len as f64, "{window:?} of {len} at {bins}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lobes_are_those_of_the_textbook() {
+        // Harris, table 1: 3 dB width in bins, highest side lobe in dB.
+        for (window, width, level) in [
+            (WindowFunction::Rectangular, 0.89, -13.0),
+            (WindowFunction::Hann, 1.44, -32.0),
+            (WindowFunction::Hamming, 1.30, -43.0),
+            (WindowFunction::Blackman, 1.68, -58.0),
+        ] {
+            let pattern = Pattern::new(window, 1024);
+            assert!((pattern.main_lobe_bins(Decibels(3.01)).unwrap() - width).abs() < 0.04, "{window:?}");
+            let lobe = pattern.highest_side_lobe().unwrap();
+            assert!((lobe.level.0 - level).abs() < 1.0, "{window:?}: {lobe:?}");
+        }
+        assert_eq!(Pattern::new(WindowFunction::Hann, 3).main_lobe_bins(Decibels(3.0)), None, "one weight");
+    }
+}

@@ -1,0 +1,116 @@
+//! The range-angle map of one reflector in closed form, at any fraction of a bin and of a column.
+//!
+//! A sum over the elements of equation 3.3's windowed transform over range, which is the window's [`Pattern`] moved to the element's own
+//! distance; nothing is approximated, so near field, range migration and squint are all in it.
+
+use super::{Pattern, elements};
+use crate::maps::{Aperture, Spectrum};
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use num_complex::Complex64;
+use std::f64::consts::{PI, TAU};
+
+/// One reflector as an aperture hears it.
+#[derive(Debug, Clone)]
+pub struct Response {
+    samples: usize,
+    columns: usize,
+    over_range: Pattern,
+    /// Distance in range bins, and amplitude with window, scale and carrier's phase, of every element.
+    elements: Vec<(f64, Complex64)>,
+}
+
+/// A row of the map of one reflector: the elements' parts of it.
+#[derive(Debug, Clone)]
+pub struct Row {
+    columns: usize,
+    parts: Vec<Complex64>,
+}
+
+impl Response {
+    /// The response of `reflector` under `aperture`. The radar must be valid ([`Radar::validate`]).
+    pub fn new(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Self {
+        let elements = elements(radar, aperture);
+        let window = radar.window.weights(elements.len());
+        let scale = ((radar.samples * radar.elements) as f64).sqrt().recip();
+        let carrier = radar.carrier.turns_per_wavelength() / radar.wavelength_metres();
+        let heard = |(n, weight): (usize, f64)| {
+            let distance = (reflector.x_metres - radar.element_x_metres(n)).hypot(reflector.y_metres);
+            let amplitude = weight * scale * radar.transmit_power_watts * reflector.reflectivity / distance.powi(2);
+            let phase = Complex64::cis(TAU * (carrier * distance).fract());
+            (radar.bin_of_range(distance), phase * amplitude)
+        };
+        Response {
+            samples: radar.samples,
+            columns: radar.elements,
+            over_range: Pattern::new(radar.window, radar.samples),
+            elements: elements.zip(window).map(heard).collect(),
+        }
+    }
+
+    /// The row at `bin`.
+    pub fn row(&self, bin: f64) -> Row {
+        let samples = self.samples as f64;
+        let part = |(distance_bins, amplitude): &(f64, Complex64)| {
+            let offset = distance_bins - bin;
+            let offset = offset - (offset / samples).round() * samples;
+            let middle = Complex64::cis(PI * (samples - 1.0) / samples * offset);
+            amplitude * middle * self.over_range.at(offset)
+        };
+        Row { columns: self.columns, parts: self.elements.iter().map(part).collect() }
+    }
+
+    /// Magnitude at `bin` and `column`: what [`crate::maps::angle_transform`] has in the cell, where both are whole.
+    pub fn magnitude(&self, bin: f64, column: f64) -> f64 {
+        self.row(bin).magnitude(column)
+    }
+}
+
+impl Row {
+    /// Magnitude at `column`.
+    pub fn magnitude(&self, column: f64) -> f64 {
+        let turns = (column - (self.columns / 2) as f64) / self.columns as f64;
+        let sum: Complex64 =
+            self.parts.iter().enumerate().map(|(m, p)| p * Complex64::cis(-TAU * turns * m as f64)).sum();
+        sum.norm()
+    }
+
+    /// Magnitudes all around the map by one transform, column 0 first; `spectrum` has a whole number of points to a column.
+    pub fn magnitudes(&self, spectrum: &Spectrum) -> Vec<f64> {
+        let mut cells: Vec<f64> = spectrum.of(self.parts.iter().copied()).iter().map(|v| v.norm()).collect();
+        let middle = self.columns / 2 * (cells.len() / self.columns);
+        cells.rotate_right(middle);
+        cells
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::blob::tests::{radar_and_place, simulated};
+    use super::*;
+    use crate::radar::End;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        /// Cell for cell, the response is the simulated map.
+        #[test]
+        fn every_cell_is_that_of_the_map((radar, reflector) in radar_and_place()) {
+            for aperture in [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)] {
+                let map = simulated(&radar, &reflector, aperture);
+                let peak = map.iter().fold(0.0f64, |m, v| m.max(*v));
+                let response = Response::new(&radar, &reflector, aperture);
+                let spectrum = Spectrum::new(radar.elements);
+                for bin in (0..radar.samples).step_by(3) {
+                    let row = response.row(bin as f64).magnitudes(&spectrum);
+                    for (column, v) in row.iter().enumerate() {
+                        prop_assert!((v - map[[bin, column]]).abs() < 1e-9 * peak, "{aperture:?}, {bin}, {column}");
+                    }
+                    let one = response.magnitude(bin as f64, 5.0);
+                    prop_assert!((one - map[[bin, 5]]).abs() < 1e-9 * peak);
+                }
+            }
+        }
+    }
+}

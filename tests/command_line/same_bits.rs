@@ -1,0 +1,66 @@
+//! One scene, one seed, the same settings: the same bits in the engine behind the app, in a campaign, and from the command line.
+
+use apertura::engine::{Engine, Wanted};
+use apertura::evaluate::Metrics;
+use apertura::evaluate::campaign::Campaign;
+use apertura::files::npz::Npz;
+use apertura::maps::{LogMap, Normalisation};
+use apertura::radar::{End, Radar};
+use apertura::reconstruct::{Baseline, Reconstructor, Request};
+use apertura::scene::Scene;
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::signal::Floor;
+use assert_cmd::Command;
+use ndarray::{Ix2, Ix3};
+
+/// An engine in which much has happened: other scenes, other floors, drags.
+fn with_a_past(scene: &Scene) -> Engine {
+    let mut engine = Engine::new(Radar::default());
+    let wanted = Wanted::default();
+    let mut moved = scene.clone();
+    engine.update(&Scene::of_points([(-4.0, 9.0)]), &wanted).unwrap();
+    for _ in 0..3 {
+        moved.objects[0].translate(0.3, 0.1);
+        engine.update(&moved, &wanted).unwrap();
+    }
+    engine.update(&moved, &Wanted { floor: Floor::Exact, ..wanted }).unwrap();
+    engine.update(scene, &wanted).unwrap();
+    engine
+}
+
+#[test]
+fn a_scene_at_rest_has_the_bits_of_the_command_line() {
+    let scene = Scene::of_points([(3.0, 12.0), (-4.0, 20.0), (7.5, 7.0), (0.2, 31.0), (1.0, 18.0)]);
+    let folder = tempfile::tempdir().unwrap();
+    let text: String = scene
+        .reflectors()
+        .iter()
+        .map(|r| format!("[[object]]\nkind = \"point\"\nx_metres = {:?}\ny_metres = {:?}\n", r.x_metres, r.y_metres))
+        .collect();
+    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_apertura"));
+    program.current_dir(&folder).args(["maps", "scene.toml", "-o", "maps.npz"]).assert().success();
+    let mut written = Npz::open(&folder.path().join("maps.npz")).unwrap();
+
+    let frame = with_a_past(&scene).settle(&scene, &Wanted::default()).unwrap();
+    let ends = frame.ends.unwrap();
+    for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
+        assert_eq!(written.complexes::<Ix2>(key).unwrap().t(), *ends.end(end), "{key}");
+    }
+    let full = written.reals::<Ix3>("polar_full").unwrap().remove_axis(ndarray::Axis(0));
+    let lambda = LogMap::new(full).normalise(Normalisation::MinMax);
+    assert_eq!(lambda, *frame.full.unwrap().lambda);
+}
+
+#[test]
+fn figures_of_a_scene_at_rest_are_those_of_a_campaign() {
+    let campaign = Campaign { count: 1, ..Campaign::default() };
+    let tallies = campaign.run(Kind::Set2, &[&Baseline], &Default::default(), || ()).unwrap();
+    let generator = Generator::new(&campaign.radar, Reading::Program, Purpose::Test, campaign.seed);
+    let scene = generator.scene(Kind::Set2, 0);
+    let wanted = Wanted { seed: generator.noise_seed(Kind::Set2, 0), ..Wanted::default() };
+    let frame = with_a_past(&scene).settle(&scene, &wanted).unwrap();
+    let found = Baseline.reconstruct(&campaign.radar, &frame.ends.unwrap(), &Request::default()).unwrap();
+    let metrics = Metrics::of(&frame.full.unwrap().lambda, &found.lambda, Baseline.eta());
+    assert_eq!(metrics.squared_error, tallies[0].squared_error().mean);
+}
