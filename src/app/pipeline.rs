@@ -229,7 +229,12 @@ impl Pipeline {
         // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
         let threads = || rayon::ThreadPoolBuilder::new().thread_name(|i| format!("reconstruction {i}")).build().ok();
         let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &crate::task::Task| {
-            let request = Request { floor: q.wanted.floor, normalisation: q.wanted.normalisation, task: task.clone() };
+            let request = Request {
+                floor: q.wanted.floor,
+                normalisation: q.wanted.normalisation,
+                task: task.clone(),
+                ..Request::default()
+            };
             let reconstruct = || q.method.reconstruct(&q.radar, &q.ends, &request);
             let result = match threads {
                 Some(threads) => threads.install(reconstruct),

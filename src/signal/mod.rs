@@ -11,10 +11,13 @@
 //!
 //! [`plan`] chooses among them and says what it chose; [`synthesis`] runs the block algorithms over the array.
 //!
+//! [`built`] is the signal of elements that are not as they should be, and calibration.
+//!
 //! [`echo`] is one reflector's echo as a value: what sparse methods take a signal apart into.
 //!
 //! [`floor`] says what lies beneath the reflectors: rounding noise as in the thesis, nothing, or thermal noise.
 
+pub mod built;
 pub mod closed_form;
 pub mod direct;
 pub mod echo;
@@ -30,6 +33,7 @@ pub mod simd;
 pub mod split;
 pub mod synthesis;
 
+pub use built::{Calibration, calibrate, simulate_built};
 pub use echo::ArrayEcho;
 pub use floor::Floor;
 pub use plan::{Algorithm, Precision, Recipe};
@@ -116,10 +120,22 @@ impl TwoEnds {
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
+    simulate_echoes(radar, scene, floor, seed, |_| {})
+}
+
+/// As [`simulate`]; `heard` does to the echoes what the array does before its receivers add their noise.
+fn simulate_echoes(
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+    heard: impl FnOnce(&mut BeatSignal),
+) -> Result<BeatSignal, SceneError> {
     scene.validate(radar)?;
     let reflectors = scene.reflectors();
     let recipe = Recipe::plan(reflectors.len(), plan::amplitude_bound(radar, &reflectors), simulation_tolerance(floor));
     let mut signal = plan::beat_signal(radar, &reflectors, &recipe);
+    heard(&mut signal);
     match floor {
         Floor::Exact => {}
         Floor::Thesis => floor::add_noise(&mut signal, &floor::thesis_noise_variance(radar, &reflectors), seed),
