@@ -2,7 +2,8 @@
 
 use crate::reconstruct::nomp::Nomp;
 use crate::reconstruct::{
-    BARTLETT, Baseline, CAPON, Fista, Hybrid, LINEAR_PREDICTION, MUSIC, MatchedFilter, Omp, ROOT_MUSIC, Reconstructor,
+    BARTLETT, Baseline, CAPON, Fista, Hybrid, IAA, LINEAR_PREDICTION, MUSIC, MatchedFilter, Omp, ROOT_MUSIC,
+    Reconstructor, SBL,
 };
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
         Arc::new(LINEAR_PREDICTION),
         Arc::new(Fista::default()),
         Arc::new(Omp::default()),
+        Arc::new(IAA),
+        Arc::new(SBL),
         Arc::new(Nomp::default()),
         Arc::new(Hybrid::new(fallback)),
     ];

@@ -164,7 +164,8 @@ impl Campaign {
         mut on_row: impl FnMut(&Row),
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
-        let request = Request { floor: self.floor, normalisation: self.normalisation, task: task.clone() };
+        let request =
+            Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
         let mut rows = Vec::new();
         let mut warm = false;
         for set in sets {

@@ -206,7 +206,8 @@ impl Search {
         if !(self.within_metres > 0.0 && self.within_metres <= 1000.0) {
             return Err(WorsenError::Reach(self.within_metres));
         }
-        let request = Request { floor: self.floor, normalisation: self.normalisation, task: task.clone() };
+        let request =
+            Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
         let trial = self.trial(scene)?;
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
         let mut state = State { step: FIRST_STEP, path: vec![start], tries: 0 };
@@ -415,7 +416,7 @@ pub fn summary(failures: &Failures) -> String {
 mod tests {
     use super::*;
     use crate::maps::RangeAngleMap;
-    use crate::reconstruct::Reconstruction;
+    use crate::reconstruct::{About, Reconstruction};
     use crate::signal::TwoEnds;
 
     fn radar() -> Radar {
@@ -426,19 +427,11 @@ mod tests {
     struct ShortSighted;
 
     impl Reconstructor for ShortSighted {
-        fn name(&self) -> &'static str {
-            "short-sighted"
+        fn about(&self) -> About {
+            About { name: "short-sighted", description: "sees near objects only", told: "nothing", eta: 0.8 }
         }
 
-        fn description(&self) -> &'static str {
-            "sees near objects only"
-        }
-
-        fn eta(&self) -> f32 {
-            0.8
-        }
-
-        fn reconstruct(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
+        fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
             let map = crate::maps::channels_map(radar, ends.first.view()).log_magnitude();
             let (peak, _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
             let mut lambda = map.normalise(Normalisation::MinMax);

@@ -8,13 +8,16 @@ use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends, silence, unit_gain};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
 
 /// The thesis' own threshold, for weights that name none.
 const THESIS_ETA: f32 = 0.7;
+
+/// What the thesis' networks learned beside the samples.
+const TOLD: &str = "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor";
 
 /// The thesis' encoder-decoder with weights; its output is stretched to [0, 1] as the thesis does before it is thresholded.
 #[derive(Debug)]
@@ -55,29 +58,17 @@ impl ThesisMethod {
 }
 
 impl Reconstructor for ThesisMethod {
-    fn name(&self) -> &'static str {
-        self.name
+    fn about(&self) -> About {
+        About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
     }
 
-    fn description(&self) -> &'static str {
-        self.description
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        Thesis::tables(&self.config, radar).map(|_| ())
     }
 
-    fn eta(&self) -> f32 {
-        self.eta
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        check_ends(radar, ends)?;
-        request.task.check()?;
-        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let tables = Thesis::tables(&self.config, radar)?;
-        let input = Thesis::input(&tables, &ends)?;
+        let input = Thesis::input(&tables, ends)?;
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         Ok(Reconstruction { lambda: RangeAngleMap::stretched(map), reflectors: Vec::new() })
     }
@@ -120,31 +111,20 @@ impl UnetMethod {
 }
 
 impl Reconstructor for UnetMethod {
-    fn name(&self) -> &'static str {
-        Unet::NAME
+    fn about(&self) -> About {
+        About {
+            name: Unet::NAME,
+            description: "the thesis' U-Net on thresholded Cartesian maps; bright cells are so rare that it learned to answer nothing",
+            told: TOLD,
+            eta: 0.5,
+        }
     }
 
-    fn description(&self) -> &'static str {
-        "the thesis' U-Net on thresholded Cartesian maps; bright cells are so rare that it learned to answer nothing"
-    }
-
-    fn eta(&self) -> f32 {
-        0.5
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        check_ends(radar, ends)?;
-        request.task.check()?;
-        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let tables: UnetTables = Unet::tables(&self.config, radar)?;
         let rows = self.config.rows;
         let cartesian =
-            estimate(&self.network, Unet::NAME, Unet::input(&tables, &ends)?, [rows, 2 * rows], &self.device)?;
+            estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
         let lambda = to_polar(radar, &cartesian);
         Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new() })
     }

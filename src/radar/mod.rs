@@ -2,12 +2,14 @@
 //!
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
+mod elements;
 mod layout;
 mod layout_kind;
 mod squint;
 mod units;
 mod window;
 
+pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
 pub use units::Decibels;

@@ -1,8 +1,8 @@
 //! The thesis' baseline: one end's own map, thresholded.
 
-use super::conditioning::unit_gain;
-use super::rendering::silence;
-use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
+use super::answer::{Reconstruction, Request};
+use super::error::ReconstructError;
+use super::reconstructor::{About, Reconstructor};
 use crate::maps::channels_map;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
@@ -12,26 +12,16 @@ use crate::signal::TwoEnds;
 pub struct Baseline;
 
 impl Reconstructor for Baseline {
-    fn name(&self) -> &'static str {
-        "baseline"
+    fn about(&self) -> About {
+        About {
+            name: "baseline",
+            description: "the first end's own map, as the thesis compares with",
+            told: "nothing; its threshold is the thesis' own",
+            eta: 0.9,
+        }
     }
 
-    fn description(&self) -> &'static str {
-        "the first end's own map, as the thesis compares with"
-    }
-
-    fn eta(&self) -> f32 {
-        0.9
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        check_ends(radar, ends)?;
-        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let log = channels_map(radar, ends.first.view()).log_magnitude();
         Ok(Reconstruction { lambda: log.normalise(request.normalisation), reflectors: Vec::new() })
     }

@@ -1,7 +1,9 @@
 //! Detect, refine, draw; and where the samples are not explained by what was found, another method fills in.
 
+use super::answer::{Reconstruction, Request};
+use super::error::ReconstructError;
 use super::nomp::{Settings, find};
-use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
+use super::reconstructor::{About, Reconstructor};
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
 use std::sync::Arc;
@@ -24,25 +26,16 @@ impl Hybrid {
 }
 
 impl Reconstructor for Hybrid {
-    fn name(&self) -> &'static str {
-        "hybrid"
+    fn about(&self) -> About {
+        About {
+            name: "hybrid",
+            description: "draws the exact map of the objects it finds; what they don't explain is filled in by another method",
+            told: super::nomp::TOLD,
+            eta: super::nomp::ETA,
+        }
     }
 
-    fn description(&self) -> &'static str {
-        "draws the exact map of the objects it finds; what they don't explain is filled in by another method"
-    }
-
-    fn eta(&self) -> f32 {
-        super::nomp::ETA
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        check_ends(radar, ends)?;
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let found = find(radar, ends, request, &self.settings)?;
         let mut drawn = found.reconstruction(radar, request);
         if !found.complete && found.unexplained > Hybrid::MOST_UNEXPLAINED {

@@ -12,11 +12,14 @@
 //! A [`Plan`] says which of them, in which precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! [`simulate`] goes from a scene to samples over a floor.
 //!
+//! [`built`] is the signal of elements that are not as they should be, and calibration.
+//!
 //! [`echo`] is one reflector's echo as a value: what sparse methods take a signal apart into.
 //!
 //! [`floor`] says what lies beneath the reflectors: rounding noise as in the thesis, nothing, or thermal noise.
 
 mod algorithm;
+pub mod built;
 pub mod closed_form;
 pub mod direct;
 pub mod echo;
@@ -36,6 +39,7 @@ pub mod split;
 pub mod synthesis;
 
 pub use algorithm::{Algorithm, Precision, UnknownAlgorithm};
+pub use built::{Calibration, calibrate, simulate_built};
 pub use echo::ArrayEcho;
 pub use floor::Floor;
 pub use plan::Plan;

@@ -17,10 +17,22 @@ use crate::scene::{Reflector, Scene, SceneError};
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
+    simulate_echoes(radar, scene, floor, seed, |_| {})
+}
+
+/// As [`simulate`]; `heard` does to the echoes what the array does before its receivers add their noise.
+pub(super) fn simulate_echoes(
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+    heard: impl FnOnce(&mut BeatSignal),
+) -> Result<BeatSignal, SceneError> {
     scene.validate(radar)?;
     let reflectors = scene.reflectors();
     let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
     let mut signal = beat_signal(radar, &reflectors, &plan);
+    heard(&mut signal);
     if let Some(variance) = noise_variance(radar, &reflectors, floor) {
         floor::add_noise(&mut signal, &variance, seed);
     }

@@ -3,7 +3,7 @@
 use crate::session::{Session, step_until};
 use apertura::app::{Command, MapKind, Panel};
 use apertura::radar::{Carrier, Radar};
-use apertura::reconstruct::{Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use eframe::egui::{self, vec2};
@@ -71,23 +71,12 @@ fn a_training_log_is_followed_and_a_broken_one_is_told() {
 struct Fragile(Arc<AtomicBool>);
 
 impl Reconstructor for Fragile {
-    fn name(&self) -> &'static str {
-        "fragile"
+    fn about(&self) -> About {
+        About { name: "fragile", description: "fails on demand", told: "nothing", eta: 0.5 }
     }
-    fn description(&self) -> &'static str {
-        "fails on demand"
-    }
-    fn eta(&self) -> f32 {
-        0.5
-    }
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         assert!(!self.0.load(Ordering::SeqCst), "on demand");
-        Baseline.reconstruct(radar, ends, request)
+        Baseline.estimate(radar, ends, request)
     }
 }
 

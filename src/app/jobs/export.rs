@@ -110,7 +110,7 @@ impl Exports {
         let method = state.method().cloned();
         self.begin(path, move |path| {
             let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
-            let request = Request { floor, normalisation, task: Task::default() };
+            let request = Request { floor, normalisation, ..Request::default() };
             let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
             let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
             write_maps(path, &radar, &scene, &signal, output).map_err(|e| e.to_string())?;

@@ -110,7 +110,7 @@ impl Pipeline {
         let threads = || rayon::ThreadPoolBuilder::new().thread_name(|i| format!("reconstruction {i}")).build().ok();
         let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
             let Basis { floor, normalisation, .. } = q.basis;
-            let request = Request { floor, normalisation, task: task.clone() };
+            let request = Request { floor, normalisation, task: task.clone(), ..Request::default() };
             let reconstruct = || q.method.reconstruct(&q.radar, &q.basis.ends, &request);
             let result = match threads {
                 Some(threads) => threads.install(reconstruct),

@@ -82,18 +82,27 @@ pub struct FeatureExtractor {
 }
 
 impl FeatureExtractor {
-    /// Tables for `radar`.
+    /// Says whether the network was trained for `radar`.
     ///
     /// # Errors
-    /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements half a wavelength apart and ends of 12, which the
-    /// network was trained for.
-    pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
+    /// [`ReconstructError::Unusable`] for any but the radar of table 3.1.
+    pub fn check_radar(radar: &Radar) -> Result<(), ReconstructError> {
         if *radar != Radar::default() {
             return Err(ReconstructError::Unusable {
                 method: "live",
                 reason: "the network was trained for the radar of table 3.1 with its one-way carrier and Hann window, and knows no other".into(),
             });
         }
+        Ok(())
+    }
+
+    /// Tables for `radar`.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements half a wavelength apart and ends of 12, which the
+    /// network was trained for.
+    pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
+        Self::check_radar(radar)?;
         let ends = End::BOTH.map(|end| radar.end_centre_metres(end));
         let table = |columns, from: f64, to: f64| registration(radar, columns, from, to);
         Ok(FeatureExtractor {

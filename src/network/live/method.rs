@@ -6,7 +6,7 @@ use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends, silence, unit_gain};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::Array2;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -65,28 +65,21 @@ impl LiveMethod {
 }
 
 impl Reconstructor for LiveMethod {
-    fn name(&self) -> &'static str {
-        NAME
+    fn about(&self) -> About {
+        About {
+            name: NAME,
+            description: "a small network that draws the whole array's map from matched filters of both ends",
+            told: "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor",
+            eta: self.eta,
+        }
     }
 
-    fn description(&self) -> &'static str {
-        "a small network that draws the whole array's map from matched filters of both ends"
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        FeatureExtractor::check_radar(radar)
     }
 
-    fn eta(&self) -> f32 {
-        self.eta
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        request.task.check()?;
-        check_ends(radar, ends)?;
-        let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
-        let Decades { map, minimum } = self.decades(radar, &ends)?;
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let Decades { map, minimum } = self.decades(radar, ends)?;
         let peak = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let lambda = map.into_iter().map(|v| scale.lambda(v.into()) as f32).collect();

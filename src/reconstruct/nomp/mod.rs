@@ -34,14 +34,19 @@ pub use atom::Atom;
 pub use finish::Found;
 pub use search::{Settings, find};
 
-use super::rendering::silence;
-use super::{ReconstructError, Reconstruction, Reconstructor, Request, check_ends};
+use super::answer::{Reconstruction, Request};
+use super::error::ReconstructError;
+use super::reconstructor::{About, Reconstructor};
 use crate::radar::Radar;
 use crate::signal::{Floor, TwoEnds};
 use draw::{Noise, Weighted, expected_lambda};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.885;
+
+/// What the search knows beside the samples.
+pub(super) const TOLD: &str = "that a scene holds single reflectors or lines of them along y, the spacings and counts of the lines \
+    that the tables' scenes are made of, the kind of floor beneath the samples, and how the thesis' program rounds";
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]
@@ -57,25 +62,16 @@ impl Nomp {
 }
 
 impl Reconstructor for Nomp {
-    fn name(&self) -> &'static str {
-        "nomp"
+    fn about(&self) -> About {
+        About {
+            name: "nomp",
+            description: "finds reflectors and lines by Newton steps on the raw samples, then draws their exact map",
+            told: TOLD,
+            eta: ETA,
+        }
     }
 
-    fn description(&self) -> &'static str {
-        "finds reflectors and lines by Newton steps on the raw samples, then draws their exact map"
-    }
-
-    fn eta(&self) -> f32 {
-        ETA
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        check_ends(radar, ends)?;
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let found = find(radar, ends, request, &self.settings)?;
         Ok(found.reconstruction(radar, request))
     }
@@ -85,7 +81,7 @@ impl Found {
     /// The map of what was found, over the floor that `request` names.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
         if self.atoms.is_empty() {
-            return silence(radar);
+            return Reconstruction::silence(radar);
         }
         let objects: Vec<Weighted> = self
             .atoms

@@ -1,16 +1,20 @@
 //! The near-field matched filter of both ends.
 
-use super::beams::{Backprojector, RangeWindow};
-use super::conditioning::condition;
-use super::rendering::{focused_gain, of_power, silence};
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use super::backprojector::{Backprojector, RangeWindow, too_large};
+use super::cells::Cells;
 use crate::radar::Radar;
+use crate::reconstruct::answer::{Reconstruction, Request};
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::power::{focused_gain, of_power};
+use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::seen::too_many_folds;
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
 /// Both ends' samples projected back onto the centre's polar grid.
 ///
-/// Back-projection of a distributed array: see `beams` for its source. Added coherently the two ends form an interferometer, whose
+/// Back-projection of a distributed array: see `backprojector` for its source. Added coherently the two ends form an interferometer, whose
 /// fringes are one column of the whole array's map wide; added incoherently only the ranges and angles have to agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MatchedFilter {
@@ -21,39 +25,30 @@ pub enum MatchedFilter {
 }
 
 impl Reconstructor for MatchedFilter {
-    fn name(&self) -> &'static str {
-        match self {
-            MatchedFilter::Coherent => "matched-filter",
-            MatchedFilter::Incoherent => "matched-filter-incoherent",
-        }
+    fn about(&self) -> About {
+        // Thresholds by examples/choose_eta.rs.
+        let (name, description, eta) = match self {
+            MatchedFilter::Coherent => {
+                let what = "both ends projected back onto the scene, amplitudes added: an interferometer";
+                ("matched-filter", what, 0.950)
+            }
+            MatchedFilter::Incoherent => {
+                ("matched-filter-incoherent", "both ends projected back onto the scene, powers added", 0.960)
+            }
+        };
+        About { name, description, told: "nothing about the scene or the floor; it measures the noise itself", eta }
     }
 
-    fn description(&self) -> &'static str {
-        match self {
-            MatchedFilter::Coherent => "both ends projected back onto the scene, amplitudes added: an interferometer",
-            MatchedFilter::Incoherent => "both ends projected back onto the scene, powers added",
-        }
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
+        why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn eta(&self) -> f32 {
-        // By tests/choose_eta.rs.
-        match self {
-            MatchedFilter::Coherent => 0.950,
-            MatchedFilter::Incoherent => 0.960,
-        }
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        let Some(conditioned) = condition(radar, ends)? else { return Ok(silence(radar)) };
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let cells = Cells::new(radar);
+        let backprojector = Backprojector::new(radar, &cells, RangeWindow::Hann);
         request.task.check()?;
-        let backprojector = Backprojector::new(radar, RangeWindow::Hann);
-        request.task.check()?;
-        let [first, last] = backprojector.amplitudes(&conditioned.ends);
+        let [first, last] = backprojector.amplitudes(ends);
         request.task.set_progress(0.8);
         let gain = focused_gain(radar).powi(2);
         let power = Zip::from(&first).and(&last).par_map_collect(|a, b| {
@@ -62,7 +57,7 @@ impl Reconstructor for MatchedFilter {
                 MatchedFilter::Incoherent => (a.norm_sqr() + b.norm_sqr()) / 2.0,
             }
         });
-        Ok(of_power(radar, power, conditioned.noise_variance, request))
+        Ok(of_power(radar, cells.folded(&power), ends_noise_variance(radar, ends), request))
     }
 }
 
@@ -79,7 +74,7 @@ mod tests {
         let (range, cos) = (radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64));
         let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
         let ends = simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar);
-        let [a, b] = Backprojector::new(&radar, RangeWindow::None).amplitudes(&ends);
+        let [a, b] = Backprojector::new(&radar, &Cells::new(&radar), RangeWindow::None).amplitudes(&ends);
         let expected = radar.transmit_power_watts / (range * range);
         let sum = &a + &b;
         let (at, peak) = sum.indexed_iter().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();

@@ -1,18 +1,9 @@
 //! From an estimate of the whole array's power to Lambda, over the floor that lies beneath it.
 
-use super::{Reconstruction, Request};
+use super::answer::{Reconstruction, Request};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
-use crate::scene::Reflector;
 use ndarray::{Array2, Zip};
-
-/// The answer to silence: Lambda 0 everywhere, no reflector.
-pub(crate) fn silence(radar: &Radar) -> Reconstruction {
-    Reconstruction {
-        lambda: RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) },
-        reflectors: Vec::new(),
-    }
-}
 
 /// Magnitude in the whole array's map of a focused reflector whose samples have amplitude 1: the sum of both windows, scaled.
 pub(super) fn focused_gain(radar: &Radar) -> f64 {
@@ -56,8 +47,5 @@ pub(super) fn lambda_of_power(
 
 /// A reconstruction that knows no reflectors, only power.
 pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, request: &Request) -> Reconstruction {
-    Reconstruction {
-        lambda: lambda_of_power(radar, power, noise_variance, request),
-        reflectors: Vec::<Reflector>::new(),
-    }
+    Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors: Vec::new() }
 }

@@ -1,7 +1,7 @@
-//! Sparse answers as pictures: the exact map of a few reflectors with complex gains.
+//! Sparse answers as maps: the exact map of a few reflectors with complex gains.
 
-use super::rendering::lambda_of_power;
-use super::{Reconstruction, Request};
+use super::answer::{Reconstruction, Request};
+use super::power::lambda_of_power;
 use crate::maps::{Aperture, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -11,21 +11,15 @@ use crate::signal::phase::EchoModel;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// A place and the complex gain found for it, in the scale of the conditioned samples.
+/// A place and the complex gain found for it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gained {
     pub reflector: Reflector,
     pub gain: Complex64,
 }
 
-/// The whole array's map of `found` over the measured noise. `sample_gain` is what the samples were multiplied with.
-pub(super) fn draw(
-    radar: &Radar,
-    found: &[Gained],
-    sample_gain: f64,
-    noise_variance: f64,
-    request: &Request,
-) -> Reconstruction {
+/// The whole array's map of `found` over the measured noise.
+pub(super) fn of_echoes(radar: &Radar, found: &[Gained], noise_variance: f64, request: &Request) -> Reconstruction {
     let model = EchoModel::new(radar);
     let mut signal = BeatSignal::silence(radar);
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
@@ -36,7 +30,6 @@ pub(super) fn draw(
     });
     let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full);
     let power = map.cells.mapv(|v| v.norm_sqr());
-    let reflectors =
-        found.iter().map(|f| Reflector { reflectivity: f.gain.norm() / sample_gain, ..f.reflector }).collect();
+    let reflectors = found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
     Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors }
 }

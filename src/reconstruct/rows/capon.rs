@@ -1,7 +1,9 @@
 //! Capon's minimum-variance beamformer.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len};
-use super::rows::{Row, RowMethod};
+use super::method::{RowMethod, TOLD};
+use super::row::Row;
+use crate::reconstruct::reconstructor::About;
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
 use num_complex::Complex64;
@@ -11,9 +13,12 @@ use num_complex::Complex64;
 /// J. Capon, "High-resolution frequency-wavenumber spectrum analysis", Proc. IEEE 57, 1969; with spatial smoothing and diagonal
 /// loading, since one row of one chirp gives one snapshot.
 pub const CAPON: RowMethod = RowMethod {
-    name: "capon",
-    description: "minimum-variance beams of each end and range row, with spatial smoothing",
-    eta: 0.851, // by tests/choose_eta.rs
+    about: About {
+        name: "capon",
+        description: "minimum-variance beams of each end and range row, with spatial smoothing",
+        told: TOLD,
+        eta: 0.851, // by examples/choose_eta.rs
+    },
     estimate: spectrum,
 };
 

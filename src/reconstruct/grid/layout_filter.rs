@@ -1,15 +1,17 @@
 //! The near-field matched filter for elements that stand anywhere: what other layouts of a few elements make of a scene.
 
-use super::conditioning::noise_variance;
-use super::registered::seen_from;
-use super::rendering::{focused_gain, lambda_of_power};
-use super::{ReconstructError, Request};
-use crate::maps::{RangeAngleMap, Spectrum};
-use crate::radar::{Layout, Radar, hann};
+use super::cells::Cells;
+use crate::maps::RangeAngleMap;
+use crate::radar::{Layout, Radar};
+use crate::reconstruct::answer::Request;
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::noise::noise_variance;
+use crate::reconstruct::power::{focused_gain, lambda_of_power};
+use crate::reconstruct::profiles::Profiles;
+use crate::reconstruct::seen::seen_from;
 use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// Rows of an element's padded range profile for each range bin: enough for linear interpolation.
 const ROWS_PER_BIN: usize = 8;
@@ -17,7 +19,7 @@ const ROWS_PER_BIN: usize = 8;
 /// Lambda of the whole array as the coherent matched filter of a few elements estimates it: every cell of the centre's polar grid
 /// looks up each element's range profile at its own distance and takes off the phase that distance gives.
 ///
-/// `samples` is `[elements of layout, samples]`, in the layout's order. Back-projection, as in [`super::MatchedFilter`], which is
+/// `samples` is `[elements of layout, samples]`, in the layout's order. Back-projection, as in [`MatchedFilter`](crate::reconstruct::MatchedFilter), which is
 /// this for the two ends with whole-end beams. Random elements keep the main lobe of the whole aperture and pay with side lobes
 /// everywhere (thesis figures 1-2 and 1-3).
 ///
@@ -42,47 +44,23 @@ pub fn layout_matched_filter(
         return Ok(RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) });
     }
     let samples = samples.mapv(|v| v / peak);
-    let window = hann(radar.samples);
-    let rows = ROWS_PER_BIN * radar.samples;
-    let spectrum = Spectrum::new(rows);
-    // Referred to the middle of the chirp, so that a profile varies slowly along its rows.
-    let middle = (radar.samples / 2) as f64;
-    let profiles: Vec<Vec<Complex64>> = samples
-        .axis_iter(Axis(0))
-        .into_par_iter()
-        .map(|channel| {
-            let mut profile = spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * w));
-            for (row, v) in profile.iter_mut().enumerate() {
-                *v *= Complex64::cis(TAU * (row as f64 * middle / rows as f64).fract());
-            }
-            profile.push(profile[0]);
-            profile
-        })
-        .collect();
+    let channels: Vec<_> = samples.outer_iter().collect();
+    let profiles = Profiles::new(radar, &channels, ROWS_PER_BIN);
     request.task.check()?;
-    let turns_per_metre =
-        radar.carrier.turns_per_wavelength() / radar.wavelength_metres() + middle / radar.max_range_metres();
-    let rows_per_metre = rows as f64 / radar.max_range_metres();
-    let scale = focused_gain(radar) / (layout.len() as f64 * window.iter().sum::<f64>());
-    let mut power = Array2::zeros((radar.samples, radar.elements));
-    power.axis_iter_mut(Axis(0)).into_par_iter().enumerate().try_for_each(|(bin, mut cells)| {
+    let scale = focused_gain(radar) / layout.len() as f64;
+    let cells = Cells::new(radar);
+    let mut power = Array2::zeros(cells.dim());
+    power.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).try_for_each(|(mut row, range_metres)| {
         request.task.check()?;
-        let range = radar.range_of_bin_metres(bin as f64);
-        for (column, cell) in cells.iter_mut().enumerate() {
-            let cos = radar.cos_of_column(column as f64);
-            let mut sum = Complex64::default();
-            for (x, profile) in layout.x_metres.iter().zip(&profiles) {
-                let distance = seen_from(*x, range, cos).range_metres;
-                let row = (distance * rows_per_metre) % rows as f64;
-                let (low, part) = (row as usize, row.fract());
-                let heard = profile[low] * (1.0 - part) + profile[low + 1] * part;
-                sum += heard * Complex64::cis(-TAU * (turns_per_metre * distance).fract());
-            }
+        for (cell, direction) in row.iter_mut().zip(&cells.directions) {
+            let distance = |x: &f64| seen_from(*x, *range_metres, direction.cos_theta).range_metres;
+            let heard = layout.x_metres.iter().enumerate().map(|(channel, x)| profiles.at(channel, distance(x)));
+            let sum: Complex64 = heard.sum();
             *cell = (sum * scale).norm_sqr();
         }
         Ok::<(), ReconstructError>(())
     })?;
-    Ok(lambda_of_power(radar, power, noise_variance(radar, samples.outer_iter()), request))
+    Ok(lambda_of_power(radar, cells.folded(&power), noise_variance(radar, samples.outer_iter()), request))
 }
 
 #[cfg(test)]

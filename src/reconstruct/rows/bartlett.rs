@@ -1,13 +1,17 @@
 //! Bartlett beamforming of each end.
 
-use super::rows::RowMethod;
+use super::method::{RowMethod, TOLD};
+use crate::reconstruct::reconstructor::About;
 
 /// Each end's beams without an angle window, laid over each other on the centre's grid.
 ///
 /// M. S. Bartlett, "Smoothing periodograms from time-series with continuous spectra", Nature 161, 1948, brought to arrays.
 pub const BARTLETT: RowMethod = RowMethod {
-    name: "bartlett",
-    description: "both ends' plain beams, laid over each other where they see the same place",
-    eta: 0.952, // by tests/choose_eta.rs
+    about: About {
+        name: "bartlett",
+        description: "both ends' plain beams, laid over each other where they see the same place",
+        told: TOLD,
+        eta: 0.952, // by examples/choose_eta.rs
+    },
     estimate: |row| Some(row.bartlett()),
 };

@@ -1,11 +1,14 @@
 //! Sparse reconstruction with an l1 penalty, by FISTA.
 
-use super::beams::{Backprojector, RangeWindow};
-use super::conditioning::{Conditioned, condition};
-use super::drawing::{Gained, draw};
-use super::rendering::silence;
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use super::backprojector::{Backprojector, RangeWindow, too_large};
+use super::cells::{Cell, Cells};
 use crate::radar::Radar;
+use crate::reconstruct::answer::{Reconstruction, Request};
+use crate::reconstruct::echoes::{Gained, of_echoes};
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::seen::too_many_folds;
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Zip;
 use num_complex::Complex64;
@@ -19,7 +22,7 @@ use rayon::prelude::*;
 /// which both ends together heard most, since the others' gains would be zero.
 #[derive(Debug, Clone, Copy)]
 pub struct Fista {
-    /// Penalty, as a part of the one that would leave no reflector at all. The default is by tests/choose_eta.rs.
+    /// Penalty, as a part of the one that would leave no reflector at all. The default is by examples/choose_eta.rs.
     pub penalty: f64,
     /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
@@ -50,45 +53,47 @@ struct Problem {
     penalty: f64,
 }
 
-impl Problem {
-    fn new(
-        radar: &Radar,
-        conditioned: &Conditioned,
-        settings: &Fista,
-        request: &Request,
-    ) -> Result<Self, ReconstructError> {
-        let [first, last] = Backprojector::new(radar, RangeWindow::None).amplitudes(&conditioned.ends);
-        request.task.check()?;
-        // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
-        let power = Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
-        let mut cells: Vec<(usize, f64)> =
-            power.iter().copied().enumerate().filter(|(i, _)| *i >= radar.elements).collect();
-        let count = settings.candidates.min(MOST_CANDIDATES).min(cells.len());
-        if count == 0 {
-            return Ok(Problem { atoms: Vec::new(), gram: Vec::new(), heard: Vec::new(), penalty: 0.0 });
-        }
+/// The `count` cells from which both ends together heard most, in the order of the grid.
+fn candidates(radar: &Radar, cells: &Cells<'_>, ends: &TwoEnds, count: usize) -> Vec<Cell> {
+    let [first, last] = Backprojector::new(radar, cells, RangeWindow::None).amplitudes(ends);
+    // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
+    let power = Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
+    let mut heard: Vec<(usize, Cell, f64)> = power
+        .indexed_iter()
+        .enumerate()
+        .map(|(i, ((bin, direction), power))| (i, Cell { bin, direction }, *power))
+        .filter(|(_, cell, _)| cells.may_hold(*cell))
+        .collect();
+    let count = count.min(heard.len());
+    if count > 0 {
         // Equal powers keep their order of place, so that the choice is the same on every run.
-        cells.select_nth_unstable_by(count - 1, |a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        cells.truncate(count);
-        cells.sort_unstable_by_key(|(i, _)| *i);
-        let atoms: Vec<ArrayEcho> = cells
+        heard.select_nth_unstable_by(count - 1, |a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+    }
+    heard.truncate(count);
+    heard.sort_unstable_by_key(|(i, _, _)| *i);
+    heard.into_iter().map(|(_, cell, _)| cell).collect()
+}
+
+impl Problem {
+    fn new(radar: &Radar, ends: &TwoEnds, settings: &Fista, request: &Request) -> Result<Self, ReconstructError> {
+        let cells = Cells::new(radar);
+        let atoms: Vec<ArrayEcho> = candidates(radar, &cells, ends, settings.candidates.min(MOST_CANDIDATES))
             .into_par_iter()
-            .map(|(i, _)| {
-                let (bin, column) = (i / radar.elements, i % radar.elements);
-                ArrayEcho::at(radar, radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64))
-            })
+            .filter_map(|cell| cells.echo(cell))
             .collect();
         request.task.check()?;
         request.task.set_progress(0.1);
-        let samples = conditioned.ends.flat();
+        let samples = ends.flat();
         let heard: Vec<Complex64> = atoms.par_iter().map(|a| a.correlate(&samples)).collect();
+        let count = atoms.len();
         let mut gram = vec![Complex64::default(); count * count];
-        gram.par_chunks_mut(count).enumerate().for_each(|(i, row)| {
+        gram.par_chunks_mut(count.max(1)).enumerate().try_for_each(|(i, row)| {
+            request.task.check()?;
             for (j, cell) in row.iter_mut().enumerate() {
                 *cell = atoms[i].inner(&atoms[j]);
             }
-        });
-        request.task.check()?;
+            Ok::<(), ReconstructError>(())
+        })?;
         let largest = heard.iter().fold(0.0, |m: f64, h| m.max(h.norm()));
         Ok(Problem { atoms, gram, heard, penalty: settings.penalty * largest })
     }
@@ -177,26 +182,22 @@ fn shrink(v: Complex64, by: f64) -> Complex64 {
 }
 
 impl Reconstructor for Fista {
-    fn name(&self) -> &'static str {
-        "fista"
+    fn about(&self) -> About {
+        About {
+            name: "fista",
+            description: "sparse fit with an l1 penalty on the near-field polar grid, and its exact map",
+            told: "that a scene holds few reflectors; its penalty was chosen on scenes like the tables', the noise it measures itself",
+            eta: 0.818, // by examples/choose_eta.rs
+        }
     }
 
-    fn description(&self) -> &'static str {
-        "sparse fit with an l1 penalty on the near-field polar grid, and its exact map"
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
+        why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn eta(&self) -> f32 {
-        0.818 // by tests/choose_eta.rs
-    }
-
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
-        let Some(conditioned) = condition(radar, ends)? else { return Ok(silence(radar)) };
-        let problem = Problem::new(radar, &conditioned, self, request)?;
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let problem = Problem::new(radar, ends, self, request)?;
         let x = problem.solve(self.iterations, request, |_| {})?;
         let mut found: Vec<Gained> = problem
             .atoms
@@ -207,7 +208,7 @@ impl Reconstructor for Fista {
             .collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
         found.truncate(MOST_DRAWN);
-        Ok(draw(radar, &found, conditioned.gain, conditioned.noise_variance, request))
+        Ok(of_echoes(radar, &found, ends_noise_variance(radar, ends), request))
     }
 }
 
@@ -228,10 +229,9 @@ mod tests {
         let radar = Radar::default();
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let conditioned = condition(&radar, &ends).unwrap().unwrap();
         let settings = Fista { penalty: 0.02, candidates: 300, ..Fista::default() };
         let request = Request::default();
-        let problem = Problem::new(&radar, &conditioned, &settings, &request).unwrap();
+        let problem = Problem::new(&radar, &ends, &settings, &request).unwrap();
         let mut objectives = vec![0.0];
         let x = problem.solve(150, &request, |o| objectives.push(o)).unwrap();
         assert!(objectives.windows(2).all(|w| w[1] <= w[0]), "{objectives:?}");

@@ -1,6 +1,9 @@
 //! Linear prediction: each element as a combination of its neighbours.
 
-use super::rows::{Row, RowMethod};
+use super::covariance::subarray_len;
+use super::method::{RowMethod, TOLD};
+use super::row::Row;
+use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
 
@@ -10,9 +13,12 @@ use num_complex::Complex64;
 /// D. W. Tufts and R. Kumaresan, "Estimation of frequencies of multiple sinusoids: making linear prediction perform like maximum
 /// likelihood", Proc. IEEE 70, 1982.
 pub const LINEAR_PREDICTION: RowMethod = RowMethod {
-    name: "linear-prediction",
-    description: "nulls of the prediction error over angle, for each end and range row",
-    eta: 0.863, // by tests/choose_eta.rs
+    about: About {
+        name: "linear-prediction",
+        description: "nulls of the prediction error over angle, for each end and range row",
+        told: TOLD,
+        eta: 0.863, // by examples/choose_eta.rs
+    },
     estimate: spectrum,
 };
 
@@ -21,7 +27,7 @@ const SIGNAL_PART: f64 = 1e-2;
 
 /// Coefficients `a` of `x[n] = sum_k a[k] x[n - 1 - k]`, and backward with their conjugates.
 fn predictor(samples: &[Complex64], noise_variance: f64) -> Option<Vec<Complex64>> {
-    let order = 2 * samples.len() / 3;
+    let order = subarray_len(samples.len());
     let equations = samples.len() - order;
     let matrix = Mat::from_fn(2 * equations, order, |row, k| {
         if row < equations { samples[row + order - 1 - k] } else { samples[row - equations + 1 + k].conj() }

@@ -1,8 +1,10 @@
 //! root-MUSIC: the directions as roots of a polynomial, then the array continued from them.
 
 use super::covariance::{diagonal_sums, noise_subspace, smoothed, subarray_len};
-use super::rows::{Row, RowMethod};
+use super::method::{RowMethod, TOLD};
+use super::row::Row;
 use crate::radar::hann;
+use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
@@ -12,9 +14,12 @@ use num_complex::Complex64;
 ///
 /// A. J. Barabell, "Improving the resolution performance of eigenstructure-based direction-finding algorithms", ICASSP 1983.
 pub const ROOT_MUSIC: RowMethod = RowMethod {
-    name: "root-music",
-    description: "directions of each end and range row as polynomial roots, and the array continued from them",
-    eta: 0.665, // by tests/choose_eta.rs
+    about: About {
+        name: "root-music",
+        description: "directions of each end and range row as polynomial roots, and the array continued from them",
+        told: TOLD,
+        eta: 0.665, // by examples/choose_eta.rs
+    },
     estimate: continued,
 };
 

@@ -1,15 +1,20 @@
 //! MUSIC: directions orthogonal to the noise subspace.
 
 use super::covariance::{noise_subspace, quadratic_form, smoothed, subarray_len};
-use super::rows::{Row, RowMethod};
+use super::method::{RowMethod, TOLD};
+use super::row::Row;
+use crate::reconstruct::reconstructor::About;
 
 /// The pseudo-spectrum of each end and range row, with spatial smoothing.
 ///
 /// R. O. Schmidt, "Multiple emitter location and signal parameter estimation", IEEE Trans. Antennas Propag. 34, 1986.
 pub const MUSIC: RowMethod = RowMethod {
-    name: "music",
-    description: "subspace pseudo-spectrum of each end and range row, with spatial smoothing",
-    eta: 0.842, // by tests/choose_eta.rs
+    about: About {
+        name: "music",
+        description: "subspace pseudo-spectrum of each end and range row, with spatial smoothing",
+        told: TOLD,
+        eta: 0.842, // by examples/choose_eta.rs
+    },
     estimate: spectrum,
 };
 

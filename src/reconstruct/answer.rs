@@ -1,0 +1,122 @@
+//! What a reconstruction is asked for, and what it answers.
+
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::{Decibels, Radar};
+use crate::scene::Reflector;
+use crate::signal::Floor;
+use crate::task::Task;
+use ndarray::Array2;
+
+/// What a reconstruction is told beside the samples.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The floor that lies beneath the samples.
+    pub floor: Floor,
+    /// How the map it is compared with is normalised.
+    pub normalisation: Normalisation,
+    /// Where the echoes of a single sample come from, metres, if anybody knows: one sample has no ranges of its own. They count as
+    /// plane waves all the same. Chirps of several samples know their ranges.
+    pub snapshot_range_metres: Option<f64>,
+    /// Progress to report to, and the flag to stop at.
+    pub task: Task,
+}
+
+impl Default for Request {
+    /// The thesis' conventions.
+    fn default() -> Self {
+        Request {
+            floor: Floor::Thesis,
+            normalisation: Normalisation::MinMax,
+            snapshot_range_metres: None,
+            task: Task::default(),
+        }
+    }
+}
+
+/// What a reconstruction found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reconstruction {
+    /// Estimate of the whole array's Lambda, `[range bins, columns]`.
+    pub lambda: RangeAngleMap,
+    /// The reflectors it believes in, where the method finds any.
+    pub reflectors: Vec<Reflector>,
+}
+
+/// A reflector as the array's centre hears it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detection {
+    /// Cosine of the angle between the array's axis (+x) and the reflector.
+    pub cos_theta: f64,
+    /// Distance from the array's centre, metres.
+    pub range_metres: f64,
+    /// Power of its echo, relative to the strongest one found.
+    pub relative_power: Decibels,
+}
+
+impl Reconstruction {
+    /// The answer to silence: Lambda 0 everywhere, no reflector.
+    pub fn silence(radar: &Radar) -> Self {
+        let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
+        Reconstruction { lambda, reflectors: Vec::new() }
+    }
+
+    /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.
+    pub(super) fn moved_to(mut self, range_metres: f64) -> Self {
+        for r in &mut self.reflectors {
+            let nearer = range_metres / r.x_metres.hypot(r.y_metres);
+            r.x_metres *= nearer;
+            r.y_metres *= nearer;
+            r.reflectivity *= nearer * nearer;
+        }
+        self
+    }
+
+    /// The reflectors as the array's centre hears them, strongest first; those that reflect nothing are left out.
+    pub fn detections(&self, radar: &Radar) -> Vec<Detection> {
+        let amplitude = |r: &Reflector| r.reflectivity.abs() / (r.x_metres.powi(2) + r.y_metres.powi(2));
+        let mut heard: Vec<(f64, &Reflector)> =
+            self.reflectors.iter().map(|r| (amplitude(r), r)).filter(|(a, _)| a.is_finite() && *a > 0.0).collect();
+        heard.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let strongest = heard.first().map_or(1.0, |(a, _)| *a);
+        heard
+            .into_iter()
+            .map(|(amplitude, r)| {
+                let polar = radar.polar_of(r.x_metres, r.y_metres);
+                Detection {
+                    cos_theta: polar.cos_theta,
+                    range_metres: polar.range_metres,
+                    relative_power: Decibels(20.0 * (amplitude / strongest).log10()),
+                }
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn detections_are_sorted_by_what_is_heard_and_measured_from_the_centre() {
+        let radar = Radar::default();
+        let reflector = |x_metres, y_metres, reflectivity| Reflector { x_metres, y_metres, reflectivity };
+        let reflectors = vec![reflector(0.0, 20.0, -2.0), reflector(6.0, 8.0, 1.0), reflector(1.0, 1.0, 0.0)];
+        let detections = Reconstruction { reflectors, ..Reconstruction::silence(&radar) }.detections(&radar);
+        assert_eq!(detections.len(), 2, "nothing is heard of the third");
+        let [near, far] = [detections[0], detections[1]];
+        assert_eq!((near.cos_theta, near.range_metres, near.relative_power.0), (0.6, 10.0, 0.0));
+        assert_eq!((far.cos_theta, far.range_metres), (0.0, 20.0));
+        assert!((far.relative_power.0 - 20.0 * 0.5f64.log10()).abs() < 1e-12, "twice the size at twice the distance");
+    }
+
+    #[test]
+    fn what_moves_nearer_sounds_the_same() {
+        let radar = Radar::default();
+        let reflectors = vec![Reflector { x_metres: 600.0, y_metres: 800.0, reflectivity: 4.0 }];
+        let found = Reconstruction { reflectors, ..Reconstruction::silence(&radar) }.moved_to(10.0);
+        let [r] = found.reflectors[..] else { panic!("{found:?}") };
+        let expected = (6.0, 8.0, 4e-4);
+        let off = [(r.x_metres, expected.0), (r.y_metres, expected.1), (r.reflectivity, expected.2)];
+        assert!(off.iter().all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{r:?}");
+    }
+}

@@ -1,0 +1,25 @@
+//! The iterative adaptive approach.
+
+use super::method::{CoherentMethod, TOLD};
+use crate::reconstruct::reconstructor::About;
+
+/// Every direction's power by weighted least squares, the weights being what all other directions explain, until they agree; of the
+/// elements that are there.
+///
+/// T. Yardibi, J. Li, P. Stoica, M. Xue and A. B. Baggeroer, "Source localization and sensing: a nonparametric iterative adaptive
+/// approach based on weighted least squares", IEEE Trans. Aerosp. Electron. Syst. 46, 2010; with elements missing, D. Vu, L. Xu,
+/// M. Xue and J. Li, "Nonparametric missing sample spectral analysis and its applications to interrupted SAR", IEEE J. Sel. Top.
+/// Signal Process. 6, 2012.
+pub const IAA: CoherentMethod = CoherentMethod {
+    about: About {
+        name: "iaa",
+        description: "weighted least squares for every direction, both ends as one aperture, and the exact map of its peaks",
+        told: TOLD,
+        eta: 0.856, // by examples/choose_eta.rs
+    },
+    // |a^H R^-1 z / a^H R^-1 a|^2
+    update: |share| share.matched / (share.held * share.held),
+    iterations: 12,
+    least_noise: 1e-4,
+    least_part: 0.08,
+};

@@ -1,0 +1,82 @@
+//! A coherent method is one closure; everything around it is written here once.
+
+use super::ends::Ends;
+use super::model::{Model, Share};
+use super::peaks::{Peak, apart, gains, peaks};
+use super::places::places;
+use super::sectors::Sectors;
+use crate::radar::Radar;
+use crate::reconstruct::answer::{Reconstruction, Request};
+use crate::reconstruct::echoes::of_echoes;
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::signal::TwoEnds;
+use rayon::prelude::*;
+
+/// Most elements of an end: a model's work grows with the cube of their number.
+const MOST_END_ELEMENTS: usize = 48;
+
+/// Most sectors: of an array that is thousands of range bins long.
+const MOST_SECTORS: f64 = 1000.0;
+
+/// What every coherent method is told.
+pub(super) const TOLD: &str = "nothing about the scene or the floor; it measures the noise itself";
+
+/// A method that finds the powers of steering vectors of both ends together.
+#[derive(Debug, Clone, Copy)]
+pub struct CoherentMethod {
+    pub(super) about: About,
+    /// The next power of a vector.
+    pub(super) update: fn(Share) -> f64,
+    /// How often all powers are updated.
+    pub(super) iterations: usize,
+    /// Least noise a model reckons with, as a part of the mean power heard: what steering vectors leave of a real echo.
+    pub(super) least_noise: f64,
+    /// A direction's least power, as a part of its model's strongest, to be taken for a reflector.
+    pub(super) least_part: f64,
+}
+
+impl Reconstructor for CoherentMethod {
+    fn about(&self) -> About {
+        self.about
+    }
+
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        if radar.end_elements > MOST_END_ELEMENTS {
+            return Err(self.unusable(format!(
+                "each end has {} elements; its models take at most {MOST_END_ELEMENTS}. matched-filter takes any number",
+                radar.end_elements
+            )));
+        }
+        let bins = radar.bin_of_range(radar.aperture_metres());
+        if radar.samples > 1 && bins > MOST_SECTORS {
+            return Err(self.unusable(format!(
+                "the array is {bins:.0} range bins long; a sector of directions for each bin is taken up to {MOST_SECTORS}"
+            )));
+        }
+        Ok(())
+    }
+
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let task = &request.task;
+        let noise_variance = ends_noise_variance(radar, ends);
+        let heard = Ends::new(radar, ends);
+        let sectors = Sectors::new(radar, &heard);
+        // The window's mean weight squared over its mean square, for each sample.
+        let noise_power = noise_variance * 1.5 / radar.samples as f64;
+        let places = places(radar, &heard, &sectors, noise_power, task)?;
+        task.set_progress(0.2);
+        let found: Vec<Vec<Peak>> = places
+            .par_iter()
+            .map(|place| {
+                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(self, task)?;
+                Ok(peaks(&sectors, place, &powers, self.least_part))
+            })
+            .collect::<Result<_, ReconstructError>>()?;
+        task.set_progress(0.8);
+        let peaks = apart(radar, found.concat(), sectors.fringe_cos);
+        let found = gains(radar, &peaks, ends, task)?;
+        Ok(of_echoes(radar, &found, noise_variance, request))
+    }
+}

@@ -1,0 +1,35 @@
+//! The methods that use both ends as one aperture, phase between them included.
+//!
+//! Every place that both ends hear is one linear model: what each element heard at its own distance from there, as a sum of steering
+//! vectors of all its elements. A method is one closure, which says how the power of each vector follows from what the model
+//! explains; everything around it is shared.
+//!
+//! Where the array is small against a range bin, one model holds a whole range row and nothing is lost. Where the ranges that the
+//! elements see a reflector at differ by more than half a bin over the directions (table 3.1: up to 13 bins to either side), directions
+//! are cut into sectors, and each model is registered for its own: exact at its middle, half a bin off at the edges. Lost is what
+//! other sectors' echoes would tell: in a model they are plane waves that one end alone hears. Lost too are reflectors at
+//! ranges between those of two stronger ones less than two bins apart in the same sector: a model stands where the echo is strongest.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `ends` | elements that heard something, and their range profiles |
+//! | `sectors` | directions that one registration serves |
+//! | `places` | ranges and sectors from which both ends hear something |
+//! | `model` | steering vectors of one place, and the iteration that gives their powers |
+//! | `linear` | that iteration's linear algebra, for wide vectors |
+//! | `peaks` | reflectors from powers, and their gains |
+//! | `method` | all of these in order |
+
+mod ends;
+mod iaa;
+mod linear;
+mod method;
+mod model;
+mod peaks;
+mod places;
+mod sbl;
+mod sectors;
+
+pub use iaa::IAA;
+pub use method::CoherentMethod;
+pub use sbl::SBL;

@@ -1,0 +1,108 @@
+//! Reflectors from powers over direction, and their gains.
+
+use super::places::Place;
+use super::sectors::Sectors;
+use crate::radar::Radar;
+use crate::reconstruct::echoes::Gained;
+use crate::reconstruct::error::ReconstructError;
+use crate::signal::{ArrayEcho, TwoEnds};
+use crate::task::Task;
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, Side};
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
+const SAME: (f64, f64) = (1.0, 0.75);
+
+/// Most reflectors: the time for their gains grows with the square of their number, and faster.
+const MOST_REFLECTORS: usize = 400;
+
+/// Added to the Gram matrix of unit echoes, so that gains of close ones don't grow against each other.
+const RIDGE: f64 = 1e-3;
+
+/// Energy of an echo, relative to the strongest, beneath which it is left out.
+const LEAST_ENERGY: f64 = 1e-6;
+
+/// A direction whose power stands out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Peak {
+    /// Distance from the array's centre, metres.
+    pub range_metres: f64,
+    /// Cosine of the angle to the array's axis.
+    pub cos_theta: f64,
+    /// Power of its samples.
+    pub power: f64,
+}
+
+/// Maxima of `powers` over the sector's directions that are at least `least_part` of the largest.
+pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part: f64) -> Vec<Peak> {
+    let largest = powers.iter().copied().fold(0.0, f64::max);
+    let at = |i: usize| powers.get(i).copied().unwrap_or(0.0);
+    (0..powers.len())
+        .filter(|&i| {
+            let before = if i == 0 { 0.0 } else { at(i - 1) };
+            at(i) > 0.0 && at(i) >= least_part * largest && at(i) > before && at(i) >= at(i + 1)
+        })
+        .map(|i| {
+            let around = i.saturating_sub(1)..(i + 2).min(powers.len());
+            let power: f64 = around.clone().map(at).sum();
+            let step = around.map(|k| at(k) * sectors.steps_cos[k]).sum::<f64>() / power;
+            let cos_theta = (place.sector.middle_cos + step).clamp(-1.0, 1.0);
+            Peak { range_metres: place.range_metres, cos_theta, power: at(i) }
+        })
+        .collect()
+}
+
+/// One peak for each reflector, strongest first: of those that are the same the strongest stays.
+pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, fringe_cos: f64) -> Vec<Peak> {
+    peaks.sort_by(|a, b| b.power.total_cmp(&a.power));
+    let mut kept: Vec<Peak> = Vec::new();
+    for peak in peaks {
+        let same = |k: &Peak| {
+            radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME.0
+                && (k.cos_theta - peak.cos_theta).abs() < SAME.1 * fringe_cos
+        };
+        if kept.len() < MOST_REFLECTORS && !kept.iter().any(same) {
+            kept.push(peak);
+        }
+    }
+    kept
+}
+
+/// Gains of the peaks' exact echoes by least squares on all samples of both ends.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`].
+pub(super) fn gains(
+    radar: &Radar,
+    peaks: &[Peak],
+    ends: &TwoEnds,
+    task: &Task,
+) -> Result<Vec<Gained>, ReconstructError> {
+    let samples = ends.flat();
+    let echoes: Vec<ArrayEcho> = peaks
+        .iter()
+        .map(|p| ArrayEcho::at(radar, p.range_metres, p.cos_theta))
+        .filter(|echo| echo.norm().is_finite() && echo.norm() > 0.0)
+        .collect();
+    let count = echoes.len();
+    let heard: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&samples)).collect();
+    task.check()?;
+    let mut gram = vec![Complex64::default(); count * count];
+    gram.par_chunks_mut(count.max(1)).enumerate().for_each(|(i, row)| {
+        for (cell, other) in row.iter_mut().zip(&echoes[..=i]) {
+            *cell = echoes[i].inner(other);
+        }
+    });
+    task.check()?;
+    let gram = Mat::from_fn(count, count, |i, j| {
+        let value = if i >= j { gram[i * count + j] } else { gram[j * count + i].conj() };
+        value + if i == j { RIDGE } else { 0.0 }
+    });
+    let Ok(factor) = Llt::new(gram.as_ref(), Side::Lower) else { return Ok(Vec::new()) };
+    let gains = factor.solve(Mat::from_fn(count, 1, |i, _| heard[i]));
+    let strongest = (0..count).map(|i| gains[(i, 0)].norm_sqr()).fold(0.0, f64::max);
+    let found = echoes.iter().enumerate().filter(|(i, _)| gains[(*i, 0)].norm_sqr() > strongest * LEAST_ENERGY);
+    Ok(found.map(|(i, e)| Gained { reflector: e.reflector, gain: gains[(i, 0)] / e.norm() }).collect())
+}

@@ -1,0 +1,152 @@
+//! Ranges and sectors from which both ends hear something.
+
+use super::ends::Ends;
+use super::sectors::{Sector, Sectors};
+use crate::radar::Radar;
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::profiles::range_response;
+use crate::reconstruct::seen::row_ranges_metres;
+use crate::task::Task;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Ranges that are listened to, for each range bin.
+const PER_BIN: usize = 4;
+
+/// Nearest range that is listened to, range bins.
+const NEAREST_BIN: usize = 1;
+
+/// Power by which a place must stand above the noise of one beam.
+const LEAST_OVER_NOISE: f64 = 10.0;
+
+/// Power of a place relative to the strongest other direction at its range, beneath which it is taken for an end's side lobe.
+const LEAST_BESIDE: f64 = 0.05;
+
+/// Range side lobes are expected to lie this much, in power, above what the window gives a single reflector.
+const SIDE_LOBE_ROOM: f64 = 8.0;
+
+/// Range bins over which side lobes are looked for.
+const SIDE_LOBE_BINS: usize = 128;
+
+/// Most places that are looked into; the strongest.
+const MOST_PLACES: usize = 4096;
+
+/// A range and a sector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    /// Where the echo is strongest, metres.
+    pub range_metres: f64,
+    /// Directions that are looked into.
+    pub sector: Sector,
+    /// Power that the weaker end hears.
+    pub power: f64,
+}
+
+/// Both ends' beams over one sector, steered relative to its middle.
+struct Beams {
+    /// Conjugate phases, one beam after another.
+    weights: Vec<Vec<Complex64>>,
+}
+
+impl Beams {
+    /// As many beams as leave no gap within the sectors.
+    fn new(radar: &Radar, ends: &Ends, half_width_cos: f64) -> Self {
+        let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
+        let beam_cos = radar.wavelength_metres() / (end_metres * radar.carrier.turns_per_wavelength().abs());
+        let count = (4.0 * half_width_cos / beam_cos).ceil().max(1.0);
+        let step = |i: usize| (2 * i + 1) as f64 * half_width_cos / count - half_width_cos;
+        let weights = |i: usize| ends.x_metres.iter().map(|x| ends.profiles.phase(x * step(i))).collect();
+        Beams { weights: (0..count as usize).map(weights).collect() }
+    }
+
+    /// Power that the weaker end hears in the beam where that is most.
+    fn power(&self, heard: &[Complex64], first_count: usize) -> f64 {
+        let of = |weights: &Vec<Complex64>| {
+            let beam = |part: std::ops::Range<usize>| {
+                let count = part.len() as f64;
+                let sum: Complex64 = heard[part.clone()].iter().zip(&weights[part]).map(|(h, w)| h * w).sum();
+                sum.norm_sqr() / (count * count)
+            };
+            beam(0..first_count).min(beam(first_count..heard.len()))
+        };
+        self.weights.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+/// Every place that is no side lobe of another, strongest first. `noise_power` is that of one element's profile.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`].
+pub(super) fn places(
+    radar: &Radar,
+    ends: &Ends,
+    sectors: &Sectors,
+    noise_power: f64,
+    task: &Task,
+) -> Result<Vec<Place>, ReconstructError> {
+    if ends.first_count == 0 || ends.first_count == ends.len() {
+        return Ok(Vec::new()); // one end alone
+    }
+    if radar.samples == 1 {
+        let range_metres = row_ranges_metres(radar)[0];
+        return Ok(sectors.all.iter().map(|sector| Place { range_metres, sector: *sector, power: 1.0 }).collect());
+    }
+    let range = |i: f64| radar.range_of_bin_metres(i / PER_BIN as f64);
+    let count = PER_BIN * radar.samples;
+    let beams = Beams::new(radar, ends, sectors.all.first().map_or(1.0, |s| s.half_width_cos));
+    let heard: Vec<Vec<f64>> = sectors
+        .all
+        .par_iter()
+        .map(|sector| {
+            task.check()?;
+            let power = |i: usize| {
+                let from: Vec<Complex64> = ends.heard_from(range(i as f64), sector.middle_cos).collect();
+                // Compared as the elements hear it: what is near is not noisier.
+                beams.power(&from, ends.first_count)
+            };
+            Ok((0..count).map(|i| if i < NEAREST_BIN * PER_BIN { 0.0 } else { power(i) }).collect())
+        })
+        .collect::<Result<_, ReconstructError>>()?;
+    let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
+    let least = side_lobes(&strongest);
+    let noise = LEAST_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
+    let mut found = Vec::new();
+    for (sector, heard) in sectors.all.iter().zip(&heard) {
+        for i in 1..count.saturating_sub(1) {
+            let [before, here, after] = [heard[i - 1], heard[i], heard[i + 1]];
+            if here > before && here >= after && here > least[i].max(noise) {
+                let offset = vertex(before, here, after);
+                found.push(Place { range_metres: range(i as f64 + offset), sector: *sector, power: here });
+            }
+        }
+    }
+    found.sort_by(|a, b| b.power.total_cmp(&a.power));
+    found.truncate(MOST_PLACES);
+    Ok(found)
+}
+
+/// The least power of a place at every range that is not a side lobe of the `strongest` at all ranges.
+fn side_lobes(strongest: &[f64]) -> Vec<f64> {
+    let reach = SIDE_LOBE_BINS * PER_BIN;
+    let envelope: Vec<f64> = (0..=reach)
+        .map(|i| {
+            let bins = i as f64 / PER_BIN as f64;
+            // Beyond the main lobe the highest of each side lobe, at half bins.
+            let level = if bins < 2.0 { 0.0 } else { range_response(bins.floor() + 0.5).abs() };
+            if bins < 1.0 { LEAST_BESIDE } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_BESIDE) }
+        })
+        .collect();
+    (0..strongest.len())
+        .into_par_iter()
+        .map(|i| {
+            let near = i.saturating_sub(reach)..(i + reach + 1).min(strongest.len());
+            near.map(|j| strongest[j] * envelope[i.abs_diff(j)]).fold(0.0, f64::max)
+        })
+        .collect()
+}
+
+/// Where the parabola through three neighbouring values, the middle one the largest, has its vertex: -1/2 to 1/2.
+fn vertex(before: f64, here: f64, after: f64) -> f64 {
+    let curvature = before - 2.0 * here + after;
+    if curvature < 0.0 { (0.5 * (before - after) / curvature).clamp(-0.5, 0.5) } else { 0.0 }
+}

@@ -1,0 +1,72 @@
+//! The cells of the whole array's polar grid: every range bin by every direction that the radar sees.
+
+use crate::radar::Radar;
+use crate::reconstruct::seen::{Direction, directions, row_ranges_metres};
+use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
+use crate::signal::ArrayEcho;
+use ndarray::Array2;
+
+/// Ranges and directions of the cells.
+pub(super) struct Cells<'a> {
+    radar: &'a Radar,
+    /// Range of each row, metres.
+    pub range_metres: Vec<f64>,
+    /// Directions; several may share a column of the map.
+    pub directions: Vec<Direction>,
+}
+
+/// One cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cell {
+    /// Range bin.
+    pub bin: usize,
+    /// Index of the direction.
+    pub direction: usize,
+}
+
+impl<'a> Cells<'a> {
+    /// The cells of `radar`'s map.
+    pub fn new(radar: &'a Radar) -> Self {
+        Cells { radar, range_metres: row_ranges_metres(radar), directions: directions(radar) }
+    }
+
+    /// Shape of the grid, `[range bins, directions]`.
+    pub fn dim(&self) -> (usize, usize) {
+        (self.range_metres.len(), self.directions.len())
+    }
+
+    /// Whether `cell` is in the grid and holds a place where something may stand: not at the array's centre, nor on an element.
+    fn reflector(&self, cell: Cell) -> Option<Reflector> {
+        let (range, cos) = (*self.range_metres.get(cell.bin)?, self.directions.get(cell.direction)?.cos_theta);
+        let place =
+            Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 };
+        let radar = self.radar;
+        let nearest = (place.x_metres - radar.element_x_metres(0)) / radar.element_spacing_metres;
+        let nearest = radar.element_x_metres(nearest.round().clamp(0.0, radar.elements as f64 - 1.0) as usize);
+        let clear = (place.x_metres - nearest).hypot(place.y_metres) > MIN_ELEMENT_DISTANCE_METRES;
+        (range > 0.0 && clear).then_some(place)
+    }
+
+    /// Whether something may stand in `cell`.
+    pub fn may_hold(&self, cell: Cell) -> bool {
+        self.reflector(cell).is_some()
+    }
+
+    /// The echo of a unit reflector in `cell`, where something may stand there.
+    pub fn echo(&self, cell: Cell) -> Option<ArrayEcho> {
+        self.reflector(cell)?;
+        let echo = ArrayEcho::at(self.radar, self.range_metres[cell.bin], self.directions[cell.direction].cos_theta);
+        (echo.norm().is_finite() && echo.norm() > 0.0).then_some(echo)
+    }
+
+    /// The map, `[range bins, columns]`, of a power on the grid: what shares a column is added.
+    pub fn folded(&self, power: &Array2<f64>) -> Array2<f64> {
+        let mut out = Array2::zeros((self.radar.samples, self.radar.elements));
+        for (mut out, power) in out.outer_iter_mut().zip(power.outer_iter()) {
+            for (direction, power) in self.directions.iter().zip(power) {
+                out[direction.column] += power;
+            }
+        }
+        out
+    }
+}

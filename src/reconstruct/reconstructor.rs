@@ -1,0 +1,173 @@
+//! What every method is, and what is done once for all of them.
+
+use super::answer::{Reconstruction, Request};
+use super::error::ReconstructError;
+use crate::maps::RangeAngleMap;
+use crate::radar::Radar;
+use crate::signal::TwoEnds;
+use ndarray::Array3;
+
+/// Who a method is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct About {
+    /// Short name for the command line and tables.
+    pub name: &'static str,
+    /// One sentence for tooltips and help.
+    pub description: &'static str,
+    /// What the method knows beside the samples and the radar they were taken with: assumptions that a user's own scene may not
+    /// meet, or that the scenes of the tables happen to.
+    pub told: &'static str,
+    /// Threshold at which its output is turned into detections. Chosen on validation scenes, never on test scenes.
+    pub eta: f32,
+}
+
+/// Anything that turns the samples of the two ends into a map of the whole array.
+///
+/// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
+pub trait Reconstructor: Send + Sync {
+    /// Who the method is.
+    fn about(&self) -> About;
+
+    /// Says at once whether the method can work on samples of `radar`.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] says what is in the way.
+    fn check_radar(&self, _radar: &Radar) -> Result<(), ReconstructError> {
+        Ok(())
+    }
+
+    /// Estimates the whole array's map from `ends`, which have the radar's shape, are finite, and whose largest real or imaginary
+    /// part lies between 1 and 2. Reflectivities are relative to those samples.
+    ///
+    /// # Errors
+    /// [`ReconstructError`] when cancelled, or as the method says.
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError>;
+
+    /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], and takes the scale
+    /// off what was found. Silence is answered with [`Reconstruction::silence`].
+    ///
+    /// # Errors
+    /// [`ReconstructError`], on a radar the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
+    /// as the method says.
+    fn reconstruct(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
+        request.task.check()?;
+        check_ends(radar, ends)?;
+        self.check_radar(radar)?;
+        let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
+        let mut found = self.estimate(radar, &ends, request)?;
+        found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
+        let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
+        Ok(match range {
+            Some(range_metres) => found.moved_to(range_metres),
+            None => found,
+        })
+    }
+
+    /// Estimates the whole array's map from the thesis networks' own input, `[4, range bins, columns]`
+    /// ([`mag_phase`](crate::maps::network_input::mag_phase)).
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] from every method that needs the samples themselves; [`ReconstructError::Shape`].
+    fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+        let reason =
+            "it needs sub0 and sub1; polar_partial_mag_phase is the input of the thesis' networks alone".into();
+        Err(self.unusable(reason))
+    }
+
+    /// The method's [`About::name`].
+    fn name(&self) -> &'static str {
+        self.about().name
+    }
+
+    /// The method's [`About::description`].
+    fn description(&self) -> &'static str {
+        self.about().description
+    }
+
+    /// The method's [`About::eta`].
+    fn eta(&self) -> f32 {
+        self.about().eta
+    }
+
+    /// The error that says in the method's name why it can't work.
+    fn unusable(&self, reason: String) -> ReconstructError {
+        ReconstructError::Unusable { method: self.name(), reason }
+    }
+}
+
+/// Checks that both ends have the radar's shape and hold finite samples only.
+///
+/// # Errors
+/// [`ReconstructError::Shape`] or [`ReconstructError::NotFinite`].
+pub fn check_ends(radar: &Radar, ends: &TwoEnds) -> Result<(), ReconstructError> {
+    for (end, what, samples) in [("first", "first end", &ends.first), ("last", "last end", &ends.last)] {
+        let expected = [radar.end_elements, radar.samples];
+        if samples.shape() != expected {
+            return Err(ReconstructError::Shape { what, found: samples.shape().to_vec(), expected: expected.to_vec() });
+        }
+        if let Some(((element, sample), _)) =
+            samples.indexed_iter().find(|(_, v)| !(v.re.is_finite() && v.im.is_finite()))
+        {
+            return Err(ReconstructError::NotFinite { end, element, sample });
+        }
+    }
+    Ok(())
+}
+
+/// Scales the samples of both ends to a peak between 1 and 2 and says by how much; `None` for silence.
+pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
+    let peak = ends.first.iter().chain(&ends.last).fold(0.0f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
+    if peak == 0.0 {
+        return None;
+    }
+    // A power of two loses no bit, so that the gain leaves no trace, not even in the rounding noise of the floor.
+    let gain = (-peak.log2().floor()).clamp(-1000.0, 1000.0).exp2();
+    Some((TwoEnds { first: ends.first.mapv(|v| v * gain), last: ends.last.mapv(|v| v * gain) }, gain))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Reflector;
+    use num_complex::Complex64;
+
+    /// Answers one reflector as strong as the strongest sample.
+    struct Echo;
+
+    impl Reconstructor for Echo {
+        fn about(&self) -> About {
+            About { name: "echo", description: "for tests", told: "nothing", eta: 0.5 }
+        }
+
+        fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+            if radar.samples > 8 { Err(self.unusable("too many samples".into())) } else { Ok(()) }
+        }
+
+        fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
+            let reflectivity = ends.first.iter().fold(0.0, |m: f64, v| m.max(v.norm()));
+            assert!((1.0..2.0).contains(&reflectivity));
+            let reflector = Reflector { x_metres: 0.0, y_metres: 1.0, reflectivity };
+            Ok(Reconstruction { reflectors: vec![reflector], ..Reconstruction::silence(radar) })
+        }
+    }
+
+    #[test]
+    fn what_all_methods_share_is_done_for_them() {
+        let radar = Radar { samples: 8, elements: 8, end_elements: 3, ..Radar::default() };
+        let mut ends = crate::signal::BeatSignal::silence(&radar).two_ends(&radar);
+        let request = Request::default();
+        assert_eq!(Echo.reconstruct(&radar, &ends, &request), Ok(Reconstruction::silence(&radar)));
+        ends.first[[1, 2]] = Complex64::from(3e-7);
+        assert_eq!(Echo.reconstruct(&radar, &ends, &request).unwrap().reflectors[0].reflectivity, 3e-7);
+        let long = Radar { samples: 16, ..radar.clone() };
+        let error = Echo.reconstruct(&long, &crate::signal::BeatSignal::silence(&long).two_ends(&long), &request);
+        assert_eq!(error.unwrap_err().to_string(), "echo: too many samples");
+        request.task.cancel();
+        assert_eq!(Echo.reconstruct(&radar, &ends, &request), Err(ReconstructError::Cancelled));
+    }
+}

@@ -1,0 +1,125 @@
+//! How places look from elsewhere on the array's axis, and which directions a radar sees at all.
+//!
+//! The ends of table 3.1 stand a metre to the left and right of the centre: they see one reflector at ranges up to 27 bins apart.
+
+use crate::radar::Radar;
+
+/// Far fields away at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
+pub(super) const FAR_AWAY: f64 = 1e4;
+
+/// Where a place lies in the polar grid of a point of the array's axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Seen {
+    /// Distance in metres.
+    pub range_metres: f64,
+    /// Cosine of the angle to the array's axis.
+    pub cos_theta: f64,
+}
+
+/// How a point of the array's axis at `from_x_metres` sees the reflector at (`range_metres`, `cos_theta`) of the centre.
+pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> Seen {
+    let x = range_metres * cos_theta.clamp(-1.0, 1.0);
+    let square = range_metres * range_metres - 2.0 * x * from_x_metres + from_x_metres * from_x_metres;
+    let range = square.max(1e-12).sqrt();
+    Seen { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
+}
+
+/// Range of every row of `radar`'s map, metres. A single sample has no ranges: its echoes count as plane waves from far away.
+pub(super) fn row_ranges_metres(radar: &Radar) -> Vec<f64> {
+    if radar.samples == 1 {
+        return vec![FAR_AWAY * radar.far_field_metres()];
+    }
+    (0..radar.samples).map(|bin| radar.range_of_bin_metres(bin as f64)).collect()
+}
+
+/// A direction and the column of the whole array's map that shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Direction {
+    /// Cosine of the angle to the array's axis.
+    pub cos_theta: f64,
+    /// Column of the map.
+    pub column: usize,
+}
+
+/// Most directions that one column may stand for; wider spacings than that are refused.
+pub(super) const MOST_FOLDS: usize = 8;
+
+/// Every direction the columns of `radar`'s map stand for, column after column.
+///
+/// One a column for half a wavelength and the one-way carrier. Wider spacings and the two-way carrier fold several directions into
+/// each column (grating lobes); with narrower spacings some columns stand for none.
+pub(super) fn directions(radar: &Radar) -> Vec<Direction> {
+    let period = cos_period(radar);
+    let of_column = |column: usize| {
+        let cos = radar.cos_of_column(column as f64);
+        // Rounding must not push a column that is the axis itself off it.
+        let lowest = cos - ((cos + 1.0 + ROUNDING) / period).floor() * period;
+        (0..=MOST_FOLDS)
+            .map(move |fold| lowest + fold as f64 * period)
+            .take_while(|cos| *cos < 1.0 - ROUNDING)
+            .map(move |cos| Direction { cos_theta: cos.max(-1.0), column })
+    };
+    (0..radar.elements).flat_map(of_column).collect()
+}
+
+/// What a cosine of a column may be wrong by.
+const ROUNDING: f64 = 1e-9;
+
+/// Distance in cos(theta) after which directions share a column.
+pub(super) fn cos_period(radar: &Radar) -> f64 {
+    (radar.cos_of_column(radar.elements as f64) - radar.cos_of_column(0.0)).abs()
+}
+
+/// Why directions can't be told by their columns, where more than [`MOST_FOLDS`] share one.
+pub(super) fn too_many_folds(radar: &Radar) -> Option<String> {
+    let folds = (2.0 / cos_period(radar)).ceil();
+    (folds > MOST_FOLDS as f64).then(|| {
+        let wavelengths = radar.element_spacing_metres / radar.wavelength_metres();
+        format!(
+            "elements stand {wavelengths:.3} wavelengths apart, so that each column stands for {folds} directions; at most \
+             {MOST_FOLDS} are told apart"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Carrier;
+
+    #[test]
+    fn the_centre_sees_itself_and_the_ends_see_what_geometry_says() {
+        let s = seen_from(0.0, 20.0, 0.3);
+        assert!((s.range_metres - 20.0).abs() < 1e-12 && (s.cos_theta - 0.3).abs() < 1e-12);
+        // From 3 m to the left, a reflector 4 m ahead of the centre is 5 m away.
+        let s = seen_from(-3.0, 4.0, 0.0);
+        assert!((s.range_metres - 5.0).abs() < 1e-12 && (s.cos_theta - 0.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn directions_span_what_the_radar_sees_and_belong_to_their_columns() {
+        let half = Radar::default();
+        let with = |wavelengths: f64, carrier| {
+            let element_spacing_metres = wavelengths * half.wavelength_metres();
+            Radar { elements: 64, element_spacing_metres, carrier, ..half.clone() }
+        };
+        for (radar, count) in [
+            (with(0.5, Carrier::OneWay), 64),
+            (with(0.25, Carrier::OneWay), 32),
+            (with(1.0, Carrier::OneWay), 128),
+            (with(0.5, Carrier::TwoWay), 128),
+            (with(1.0, Carrier::TwoWay), 256),
+        ] {
+            let directions = directions(&radar);
+            assert!(directions.len().abs_diff(count) <= 1, "{} of {count}", directions.len());
+            let cosines = || directions.iter().map(|d| d.cos_theta);
+            assert!(cosines().fold(1.0, f64::min) < -1.0 + 0.04 && cosines().fold(-1.0, f64::max) > 1.0 - 0.04);
+            for d in &directions {
+                let off = (radar.column_of_cos(d.cos_theta) - d.column as f64).rem_euclid(64.0);
+                assert!(off.min(64.0 - off) < 1e-6, "{d:?}");
+            }
+            assert_eq!(too_many_folds(&radar), None);
+        }
+        assert!(too_many_folds(&with(5.0, Carrier::OneWay)).unwrap().contains("5.000 wavelengths"));
+    }
+}

@@ -1,0 +1,190 @@
+//! The signal as a built array hears it, and calibrating such an array on a reflector of known place.
+
+use super::echo::{ArrayEcho, add_echo};
+use super::phase::EchoModel;
+use super::samples::BeatSignal;
+use super::floor::Floor;
+use super::simulate::simulate_echoes;
+use crate::radar::{BuiltArray, Decibels, ElementError, Radar};
+use crate::scene::{Reflector, Scene, SceneError};
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Beat signal of a scene as `array` hears it, over the named floor; `seed` picks the floor's noise, which each element's
+/// receiver adds whatever its gain: that of an ideal array, except in dead elements, which hear nothing.
+///
+/// # Errors
+/// [`SceneError`] when the scene can't be simulated.
+pub fn simulate_built(
+    radar: &Radar,
+    scene: &Scene,
+    array: &BuiltArray,
+    floor: Floor,
+    seed: u64,
+) -> Result<BeatSignal, SceneError> {
+    simulate_echoes(radar, scene, floor, seed, |signal| {
+        let reflectors = scene.reflectors();
+        let model = EchoModel::new(radar);
+        signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
+            let error = array.element(n);
+            if error.position_millimetres != 0.0 {
+                samples.fill(Complex64::default());
+                let Some(samples) = samples.as_slice_mut() else { return };
+                let x = array.element_x_metres(radar, n);
+                reflectors.iter().for_each(|r| add_echo(&model, x, r, Complex64::from(1.0), samples));
+            }
+            let response = error.response();
+            samples.iter_mut().for_each(|v| *v *= response);
+        });
+    })
+    .map(|mut signal| {
+        for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
+            if array.element(n).dead {
+                samples.fill(Complex64::default());
+            }
+        }
+        signal
+    })
+}
+
+/// What was learned of an array from one reflector.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// Gain and phase of each element, relative to the mean of those that hear; elements that hear nothing are dead.
+    pub array: BuiltArray,
+    /// Part of the samples' energy that the reflector's echo, heard so, leaves unexplained: other reflectors, noise, and errors that
+    /// are no gain and no phase.
+    pub unexplained: f64,
+}
+
+/// Estimates gain and phase of every element from the echo of `reflector` in `signal`: what each element's samples hold of the echo
+/// that an ideal element would hear. Other reflectors disturb little where they are some range bins away.
+///
+/// `None` where no element hears the reflector.
+pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> Option<Calibration> {
+    let polar = radar.polar_of(reflector.x_metres, reflector.y_metres);
+    let (mut energy, mut left) = (0.0, 0.0);
+    let responses: Vec<Complex64> = signal
+        .samples
+        .outer_iter()
+        .enumerate()
+        .map(|(n, samples)| {
+            let echo = ArrayEcho::heard_by(radar, &[radar.element_x_metres(n)], polar.range_metres, polar.cos_theta);
+            let samples: Vec<Complex64> = samples.iter().copied().collect();
+            let share = echo.correlate(&samples);
+            let all: f64 = samples.iter().map(Complex64::norm_sqr).sum();
+            energy += all;
+            left += (all - share.norm_sqr()).max(0.0);
+            share / echo.norm()
+        })
+        .collect();
+    let heard: Vec<&Complex64> = responses.iter().filter(|r| r.norm_sqr() > 0.0 && r.is_finite()).collect();
+    // Gains are compared as decibels; phases with that of the sum, which no single element can turn far.
+    let mean_decades = heard.iter().map(|r| r.norm().log10()).sum::<f64>() / heard.len() as f64;
+    let mean_phase = heard.iter().map(|r| *r / r.norm()).sum::<Complex64>().arg();
+    let element = |r: &Complex64| {
+        if !(r.norm_sqr() > 0.0 && r.is_finite()) {
+            return ElementError { dead: true, ..ElementError::default() };
+        }
+        ElementError {
+            gain: Decibels(20.0 * (r.norm().log10() - mean_decades)),
+            phase_degrees: (r * Complex64::cis(-mean_phase)).arg().to_degrees(),
+            ..ElementError::default()
+        }
+    };
+    (!heard.is_empty()).then(|| Calibration {
+        array: BuiltArray { elements: responses.iter().map(element).collect() },
+        unexplained: left / energy,
+    })
+}
+
+impl Calibration {
+    /// Takes the gains and phases off `signal`; dead elements stay silent.
+    pub fn take_off(&self, signal: &mut BeatSignal) {
+        for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
+            let response = self.array.element(n).response();
+            if response.norm_sqr() > 0.0 {
+                samples.iter_mut().for_each(|v| *v /= response);
+            }
+        }
+    }
+
+    /// Root mean squares of what the living elements are off by: decibels of gain, degrees of phase.
+    pub fn spread(&self) -> (Decibels, f64) {
+        let living = || self.array.elements.iter().filter(|e| !e.dead);
+        let count = living().count().max(1) as f64;
+        let rms = |of: fn(&ElementError) -> f64| (living().map(|e| of(e).powi(2)).sum::<f64>() / count).sqrt();
+        (Decibels(rms(|e| e.gain.0)), rms(|e| e.phase_degrees))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Tolerances;
+    use crate::signal::simulate;
+
+    fn small() -> Radar {
+        Radar { elements: 64, ..Radar::default() }
+    }
+
+    fn two_points() -> Scene {
+        Scene::of_points([(2.0, 11.0), (-6.0, 19.0)])
+    }
+
+    #[test]
+    fn an_ideal_array_hears_what_is_simulated_and_a_dead_element_nothing() {
+        let (radar, scene) = (small(), two_points());
+        let ideal = simulate(&radar, &scene, Floor::Thesis, 3).unwrap();
+        let same = simulate_built(&radar, &scene, &BuiltArray::default(), Floor::Thesis, 3).unwrap();
+        assert_eq!(ideal, same);
+        let mut array = BuiltArray { elements: vec![ElementError::default(); 64] };
+        array.elements[5].dead = true;
+        array.elements[6].gain = Decibels(20.0);
+        array.elements[7].position_millimetres = 0.5;
+        let built = simulate_built(&radar, &scene, &array, Floor::Exact, 3).unwrap();
+        let exact = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
+        assert!(built.samples.row(5).iter().all(|v| v.norm() == 0.0));
+        assert!((built.samples[[6, 9]] / exact.samples[[6, 9]] - 10.0).norm() < 1e-9);
+        assert_eq!(built.samples.row(8), exact.samples.row(8));
+        // Half a millimetre nearer to the first reflector's side turns its echo by what geometry says.
+        let one = Scene::of_points([(2.0, 11.0)]);
+        let moved = simulate_built(&radar, &one, &array, Floor::Exact, 0).unwrap().samples[[7, 0]];
+        let still = simulate(&radar, &one, Floor::Exact, 0).unwrap().samples[[7, 0]];
+        let x = radar.element_x_metres(7);
+        let metres = (2.0 - x - 5e-4f64).hypot(11.0) - (2.0 - x).hypot(11.0);
+        let turned = (moved / still).arg() - std::f64::consts::TAU * -metres / radar.wavelength_metres();
+        assert!(turned.abs() < 1e-6, "{turned}");
+    }
+
+    #[test]
+    fn calibrating_on_a_reflector_finds_gains_and_phases_and_takes_them_off() {
+        let (radar, scene) = (small(), two_points());
+        let tolerances = Tolerances { gain: Decibels(1.5), phase_degrees: 20.0, position_millimetres: 0.0 };
+        let array = tolerances.build(&radar, 2);
+        let floor = Floor::Snr(Decibels(30.0));
+        let mut signal = simulate_built(&radar, &scene, &array, floor, 1).unwrap();
+        let reflector = scene.reflectors()[0];
+        let found = calibrate(&radar, &signal, &reflector).unwrap();
+        // The other reflector is a hundred bins away: its side lobes are all that disturbs.
+        let (first_gain, first_phase) = (array.elements[0].gain.0, array.elements[0].phase_degrees);
+        for (f, e) in found.array.elements.iter().zip(&array.elements) {
+            let gain = f.gain.0 - found.array.elements[0].gain.0 - (e.gain.0 - first_gain);
+            let phase = f.phase_degrees - found.array.elements[0].phase_degrees - (e.phase_degrees - first_phase);
+            assert!(gain.abs() < 0.3 && phase.abs() < 2.0, "{f:?} {e:?}");
+        }
+        let (gain, phase) = found.spread();
+        assert!(gain.0 > 1.0 && phase > 14.0);
+        assert!(found.unexplained > 0.01 && found.unexplained < 0.5, "the other reflector: {}", found.unexplained);
+        found.take_off(&mut signal);
+        let (gain, phase) = calibrate(&radar, &signal, &reflector).unwrap().spread();
+        assert!(gain.0 < 1e-6 && phase < 1e-6, "{gain} {phase}");
+    }
+
+    #[test]
+    fn silence_calibrates_nothing() {
+        let radar = small();
+        let reflector = two_points().reflectors()[0];
+        assert_eq!(calibrate(&radar, &BeatSignal::silence(&radar), &reflector), None);
+    }
+}
