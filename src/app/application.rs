@@ -18,11 +18,10 @@ use super::settings::Settings;
 use super::training::Training;
 use super::view::{Cursor, SceneView, Window};
 use super::{APP_ID, execute, menu, status_bar, theme};
-use crate::interact::Editor;
+use crate::interact::{Document, Editor};
 use crate::live::Wanted;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
-use crate::scene::file::SceneFile;
 use crate::scene::presets;
 use eframe::egui;
 use eframe::egui::{ColorImage, TextureHandle};
@@ -96,8 +95,6 @@ pub struct App {
     textures: BTreeMap<MapKind, Texture>,
     frame_log: Option<FrameLog>,
     title: String,
-    /// The scene that the autosave holds.
-    autosaved: Arc<crate::scene::Scene>,
 }
 
 impl App {
@@ -118,8 +115,8 @@ impl App {
         let began = options.started.unwrap_or_else(Instant::now);
         let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
         let mut app = App {
-            editor: Editor::new(default.scene),
-            radar: default.radar,
+            editor: Editor::of(Document::shipped(default)),
+            radar: Radar::default(),
             settings: kept.settings,
             layout: kept.layout,
             pipeline: Pipeline::start(methods, wake.clone())?,
@@ -128,7 +125,7 @@ impl App {
             front: FrontPanel::start(wake.clone())?,
             training: Training::start(wake)?,
             guide: Guide::default(),
-            files: Files::new(folder.as_deref(), kept.recent),
+            files: Files::new(folder.as_deref(), kept.recent)?,
             messages: Messages::default(),
             exports: channel(),
             palette: Palette::default(),
@@ -143,51 +140,60 @@ impl App {
             textures: BTreeMap::new(),
             frame_log,
             title: String::new(),
-            autosaved: Arc::default(),
         };
-        app.autosaved = app.editor.scene().clone();
         theme::apply(&ctx, app.settings.theme);
-        app.radar.carrier = app.settings.carrier;
-        app.radar.window = app.settings.window;
-        app.restore();
-        if let Some(path) = options.scene {
-            app.open(path);
-        }
+        app.start(options.scene);
         Ok(app)
     }
 
-    fn restore(&mut self) {
-        match self.files.autosave.as_ref().and_then(|a| a.restore()) {
-            Some(Ok(file)) => {
-                self.set_scene("restore", file);
-                self.editor.mark_unsaved();
-                self.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
-            }
-            Some(Err(message)) => self.error(format!("The unsaved scene of the last session can't be read: {message}")),
-            None => {}
+    /// Opens the file asked for, and what an earlier run left unsaved.
+    fn start(&mut self, asked: Option<PathBuf>) {
+        let restored = self.files.autosave.as_ref().map(|a| a.restore()).unwrap_or_default();
+        for problem in &restored.problems {
+            self.error(format!("An unsaved scene of the last session can't be read: {problem}"));
         }
+        let unsaved = restored.on_screen.is_some();
+        let asked = asked.and_then(|path| {
+            self.files.open(&path).map_err(|e| self.error(format!("{e}\nThe scene on screen was kept."))).ok()
+        });
+        match (unsaved, &asked) {
+            (true, None) => self.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it."),
+            (true, Some(_)) => self.info("The last session left an unsaved scene: undo (Ctrl+Z) brings it back."),
+            (false, _) => {}
+        }
+        let otherwise = self.editor.document().clone();
+        self.editor = Editor::start(restored, asked, otherwise);
+        self.follow_document();
     }
 
     /// Opens a scene file; on any error the scene on screen stays.
     pub(super) fn open(&mut self, path: PathBuf) {
         match self.files.open(&path) {
-            Ok(file) => self.set_scene("open", file),
+            Ok(document) => self.set_document("open", document),
             Err(message) => self.error(format!("{message}\nThe scene on screen was kept.")),
         }
     }
 
-    /// Puts another scene on screen; undo brings the last one back.
-    pub(super) fn set_scene(&mut self, label: &str, file: SceneFile) {
-        self.editor.open(label, file.scene);
-        self.settings.carrier = file.radar.carrier;
-        self.settings.window = file.radar.window;
-        self.radar = file.radar;
+    /// Puts another document on screen; undo brings the last one back.
+    pub(super) fn set_document(&mut self, label: &str, document: Document) {
+        self.editor.open(label, document);
+        self.follow_document();
         self.scene_view.fit = true;
     }
 
-    /// The scene with its radar, as a file holds them.
-    pub(super) fn scene_file(&self) -> SceneFile {
-        SceneFile { scene: crate::scene::Scene::clone(self.editor.scene()), radar: self.radar.clone() }
+    /// Shows the radar of the document.
+    pub(super) fn follow_document(&mut self) {
+        self.radar = Radar::clone(self.editor.radar());
+        self.settings.carrier = self.radar.carrier;
+        self.settings.window = self.radar.window;
+    }
+
+    /// Changes the document's radar, as a step that can be undone.
+    pub(super) fn edit_radar(&mut self, label: &str, change: impl FnOnce(&mut Radar)) {
+        if let Err(error) = self.editor.edit_radar(label, None, change) {
+            self.error(error.to_string());
+        }
+        self.follow_document();
     }
 
     /// Shows a message that passes.
@@ -277,29 +283,20 @@ impl App {
     }
 
     fn keep_unsaved_scene(&mut self, ctx: &egui::Context) {
-        if Arc::ptr_eq(&self.autosaved, self.editor.scene()) || self.editor.dragged().is_some() {
-            return;
-        }
-        let file = self.scene_file();
         let Some(autosave) = &mut self.files.autosave else { return };
-        if !self.editor.is_modified() {
-            autosave.forget();
-            self.autosaved = self.editor.scene().clone();
-            return;
+        let problems = autosave.poll();
+        if self.editor.dragged().is_none()
+            && let Some(later) = autosave.keep(&self.editor)
+        {
+            ctx.request_repaint_after(later);
         }
-        match autosave.keep(&file) {
-            Ok(None) => self.autosaved = self.editor.scene().clone(),
-            Ok(Some(later)) => ctx.request_repaint_after(later),
-            Err(message) => {
-                self.autosaved = self.editor.scene().clone();
-                self.error(format!("The scene could not be autosaved: {message}"));
-            }
+        for problem in problems {
+            self.error(format!("The scene could not be autosaved: {problem}"));
         }
     }
 
     fn update_title(&mut self, ctx: &egui::Context) {
-        let mark = if self.editor.is_modified() { " •" } else { "" };
-        let title = format!("{}{mark} — apertura", self.files.title());
+        let title = format!("{} — apertura", self.editor.document().title());
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -355,10 +352,8 @@ impl eframe::App for App {
         let kept = Kept { settings: self.settings.clone(), layout, recent: self.files.recent.clone() };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         self.layout = kept.layout;
-        let file = self.scene_file();
-        if self.editor.is_modified()
-            && let Some(autosave) = &mut self.files.autosave
-            && let Err(error) = autosave.keep_now(&file)
+        if let Some(autosave) = &mut self.files.autosave
+            && let Err(error) = autosave.keep_now(&self.editor)
         {
             tracing::warn!("the scene could not be autosaved: {error}");
         }

@@ -7,15 +7,15 @@ use super::layout::{Layout, Panel};
 use super::settings::{Projection, Theme};
 use super::view::Window;
 use super::{export, theme};
-use crate::interact::{Place, Selection, SelectionMode};
+use crate::interact::{Document, Place, Saved, Selection, SelectionMode};
 use crate::maps::Normalisation;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
-use crate::scene::{GaussianCluster, Line, Object, Point, Scene, presets};
+use crate::scene::{GaussianCluster, Line, Object, Point, presets};
 use crate::signal::Floor;
 use eframe::egui;
 use eframe::egui::{Context, Event, Key, Modifiers};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Turns keys, clipboard events, dropped files and closed dialogs into commands.
 pub(super) fn read_input(app: &mut App, ctx: &Context) {
@@ -112,10 +112,18 @@ fn save(app: &mut App, mut path: PathBuf) {
     if path.extension().is_none() {
         path.set_extension("toml");
     }
-    match app.files.save(&path, &app.scene_file()) {
-        Ok(()) => {
-            app.editor.mark_saved();
+    match app.editor.save(&path) {
+        Ok(Saved::Whole) => {
+            app.files.remember(&path);
             app.info(format!("Saved {}", path.display()));
+        }
+        Ok(Saved::Copy(losses)) => {
+            let lost: Vec<String> = losses.iter().map(ToString::to_string).collect();
+            let lost = lost.join(", ");
+            app.info(format!(
+                "{} holds a copy without {lost}. The scene itself is still unsaved: save it as .toml to keep everything.",
+                path.display()
+            ));
         }
         Err(message) => app.error(format!("{message}\nNothing was written; choose another place with Save as…")),
     }
@@ -123,7 +131,7 @@ fn save(app: &mut App, mut path: PathBuf) {
 
 fn ask_file(app: &mut App, ctx: &Context, purpose: Purpose) {
     let ctx = ctx.clone();
-    if let Err(error) = app.files.ask(purpose, move || ctx.request_repaint()) {
+    if let Err(error) = app.files.ask(purpose, app.editor.document().path(), move || ctx.request_repaint()) {
         app.error(format!("The file dialog could not be opened: {error}. Drop a file on the window instead."));
     }
 }
@@ -132,13 +140,11 @@ fn ask_file(app: &mut App, ctx: &Context, purpose: Purpose) {
 pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
     match command {
         Command::New => {
-            let file = SceneFile { scene: Scene::default(), radar: app.radar.clone() };
-            app.set_scene("new scene", file);
-            app.files.path = None;
+            app.set_document("new scene", Document::default());
         }
         Command::Open => ask_file(app, ctx, Purpose::Open),
         Command::OpenPath(path) => app.open(path),
-        Command::Save => match app.files.path.clone() {
+        Command::Save => match app.editor.document().path().map(Path::to_owned) {
             Some(path) => save(app, path),
             None => ask_file(app, ctx, Purpose::SaveScene),
         },
@@ -149,8 +155,14 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
         Command::ExportPicture => ask_file(app, ctx, Purpose::ExportPicture),
         Command::ExportMaps => ask_file(app, ctx, Purpose::ExportMaps),
         Command::ExportMetrics => ask_file(app, ctx, Purpose::ExportMetrics),
-        Command::Undo => _ = app.editor.undo(),
-        Command::Redo => _ = app.editor.redo(),
+        Command::Undo => {
+            app.editor.undo();
+            app.follow_document();
+        }
+        Command::Redo => {
+            app.editor.redo();
+            app.follow_document();
+        }
         Command::Cut => {
             copy(app, ctx);
             app.editor.delete_selected();
@@ -158,11 +170,15 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
         Command::Copy => copy(app, ctx),
         Command::Paste => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
         Command::PasteText(text) => {
-            if let Err(error) = app.editor.paste(&text, &app.radar) {
+            if let Err(error) = app.editor.paste(&text) {
                 app.error(format!("Nothing was pasted: {error}"));
             }
         }
-        Command::Duplicate => app.editor.duplicate_selected(),
+        Command::Duplicate => {
+            if let Err(error) = app.editor.duplicate_selected() {
+                app.error(format!("Nothing was duplicated: {error}"));
+            }
+        }
         Command::Delete => app.editor.delete_selected(),
         Command::SelectAll => app.editor.select_all(),
         Command::Escape => escape(app),
@@ -194,14 +210,8 @@ pub(super) fn run(app: &mut App, ctx: &Context, command: Command) {
                 app.settings.snr = snr;
             }
         }
-        Command::SetCarrier(carrier) => {
-            app.settings.carrier = carrier;
-            app.radar.carrier = carrier;
-        }
-        Command::SetWindow(window) => {
-            app.settings.window = window;
-            app.radar.window = window;
-        }
+        Command::SetCarrier(carrier) => app.edit_radar("carrier", |r| r.carrier = carrier),
+        Command::SetWindow(window) => app.edit_radar("window", |r| r.window = window),
         Command::ToggleReflectors => app.settings.show_reflectors ^= true,
         Command::ToggleFieldsOfView => app.settings.show_fields_of_view ^= true,
         Command::Method(name) => app.settings.method = name.to_owned(),
@@ -242,10 +252,7 @@ fn escape(app: &mut App) {
 fn preset(app: &mut App, index: usize) {
     let Some(preset) = presets::ALL.get(index) else { return };
     match preset.load() {
-        Ok(file) => {
-            app.set_scene("preset", file);
-            app.files.path = None;
-        }
+        Ok(file) => app.set_document("preset", Document::shipped(file)),
         Err(error) => app.error(format!("Preset {}: {error}", preset.id)),
     }
 }
@@ -254,8 +261,7 @@ fn random_scene(app: &mut App, kind: Kind) {
     let seed = app.settings.random_seed;
     let scene = Generator::new(&app.radar, Reading::Program, ScenePurpose::Test, seed).scene(kind, 0);
     app.settings.random_seed = seed.wrapping_add(1);
-    app.set_scene("random scene", SceneFile { scene, radar: app.radar.clone() });
-    app.files.path = None;
+    app.set_document("random scene", Document::made(SceneFile { scene, radar: app.radar.clone() }));
 }
 
 /// Adds an object at `place`, or in the middle of the visible scene, beside whatever is there already.

@@ -1,7 +1,6 @@
 //! Scene files of the app: dialogs off the UI thread, recent files.
 
-use super::autosave::Autosave;
-use crate::scene::file::{self, SceneFile};
+use crate::interact::{Autosave, Document};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -48,10 +47,8 @@ pub(super) struct Answer {
     pub path: PathBuf,
 }
 
-/// Where the scene came from and where it is kept.
+/// Files opened lately, and where unsaved documents are kept.
 pub(super) struct Files {
-    /// The scene's own file, if it has one.
-    pub path: Option<PathBuf>,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
     /// Where an unsaved scene is kept, if anywhere.
@@ -63,21 +60,25 @@ pub(super) struct Files {
 
 impl Files {
     /// `folder` is where the autosave is kept; without it there is none.
-    pub fn new(folder: Option<&Path>, recent: Vec<PathBuf>) -> Self {
-        Files {
-            path: None,
+    pub fn new(folder: Option<&Path>, recent: Vec<PathBuf>) -> std::io::Result<Self> {
+        Ok(Files {
             recent,
-            autosave: folder.map(Autosave::claim),
+            autosave: folder.map(Autosave::claim).transpose()?,
             answers: channel(),
             #[cfg(feature = "network")]
             folder: folder.map(Path::to_path_buf),
-        }
+        })
     }
 
     /// Asks the user for a file on a thread of its own; [`Files::answer`] has it later.
-    pub fn ask(&self, purpose: Purpose, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
+    pub fn ask(
+        &self,
+        purpose: Purpose,
+        beside: Option<&Path>,
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<()> {
         let answers = self.answers.0.clone();
-        let folder = self.path.as_ref().and_then(|p| p.parent()).map(Path::to_path_buf);
+        let folder = beside.and_then(Path::parent).map(Path::to_path_buf);
         std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
             let dialog = purpose.dialog();
             let dialog = if let Some(folder) = folder { dialog.set_directory(folder) } else { dialog };
@@ -97,29 +98,19 @@ impl Files {
         self.answers.1.try_recv().ok()
     }
 
-    /// Reads a scene; the file becomes the scene's own.
-    pub fn open(&mut self, path: &Path) -> Result<SceneFile, String> {
-        let scene = file::load(path).map_err(|e| e.to_string())?;
+    /// Reads a document.
+    pub fn open(&mut self, path: &Path) -> Result<Document, String> {
+        let document = Document::read(path).map_err(|e| e.to_string())?;
         self.remember(path);
-        Ok(scene)
+        Ok(document)
     }
 
-    /// Writes a scene; the file becomes the scene's own.
-    pub fn save(&mut self, path: &Path, scene: &SceneFile) -> Result<(), String> {
-        file::save(path, scene).map_err(|e| e.to_string())?;
-        self.remember(path);
-        if let Some(autosave) = &mut self.autosave {
-            autosave.forget();
-        }
-        Ok(())
-    }
-
-    fn remember(&mut self, path: &Path) {
+    /// Puts a file among the recent ones.
+    pub fn remember(&mut self, path: &Path) {
         let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         self.recent.retain(|p| *p != path);
-        self.recent.insert(0, path.clone());
+        self.recent.insert(0, path);
         self.recent.truncate(RECENT);
-        self.path = Some(path);
     }
 
     /// A folder of its own for a training by the recipe called `name`; `None` where the app keeps no files.
@@ -127,11 +118,5 @@ impl Files {
     pub fn new_run(&self, name: &str) -> Option<PathBuf> {
         let runs = self.folder.as_ref()?.join("runs");
         (1u32..).map(|n| runs.join(format!("{name}-{n}"))).find(|run| !run.exists())
-    }
-
-    /// Name for the window's title.
-    pub fn title(&self) -> String {
-        let name = self.path.as_deref().and_then(Path::file_name);
-        name.map_or_else(|| "untitled".to_owned(), |n| n.to_string_lossy().into_owned())
     }
 }

@@ -32,7 +32,7 @@ impl App {
 
     /// Whether a worker has something to do.
     pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy() || self.bounds.is_busy()
+        self.pipeline.is_busy() || self.bounds.is_busy() || self.files.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 
     /// Report of the last update, if there was one.

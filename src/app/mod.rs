@@ -10,7 +10,6 @@
 
 use eframe::egui;
 mod application;
-mod autosave;
 mod axes;
 mod bounds;
 mod bounds_panel;

@@ -119,7 +119,7 @@ fn pointer(app: &mut App, ui: &Ui, rect: Rect, response: &Response) {
         }
     }
     if let (Some(_), Some(now)) = (app.editor.dragged(), now) {
-        app.editor.drag_to(view.to_scene(rect, now), app.settings.snap, &app.radar);
+        app.editor.drag_to(view.to_scene(rect, now), app.settings.snap);
     }
     if response.drag_stopped_by(PointerButton::Primary) {
         app.editor.end_drag();
