@@ -7,7 +7,7 @@ use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::state::{Arrangement, Command, Methods, Notices, Pointer, Settings, State};
 use super::widgets::theme;
-use crate::interact::Editor;
+use crate::interact::{Document, Editor};
 use crate::reconstruct::Reconstructor;
 use crate::scene::presets;
 use eframe::egui;
@@ -78,12 +78,10 @@ impl App {
         let kept: Kept = creation.storage.and_then(|s| eframe::get_value(s, eframe::APP_KEY)).unwrap_or_default();
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
         let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| eframe::storage_dir(APP_ID)));
-        let default = presets::default_scene();
         let began = options.started.unwrap_or_else(Instant::now);
         let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
         let mut state = State {
-            editor: Editor::new(default.scene),
-            radar: default.radar,
+            editor: Editor::of(Document::shipped(presets::default_scene())),
             settings: kept.settings,
             methods: Methods::new(methods),
             arrangement: kept.arrangement,
@@ -92,17 +90,13 @@ impl App {
             map_views: Default::default(),
             pointer: Pointer::default(),
             guided: Default::default(),
-            path: None,
             recent: kept.recent,
             dark: ctx.theme() == egui::Theme::Dark,
         };
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
-        restore(&mut state, &jobs);
-        if let Some(path) = options.scene {
-            apply::open(&mut state, path);
-        }
+        start(&mut state, &jobs, options.scene);
         let memory = Memory::default();
         Ok(App { state, jobs, memory, asked: Vec::new(), frame_log, title: String::new(), later: Default::default() })
     }
@@ -132,7 +126,7 @@ impl App {
         let input = input::Input {
             keys_taken: self.memory.palette.is_open() || self.memory.file_dialog.is_open(),
             selected: !self.state.editor.selection().is_empty(),
-            bin_metres: self.state.radar.range_resolution_metres(),
+            bin_metres: self.state.radar().range_resolution_metres(),
         };
         commands.extend(input::read(ctx, input));
         commands
@@ -177,19 +171,25 @@ impl App {
     }
 }
 
-/// Puts what an earlier window left unsaved on screen.
-fn restore(state: &mut State, jobs: &Jobs) {
-    match jobs.autosave.as_ref().and_then(|a| a.restore()) {
-        Some(Ok(file)) => {
-            state.set_scene("restore", file);
-            state.editor.mark_unsaved();
+/// Opens the file asked for, and what an earlier window left unsaved.
+fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
+    let restored = jobs.autosave.as_ref().map(|a| a.restore()).unwrap_or_default();
+    for problem in &restored.problems {
+        state.notices.error(format!("An unsaved scene of the last session can't be read: {problem}"));
+    }
+    let asked = asked.and_then(|path| apply::read(state, &path));
+    match (&restored.on_screen, &asked) {
+        (Some(_), None) => {
             state.notices.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
         }
-        Some(Err(message)) => {
-            state.notices.error(format!("The unsaved scene of the last session can't be read: {message}"));
+        (Some(_), Some(_)) => {
+            state.notices.info("The last session left an unsaved scene: undo (Ctrl+Z) brings it back.");
         }
-        None => {}
+        (None, _) => {}
     }
+    let otherwise = state.editor.document().clone();
+    state.editor = Editor::start(restored, asked, otherwise);
+    state.scene_view.fit = true;
 }
 
 impl eframe::App for App {
@@ -214,7 +214,7 @@ impl eframe::App for App {
         }
         let commands = self.draw(ui);
         self.apply(&ctx, commands);
-        if self.state.pointer.turn(&self.state.radar) {
+        if self.state.pointer.turn(self.state.radar()) {
             // Panels drawn before the one under it still show the old place.
             ctx.request_repaint();
         }
@@ -230,9 +230,8 @@ impl eframe::App for App {
         let kept = Kept { settings: state.settings.clone(), arrangement, recent: state.recent.clone() };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         state.arrangement = kept.arrangement;
-        if state.editor.is_modified()
-            && let Some(autosave) = &mut self.jobs.autosave
-            && let Err(error) = autosave.keep_now(&state.scene_file())
+        if let Some(autosave) = &mut self.jobs.autosave
+            && let Err(error) = autosave.keep_now(&state.editor)
         {
             tracing::warn!("the scene could not be autosaved: {error}");
         }

@@ -5,13 +5,14 @@ use super::state::{
     Arrangement, Brightness, Command, EvaluationChoice, MapViews, NewObject, Projection, Settings, State,
 };
 use crate::evaluate::campaign::Campaign;
-use crate::interact::{Place, SelectionMode};
+use crate::interact::{Document, Place, Saved, SelectionMode};
 use crate::maps::Normalisation;
-use crate::scene::file::{self, SceneFile};
+use crate::radar::Radar;
+use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
-use crate::scene::{GaussianCluster, Line, Object, Point, Scene, presets};
+use crate::scene::{GaussianCluster, Line, Object, Point, presets};
 use crate::signal::Floor;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a command asks of the window.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,17 +100,21 @@ fn edit(state: &mut State, command: Command) -> Option<Command> {
         Command::Redo => state.redo(),
         Command::Seal => editor.seal(),
         Command::PasteText(text) => {
-            if let Err(error) = editor.paste(&text, &state.radar) {
+            if let Err(error) = editor.paste(&text) {
                 state.notices.error(format!("Nothing was pasted: {error}"));
             }
         }
-        Command::Duplicate => editor.duplicate_selected(),
+        Command::Duplicate => {
+            if let Err(error) = editor.duplicate_selected() {
+                state.notices.error(format!("Nothing was duplicated: {error}"));
+            }
+        }
         Command::Delete => editor.delete_selected(),
         Command::SelectAll => editor.select_all(),
         Command::Nudge { dx_metres, dy_metres } => editor.nudge(dx_metres, dy_metres),
         Command::Add(kind, place) => add(state, kind, place),
-        Command::SetCarrier(carrier) => state.radar.carrier = carrier,
-        Command::SetWindow(window) => state.radar.window = window,
+        Command::SetCarrier(carrier) => edit_radar(state, "carrier", |r| r.carrier = carrier),
+        Command::SetWindow(window) => edit_radar(state, "window", |r| r.window = window),
         other => return Some(other),
     }
     None
@@ -119,18 +124,16 @@ fn edit(state: &mut State, command: Command) -> Option<Command> {
 fn scenes(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
     match command {
         Command::New => {
-            let file = SceneFile { scene: Scene::default(), radar: state.radar.clone() };
-            state.set_scene("new scene", file);
-            state.path = None;
+            state.set_document("new scene", Document::default());
         }
         Command::Open => jobs.choose_file(state, Purpose::Open),
         Command::OpenPath(path) => open(state, path),
-        Command::Save => match state.path.clone() {
-            Some(path) => save(state, jobs, path),
+        Command::Save => match state.editor.document().path().map(Path::to_owned) {
+            Some(path) => save(state, path),
             None => jobs.choose_file(state, Purpose::SaveScene),
         },
         Command::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
-        Command::SaveTo(path) => save(state, jobs, path),
+        Command::SaveTo(path) => save(state, path),
         Command::Preset(index) => preset(state, index),
         Command::RandomScene(kind) => random_scene(state, kind),
         other => return Some(other),
@@ -186,7 +189,7 @@ fn work(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command>
         Command::CancelMethod => jobs.pipeline.cancel_method(),
         Command::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
         Command::CancelEvaluation => jobs.evaluation.cancel(),
-        Command::Measure { thorough } => jobs.run_time.begin(state.radar.clone(), thorough),
+        Command::Measure { thorough } => jobs.run_time.begin(state.radar().clone(), thorough),
         Command::CancelMeasurement => jobs.run_time.cancel(),
         Command::OpenLog => jobs.choose_file(state, Purpose::OpenLog),
         Command::WatchLog(path) => {
@@ -237,27 +240,45 @@ fn copy(state: &mut State) -> Option<Effect> {
 
 /// Opens a scene file; on any error the scene on screen stays.
 pub fn open(state: &mut State, path: PathBuf) {
-    match file::load(&path) {
-        Ok(scene) => {
-            state.remember(&path);
-            state.set_scene("open", scene);
-        }
-        Err(error) => state.notices.error(format!("{error}\nThe scene on screen was kept.")),
+    if let Some(document) = read(state, &path) {
+        state.set_document("open", document);
     }
 }
 
-fn save(state: &mut State, jobs: &mut Jobs, mut path: PathBuf) {
+/// Reads a scene file; says why where it can't.
+pub fn read(state: &mut State, path: &Path) -> Option<Document> {
+    match Document::read(path) {
+        Ok(document) => {
+            state.remember(path);
+            Some(document)
+        }
+        Err(error) => {
+            state.notices.error(format!("{error}\nThe scene on screen was kept."));
+            None
+        }
+    }
+}
+
+/// Changes the radar, as a step that can be undone.
+fn edit_radar(state: &mut State, label: &str, change: impl FnOnce(&mut Radar)) {
+    if let Err(error) = state.editor.edit_radar(label, None, change) {
+        state.notices.error(error.to_string());
+    }
+}
+
+fn save(state: &mut State, mut path: PathBuf) {
     if path.extension().is_none() {
         path.set_extension("toml");
     }
-    match file::save(&path, &state.scene_file()) {
-        Ok(()) => {
+    match state.editor.save(&path) {
+        Ok(Saved::Whole) => {
             state.remember(&path);
-            state.editor.mark_saved();
-            if let Some(autosave) = &mut jobs.autosave {
-                autosave.forget();
-            }
             state.notices.info(format!("Saved {}", path.display()));
+        }
+        Ok(Saved::Copy(losses)) => {
+            let lost = losses.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            let advice = "The scene itself is still unsaved: save it as .toml to keep everything.";
+            state.notices.info(format!("{} holds a copy without {lost}. {advice}", path.display()));
         }
         Err(error) => {
             state.notices.error(format!("{error}\nNothing was written; choose another place with Save as…"));
@@ -280,8 +301,7 @@ fn preset(state: &mut State, index: usize) {
     let Some(preset) = presets::ALL.get(index) else { return };
     match preset.load() {
         Ok(file) => {
-            state.set_scene("preset", file);
-            state.path = None;
+            state.set_document("preset", Document::shipped(file));
         }
         Err(error) => state.notices.error(format!("Preset {}: {error}", preset.id)),
     }
@@ -289,15 +309,15 @@ fn preset(state: &mut State, index: usize) {
 
 fn random_scene(state: &mut State, kind: Kind) {
     let Settings { random_seed: seed, random_number: number, .. } = state.settings;
-    let scene = Generator::new(&state.radar, Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
+    let scene = Generator::new(state.radar(), Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
     state.settings.random_number = number.wrapping_add(1);
-    state.set_scene("random scene", SceneFile { scene, radar: state.radar.clone() });
-    state.path = None;
+    let file = SceneFile { scene, radar: state.radar().clone() };
+    state.set_document("random scene", Document::made(file));
 }
 
 /// Adds an object at `place`, or in the middle of the visible scene, beside whatever is there already.
 fn add(state: &mut State, kind: NewObject, place: Option<Place>) {
-    let (bin, view) = (state.radar.range_resolution_metres(), state.scene_view);
+    let (bin, view) = (state.radar().range_resolution_metres(), state.scene_view);
     let mut at = place.unwrap_or(Place::new(view.centre.x_metres, view.centre.y_metres.max(2.0)));
     if place.is_none() {
         while state.editor.hit(at, view.metres_per_point).is_some() {
@@ -326,7 +346,7 @@ fn add(state: &mut State, kind: NewObject, place: Option<Place>) {
 
 fn evaluation_plan(state: &State, choice: &EvaluationChoice) -> EvaluationPlan {
     let campaign = Campaign {
-        radar: state.radar.clone(),
+        radar: state.radar().clone(),
         count: choice.count,
         seed: choice.seed,
         floor: state.settings.floor,

@@ -65,8 +65,9 @@ impl<'a> Contents<'a> {
     fn scene(&mut self, ui: &mut Ui) -> Vec<Command> {
         let (state, pipeline) = (&mut *self.state, &self.jobs.pipeline);
         let found = pipeline.output().filter(|_| state.settings.show_found);
+        let radar = state.editor.radar().clone();
         let input = scene::Input {
-            radar: &state.radar,
+            radar: &radar,
             snap: state.settings.snap,
             fields_of_view: state.settings.show_fields_of_view,
             found: found.map_or(&[], |o| &o.found.reflectors),
@@ -87,7 +88,7 @@ impl<'a> Contents<'a> {
         };
         let input = controls::Input {
             settings: &state.settings,
-            radar: &state.radar,
+            radar: state.radar(),
             methods: &state.methods.all,
             method: state.method().map(|m| m.as_ref()),
             eta: state.output_eta(),
@@ -109,7 +110,7 @@ impl<'a> Contents<'a> {
         let found = pipeline.output().filter(|_| settings.show_found && kind.needs_output());
         let input = map::Input {
             kind,
-            radar: &self.state.radar,
+            radar: self.state.radar(),
             projection: settings.projection,
             colours: settings.colours,
             texture,
@@ -132,7 +133,7 @@ impl<'a> Contents<'a> {
             (MapKind::Output, pipeline.output().map(|o| &*o.pair.output)),
         ];
         let maps = maps.into_iter().filter_map(|(kind, map)| Some((kind, map?))).collect();
-        cuts::show(ui, cuts::Input { radar: &self.state.radar, cursor: self.state.cut_cursor(), maps })
+        cuts::show(ui, cuts::Input { radar: self.state.radar(), cursor: self.state.cut_cursor(), maps })
     }
 
     fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
@@ -159,7 +160,7 @@ impl<'a> Contents<'a> {
         let job = &self.jobs.bounds;
         let input = bounds::Input {
             settings: self.state.settings.bounds,
-            elements: self.state.radar.elements,
+            elements: self.state.radar().elements,
             has_subject: job.has_subject(),
             result: job.result(),
             error: job.error(),
@@ -172,7 +173,7 @@ impl<'a> Contents<'a> {
         let input = evaluation::Input {
             methods: &self.state.methods.all,
             method: self.state.method().map(|m| m.name()),
-            radar: job.radar().unwrap_or(&self.state.radar),
+            radar: job.radar().unwrap_or(self.state.radar()),
             progress: job.progress(),
             rows: job.rows(),
             note: job.note(),
@@ -183,7 +184,7 @@ impl<'a> Contents<'a> {
     fn run_time(&mut self, ui: &mut Ui) -> Vec<Command> {
         let job = &self.jobs.run_time;
         let input = run_time::Input {
-            radar: job.radar().unwrap_or(&self.state.radar),
+            radar: job.radar().unwrap_or(self.state.radar()),
             progress: job.progress(),
             rows: job.rows(),
             bare_fft_ms: job.bare_fft_ms(),
@@ -206,7 +207,8 @@ impl Draw for Contents<'_> {
             Panel::Scene => self.scene(ui),
             Panel::Controls => self.controls(ui),
             Panel::Inspector => {
-                inspector::show(ui, inspector::Input { radar: &self.state.radar }, &mut self.state.editor)
+                let radar = self.state.editor.radar().clone();
+                inspector::show(ui, inspector::Input { radar: &radar }, &mut self.state.editor)
             }
             Panel::Map(kind) => self.map(ui, kind),
             Panel::Cuts => self.cuts(ui),

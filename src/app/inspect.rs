@@ -26,7 +26,7 @@ impl App {
 
     /// The radar before the scene.
     pub fn radar(&self) -> &Radar {
-        &self.state.radar
+        self.state.radar()
     }
 
     /// Asks for a command, as a menu entry would.

@@ -2,10 +2,11 @@
 
 pub mod archive;
 pub mod memory;
+pub mod npy;
 pub mod npz;
 
-use std::fs::Permissions;
-use std::io::{self, BufWriter, Write};
+use std::fs::{File, Permissions};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -29,7 +30,7 @@ pub fn write_atomically<E: From<io::Error>>(
     if let Some(permissions) = new_file_permissions(&path) {
         builder.permissions(permissions);
     }
-    let mut out = BufWriter::new(builder.tempfile_in(folder)?);
+    let mut out = BufWriter::new(builder.tempfile_in(folder).map_err(|e| unwritable(folder, &e))?);
     write(&mut out)?;
     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
     file.as_file().sync_all()?;
@@ -43,6 +44,38 @@ pub fn write_atomically<E: From<io::Error>>(
 /// As [`write_atomically`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_atomically(path, |out| out.write_all(bytes))
+}
+
+/// The error of a folder that takes no file; the temporary file's name in the system's message would lead nowhere.
+fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("nothing can be written into the folder \"{}\": {}", folder.display(), error.kind()),
+    )
+}
+
+/// Reads a file of at most `most` bytes.
+///
+/// # Errors
+/// What the system says; [`io::ErrorKind::FileTooLarge`] for a longer file, [`io::ErrorKind::InvalidInput`] for a folder, a device or a pipe,
+/// which may never end.
+pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let found = std::fs::metadata(path)?;
+    if !found.is_file() {
+        let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected a file")));
+    }
+    let too_large = |bytes| {
+        let message = format!("has {bytes} bytes; files of at most {most} bytes are read here");
+        io::Error::new(io::ErrorKind::FileTooLarge, message)
+    };
+    if found.len() > most {
+        return Err(too_large(found.len()));
+    }
+    let mut bytes = Vec::with_capacity(found.len() as usize);
+    // It may grow while it is read.
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
 /// Follows a link, so that it stays a link, and refuses what replacing would destroy.
@@ -85,6 +118,18 @@ mod tests {
         assert_eq!(result.unwrap_err().to_string(), "power cut");
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays behind");
+    }
+
+    #[test]
+    fn what_is_too_large_or_endless_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_bytes(&path, &[7; 100]).unwrap();
+        assert_eq!(read_bounded(&path, 100).unwrap(), [7; 100]);
+        assert!(read_bounded(&path, 99).unwrap_err().to_string().contains("has 100 bytes"));
+        assert!(read_bounded(folder.path(), 99).unwrap_err().to_string().contains("is a folder"));
+        #[cfg(unix)]
+        assert!(read_bounded(Path::new("/dev/zero"), 99).unwrap_err().to_string().contains("device"));
     }
 
     #[test]

@@ -1,13 +1,18 @@
 //! NumPy archives (`.npz`): reading by key with errors that name key, shape and type, and writing in one step.
 
-use super::write_atomically;
+use super::{npy, write_atomically};
 use ndarray::{Array, ArrayRef, Dimension};
-use ndarray_npy::{NpzReader, NpzWriter, ReadNpyError, ReadNpzError, ReadableElement, WritableElement, WriteNpzError};
+use ndarray_npy::{NpzWriter, ReadNpyError, ReadNpyExt, ReadableElement, WritableElement, WriteNpzError};
 use num_complex::{Complex32, Complex64};
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter};
+use std::io::{self, BufReader, BufWriter, Read};
 use std::path::Path;
 use tempfile::NamedTempFile;
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+/// Most bytes that one array of an archive may have, unless [`Npz::at_most`] says otherwise: 1 GiB, the samples of the largest radar.
+pub const MAX_ARRAY_BYTES: u64 = 1 << 30;
 
 /// Why an archive could not be read or written. Messages don't name the file: whoever opened it does.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +61,14 @@ pub enum NpzError {
         /// The value.
         value: String,
     },
+    /// An array is larger than anything that is read from it.
+    #[error("array \"{key}\" is too large; at most {most} bytes are read")]
+    TooLarge {
+        /// The key.
+        key: String,
+        /// Most bytes that are read.
+        most: u64,
+    },
     /// An array is damaged.
     #[error("array \"{key}\" can't be read: {reason}")]
     Damaged {
@@ -68,8 +81,9 @@ pub enum NpzError {
 
 /// An open archive.
 pub struct Npz {
-    reader: NpzReader<BufReader<File>>,
+    archive: ZipArchive<BufReader<File>>,
     keys: Vec<String>,
+    most_bytes: u64,
 }
 
 /// A number that is either finite or not.
@@ -96,16 +110,20 @@ impl Npz {
     /// [`NpzError::Io`] or [`NpzError::Archive`].
     pub fn open(path: &Path) -> Result<Npz, NpzError> {
         let file = File::open(path)?;
-        if file.metadata()?.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder; expected an .npz file").into());
+        if !file.metadata()?.is_file() {
+            let message = "is a folder, device or pipe; expected an .npz file";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message).into());
         }
-        let archive = |error: ReadNpzError| match error {
-            ReadNpzError::Zip(error) => NpzError::Archive(error.to_string()),
-            ReadNpzError::Npy(error) => NpzError::Archive(error.to_string()),
-        };
-        let mut reader = NpzReader::new(BufReader::new(file)).map_err(archive)?;
-        let keys = reader.names().map_err(archive)?;
-        Ok(Npz { reader, keys })
+        let not_whole = |error: ZipError| NpzError::Archive(error.to_string());
+        let archive = ZipArchive::new(BufReader::new(file)).map_err(not_whole)?;
+        // NumPy leaves the ending off its keys.
+        let keys = archive.file_names().map(|name| name.strip_suffix(".npy").unwrap_or(name).to_owned()).collect();
+        Ok(Npz { archive, keys, most_bytes: MAX_ARRAY_BYTES })
+    }
+
+    /// Refuses arrays of more than so many bytes.
+    pub fn at_most(self, most_bytes: u64) -> Npz {
+        Npz { most_bytes, ..self }
     }
 
     /// The keys of the archive.
@@ -161,17 +179,34 @@ impl Npz {
             return Err(NpzError::Missing { key: key.to_owned(), found });
         }
         let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
-        match self.reader.by_name(key) {
+        let bytes = self.bytes(key)?;
+        npy::check(&bytes).map_err(damaged)?;
+        match Array::read_npy(bytes.as_slice()) {
             Ok(values) => Ok(Ok(values)),
-            Err(ReadNpzError::Npy(ReadNpyError::WrongDescriptor(found))) => Ok(Err(found.to_string())),
-            Err(ReadNpzError::Npy(ReadNpyError::WrongNdim(expected, found))) => Err(NpzError::Shape {
+            Err(ReadNpyError::WrongDescriptor(found)) => Ok(Err(found.to_string())),
+            Err(ReadNpyError::WrongNdim(expected, found)) => Err(NpzError::Shape {
                 key: key.to_owned(),
                 found: format!("with {found} dimensions"),
                 expected: format!("{} dimensions", expected.unwrap_or_default()),
             }),
-            Err(ReadNpzError::Npy(error)) => Err(damaged(error.to_string())),
-            Err(ReadNpzError::Zip(error)) => Err(damaged(error.to_string())),
+            Err(error) => Err(damaged(error.to_string())),
         }
+    }
+
+    /// The array's file, whole, if it isn't too large.
+    fn bytes(&mut self, key: &str) -> Result<Vec<u8>, NpzError> {
+        let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
+        let name = format!("{key}.npy");
+        let index = self.archive.index_for_name(key).or_else(|| self.archive.index_for_name(&name));
+        let index = index.ok_or_else(|| damaged("its name is not in the archive's list".to_owned()))?;
+        let most = self.most_bytes;
+        let file = self.archive.by_index(index).map_err(|e| damaged(e.to_string()))?;
+        let mut bytes = Vec::new();
+        file.take(most + 1).read_to_end(&mut bytes).map_err(|e| damaged(e.to_string()))?;
+        if bytes.len() as u64 > most {
+            return Err(NpzError::TooLarge { key: key.to_owned(), most });
+        }
+        Ok(bytes)
     }
 }
 

@@ -1,16 +1,20 @@
-//! Undo and redo: whole scenes, shared, with what was done to them.
+//! Undo and redo: whole documents, shared, with what was done to them.
 
-use super::Selection;
+use super::document::Document;
+use super::selection::Selection;
 use crate::scene::Scene;
 use std::sync::Arc;
 
 /// Steps that are kept.
 const LIMIT: usize = 500;
 
-/// A scene as it was.
+/// Objects that are kept in all steps together, each scene counted once: some 300 MB.
+const OBJECT_LIMIT: usize = 4_000_000;
+
+/// A document as it was.
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
-    pub scene: Arc<Scene>,
+    pub document: Document,
     pub selection: Selection,
 }
 
@@ -40,9 +44,8 @@ impl History {
         self.sealed = false;
         if !merges {
             self.done.push(Step { label: label.to_owned(), merge_key: merge_key.map(str::to_owned), before });
-            if self.done.len() > LIMIT {
-                self.done.remove(0);
-            }
+            let kept = newest(&self.done, LIMIT, OBJECT_LIMIT);
+            self.done.drain(..self.done.len() - kept);
         }
     }
 
@@ -66,6 +69,11 @@ impl History {
         self.done.len()
     }
 
+    /// Every document that undo and redo may bring back.
+    pub(super) fn documents_mut(&mut self) -> impl Iterator<Item = &mut Document> {
+        self.done.iter_mut().chain(&mut self.undone).map(|s| &mut s.before.document)
+    }
+
     pub(super) fn undo(&mut self, now: Snapshot) -> Option<Snapshot> {
         Self::step(&mut self.done, &mut self.undone, now)
     }
@@ -78,5 +86,50 @@ impl History {
         let step = from.pop()?;
         to.push(Step { label: step.label, merge_key: None, before: now });
         Some(step.before)
+    }
+}
+
+/// How many of the newest steps to keep: at most `steps`, with at most `objects` in all their scenes; the last one always.
+fn newest(done: &[Step], steps: usize, objects: usize) -> usize {
+    let (mut held, mut kept) = (0, 0);
+    let mut later: Option<&Arc<Scene>> = None;
+    for step in done.iter().rev().take(steps) {
+        let scene = step.before.document.scene();
+        if later.is_none_or(|l| !Arc::ptr_eq(l, scene)) {
+            held += scene.objects.len();
+        }
+        if kept > 0 && held > objects {
+            break;
+        }
+        later = Some(scene);
+        kept += 1;
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file::SceneFile;
+
+    fn step(objects: usize) -> Step {
+        let scene = Scene::of_points((0..objects).map(|i| (i as f64, 1.0)));
+        let document = Document::shipped(SceneFile { scene, ..SceneFile::default() });
+        let before = Snapshot { document, selection: Selection::default() };
+        Step { label: String::new(), merge_key: None, before }
+    }
+
+    #[test]
+    fn steps_and_objects_are_bounded() {
+        let (one, ten) = (step(1), step(10));
+        assert_eq!(newest(&vec![one.clone(); 8], 5, 100), 5);
+        assert_eq!(newest(&vec![ten.clone(); 8], 500, 10), 8, "one scene, however many steps look at it");
+        let different: Vec<Step> = (0..8).map(|_| step(10)).collect();
+        assert_eq!(newest(&different, 500, 45), 4);
+        assert_eq!(newest(&different, 500, 5), 1, "the last step always stays");
+        assert_eq!(newest(&[], 500, 5), 0);
+        let mut history = History::default();
+        (0..LIMIT + 50).for_each(|_| history.push("edit", None, one.before.clone()));
+        assert_eq!(history.depth(), LIMIT);
     }
 }

@@ -1,4 +1,5 @@
-//! Editing a scene by hand, without any GUI crate: what is hit, how it moves, where it snaps, what is selected, what can be undone.
+//! Editing a document by hand, without any GUI crate: what is hit, how it moves, where it snaps, what is selected, what can be undone,
+//! and what of it is on disk.
 //!
 //! Everything here is in metres of the scene. A view tells how many metres one of its points covers, and the rest follows:
 //!
@@ -8,7 +9,9 @@
 //!  key, menu ──────────────► Editor::{add, delete_selected, nudge, paste, ..}            (one step each)
 //! ```
 
+pub mod autosave;
 pub mod clipboard;
+mod document;
 mod editor;
 mod grip;
 mod history;
@@ -16,7 +19,9 @@ pub mod hit;
 mod selection;
 mod snap;
 
-pub use editor::Editor;
+pub use autosave::Autosave;
+pub use document::{Document, Restored};
+pub use editor::{Editor, Saved};
 pub use grip::{Grip, GripPlace, MAX_LINE_COUNT, grips, move_grip};
 pub use history::History;
 pub use selection::{Selection, SelectionMode};

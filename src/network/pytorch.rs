@@ -1,10 +1,13 @@
 //! PyTorch checkpoints (`.pt`, `.pth`), translated to safetensors so that one reader checks and loads both.
 
 use super::weights::WeightsError;
+use crate::files::read_bounded;
 use burn::store::pytorch_reader::PytorchReader;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
+
+/// Most bytes of a weight file, and of all tensors of a checkpoint together: 1 GiB, some 160 times the thesis' network.
+const MAX_BYTES: u64 = 1 << 30;
 
 /// The bytes of the weight file at `path` as safetensors: those of a safetensors file as they are; those of a PyTorch checkpoint,
 /// which holds a `state_dict` or a whole model, translated. Names, shapes and types stay PyTorch's.
@@ -13,7 +16,8 @@ use std::path::Path;
 /// [`WeightsError::File`] when it can't be read, [`WeightsError::NotPytorch`] when it is neither.
 pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
     let file = path.display().to_string();
-    let bytes = fs::read(path).map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
+    let bytes =
+        read_bounded(path, MAX_BYTES).map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
     if is_pytorch(&bytes) { translate(path) } else { Ok(bytes) }
 }
 
@@ -26,6 +30,11 @@ fn translate(path: &Path) -> Result<Vec<u8>, WeightsError> {
     let bad = |reason: String| WeightsError::NotPytorch { file: path.display().to_string(), reason };
     let reader = PytorchReader::new(path).map_err(|e| bad(e.to_string()))?;
     let tensors: BTreeMap<_, _> = reader.into_tensors().into_iter().collect();
+    // Tensors may share a storage, or repeat one value: the file's length bounds nothing.
+    let asked = tensors.values().fold(0u64, |n, t| n.saturating_add(t.byte_len() as u64));
+    if asked > MAX_BYTES {
+        return Err(bad(format!("its tensors ask for {asked} bytes; at most {MAX_BYTES} are read")));
+    }
     let mut header = serde_json::Map::new();
     let mut data = Vec::new();
     for (name, tensor) in tensors {
@@ -44,6 +53,7 @@ fn translate(path: &Path) -> Result<Vec<u8>, WeightsError> {
 mod tests {
     use super::*;
     use crate::network::weights::WeightFile;
+    use std::fs;
 
     /// The weights of `thesis_reference_weights.safetensors` as `torch.save` writes a `state_dict`.
     const CHECKPOINT: &str = "tests/data/thesis_reference_weights.pt";

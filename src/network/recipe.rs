@@ -76,6 +76,11 @@ pub struct Share {
     pub count: u32,
 }
 
+/// Most scenes a step, training scenes and validation scenes of a set: lists of them and the maps of a batch are held in memory.
+const MAX_BATCH: usize = 1024;
+const MAX_SCENES: u64 = 10_000_000;
+const MAX_VALIDATION_SCENES: u32 = 10_000;
+
 /// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -159,8 +164,8 @@ impl Recipe {
         {
             return fail("optimizer.momentum", &momentum, "at least 0 and below 1");
         }
-        if self.batch == 0 {
-            return fail("batch", &self.batch, "at least 1");
+        if !(1..=MAX_BATCH).contains(&self.batch) {
+            return fail("batch", &self.batch, "1 to 1024");
         }
         if self.epochs == 0 {
             return fail("epochs", &self.epochs, "at least 1");
@@ -177,9 +182,19 @@ impl Recipe {
         if total < self.batch as u64 {
             return fail("scenes", &total, "at least one batch in all");
         }
+        if total > MAX_SCENES {
+            return fail("scenes", &total, "at most 10000000 in all");
+        }
+        if self.validation_scenes > MAX_VALIDATION_SCENES {
+            return fail("validation_scenes", &self.validation_scenes, "at most 10000");
+        }
         match &self.network {
-            Network::Thesis(c) if c.filters == 0 || c.filters > 512 => fail("network.filters", &c.filters, "1 to 512"),
-            Network::Thesis(c) if !(1..=8).contains(&c.levels) => fail("network.levels", &c.levels, "1 to 8"),
+            Network::Thesis(c) if !(1..=ThesisConfig::MAX_FILTERS).contains(&c.filters) => {
+                fail("network.filters", &c.filters, "1 to 512")
+            }
+            Network::Thesis(c) if !(1..=ThesisConfig::MAX_LEVELS).contains(&c.levels) => {
+                fail("network.levels", &c.levels, "1 to 8")
+            }
             Network::Unet(c) if !(1..=6).contains(&c.levels) => fail("network.levels", &c.levels, "1 to 6"),
             Network::Unet(c) if c.channels == 0 || c.channels > 256 => {
                 fail("network.channels", &c.channels, "1 to 256")
@@ -187,7 +202,13 @@ impl Recipe {
             Network::Unet(c) if c.rows == 0 || !c.rows.is_multiple_of(1 << c.levels) => {
                 fail("network.rows", &c.rows, "a multiple of two to the levels")
             }
-            Network::Live(c) if c.channels.contains(&0) || c.fine == 0 => fail("network.channels", &0, "at least 1"),
+            Network::Unet(c) if c.rows > 1 << 12 => fail("network.rows", &c.rows, "at most 4096"),
+            Network::Live(c) if c.channels.iter().chain([&c.fine]).any(|n| !(1..=512).contains(n)) => {
+                fail("network.channels", &format_args!("{:?} and {}", c.channels, c.fine), "1 to 512 each")
+            }
+            Network::Live(c) if c.blocks.iter().any(|n| *n > 64) => {
+                fail("network.blocks", &format_args!("{:?}", c.blocks), "at most 64 each")
+            }
             _ => Ok(()),
         }
     }
@@ -227,6 +248,8 @@ mod tests {
         let good = SHIPPED[0].1;
         for (from, to, expected) in [
             ("batch = 8", "batch = 0", "batch is 0"),
+            ("batch = 8", "batch = 100000", "batch is 100000"),
+            ("count = 200", "count = 4000000000", "at most 10000000 in all"),
             ("batch = 8", "batch = 8\ncolour = 3", "colour"),
             ("momentum = 0.9", "momentum = 1.5", "optimizer.momentum is 1.5"),
             ("learning_rate = 0.1", "learning_rate = nan", "optimizer.learning_rate is NaN"),

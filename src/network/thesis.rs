@@ -33,6 +33,13 @@ pub struct ThesisConfig {
     pub alive_output: bool,
 }
 
+impl ThesisConfig {
+    /// Most filters that a recipe or a weight file may ask for.
+    pub const MAX_FILTERS: usize = 512;
+    /// Most levels that a recipe or a weight file may ask for.
+    pub const MAX_LEVELS: usize = 8;
+}
+
 /// Mean and standard deviation of the output where training starts, if that is asked for.
 const ALIVE: [f64; 2] = [0.45, 0.15];
 
@@ -125,10 +132,15 @@ impl Thesis {
             ours.or_else(|| file.shape(&format!("{FIRST_TOWER}.{level}.0.weight")))
         };
         match stage(0) {
-            Some(&[filters, ..]) => {
-                let levels = (0..).take_while(|level| stage(*level).is_some()).count();
+            Some(&[filters @ 1..=ThesisConfig::MAX_FILTERS, ..]) => {
+                let levels = (0..ThesisConfig::MAX_LEVELS).take_while(|level| stage(*level).is_some()).count();
                 Ok(ThesisConfig { filters, levels, alive_output: false })
             }
+            Some(shape) => Err(WeightsError::Tensor {
+                file: file.name().to_owned(),
+                tensor: format!("{FIRST_TOWER}.0.0.weight"),
+                problem: format!("has shape {shape:?}; expected 1 to {} filters", ThesisConfig::MAX_FILTERS),
+            }),
             _ => Err(WeightsError::Tensor {
                 file: file.name().to_owned(),
                 tensor: format!("{FIRST_TOWER}.0.0.weight"),

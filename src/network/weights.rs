@@ -10,6 +10,9 @@ use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, Sa
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Most tensors of a weight file; the thesis' network has some 70.
+const MAX_TENSORS: usize = 10_000;
+
 /// What a weight file says about itself; kept in its safetensors header.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Provenance {
@@ -103,6 +106,22 @@ struct TensorHeader {
     data_offsets: [usize; 2],
 }
 
+impl TensorHeader {
+    /// Bytes that its shape and type ask for; `None` where that is no number, or the type is not one of safetensors'.
+    fn bytes(&self) -> Option<usize> {
+        let bits: usize =
+            self.dtype.trim_start_matches(|c: char| !c.is_ascii_digit()).split('_').next()?.parse().ok()?;
+        let size = if self.dtype == "BOOL" { 1 } else { bits / 8 };
+        self.shape.iter().try_fold(size, |product, n| product.checked_mul(*n))
+    }
+
+    /// Whether it asks for as many bytes as it has of a file's `length`.
+    fn is_sound(&self, length: usize) -> bool {
+        let [start, end] = self.data_offsets;
+        start <= end && end <= length && self.bytes().is_none_or(|bytes| bytes == end - start)
+    }
+}
+
 /// A weight file that was read and found whole.
 #[derive(Debug)]
 pub struct WeightFile<'a> {
@@ -135,6 +154,9 @@ impl<'a> WeightFile<'a> {
         let mut provenance = Provenance::default();
         let mut tensors = BTreeMap::new();
         for (key, value) in header {
+            if tensors.len() == MAX_TENSORS {
+                return Err(not(&format!("it has more than {MAX_TENSORS} tensors")));
+            }
             if key == "__metadata__" {
                 provenance.entries =
                     serde_json::from_value(value).map_err(|e| not(&format!("its metadata is odd: {e}")))?;
@@ -148,6 +170,10 @@ impl<'a> WeightFile<'a> {
         if end != data.len() {
             let expected = end.saturating_add(length + 8);
             return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected });
+        }
+        if let Some((tensor, _)) = tensors.iter().find(|(_, t)| !t.is_sound(data.len())) {
+            let problem = "has a place in the file that does not fit its shape and type".to_owned();
+            return Err(WeightsError::Tensor { file: name.to_owned(), tensor: tensor.clone(), problem });
         }
         Ok(WeightFile { name: name.to_owned(), bytes, data, tensors, provenance })
     }

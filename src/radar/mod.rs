@@ -5,6 +5,7 @@
 mod elements;
 mod layout;
 mod layout_kind;
+mod memory;
 mod squint;
 mod units;
 mod window;
@@ -12,7 +13,8 @@ mod window;
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
-pub use units::Decibels;
+pub use memory::MAX_MEMORY_BYTES;
+pub use units::{Bytes, Decibels};
 pub use window::{WindowFunction, hann};
 
 use serde::{Deserialize, Serialize};
@@ -125,6 +127,36 @@ pub enum RadarError {
         /// Largest allowed value.
         max: usize,
     },
+    /// The signal and the maps would not fit into the memory that a radar may ask for.
+    #[error(
+        "radar.{field} asks for too much memory: {elements} elements by {samples} samples with ends of {end_elements} need {bytes}; \
+         at most {most} can be had"
+    )]
+    Memory {
+        /// The larger of the two counts that make the maps.
+        field: &'static str,
+        /// Elements asked for.
+        elements: usize,
+        /// Samples asked for.
+        samples: usize,
+        /// Elements of each end asked for.
+        end_elements: usize,
+        /// What [`Radar::memory_bytes`] counts.
+        bytes: Bytes,
+        /// [`MAX_MEMORY_BYTES`].
+        most: Bytes,
+    },
+}
+
+impl RadarError {
+    /// Name of the field that is wrong.
+    pub fn field(&self) -> &'static str {
+        match self {
+            RadarError::NotPositive { field, .. }
+            | RadarError::Count { field, .. }
+            | RadarError::Memory { field, .. } => field,
+        }
+    }
 }
 
 impl Radar {
@@ -132,7 +164,8 @@ impl Radar {
     ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
-    /// (1 to 65536 samples, 6 to 65536 elements; each end between 3 elements and half the array).
+    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array), or counts that together ask for
+    /// more than [`MAX_MEMORY_BYTES`].
     pub fn validate(&self) -> Result<(), RadarError> {
         for (field, value) in [
             ("transmit_power_watts", self.transmit_power_watts),
@@ -153,7 +186,7 @@ impl Radar {
                 return Err(RadarError::Count { field, value, min, max });
             }
         }
-        Ok(())
+        self.check_memory()
     }
 
     /// Carrier wavelength lambda = c / f in metres.

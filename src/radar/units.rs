@@ -25,3 +25,31 @@ impl fmt::Display for Decibels {
         write!(f, "{} dB", self.0)
     }
 }
+
+/// An amount of memory in bytes, printed as a person reads it: "4.0 GiB".
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Bytes(pub u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (mut size, mut unit) = (self.0 as f64, "bytes");
+        for larger in ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"] {
+            if size < 1024.0 {
+                break;
+            }
+            (size, unit) = (size / 1024.0, larger);
+        }
+        if unit == "bytes" { write!(f, "{} bytes", self.0) } else { write!(f, "{size:.1} {unit}") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amounts_of_memory_are_readable() {
+        let told = [0, 1023, 1024, 1 << 30].map(|n| Bytes(n).to_string());
+        assert_eq!(told, ["0 bytes", "1023 bytes", "1.0 KiB", "1.0 GiB"]);
+    }
+}

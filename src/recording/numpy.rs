@@ -1,18 +1,13 @@
 //! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
+use crate::files::npy::header_bytes;
 use ndarray::ArrayD;
 use ndarray_npy::npy::header::Header;
 use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 use num_complex::{Complex32, Complex64};
 use std::io::{self, Cursor, Read, Seek};
 use zip::ZipArchive;
-
-/// Longest header that is read, bytes; NumPy's own have some 120.
-const MAX_HEADER_BYTES: usize = 4096;
-
-/// Most brackets in a header: each nests the parser once.
-const MAX_BRACKETS: usize = 16;
 
 /// Why an array could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -111,31 +106,6 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
 
 fn array<T: ReadableElement>(file: impl Read) -> Result<ArrayD<T>, ReadNpyError> {
     ArrayD::<T>::read_npy(file)
-}
-
-/// Magic number, version and dictionary, so long and so nested as NumPy would write them.
-fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
-    let invalid = |message: &str| io::Error::new(io::ErrorKind::InvalidData, message.to_owned());
-    let mut bytes = vec![0; 8];
-    file.read_exact(&mut bytes)?;
-    if !bytes.starts_with(b"\x93NUMPY") {
-        return Err(invalid("it does not begin with NumPy's magic number"));
-    }
-    let width = if bytes[6] == 1 { 2 } else { 4 };
-    let mut length = [0; 4];
-    file.read_exact(&mut length[..width])?;
-    bytes.extend_from_slice(&length[..width]);
-    let length = u32::from_le_bytes(length) as usize;
-    if length > MAX_HEADER_BYTES {
-        return Err(invalid("its header is longer than 4096 bytes"));
-    }
-    let start = bytes.len();
-    bytes.resize(start + length, 0);
-    file.read_exact(&mut bytes[start..])?;
-    if bytes[start..].iter().filter(|b| b"([{".contains(b)).count() > MAX_BRACKETS {
-        return Err(invalid("its header is nested too deep"));
-    }
-    Ok(bytes)
 }
 
 #[cfg(test)]

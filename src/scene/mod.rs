@@ -10,7 +10,7 @@ pub mod presets;
 
 pub use object::{GaussianCluster, Line, Object, Point};
 
-use crate::radar::Radar;
+use crate::radar::{Radar, RadarError};
 use serde::{Deserialize, Serialize};
 
 /// One ideal point reflector.
@@ -50,16 +50,16 @@ fn is_zero(seed: &u64) -> bool {
 /// Nearest a reflector may come to an element, metres. Closer than this the 1/R^2 law means nothing and its amplitude knows no bound.
 pub const MIN_ELEMENT_DISTANCE_METRES: f64 = 1e-6;
 
-/// Most reflectors a scene may hold.
+/// Most reflectors, and most objects, that a scene may hold.
 pub const MAX_REFLECTORS: usize = 200_000;
 
-/// Why a scene can't be simulated.
+/// Why a scene can't be simulated. Messages count objects from 1, as the app does.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// A number of an object is not usable.
-    #[error("object {object} ({kind}): {field} is {value}; expected {expected}")]
+    #[error("object {} ({kind}): {field} is {value}; expected {expected}", object + 1)]
     Value {
-        /// Index of the object in the scene.
+        /// Index of the object in the scene, from 0.
         object: usize,
         /// What kind of object it is.
         kind: &'static str,
@@ -72,10 +72,11 @@ pub enum SceneError {
     },
     /// A reflector sits on an element of the array, where its echo would be infinite.
     #[error(
-        "object {object} ({kind}): its reflector at x = {x_metres} m, y = {y_metres} m lies on element {element} of the array; move it at least {MIN_ELEMENT_DISTANCE_METRES} m away"
+        "object {} ({kind}): its reflector at x = {x_metres} m, y = {y_metres} m lies on element {element} of the array; move it at least {MIN_ELEMENT_DISTANCE_METRES} m away",
+        object + 1
     )]
     OnElement {
-        /// Index of the object in the scene.
+        /// Index of the object in the scene, from 0.
         object: usize,
         /// What kind of object it is.
         kind: &'static str,
@@ -86,12 +87,17 @@ pub enum SceneError {
         /// The element it lies on.
         element: usize,
     },
-    /// More reflectors than can be simulated.
-    #[error("the scene has {count} reflectors; at most {MAX_REFLECTORS} can be simulated")]
+    /// More reflectors, or more objects, than can be simulated.
+    #[error("the scene has {count} {what}; at most {MAX_REFLECTORS} can be simulated")]
     TooMany {
-        /// Reflectors in the scene.
+        /// Reflectors or objects in the scene.
         count: usize,
+        /// "reflectors" or "objects".
+        what: &'static str,
     },
+    /// The radar that is to see it makes no sense, or asks for too much memory.
+    #[error(transparent)]
+    Radar(#[from] RadarError),
 }
 
 impl Scene {
@@ -112,17 +118,33 @@ impl Scene {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.reflector_count()))
     }
 
-    /// Checks that `radar` can see this scene: every number finite and in range, no reflector on an element.
+    /// Checks that the scene holds no more than [`MAX_REFLECTORS`] reflectors and objects, before anything is made of them.
+    ///
+    /// # Errors
+    /// [`SceneError::TooMany`] says how many there are.
+    pub fn check_count(&self) -> Result<(), SceneError> {
+        self.check_room(&[])
+    }
+
+    /// Checks that `more` objects have room beside those of the scene.
+    ///
+    /// # Errors
+    /// [`SceneError::TooMany`] says how many there would be.
+    pub fn check_room(&self, more: &[Object]) -> Result<(), SceneError> {
+        let reflectors = more.iter().fold(self.reflector_count(), |n, o| n.saturating_add(o.reflector_count()));
+        within_limit(self.objects.len() + more.len(), "objects")?;
+        within_limit(reflectors, "reflectors")
+    }
+
+    /// Checks that `radar` can see this scene: the radar sound, every number finite and in range, no reflector on an element.
     ///
     /// Reflectors behind the array (y < 0), beyond the maximum range (they wrap) and very far away are all allowed.
     ///
     /// # Errors
-    /// [`SceneError`] names the object, the field and what was expected.
+    /// [`SceneError`] names the object or the radar's field, and what was expected.
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {
-        let count = self.reflector_count();
-        if count > MAX_REFLECTORS {
-            return Err(SceneError::TooMany { count });
-        }
+        radar.validate()?;
+        self.check_count()?;
         for (index, object) in self.objects.iter().enumerate() {
             object.validate(index)?;
             for r in object.reflectors() {
@@ -139,6 +161,10 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+fn within_limit(count: usize, what: &'static str) -> Result<(), SceneError> {
+    if count > MAX_REFLECTORS { Err(SceneError::TooMany { count, what }) } else { Ok(()) }
 }
 
 /// The element that a reflector comes too close to, if any.
@@ -162,14 +188,26 @@ mod tests {
         let radar = Radar::default();
         let on = Scene::of_points([(0.0, 5.0), (radar.element_x_metres(7), 0.0)]);
         let message = on.validate(&radar).unwrap_err().to_string();
-        assert!(message.contains("object 1") && message.contains("element 7"), "{message}");
+        assert!(message.contains("object 2") && message.contains("element 7"), "{message}");
         assert!(Scene::of_points([(0.0, 0.0)]).validate(&radar).is_ok(), "x = 0 lies between two elements");
     }
 
     #[test]
     fn nan_is_named() {
         let message = Scene::of_points([(f64::NAN, 5.0)]).validate(&Radar::default()).unwrap_err().to_string();
-        assert!(message.contains("object 0 (point)") && message.contains("x_metres"), "{message}");
+        assert!(message.contains("object 1 (point)") && message.contains("x_metres"), "{message}");
+    }
+
+    #[test]
+    fn crowds_are_refused_before_they_are_made() {
+        let line = |count| Object::Line(Line::vertical(1.0, 1.0, 0.1, count));
+        let of = |objects| Scene { objects, ..Scene::default() }.validate(&Radar::default()).map_err(|e| e.to_string());
+        assert_eq!(of(vec![line(MAX_REFLECTORS)]), Ok(()));
+        assert!(of(vec![line(MAX_REFLECTORS), line(1)]).unwrap_err().contains("200001 reflectors"));
+        assert!(of(vec![line(usize::MAX), line(usize::MAX)]).unwrap_err().contains("reflectors"));
+        assert!(of(vec![line(0); MAX_REFLECTORS + 1]).unwrap_err().contains("200001 objects"));
+        let large = Radar { elements: 65536, samples: 65536, ..Radar::default() };
+        assert!(Scene::default().validate(&large).unwrap_err().to_string().contains("TiB"));
     }
 
     #[test]

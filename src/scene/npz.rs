@@ -1,6 +1,6 @@
 //! The thesis author's scene archives: `all_point_x` and `all_point_y`, one number a reflector, in metres.
 
-use super::Scene;
+use super::{MAX_REFLECTORS, Scene};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use ndarray::{Array1, Ix1};
 use std::path::Path;
@@ -10,12 +10,15 @@ pub const X_KEY: &str = "all_point_x";
 /// Key of the reflectors' y in metres, f64 `[L]`.
 pub const Y_KEY: &str = "all_point_y";
 
+/// Most bytes of either array: [`MAX_REFLECTORS`] numbers of f64 and the longest header.
+const MAX_ARRAY_BYTES: u64 = 8 * MAX_REFLECTORS as u64 + 1024;
+
 /// Reads the reflectors of an archive as points of reflectivity 1; other arrays in it are left alone.
 ///
 /// # Errors
 /// [`NpzError`] when a key is missing, is not one row of finite numbers, or the two differ in length.
 pub fn read(path: &Path) -> Result<Scene, NpzError> {
-    let mut npz = Npz::open(path)?;
+    let mut npz = Npz::open(path)?.at_most(MAX_ARRAY_BYTES);
     let (x, y) = (npz.reals::<Ix1>(X_KEY)?, npz.reals::<Ix1>(Y_KEY)?);
     if x.len() != y.len() {
         return Err(NpzError::Shape {

@@ -138,6 +138,15 @@ impl Object {
         }
     }
 
+    /// Reflectivity sigma of each of its reflectors.
+    pub fn reflectivity(&self) -> f64 {
+        match self {
+            Object::Point(p) => p.reflectivity,
+            Object::Line(l) => l.reflectivity,
+            Object::Gaussian(g) => g.reflectivity,
+        }
+    }
+
     /// The reflectors this object stands for, in a fixed order.
     pub fn reflectors(&self) -> Vec<Reflector> {
         match self {
@@ -212,12 +221,12 @@ impl Object {
             if !value.is_finite() {
                 return Err(error(field, value, FINITE));
             }
-            let distance = matches!(field, "x_metres" | "y_metres" | "y_start_metres");
+            let distance = matches!(field, "x_metres" | "y_metres" | "y_start_metres" | "spacing_metres");
             if distance && value.abs() > 1e12 {
                 return Err(error(field, value, "a distance of at most 1e12 m"));
             }
-            if field.ends_with("std_metres") && value < 0.0 {
-                return Err(error(field, value, "0 or more"));
+            if field.ends_with("std_metres") && !(0.0..=1e12).contains(&value) {
+                return Err(error(field, value, "0 to 1e12 m"));
             }
             if field == "reflectivity" && value.abs() > 1e100 {
                 return Err(error(field, value, "a magnitude of at most 1e100"));

@@ -1,6 +1,7 @@
 //! Drives the whole app without a display: pointer, keys, files; asserts on state and on what was computed and what was not.
 #![cfg(feature = "app")]
 
+mod documents;
 mod panels;
 mod pictures;
 mod scene;

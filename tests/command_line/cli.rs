@@ -184,6 +184,11 @@ fn bad_input_is_named_and_leaves_nothing() {
         "element.toml",
         "[radar]\nelements = 7\nend_elements = 3\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 0\n",
     );
+    write("large.toml", "[radar]\nelements = 65536\nsamples = 65536\n");
+    write(
+        "crowd.toml",
+        "[[object]]\nkind = \"line\"\nx_metres = 1\ny_start_metres = 1\nspacing_metres = 1\ncount = 1000000000000\n",
+    );
     write("text.npz", "not an archive");
     write("scene.yaml", TWO_POINTS);
     let archive = |name: &str, keys: &[(&str, ndarray::ArrayD<f64>)]| {
@@ -202,6 +207,8 @@ fn bad_input_is_named_and_leaves_nothing() {
         ("key.toml", ["key.toml: line 4", "z_metres"]),
         ("nan.toml", ["nan.toml: line 4", "finite"]),
         ("element.toml", ["element.toml: line 4", "element 3"]),
+        ("large.toml", ["large.toml: line 2", "1.0 TiB"]),
+        ("crowd.toml", ["crowd.toml: line 1", "1000000000000 reflectors"]),
         ("text.npz", ["text.npz", "numpy.savez"]),
         ("half.npz", ["half.npz", "all_point_y"]),
         ("shape.npz", ["shape.npz", "dimensions"]),

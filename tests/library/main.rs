@@ -3,9 +3,16 @@
 mod accuracy;
 mod baseline_tables;
 mod conventions;
+mod damage;
 mod house;
 #[cfg(feature = "network")]
 mod live_network;
+mod memory;
 mod methods;
 mod radars;
 mod stress;
+mod whole_files;
+
+/// Damaged files are read in bounded memory: somebody has to count.
+#[global_allocator]
+static ALLOCATOR: damage::allocation::Counting = damage::allocation::Counting;

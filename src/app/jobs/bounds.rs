@@ -37,7 +37,7 @@ impl BoundsRequest {
     fn of(state: &State) -> Option<Self> {
         let (name, reflector) = subject(&state.editor)?;
         let BoundsSettings { elements, seed, snr, columns, bins } = state.settings.bounds;
-        Some(BoundsRequest { radar: state.radar.clone(), elements, seed, name, reflector, snr, columns, bins })
+        Some(BoundsRequest { radar: state.radar().clone(), elements, seed, name, reflector, snr, columns, bins })
     }
 }
 

@@ -83,7 +83,7 @@ impl Exports {
         let Some(method) = state.method().cloned() else {
             return Err("There is no method to draw the output of.".to_owned());
         };
-        let (radar, scene) = (state.radar.clone(), state.editor.scene().clone());
+        let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let style = Style {
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
@@ -105,7 +105,7 @@ impl Exports {
     /// Why it could not be begun.
     pub fn maps(&self, state: &State, mut path: PathBuf) -> Result<String, String> {
         path.set_extension("npz");
-        let (radar, scene) = (state.radar.clone(), state.editor.scene().clone());
+        let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation, seed) = (state.settings.floor, state.settings.normalisation, state.settings.seed);
         let method = state.method().cloned();
         self.begin(path, move |path| {

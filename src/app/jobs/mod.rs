@@ -1,7 +1,6 @@
 //! Everything that works beside the window: each on a thread of its own, asked at the end of a frame for what its panels showed, and
 //! polled at the beginning of the next.
 
-mod autosave;
 mod bounds;
 mod dialogs;
 mod evaluation;
@@ -14,7 +13,6 @@ mod run_time;
 mod scene_maps;
 mod training;
 
-pub use autosave::Autosave;
 pub use bounds::{Bounds, BoundsRequest, BoundsResult};
 pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
@@ -26,6 +24,7 @@ pub use scene_maps::Scores;
 pub use training::{Log, Training};
 
 use crate::app::state::{Command, Panel, State};
+use crate::interact::Autosave;
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -74,7 +73,7 @@ impl Jobs {
             training: Training::start(wake)?,
             exports: Exports::new(ctx.clone()),
             dialogs,
-            autosave: folder.map(Autosave::claim),
+            autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
         })
@@ -111,17 +110,26 @@ impl Jobs {
         if self.pipeline.is_busy() {
             self.wake.request_repaint_after(BAR);
         }
-        match self.autosave.as_mut().map_or(Ok(None), |autosave| autosave.follow(state)) {
-            Ok(None) => {}
-            Ok(Some(later)) => self.wake.request_repaint_after(later),
-            Err(message) => state.notices.error(format!("The scene could not be autosaved: {message}")),
+        self.keep_unsaved(state);
+    }
+
+    /// Keeps copies of what is unsaved, but not while something is dragged.
+    fn keep_unsaved(&mut self, state: &mut State) {
+        let Some(autosave) = &mut self.autosave else { return };
+        for problem in autosave.poll() {
+            state.notices.error(format!("The scene could not be autosaved: {problem}"));
+        }
+        if state.editor.dragged().is_none()
+            && let Some(later) = autosave.keep(&state.editor)
+        {
+            self.wake.request_repaint_after(later);
         }
     }
 
     /// Opens a file dialog; what is chosen comes back as a command.
     pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
         let ctx = self.wake.clone();
-        let folder = state.path.as_ref().and_then(|p| p.parent()).map(Path::to_path_buf);
+        let folder = state.editor.document().path().and_then(Path::parent).map(Path::to_path_buf);
         if let Err(error) = self.dialogs.ask(Question { purpose, folder }, move || ctx.request_repaint()) {
             let advice = "Drop a file on the window instead.";
             state.notices.error(format!("The file dialog could not be opened: {error}. {advice}"));
@@ -136,7 +144,9 @@ impl Jobs {
 
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy() || self.bounds.is_busy()
+        self.pipeline.is_busy()
+            || self.bounds.is_busy()
+            || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }
 

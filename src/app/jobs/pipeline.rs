@@ -201,7 +201,7 @@ impl Pipeline {
             ends: output,
         };
         self.ask_maps(MapsRequest {
-            radar: state.radar.clone(),
+            radar: state.radar().clone(),
             scene: state.editor.scene().clone(),
             wanted,
             pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
@@ -235,7 +235,7 @@ impl Pipeline {
             Some(Basis { ends, target: full.lambda.clone(), floor, normalisation })
         });
         let Some((basis, method)) = basis.zip(state.method().cloned()) else { return };
-        let request = MethodRequest { radar: state.radar.clone(), basis, method };
+        let request = MethodRequest { radar: state.radar().clone(), basis, method };
         let current =
             self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
         self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };

@@ -23,11 +23,9 @@ pub use panel::{MapKind, Panel};
 pub use settings::{Brightness, Projection, Settings};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
-use crate::interact::Editor;
+use crate::interact::{Document, Editor};
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
-use crate::scene::Scene;
-use crate::scene::file::SceneFile;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -36,10 +34,8 @@ const RECENT: usize = 10;
 
 /// Everything that commands change.
 pub struct State {
-    /// The scene being edited.
+    /// The document being edited: the scene, the radar before it, and the file they are kept in.
     pub editor: Editor,
-    /// The radar before it. Carrier and window live here alone.
-    pub radar: Radar,
     /// What the user chose.
     pub settings: Settings,
     /// The reconstruction methods.
@@ -56,8 +52,6 @@ pub struct State {
     pub pointer: Pointer,
     /// What the guide did.
     pub guided: Guided,
-    /// The scene's own file, if it has one.
-    pub path: Option<PathBuf>,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
     /// Whether the window is dark at the moment.
@@ -65,23 +59,22 @@ pub struct State {
 }
 
 impl State {
-    /// Puts another scene on screen; undo brings the last one back.
-    pub fn set_scene(&mut self, label: &str, file: SceneFile) {
-        self.editor.open(label, file.scene);
-        self.radar = file.radar;
+    /// Puts another document on screen; undo brings the last one back, its file and all.
+    pub fn set_document(&mut self, label: &str, document: Document) {
+        self.editor.open(label, document);
         self.scene_view.fit = true;
     }
 
-    /// The scene with its radar, as a file holds them.
-    pub fn scene_file(&self) -> SceneFile {
-        SceneFile { scene: Scene::clone(self.editor.scene()), radar: self.radar.clone() }
+    /// The radar before the scene.
+    pub fn radar(&self) -> &Radar {
+        self.editor.radar()
     }
 
     /// Everything that the guide may change, as it is.
     pub fn setup(&self) -> Setup {
         Setup {
             settings: self.settings.clone(),
-            radar: self.radar.clone(),
+            radar: self.radar().clone(),
             scene: self.editor.scene().clone(),
             depth: self.editor.history().depth(),
         }
@@ -100,7 +93,6 @@ impl State {
         };
         while self.editor.history().depth() > step.before.depth && self.editor.undo() {}
         self.settings.take_back(&step.before.settings, &step.after.settings);
-        self.radar = step.before.radar;
     }
 
     /// Does again what was undone last.
@@ -111,24 +103,19 @@ impl State {
         };
         while self.editor.history().depth() < step.after.depth && self.editor.redo() {}
         self.settings.take_back(&step.after.settings, &step.before.settings);
-        self.radar = step.after.radar;
     }
 
-    /// Makes a file the scene's own.
+    /// Puts a file among the recent ones.
     pub fn remember(&mut self, path: &Path) {
         let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         self.recent.retain(|p| *p != path);
-        self.recent.insert(0, path.clone());
+        self.recent.insert(0, path);
         self.recent.truncate(RECENT);
-        self.path = Some(path);
     }
 
     /// Title of the window.
     pub fn title(&self) -> String {
-        let name = self.path.as_deref().and_then(Path::file_name);
-        let name = name.map_or_else(|| "untitled".into(), |n| n.to_string_lossy());
-        let mark = if self.editor.is_modified() { " •" } else { "" };
-        format!("{name}{mark} — apertura")
+        format!("{} — apertura", self.editor.document().title())
     }
 
     /// The method in use.
@@ -145,9 +132,9 @@ impl State {
     /// Where cuts are taken: under the pointer, where it was last, or through the first object.
     pub fn cut_cursor(&self) -> Cursor {
         let first =
-            || self.editor.scene().objects.first().map(|o| Cursor::at_place(&self.radar, o.centre_metres().into()));
-        let inside = |c: &Cursor| c.cell(&self.radar).is_some();
+            || self.editor.scene().objects.first().map(|o| Cursor::at_place(self.radar(), o.centre_metres().into()));
+        let inside = |c: &Cursor| c.cell(self.radar()).is_some();
         let last = self.pointer.last().or_else(first).filter(inside);
-        last.unwrap_or_else(|| Cursor::at_cell(&self.radar, 0.0, 0.0))
+        last.unwrap_or_else(|| Cursor::at_cell(self.radar(), 0.0, 0.0))
     }
 }

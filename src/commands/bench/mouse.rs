@@ -53,12 +53,10 @@ type Answer = Result<Frame, SceneError>;
 
 /// Drags in small and large scenes, over no floor and over the thesis'.
 pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
-    let radar = Radar::default();
     let (wake, woken) = channel();
-    let of_engine = radar.clone();
     let worker: Worker<Asked, Answer> = Worker::spawn(
         "maps",
-        move || Engine::new(of_engine.clone()),
+        || Engine::new(Radar::default()),
         |engine, (scene, wanted): Asked, _| engine.update(&scene, &wanted),
         // Nobody listens any more once all is measured.
         move || wake.send(()).unwrap_or_default(),
@@ -67,14 +65,13 @@ pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
     let mut rows = Vec::new();
     for reflectors in REFLECTORS {
         for convention in Convention::BOTH {
-            rows.push(drag(&radar, &worker, &woken, reflectors, convention)?);
+            rows.push(drag(&worker, &woken, reflectors, convention)?);
         }
     }
     Ok(rows)
 }
 
 fn drag(
-    radar: &Radar,
     worker: &Worker<Asked, Answer>,
     woken: &Receiver<()>,
     reflectors: usize,
@@ -103,7 +100,7 @@ fn drag(
     for step in 1..=WARM_UP + MOVES {
         let pointer = Place::new(start.x_metres + 0.01 * step as f64, start.y_metres + 0.005 * step as f64);
         let begin = Instant::now();
-        editor.drag_to(pointer, Snap::Off, radar);
+        editor.drag_to(pointer, Snap::Off);
         worker.request((editor.scene().clone(), wanted));
         shown()?;
         if step > WARM_UP {

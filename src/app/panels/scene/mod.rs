@@ -156,7 +156,7 @@ fn pointer(
         }
     }
     if let (Some(_), Some(now)) = (editor.dragged(), now) {
-        editor.drag_to(view.to_scene(rect, now), input.snap, input.radar);
+        editor.drag_to(view.to_scene(rect, now), input.snap);
     }
     if response.drag_stopped_by(PointerButton::Primary) {
         editor.end_drag();

@@ -1,0 +1,167 @@
+//! Copies of unsaved documents that outlive a crash or a kill. Every window has its own.
+//!
+//! ```text
+//!   autosave.toml              the document on screen, while it is unsaved
+//!   autosave.behind-3.toml     an unsaved one that another took the place of
+//!   autosave.lock              held while the window lives
+//!   autosave-2.toml, ..        a second window's
+//! ```
+//!
+//! Each is a scene file with a table that says where the document belongs. Files are written on a thread of their own.
+
+mod store;
+
+use super::Editor;
+use super::document::Restored;
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use store::{Plan, Store};
+
+/// Shortest time between two copies: no hand makes two edits in it.
+const EVERY: Duration = Duration::from_millis(250);
+
+/// Most windows that keep copies at once.
+const SLOTS: u32 = 64;
+
+/// The copies of one window.
+pub struct Autosave {
+    store: Store,
+    jobs: Option<Sender<Plan>>,
+    answers: Receiver<Result<(), String>>,
+    /// Jobs whose answers are out.
+    pending: usize,
+    thread: Option<JoinHandle<()>>,
+    /// What the thread was asked for last, and when.
+    last: Option<(Plan, Instant)>,
+    /// Held while the window lives; the system lets go of it however the process ends. Last, so that the thread ends before.
+    _lock: Option<File>,
+}
+
+impl Autosave {
+    /// Takes the first slot in `folder` that no other window holds: one with copies that a dead window left comes first.
+    ///
+    /// Where the file system has no locks, the first slot is shared.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn claim(folder: &Path) -> std::io::Result<Autosave> {
+        // Without a folder there is no lock; writing a copy will say why.
+        let _reported_later = std::fs::create_dir_all(folder);
+        let (stem, lock) = claim_slot(folder);
+        let store = Store::new(folder, stem);
+        let (jobs, asked) = channel::<Plan>();
+        let (answer, answers) = channel();
+        let mut writer = store.clone();
+        let work = move || {
+            while let Ok(plan) = asked.recv() {
+                // Only the latest state matters.
+                let plans: Vec<Plan> = std::iter::once(plan).chain(asked.try_iter()).collect();
+                let count = plans.len();
+                let result = plans.into_iter().next_back().map_or(Ok(()), |p| writer.carry_out(&p));
+                for answered in 1..=count {
+                    let result = if answered == count { result.clone() } else { Ok(()) };
+                    if answer.send(result).is_err() {
+                        return;
+                    }
+                }
+            }
+        };
+        let thread = std::thread::Builder::new().name("autosave".to_owned()).spawn(work)?;
+        Ok(Autosave { store, jobs: Some(jobs), answers, pending: 0, thread: Some(thread), last: None, _lock: lock })
+    }
+
+    /// Reads what a dead window left in this slot. A file that can't be read is set aside, not deleted.
+    pub fn restore(&self) -> Restored {
+        self.store.restore()
+    }
+
+    /// Keeps copies of what is unsaved in `editor`, and deletes those of what is not any more; at most every 250 ms, except where
+    /// another document came on screen. Returns how long until the next copy may be made, if this one had to wait.
+    ///
+    /// To be called after every change, and never during a drag.
+    pub fn keep(&mut self, editor: &Editor) -> Option<Duration> {
+        let plan = Plan::of(editor);
+        if let Some((last, when)) = &self.last {
+            if last.is_same(&plan) {
+                return None;
+            }
+            if let Some(wait) = EVERY.checked_sub(when.elapsed()).filter(|_| last.has_same_documents(&plan)) {
+                return Some(wait);
+            }
+        }
+        self.ask(plan);
+        None
+    }
+
+    /// Keeps copies at once and waits until they are on disk: the window is closing.
+    ///
+    /// # Errors
+    /// Which file could not be written, and why.
+    pub fn keep_now(&mut self, editor: &Editor) -> Result<(), String> {
+        self.ask(Plan::of(editor));
+        let mut result = Ok(());
+        while self.pending > 0 {
+            self.pending -= 1;
+            result = self.answers.recv().unwrap_or_else(|_| Err("the autosave has stopped".to_owned()));
+        }
+        result
+    }
+
+    /// What went wrong since the last call.
+    pub fn poll(&mut self) -> Vec<String> {
+        let mut problems = Vec::new();
+        while let Ok(answer) = self.answers.try_recv() {
+            self.pending -= 1;
+            problems.extend(answer.err());
+        }
+        problems
+    }
+
+    /// Whether files are being written.
+    pub fn is_busy(&self) -> bool {
+        self.pending > 0
+    }
+
+    fn ask(&mut self, plan: Plan) {
+        self.last = Some((plan.clone(), Instant::now()));
+        let sent = self.jobs.as_ref().is_some_and(|jobs| jobs.send(plan).is_ok());
+        self.pending += usize::from(sent);
+    }
+}
+
+impl Drop for Autosave {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic of it was told by the files it did not write.
+            let _panicked = thread.join();
+        }
+    }
+}
+
+/// The name of the slot's files, and the lock on it where the file system has any.
+fn claim_slot(folder: &Path) -> (String, Option<File>) {
+    let name = |slot: u32| if slot == 1 { "autosave".to_owned() } else { format!("autosave-{slot}") };
+    let lock_path = |slot: u32| -> PathBuf { folder.join(format!("{}.lock", name(slot))) };
+    let mut free = None;
+    for slot in 1..=SLOTS {
+        let Ok(lock) = File::create(lock_path(slot)) else { break };
+        match lock.try_lock() {
+            Ok(()) if Store::new(folder, name(slot)).has_copies() => return (name(slot), Some(lock)),
+            Ok(()) => _ = free.get_or_insert((name(slot), lock)),
+            Err(TryLockError::WouldBlock) => {}
+            Err(TryLockError::Error(_)) => break,
+        }
+        // Slots are taken in order: behind a free one without its lock file there is nothing.
+        if free.is_some() && !lock_path(slot + 1).exists() {
+            break;
+        }
+    }
+    free.map_or_else(|| (name(1), None), |(name, lock)| (name, Some(lock)))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,186 @@
+//! The files of one slot: which there are, and how they become what a plan says.
+
+use crate::files::{read_bounded, write_bytes};
+use crate::interact::Editor;
+use crate::interact::document::{Document, Restored};
+use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Name of the table in each file that is the autosave's own.
+const TABLE: &str = "document";
+
+/// Where a document belongs.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Kept {
+    /// Its own file. A path that is not Unicode is not kept: the document comes back untitled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    path: Option<String>,
+}
+
+/// The documents that copies are wanted of.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
+    /// The one on screen, if it is unsaved.
+    on_screen: Option<Document>,
+    /// Those that another took the place of, the latest last.
+    left: Vec<Document>,
+}
+
+impl Plan {
+    pub(super) fn of(editor: &Editor) -> Plan {
+        let on_screen = editor.is_modified().then(|| editor.document().clone());
+        Plan { on_screen, left: editor.left().to_vec() }
+    }
+
+    fn documents(&self) -> impl Iterator<Item = &Document> {
+        self.left.iter().chain(&self.on_screen)
+    }
+
+    /// Whether the files would be the same ones with the same content.
+    pub(super) fn is_same(&self, other: &Plan) -> bool {
+        self.has_same_documents(other) && self.documents().zip(other.documents()).all(|(a, b)| a.untouched_since(b))
+    }
+
+    /// Whether the files would be the same ones.
+    pub(super) fn has_same_documents(&self, other: &Plan) -> bool {
+        self.left.len() == other.left.len()
+            && self.on_screen.is_some() == other.on_screen.is_some()
+            && self.documents().zip(other.documents()).all(|(a, b)| a.id() == b.id())
+    }
+}
+
+/// A copy on disk of a document that another took the place of.
+#[derive(Debug)]
+struct Behind {
+    path: PathBuf,
+    number: u64,
+    document: Document,
+}
+
+/// The files of one slot. Copies of this value speak of the same files.
+#[derive(Debug, Clone)]
+pub(super) struct Store {
+    folder: PathBuf,
+    stem: String,
+    /// Copies of left documents that are on disk.
+    behind: Arc<Mutex<Vec<Behind>>>,
+}
+
+impl Store {
+    pub(super) fn new(folder: &Path, stem: String) -> Store {
+        Store { folder: folder.to_owned(), stem, behind: Arc::default() }
+    }
+
+    fn on_screen_path(&self) -> PathBuf {
+        self.folder.join(format!("{}.toml", self.stem))
+    }
+
+    fn behind_path(&self, number: u64) -> PathBuf {
+        self.folder.join(format!("{}.behind-{number}.toml", self.stem))
+    }
+
+    /// Numbers of the copies of left documents, rising.
+    fn behind_numbers(&self) -> Vec<u64> {
+        let prefix = format!("{}.behind-", self.stem);
+        let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let names = entries.filter_map(|e| e.file_name().into_string().ok());
+        let number = |name: String| name.strip_prefix(&prefix)?.strip_suffix(".toml")?.parse().ok();
+        let mut numbers: Vec<u64> = names.filter_map(number).collect();
+        numbers.sort_unstable();
+        numbers
+    }
+
+    /// Whether a window left copies here.
+    pub(super) fn has_copies(&self) -> bool {
+        self.on_screen_path().exists() || !self.behind_numbers().is_empty()
+    }
+
+    /// Reads every copy. One that can't be read is set aside.
+    pub(super) fn restore(&self) -> Restored {
+        let mut restored = Restored::default();
+        let mut behind = Vec::new();
+        for number in self.behind_numbers() {
+            let path = self.behind_path(number);
+            match read(&path) {
+                Ok(document) => behind.push(Behind { path, number, document }),
+                Err(error) => restored.problems.push(set_aside(&path, &error)),
+            }
+        }
+        let path = self.on_screen_path();
+        if path.exists() {
+            match read(&path) {
+                // A kill between two files leaves a document in both.
+                Ok(document) if behind.iter().any(|b| b.document.same_as(&document)) => {}
+                Ok(document) => restored.on_screen = Some(document),
+                Err(error) => restored.problems.push(set_aside(&path, &error)),
+            }
+        }
+        restored.left = behind.iter().map(|b| b.document.clone()).collect();
+        *self.behind.lock().unwrap_or_else(PoisonError::into_inner) = behind;
+        restored
+    }
+
+    /// Makes the files what `plan` says: writes first, deletes then, so that at no moment a document is in no file.
+    pub(super) fn carry_out(&mut self, plan: &Plan) -> Result<(), String> {
+        if plan.documents().next().is_some() {
+            std::fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;
+        }
+        let mut behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
+        for document in &plan.left {
+            if behind.iter().any(|b| b.document.untouched_since(document)) {
+                continue;
+            }
+            let number = behind.iter().map(|b| b.number).chain(self.behind_numbers()).max().map_or(1, |n| n + 1);
+            let path = self.behind_path(number);
+            write(&path, document).map_err(|e| e.to_string())?;
+            behind.push(Behind { path, number, document: document.clone() });
+        }
+        let path = self.on_screen_path();
+        match &plan.on_screen {
+            Some(document) => write(&path, document).map_err(|e| e.to_string())?,
+            None => remove(&path)?,
+        }
+        while let Some(stale) = behind.iter().position(|b| !plan.left.iter().any(|d| b.document.untouched_since(d))) {
+            remove(&behind[stale].path)?;
+            behind.remove(stale);
+        }
+        Ok(())
+    }
+}
+
+fn write(path: &Path, document: &Document) -> Result<(), SceneFileError> {
+    let kept = Kept { path: document.path().and_then(Path::to_str).map(str::to_owned) };
+    let text = file::to_toml_beside(&document.to_file(), TABLE, &kept)
+        .map_err(|source| SceneFileError::Unwritable { path: path.to_owned(), source })?;
+    write_bytes(path, text.as_bytes()).map_err(|source| SceneFileError::Io { path: path.to_owned(), source })
+}
+
+fn read(path: &Path) -> Result<Document, SceneFileError> {
+    let io = |source| SceneFileError::Io { path: path.to_owned(), source };
+    let bytes = read_bounded(path, MAX_FILE_BYTES).map_err(io)?;
+    let text = String::from_utf8(bytes).map_err(|e| io(std::io::Error::other(e.utf8_error())))?;
+    let (file, kept) = file::from_toml_beside::<Kept>(&text, TABLE)
+        .map_err(|source| SceneFileError::Text { path: path.to_owned(), source })?;
+    let own = kept.and_then(|k| k.path).map(PathBuf::from);
+    Ok(Document::unsaved(own.as_deref(), file))
+}
+
+/// Deletes a file; not there is as good as deleted.
+fn remove(path: &Path) -> Result<(), String> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(format!("{}: {error}", path.display())),
+        _ => Ok(()),
+    }
+}
+
+/// Renames what can't be read, so that it is neither read again nor overwritten.
+fn set_aside(path: &Path, error: &SceneFileError) -> String {
+    let free = (1u32..).map(|n| path.with_extension(format!("broken-{n}.txt"))).find(|p| !p.exists());
+    match free.filter(|aside| std::fs::rename(path, aside).is_ok()) {
+        Some(aside) => format!("{error}; it was kept as {}", aside.display()),
+        None => error.to_string(),
+    }
+}

@@ -1,0 +1,172 @@
+use super::*;
+use crate::interact::Document;
+use crate::scene::file::{self, SceneFile};
+use crate::scene::{Object, Point, Scene, presets};
+
+/// An editor whose document is `name`, with one point more than its file.
+fn edited(document: Document) -> Editor {
+    let mut editor = Editor::of(document);
+    editor.add(Object::Point(Point::new(1.0, 2.0)));
+    editor
+}
+
+fn street() -> Document {
+    Document::shipped(presets::default_scene())
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = entries.filter(|n| !n.ends_with(".lock")).collect();
+    names.sort();
+    names
+}
+
+/// What the next window finds.
+fn found(folder: &Path) -> Restored {
+    Autosave::claim(folder).unwrap().restore()
+}
+
+#[test]
+fn two_windows_keep_two_copies_and_the_next_two_find_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = Autosave::claim(folder.path()).unwrap();
+    let mut second = Autosave::claim(folder.path()).unwrap();
+    first.keep_now(&edited(street())).unwrap();
+    second.keep_now(&Editor::of(Document::made(SceneFile::default()))).unwrap();
+    assert_eq!(names(folder.path()), ["autosave-2.toml", "autosave.toml"]);
+    drop(second);
+    let again = Autosave::claim(folder.path()).unwrap();
+    let empty = again.restore().on_screen.unwrap();
+    assert!(empty.scene().objects.is_empty(), "the second's, the first is still open");
+    drop(first);
+    let other = Autosave::claim(folder.path()).unwrap();
+    assert_eq!(other.restore().on_screen.unwrap().scene(), edited(street()).scene());
+    assert!(found(folder.path()).on_screen.is_none());
+}
+
+#[test]
+fn copies_wait_for_each_other_but_not_when_the_window_closes_or_another_document_comes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut autosave = Autosave::claim(folder.path()).unwrap();
+    let mut editor = edited(street());
+    assert_eq!(autosave.keep(&editor), None);
+    editor.add(Object::Point(Point::new(2.0, 2.0)));
+    assert!(autosave.keep(&editor).is_some());
+    editor.open("open", Document::default());
+    assert_eq!(autosave.keep(&editor), None);
+    assert!(autosave.is_busy());
+    autosave.keep_now(&editor).unwrap();
+    assert_eq!(names(folder.path()), ["autosave.behind-1.toml"]);
+    assert!(!autosave.is_busy() && autosave.poll().is_empty());
+}
+
+#[test]
+fn a_named_document_comes_back_under_its_name_with_its_radar() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.toml");
+    file::save(&path, &presets::default_scene()).unwrap();
+    let mut editor = edited(Document::read(&path).unwrap());
+    editor.edit_radar("carrier", None, |r| r.elements = 64).unwrap();
+    let mut autosave = Autosave::claim(&folder.path().join("data")).unwrap();
+    autosave.keep_now(&editor).unwrap();
+    drop(autosave);
+    let back = found(&folder.path().join("data")).on_screen.unwrap();
+    assert_eq!(back.title(), "a.toml •");
+    assert_eq!((back.scene(), back.radar().elements), (editor.scene(), 64));
+    let mut editor = Editor::of(back);
+    editor.save(&path).unwrap();
+    assert_eq!(Document::read(&path).unwrap().radar().elements, 64);
+}
+
+#[test]
+fn a_saved_document_leaves_no_copy() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, path) = (folder.path().join("data"), folder.path().join("a.toml"));
+    let mut autosave = Autosave::claim(&data).unwrap();
+    let mut editor = edited(street());
+    autosave.keep_now(&editor).unwrap();
+    editor.save(&path).unwrap();
+    autosave.keep_now(&editor).unwrap();
+    assert_eq!(names(&data), [""; 0]);
+}
+
+#[test]
+fn a_start_with_a_file_loses_neither_the_file_nor_the_unsaved_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, path) = (folder.path().join("data"), folder.path().join("asked.toml"));
+    file::save(&path, &SceneFile { scene: Scene::of_points([(5.0, 5.0)]), ..SceneFile::default() }).unwrap();
+    let unsaved = edited(street());
+    Autosave::claim(&data).unwrap().keep_now(&unsaved).unwrap();
+    // Three starts with the file, each closed as a window is.
+    for _ in 0..3 {
+        let mut autosave = Autosave::claim(&data).unwrap();
+        let mut editor = Editor::start(autosave.restore(), Some(Document::read(&path).unwrap()), street());
+        assert_eq!(editor.document().title(), "asked.toml");
+        assert_eq!(editor.left().len(), 1);
+        autosave.keep_now(&editor).unwrap();
+        assert_eq!(names(&data), ["autosave.behind-1.toml"]);
+        if editor.undo() {
+            assert_eq!((editor.scene(), editor.is_modified()), (unsaved.scene(), true));
+        }
+    }
+    let mut autosave = Autosave::claim(&data).unwrap();
+    let mut editor = Editor::start(autosave.restore(), None, street());
+    let id = editor.left()[0].id();
+    assert!(editor.recover(id) && editor.is_modified() && editor.scene() == unsaved.scene());
+    autosave.keep_now(&editor).unwrap();
+    assert_eq!(names(&data), ["autosave.toml"], "on screen again");
+    editor.save(&path).unwrap();
+    autosave.keep_now(&editor).unwrap();
+    assert_eq!(names(&data), [""; 0], "saved");
+}
+
+#[test]
+fn the_first_start_with_a_file_keeps_the_unsaved_scene_one_step_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("asked.toml");
+    file::save(&path, &SceneFile::default()).unwrap();
+    let restored = Restored { on_screen: Some(edited(street()).document().clone()), ..Restored::default() };
+    let mut editor = Editor::start(restored, Some(Document::read(&path).unwrap()), Document::default());
+    assert!(editor.scene().objects.is_empty());
+    assert!(editor.undo());
+    assert_eq!((editor.scene(), editor.left().len()), (edited(street()).scene(), 0));
+    assert_eq!(editor.document().title(), "untitled •");
+}
+
+#[test]
+fn unreadable_copies_are_set_aside_and_the_others_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    Autosave::claim(folder.path()).unwrap().keep_now(&edited(street())).unwrap();
+    std::fs::write(folder.path().join("autosave.behind-7.toml"), "neither").unwrap();
+    let restored = found(folder.path());
+    assert!(restored.on_screen.is_some() && restored.left.is_empty());
+    assert_eq!(restored.problems.len(), 1);
+    assert_eq!(names(folder.path()), ["autosave.behind-7.broken-1.txt", "autosave.toml"]);
+}
+
+#[test]
+fn a_copy_of_an_earlier_program_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    file::save(&folder.path().join("autosave.toml"), &presets::default_scene()).unwrap();
+    let back = found(folder.path()).on_screen.unwrap();
+    assert_eq!((back.scene(), back.title()), (street().scene(), "untitled •".to_owned()));
+}
+
+#[test]
+fn a_scene_that_cannot_be_simulated_comes_back_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut editor = Editor::of(Document::default());
+    editor.add(Object::Point(Point::new(editor.radar().element_x_metres(3), 0.0)));
+    assert!(editor.scene().validate(editor.radar()).is_err());
+    Autosave::claim(folder.path()).unwrap().keep_now(&editor).unwrap();
+    assert_eq!(found(folder.path()).on_screen.unwrap().scene(), editor.scene());
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let message = Autosave::claim(&file).unwrap().keep_now(&edited(street())).unwrap_err();
+    assert!(message.contains("file"), "{message}");
+}

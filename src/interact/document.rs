@@ -1,0 +1,226 @@
+//! The document: a scene and its radar, the file they are kept in, and what of them is on disk.
+//!
+//! Undo, the autosave and the window's title all speak of it. It is shared and never changed in place: an edit makes another.
+
+use crate::radar::Radar;
+use crate::scene::Scene;
+use crate::scene::file::{self, SceneFile, SceneFileError};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What a scene file holds, shared.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Content {
+    scene: Arc<Scene>,
+    radar: Arc<Radar>,
+}
+
+impl Content {
+    fn of(file: SceneFile) -> Self {
+        Content { scene: Arc::new(file.scene), radar: Arc::new(file.radar) }
+    }
+
+    /// Equality that looks at the objects only where it must.
+    fn same(&self, other: &Content) -> bool {
+        (Arc::ptr_eq(&self.scene, &other.scene) || self.scene == other.scene) && self.radar == other.radar
+    }
+}
+
+/// A scene and its radar, where they are kept, and whether they are.
+///
+/// Cheap to copy. Two documents are the same one, at different times, where their [`Document::id`] is the same.
+#[derive(Debug, Clone)]
+pub struct Document {
+    id: u64,
+    content: Content,
+    path: Option<Arc<Path>>,
+    /// What is on disk, or can be had again as easily; `None` where it is nowhere.
+    saved: Option<Content>,
+}
+
+impl Default for Document {
+    /// An empty scene before the radar of table 3.1.
+    fn default() -> Self {
+        Document::shipped(SceneFile::default())
+    }
+}
+
+impl Document {
+    fn new(content: Content, path: Option<Arc<Path>>, saved: Option<Content>) -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Document { id: NEXT.fetch_add(1, Ordering::Relaxed), content, path, saved }
+    }
+
+    /// A scene that comes with the program: untitled, and nothing is lost with it.
+    pub fn shipped(file: SceneFile) -> Self {
+        let content = Content::of(file);
+        Document::new(content.clone(), None, Some(content))
+    }
+
+    /// A scene that was just made: untitled, and nowhere on disk.
+    pub fn made(file: SceneFile) -> Self {
+        Document::new(Content::of(file), None, None)
+    }
+
+    /// Reads the document at `path`.
+    ///
+    /// # Errors
+    /// [`SceneFileError`] names the file, the line or key, and what was expected.
+    pub fn read(path: &Path) -> Result<Self, SceneFileError> {
+        Ok(Document::opened(&whole_path(path), file::load(path)?))
+    }
+
+    /// What was read from `path`, a whole path without links.
+    pub fn opened(path: &Path, file: SceneFile) -> Self {
+        let content = Content::of(file);
+        Document::new(content.clone(), Some(path.into()), Some(content))
+    }
+
+    /// What an autosave kept of the document at `path`: not what that file holds.
+    pub fn unsaved(path: Option<&Path>, file: SceneFile) -> Self {
+        Document::new(Content::of(file), path.map(Arc::from), None)
+    }
+
+    /// Which document it is, through all its edits.
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.content.scene
+    }
+
+    /// The radar that looks at it.
+    pub fn radar(&self) -> &Arc<Radar> {
+        &self.content.radar
+    }
+
+    /// The file it is kept in; `None` where it has none yet.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// Its file's name, or "untitled".
+    pub fn name(&self) -> String {
+        let name = self.path().and_then(Path::file_name);
+        name.map_or_else(|| "untitled".to_owned(), |n| n.to_string_lossy().into_owned())
+    }
+
+    /// Its name, with a mark where it is not on disk as it is.
+    pub fn title(&self) -> String {
+        format!("{}{}", self.name(), if self.is_modified() { " •" } else { "" })
+    }
+
+    /// Whether it differs from what is on disk.
+    pub fn is_modified(&self) -> bool {
+        !self.saved.as_ref().is_some_and(|saved| saved.same(&self.content))
+    }
+
+    /// The document as a file holds it.
+    pub fn to_file(&self) -> SceneFile {
+        SceneFile { scene: Scene::clone(self.scene()), radar: Radar::clone(self.radar()) }
+    }
+
+    /// Whether it would be the same file as `other`.
+    pub(super) fn same_as(&self, other: &Document) -> bool {
+        self.path == other.path && self.content.same(&other.content)
+    }
+
+    /// Whether nothing at all happened between this and `other`, told without a look at the objects.
+    pub(super) fn untouched_since(&self, other: &Document) -> bool {
+        self.id == other.id
+            && self.path == other.path
+            && Arc::ptr_eq(&self.content.scene, &other.content.scene)
+            && Arc::ptr_eq(&self.content.radar, &other.content.radar)
+    }
+
+    pub(super) fn scene_mut(&mut self) -> &mut Scene {
+        Arc::make_mut(&mut self.content.scene)
+    }
+
+    pub(super) fn set_scene(&mut self, scene: Arc<Scene>) {
+        self.content.scene = scene;
+    }
+
+    pub(super) fn radar_mut(&mut self) -> &mut Radar {
+        Arc::make_mut(&mut self.content.radar)
+    }
+
+    /// Takes note that `path` now holds what `kept` does; `kept` is this document or another one.
+    ///
+    /// A document that is the same as `kept` goes by that path from now on. Another of the same path now differs from its file.
+    pub(super) fn note_kept(&mut self, kept: &Document, path: &Path) {
+        if self.id == kept.id {
+            self.path = Some(path.into());
+        }
+        if self.path() == Some(path) {
+            self.saved = Some(kept.content.clone());
+        }
+    }
+}
+
+/// What a dead window left.
+#[derive(Debug, Default)]
+pub struct Restored {
+    /// The document that was on screen, if it was unsaved.
+    pub on_screen: Option<Document>,
+    /// Unsaved documents that were not on screen, the latest last.
+    pub left: Vec<Document>,
+    /// Files that could not be read: why, and where they are kept.
+    pub problems: Vec<String>,
+}
+
+/// `path` from the root, without links, so that one file has one path.
+pub(super) fn whole_path(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_on_disk_is_not_modified() {
+        let file = || SceneFile { scene: Scene::of_points([(1.0, 2.0)]), ..SceneFile::default() };
+        let path = Path::new("/there/a.toml");
+        for (document, title) in [
+            (Document::default(), "untitled"),
+            (Document::shipped(file()), "untitled"),
+            (Document::made(file()), "untitled •"),
+            (Document::opened(path, file()), "a.toml"),
+            (Document::unsaved(Some(path), file()), "a.toml •"),
+            (Document::unsaved(None, file()), "untitled •"),
+        ] {
+            assert_eq!(document.title(), title);
+        }
+    }
+
+    #[test]
+    fn an_edit_undone_by_hand_is_no_edit_and_the_radar_counts() {
+        let mut document = Document::default();
+        document.scene_mut().name = "a".to_owned();
+        assert!(document.is_modified());
+        document.scene_mut().name.clear();
+        assert!(!document.is_modified());
+        document.radar_mut().elements = 64;
+        assert!(document.is_modified());
+    }
+
+    #[test]
+    fn a_file_is_noted_by_every_document_of_its_path() {
+        let (path, other) = (Path::new("/there/a.toml"), Path::new("/there/b.toml"));
+        let mut a = Document::opened(path, SceneFile::default());
+        let mut same_file = Document::opened(path, SceneFile::default());
+        let mut b = Document::opened(other, SceneFile::default());
+        a.scene_mut().name = "changed".to_owned();
+        let kept = a.clone();
+        for document in [&mut a, &mut same_file, &mut b] {
+            document.note_kept(&kept, path);
+        }
+        assert!(!a.is_modified() && same_file.is_modified() && !b.is_modified());
+        a.note_kept(&kept, other);
+        assert_eq!(a.name(), "b.toml");
+    }
+}

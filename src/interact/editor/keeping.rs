@@ -1,0 +1,116 @@
+//! Documents that come and go: opening, saving, and what is kept of those that another takes the place of.
+
+use super::Editor;
+use crate::interact::Selection;
+use crate::interact::document::{self, Document, Restored};
+use crate::scene::file::{self, Format, Loss, SceneFileError};
+use std::path::Path;
+
+/// Unsaved documents that are kept after another took their place; the oldest make room.
+const MAX_LEFT: usize = 64;
+
+/// What became of a document that was written to a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Saved {
+    /// The file holds all of it and is its own from now on.
+    Whole,
+    /// The file holds a copy without these; the document stays where it was, as unsaved as it was.
+    Copy(Vec<Loss>),
+}
+
+impl Editor {
+    /// What a window starts with: the document `asked` for by name, else the one that was on screen and unsaved when the last window
+    /// died, else `otherwise`.
+    ///
+    /// Where both of the first are there, the unsaved one lies one undo step behind. Nothing that was restored is lost: it stays in
+    /// [`Editor::left`].
+    pub fn start(restored: Restored, asked: Option<Document>, otherwise: Document) -> Self {
+        let Restored { on_screen, left, .. } = restored;
+        let mut editor = match (on_screen, asked) {
+            (Some(unsaved), asked) => {
+                let mut editor = Editor::of(unsaved);
+                if let Some(asked) = asked {
+                    editor.open("open", asked);
+                }
+                editor
+            }
+            (None, asked) => Editor::of(asked.unwrap_or(otherwise)),
+        };
+        editor.left.splice(0..0, left);
+        editor
+    }
+
+    /// Unsaved documents that another took the place of, the latest last.
+    pub fn left(&self) -> &[Document] {
+        &self.left
+    }
+
+    /// What writing the document to `path` would lose; empty where it loses nothing.
+    ///
+    /// # Errors
+    /// [`SceneFileError::Extension`] for a name that says no format.
+    pub fn losses(&self, path: &Path) -> Result<Vec<Loss>, SceneFileError> {
+        Ok(Format::of_path(path)?.losses(&self.document.to_file()))
+    }
+
+    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only.
+    ///
+    /// Not a step of the history: undo changes the document, not where it is kept.
+    ///
+    /// # Errors
+    /// [`SceneFileError`]; the file is then as it was, and the document too.
+    pub fn save(&mut self, path: &Path) -> Result<Saved, SceneFileError> {
+        let losses = self.losses(path)?;
+        file::save(path, &self.document.to_file())?;
+        if !losses.is_empty() {
+            return Ok(Saved::Copy(losses));
+        }
+        self.note_kept(&document::whole_path(path));
+        Ok(Saved::Whole)
+    }
+
+    /// Tells every document that may come back that `path` now holds the current one.
+    fn note_kept(&mut self, path: &Path) {
+        let kept = self.document.clone();
+        let behind = self.history.documents_mut().chain(&mut self.left);
+        behind.chain([&mut self.document]).for_each(|d| d.note_kept(&kept, path));
+        self.left.retain(Document::is_modified);
+    }
+
+    /// Puts another document in the place of this one. Undo brings this one back, path and all.
+    pub fn open(&mut self, label: &str, document: Document) {
+        self.cancel_drag();
+        let before = self.snapshot();
+        self.replace(document);
+        self.selection = Selection::default();
+        self.history.push(label, None, before);
+        self.history.seal();
+        if let Some(path) = self.document.path().filter(|_| !self.is_modified()).map(Path::to_owned) {
+            // It was read just now: documents of that path learn what their file holds.
+            self.note_kept(&path);
+        }
+    }
+
+    /// Puts the document `id` of [`Editor::left`] back on screen, as one undo step; false where there is none.
+    pub fn recover(&mut self, id: u64) -> bool {
+        let found = self.left.iter().find(|d| d.id() == id).cloned();
+        found.map(|document| self.open("recover", document)).is_some()
+    }
+
+    /// Gives up the document `id` of [`Editor::left`]: its last state is kept nowhere but in the history.
+    pub fn discard(&mut self, id: u64) {
+        self.left.retain(|d| d.id() != id);
+    }
+
+    /// Makes `document` the current one, and remembers the one before if it was unsaved and is another.
+    pub(super) fn replace(&mut self, document: Document) {
+        let before = std::mem::replace(&mut self.document, document);
+        let now = self.document.id();
+        if before.id() != now {
+            self.left.retain(|d| d.id() != before.id() && d.id() != now);
+            self.left.extend(Some(before).filter(Document::is_modified));
+            let excess = self.left.len().saturating_sub(MAX_LEFT);
+            self.left.drain(..excess);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! How much memory a radar asks for: a scene file is a few bytes, its maps may be gigabytes.
+
+use super::{Bytes, Radar, RadarError};
+
+/// Most bytes of memory that the signal and the maps of one radar may ask for: 4 GiB, some 17 million cells.
+pub const MAX_MEMORY_BYTES: u64 = 4 << 30;
+
+/// Bytes for each cell of a map (element x sample), everything that is held at once counted: the complex f64 signal, its profiles,
+/// complex maps of the array and of both ends, decades, Lambda, and what the hungriest method works in.
+const BYTES_PER_CELL: u64 = 256;
+
+/// Bytes for each pair of elements of an end: methods that whiten or look for subspaces hold complex matrices of that size.
+const BYTES_PER_END_PAIR: u64 = 256;
+
+impl Radar {
+    /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, whatever command or method makes them;
+    /// networks refuse radars other than the one they were trained for, and come on top.
+    ///
+    /// `tests/library/memory.rs` holds every method to it.
+    pub fn memory_bytes(&self) -> u64 {
+        let [elements, samples, end] = [self.elements, self.samples, self.end_elements].map(|n| n as u64);
+        let cells = elements.saturating_mul(samples).saturating_mul(BYTES_PER_CELL);
+        cells.saturating_add(end.saturating_mul(end).saturating_mul(BYTES_PER_END_PAIR))
+    }
+
+    /// Refuses a radar that asks for more than [`MAX_MEMORY_BYTES`].
+    pub(super) fn check_memory(&self) -> Result<(), RadarError> {
+        let bytes = self.memory_bytes();
+        if bytes <= MAX_MEMORY_BYTES {
+            return Ok(());
+        }
+        let field = if self.elements >= self.samples { "elements" } else { "samples" };
+        let Radar { elements, samples, end_elements, .. } = *self;
+        let (bytes, most) = (Bytes(bytes), Bytes(MAX_MEMORY_BYTES));
+        Err(RadarError::Memory { field, elements, samples, end_elements, bytes, most })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_bytes_and_the_bound_are_told() {
+        let large = Radar { elements: 65536, samples: 65536, ..Radar::default() };
+        let message = large.validate().unwrap_err().to_string();
+        for part in ["65536 elements", "65536 samples", "1.0 TiB", "4.0 GiB"] {
+            assert!(message.contains(part), "{message}");
+        }
+        let wide_ends = Radar { elements: 65536, end_elements: 32768, samples: 4, ..Radar::default() };
+        assert!(wide_ends.validate().unwrap_err().to_string().contains("ends of 32768"));
+        Radar { elements: 4096, samples: 4095, ..Radar::default() }.validate().unwrap();
+    }
+
+    proptest! {
+        #[test]
+        fn no_count_overflows(elements in 0usize.., samples in 0usize.., end_elements in 0usize..) {
+            let radar = Radar { elements, samples, end_elements, ..Radar::default() };
+            let _any = radar.memory_bytes();
+            prop_assert!(radar.validate().is_err() || radar.memory_bytes() <= MAX_MEMORY_BYTES);
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! What a scene file holds, the two kinds there are, and what can be wrong with one.
+
+use crate::files::npz::NpzError;
+use crate::radar::Radar;
+use crate::scene::{Scene, SceneError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Most bytes that a scene file may have: twice what the largest scene takes as TOML.
+pub const MAX_FILE_BYTES: u64 = 64 << 20;
+
+/// A scene and the radar that looks at it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SceneFile {
+    /// The scene.
+    pub scene: Scene,
+    /// The radar: table 3.1 unless the file says otherwise.
+    pub radar: Radar,
+}
+
+/// Why a scene file could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneFileError {
+    /// The system could not read or write the file.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The TOML is not a scene.
+    #[error("{}: {source}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// What and where.
+        source: SceneTextError,
+    },
+    /// The archive is not a scene.
+    #[error("{}: {source}", path.display())]
+    Archive {
+        /// The file.
+        path: PathBuf,
+        /// Which key, and what was expected.
+        source: NpzError,
+    },
+    /// The archive's reflectors can't be simulated.
+    #[error("{}: {source}", path.display())]
+    Scene {
+        /// The file.
+        path: PathBuf,
+        /// Which reflector, and why.
+        source: SceneError,
+    },
+    /// The scene can't be written as TOML.
+    #[error("{}: {source}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// The value that TOML can't hold.
+        source: toml::ser::Error,
+    },
+    /// Neither kind of scene file.
+    #[error("{}: not a scene file by its name; expected one ending in .toml or .npz", path.display())]
+    Extension {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// The two kinds of scene file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Everything, readable.
+    Toml,
+    /// Positions only, as the thesis author's program reads and writes them.
+    Npz,
+}
+
+impl Format {
+    /// The format that a file's name asks for.
+    ///
+    /// # Errors
+    /// [`SceneFileError::Extension`] for any ending but `.toml` and `.npz`.
+    pub fn of_path(path: &Path) -> Result<Format, SceneFileError> {
+        let extension = path.extension().map(|e| e.to_ascii_lowercase());
+        match extension.as_deref().and_then(|e| e.to_str()) {
+            Some("toml") => Ok(Format::Toml),
+            Some("npz") => Ok(Format::Npz),
+            _ => Err(SceneFileError::Extension { path: path.to_owned() }),
+        }
+    }
+}
+
+/// What is wrong with a scene's text, and where. Objects are counted from 1, as lines are.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}, column {column}: {message}")]
+pub struct SceneTextError {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What is wrong and what was expected.
+    pub message: String,
+}
+
+impl SceneTextError {
+    /// A fault at byte `offset` of `text`.
+    pub(crate) fn at(text: &str, offset: usize, message: String) -> Self {
+        let before = text.get(..offset).unwrap_or(text);
+        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        SceneTextError {
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            message,
+        }
+    }
+}

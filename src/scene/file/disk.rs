@@ -1,0 +1,72 @@
+//! Scene files on disk.
+
+use super::content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError};
+use super::text::{from_bytes, to_toml};
+use crate::files::{read_bounded, write_bytes};
+use crate::radar::Radar;
+use crate::scene::npz;
+use std::path::Path;
+
+/// Reads a scene file and checks that it can be simulated.
+///
+/// # Errors
+/// [`SceneFileError`] names the file, the line or key, and what was expected.
+pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
+    let owned = || path.to_owned();
+    match Format::of_path(path)? {
+        Format::Toml => {
+            let bytes =
+                read_bounded(path, MAX_FILE_BYTES).map_err(|source| SceneFileError::Io { path: owned(), source })?;
+            from_bytes(&bytes).map_err(|source| SceneFileError::Text { path: owned(), source })
+        }
+        Format::Npz => {
+            let scene = npz::read(path).map_err(|source| SceneFileError::Archive { path: owned(), source })?;
+            let radar = Radar::default();
+            scene.validate(&radar).map_err(|source| SceneFileError::Scene { path: owned(), source })?;
+            Ok(SceneFile { scene, radar })
+        }
+    }
+}
+
+/// Writes a scene file in one step. An `.npz` keeps the reflectors' positions only.
+///
+/// # Errors
+/// [`SceneFileError`] when the ending is neither `.toml` nor `.npz`, or the file can't be written.
+pub fn save(path: &Path, file: &SceneFile) -> Result<(), SceneFileError> {
+    let owned = || path.to_owned();
+    match Format::of_path(path)? {
+        Format::Toml => {
+            let text = to_toml(file).map_err(|source| SceneFileError::Unwritable { path: owned(), source })?;
+            write_bytes(path, text.as_bytes()).map_err(|source| SceneFileError::Io { path: owned(), source })
+        }
+        Format::Npz => {
+            npz::write(path, &file.scene).map_err(|source| SceneFileError::Archive { path: owned(), source })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Object, Point, Scene};
+
+    fn scene() -> SceneFile {
+        let objects = vec![Object::Point(Point { x_metres: 0.1 + 0.2, y_metres: 1e-300, reflectivity: -2.5 })];
+        SceneFile {
+            scene: Scene { name: "One".to_owned(), notes: "Here.".to_owned(), noise_seed: 3, objects },
+            radar: Radar::default(),
+        }
+    }
+
+    #[test]
+    fn files_name_themselves() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        assert!(load(&path).unwrap_err().to_string().contains("a.toml"));
+        std::fs::write(&path, b"name = \"\xff\"").unwrap();
+        assert!(load(&path).unwrap_err().to_string().contains("UTF-8"));
+        assert!(load(Path::new("scene.yaml")).unwrap_err().to_string().contains(".toml or .npz"));
+        save(&path, &scene()).unwrap();
+        assert_eq!(load(&path).unwrap(), scene());
+    }
+}

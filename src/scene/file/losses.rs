@@ -1,0 +1,141 @@
+//! What a kind of file can't hold: told before a scene is written, not after.
+
+use super::content::{Format, SceneFile};
+use crate::radar::Radar;
+use crate::scene::{Object, Scene};
+use std::fmt;
+
+/// Something of a scene that a file would not give back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// The scene's name.
+    Name,
+    /// The scene's notes.
+    Notes,
+    /// The number that picks the floor's noise: reopened, it is 0.
+    NoiseSeed,
+    /// A radar other than table 3.1's: reopened, the scene stands before the usual one.
+    Radar,
+    /// Reflectivities other than 1: reopened, they are 1.
+    Reflectivity {
+        /// Objects that have one.
+        objects: usize,
+    },
+    /// Lines and clusters: reopened, they are points.
+    Structure {
+        /// Lines and clusters.
+        objects: usize,
+        /// Points they become.
+        points: usize,
+    },
+}
+
+impl fmt::Display for Loss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Loss::Name => f.write_str("the scene's name"),
+            Loss::Notes => f.write_str("its notes"),
+            Loss::NoiseSeed => f.write_str("its noise seed"),
+            Loss::Radar => f.write_str("its radar"),
+            Loss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
+            Loss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
+            Loss::Structure { objects: 1, points } => write!(f, "one line or cluster, which becomes {points} points"),
+            Loss::Structure { objects, points } => {
+                write!(f, "{objects} lines and clusters, which become {points} points")
+            }
+        }
+    }
+}
+
+impl Format {
+    /// What a file of this format would not give back of `file`; empty where it gives back everything.
+    pub fn losses(self, file: &SceneFile) -> Vec<Loss> {
+        let SceneFile { scene: Scene { name, notes, noise_seed, objects }, radar } = file;
+        if self == Format::Toml {
+            return Vec::new();
+        }
+        let mut losses = Vec::new();
+        losses.extend((!name.is_empty()).then_some(Loss::Name));
+        losses.extend((!notes.is_empty()).then_some(Loss::Notes));
+        losses.extend((*noise_seed != 0).then_some(Loss::NoiseSeed));
+        losses.extend((*radar != Radar::default()).then_some(Loss::Radar));
+        let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
+        losses.extend((reflective > 0).then_some(Loss::Reflectivity { objects: reflective }));
+        let structured = || objects.iter().filter(|o| !matches!(o, Object::Point(_)));
+        let (structures, points) = (structured().count(), structured().map(Object::reflector_count).sum());
+        losses.extend((structures > 0).then_some(Loss::Structure { objects: structures, points }));
+        losses
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{load, save};
+    use super::*;
+    use crate::radar::Carrier;
+    use crate::scene::{GaussianCluster, Line, Point};
+    use proptest::prelude::*;
+
+    fn object() -> impl Strategy<Value = Object> {
+        let reflectivity = prop_oneof![3 => Just(1.0), 1 => 0.01f64..3.0];
+        (0..8, -20.0f64..20.0, 1.0f64..30.0, reflectivity).prop_map(|(kind, x_metres, y_metres, reflectivity)| {
+            match kind {
+                0 => Object::Line(Line { reflectivity, ..Line::vertical(x_metres, y_metres, 0.1, 4) }),
+                1 => Object::Gaussian(GaussianCluster {
+                    x_metres,
+                    y_metres,
+                    x_std_metres: 1.0,
+                    y_std_metres: 1.0,
+                    count: 3,
+                    seed: 5,
+                    reflectivity,
+                }),
+                _ => Object::Point(Point { x_metres, y_metres, reflectivity }),
+            }
+        })
+    }
+
+    fn file() -> impl Strategy<Value = SceneFile> {
+        let text = || prop_oneof![2 => Just(String::new()), 1 => "[a-z]{1,5}"];
+        let carrier = prop_oneof![2 => Just(Carrier::OneWay), 1 => Just(Carrier::TwoWay)];
+        let objects = prop::collection::vec(object(), 0..4);
+        let noise_seed = prop_oneof![2 => Just(0u64), 1 => 1..99u64];
+        (text(), text(), noise_seed, objects, carrier).prop_map(|(name, notes, noise_seed, objects, carrier)| {
+            SceneFile {
+                scene: Scene { name, notes, noise_seed, objects },
+                radar: Radar { carrier, ..Radar::default() },
+            }
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn what_is_not_told_comes_back(file in file()) {
+            let folder = tempfile::tempdir().unwrap();
+            for (name, format) in [("a.toml", Format::Toml), ("a.npz", Format::Npz)] {
+                let path = folder.path().join(name);
+                save(&path, &file).unwrap();
+                prop_assert_eq!(format.losses(&file).is_empty(), load(&path).unwrap() == file, "{}", name);
+            }
+        }
+    }
+
+    #[test]
+    fn losses_are_told_in_words() {
+        let line = Line { reflectivity: 0.05, ..Line::vertical(0.0, 9.0, 0.1, 40) };
+        let scene = Scene { notes: "n".to_owned(), objects: vec![Object::Line(line)], ..Scene::default() };
+        let file = SceneFile { scene, radar: Radar { elements: 64, ..Radar::default() } };
+        let told: Vec<String> = Format::Npz.losses(&file).iter().map(Loss::to_string).collect();
+        assert_eq!(
+            told,
+            [
+                "its notes",
+                "its radar",
+                "the reflectivity of one object",
+                "one line or cluster, which becomes 40 points"
+            ]
+        );
+    }
+}

@@ -1,0 +1,28 @@
+//! Scene files: TOML that a person can write, and the thesis author's `.npz` archives.
+//!
+//! ```toml
+//! name = "A pair and a wall"
+//! notes = "What to look for."
+//! noise_seed = 12          # optional; picks the noise of the floor, 0 otherwise
+//!
+//! [radar]                  # optional; only what differs from table 3.1
+//! carrier = "two-way"
+//!
+//! [[object]]
+//! kind = "point"           # or "line", "gaussian"
+//! x_metres = -4.0
+//! y_metres = 12.5
+//! reflectivity = 0.5       # optional, 1 otherwise
+//! ```
+//!
+//! Every error names the line and what was expected there.
+
+mod content;
+mod disk;
+mod losses;
+mod text;
+
+pub use content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError, SceneTextError};
+pub use disk::{load, save};
+pub use losses::Loss;
+pub use text::{from_toml, from_toml_beside, to_toml, to_toml_beside};

@@ -1,0 +1,340 @@
+//! Scenes as TOML: written for people, read with errors that name the line.
+
+use super::content::{SceneFile, SceneTextError};
+use crate::radar::Radar;
+use crate::scene::{GaussianCluster, Line, Object, Point, Scene, SceneError};
+use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, ValueDeserializer};
+
+/// Most values and tables that a text may ask for, told by the marks that come with each: the largest scene needs some three million.
+const MAX_MARKS: usize = 4_000_000;
+
+/// The scene as text; only what differs from table 3.1 is said of the radar.
+///
+/// # Errors
+/// When a number is one that TOML can't hold (an integer above 2^63).
+pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
+    #[derive(Serialize)]
+    struct Document<'a> {
+        #[serde(skip_serializing_if = "str::is_empty")]
+        name: &'a str,
+        #[serde(skip_serializing_if = "str::is_empty")]
+        notes: &'a str,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        noise_seed: Option<u64>,
+        #[serde(skip_serializing_if = "toml::Table::is_empty")]
+        radar: toml::Table,
+        object: &'a [Object],
+    }
+    let Scene { name, notes, noise_seed, objects } = &file.scene;
+    let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
+    let usual = toml::Table::try_from(Radar::default())?;
+    let mut radar = toml::Table::try_from(&file.radar)?;
+    radar.retain(|key, value| usual.get(key) != Some(value));
+    toml::to_string_pretty(&Document { name, notes, noise_seed, radar, object: objects })
+}
+
+/// [`to_toml`] with a table of somebody else's, called `key`, after it.
+///
+/// # Errors
+/// As [`to_toml`].
+pub fn to_toml_beside(file: &SceneFile, key: &str, value: &impl Serialize) -> Result<String, toml::ser::Error> {
+    let beside = toml::Table::from_iter([(key.to_owned(), toml::Value::try_from(value)?)]);
+    let scene = to_toml(file)?;
+    // An empty list of objects is a line of its own and ends before the first table does.
+    Ok(format!("{scene}\n{}", toml::to_string_pretty(&beside)?))
+}
+
+/// Reads a scene from text and checks that it can be simulated.
+///
+/// # Errors
+/// [`SceneTextError`] names the line, the key or object, and what was expected.
+pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
+    let (file, _) = parse::<IgnoredAny>(text, None)?;
+    file.scene.validate(&file.radar).map_err(|error| {
+        let span = match &error {
+            SceneError::Value { object, field, .. } => object_spans(text, *object).field(field),
+            SceneError::OnElement { object, .. } => object_spans(text, *object).whole,
+            SceneError::TooMany { .. } | SceneError::Radar(_) => 0..0,
+        };
+        SceneTextError::at(text, span.start, error.to_string())
+    })?;
+    Ok(file)
+}
+
+/// Reads what [`to_toml_beside`] wrote; the second is `None` where the text has no `key`.
+///
+/// The scene need not be one that can be simulated: a point left on an element of the array is still somebody's work.
+///
+/// # Errors
+/// As [`from_toml`].
+pub fn from_toml_beside<T: DeserializeOwned>(text: &str, key: &str) -> Result<(SceneFile, Option<T>), SceneTextError> {
+    let (file, other) = parse(text, Some(key))?;
+    file.scene.check_count().map_err(|e| SceneTextError::at(text, 0, e.to_string()))?;
+    Ok((file, other))
+}
+
+/// [`from_toml`] of a file's bytes.
+pub(super) fn from_bytes(bytes: &[u8]) -> Result<SceneFile, SceneTextError> {
+    utf8(bytes).and_then(from_toml)
+}
+
+/// Text that is TOML and not too much of it, and its top-level table.
+fn table(text: &str) -> Result<Spanned<DeTable<'_>>, SceneTextError> {
+    let marks = text.bytes().filter(|b| b"=,.[{".contains(b)).count();
+    if marks > MAX_MARKS {
+        let message = format!("the text asks for {marks} values and tables; at most {MAX_MARKS} are read");
+        return Err(SceneTextError::at(text, 0, message));
+    }
+    DeTable::parse(text).map_err(|e| of_toml(text, &e, 0))
+}
+
+fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
+    /// All but the objects, which need a closer look; the field is there for the message about an unknown one.
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Head {
+        #[serde(default)]
+        name: String,
+        #[serde(default)]
+        notes: String,
+        #[serde(default)]
+        noise_seed: u64,
+        #[serde(default)]
+        radar: Radar,
+        #[serde(default, rename = "object")]
+        _objects: Option<IgnoredAny>,
+    }
+
+    let document = table(text)?;
+    let span = document.span();
+    let mut document = document.into_inner();
+    let radar_spans = document.get("radar").map(Spans::of);
+    let entries = document.remove("object");
+    let start = span.start;
+    let wrong = |e: toml::de::Error| of_toml(text, &e, start);
+    let other = beside.and_then(|key| document.remove(key)).map(|v| T::deserialize(ValueDeserializer::from(v)));
+    let other = other.transpose().map_err(wrong)?;
+    let head = ValueDeserializer::from(Spanned::new(span.clone(), DeValue::Table(document)));
+    let head = Head::deserialize(head).map_err(wrong)?;
+    head.radar.validate().map_err(|error| {
+        let span = radar_spans.as_ref().map_or(0..0, |s| s.field(error.field()));
+        SceneTextError::at(text, span.start, error.to_string())
+    })?;
+    let objects = entries.map(|e| objects(text, e)).transpose()?.unwrap_or_default();
+    Ok((
+        SceneFile {
+            scene: Scene { name: head.name, notes: head.notes, noise_seed: head.noise_seed, objects },
+            radar: head.radar,
+        },
+        other,
+    ))
+}
+
+/// Reads the list of `[[object]]` tables.
+fn objects(text: &str, entries: Spanned<DeValue<'_>>) -> Result<Vec<Object>, SceneTextError> {
+    let span = entries.span();
+    let DeValue::Array(entries) = entries.into_inner() else {
+        let message = "\"object\" is not a list; expected [[object]] tables".to_owned();
+        return Err(SceneTextError::at(text, span.start, message));
+    };
+    let mut objects = Vec::new();
+    for (index, entry) in entries.into_iter().enumerate() {
+        let whole = entry.span();
+        objects.push(object(entry).map_err(|(span, message)| {
+            let start = span.unwrap_or(whole).start;
+            SceneTextError::at(text, start, format!("object {}: {message}", index + 1))
+        })?);
+    }
+    Ok(objects)
+}
+
+/// Reads one `[[object]]`. Its kind is taken off first, so that the other keys are read with their places known.
+fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, String)> {
+    const KINDS: &str = "expected \"point\", \"line\" or \"gaussian\"";
+    let span = entry.span();
+    let DeValue::Table(mut table) = entry.into_inner() else {
+        return Err((Some(span), "not a table; expected [[object]] with a kind".to_owned()));
+    };
+    let Some(kind) = table.remove("kind") else {
+        return Err((Some(span), format!("missing key \"kind\"; {KINDS}")));
+    };
+    let rest = ValueDeserializer::from(Spanned::new(span, DeValue::Table(table)));
+    let object = match kind.get_ref().as_str() {
+        Some("point") => Point::deserialize(rest).map(Object::Point),
+        Some("line") => Line::deserialize(rest).map(Object::Line),
+        Some("gaussian") => GaussianCluster::deserialize(rest).map(Object::Gaussian),
+        Some(other) => return Err((Some(kind.span()), format!("unknown kind \"{other}\"; {KINDS}"))),
+        None => return Err((Some(kind.span()), format!("\"kind\" is not a string; {KINDS}"))),
+    };
+    object.map_err(|e| (e.span(), one_line(e.message())))
+}
+
+/// Where object `index` stands in a text that was read before. Looked up when something is wrong with it only.
+fn object_spans(text: &str, index: usize) -> Spans {
+    let document = table(text).ok();
+    let entries = document.as_ref().and_then(|d| d.get_ref().get("object")).and_then(|e| e.get_ref().as_array());
+    entries.and_then(|e| e.get(index)).map_or(Spans { whole: 0..0, fields: Vec::new() }, Spans::of)
+}
+
+/// Where a table and its keys stand in the text.
+struct Spans {
+    whole: Range<usize>,
+    fields: Vec<(String, Range<usize>)>,
+}
+
+impl Spans {
+    fn of(value: &Spanned<DeValue<'_>>) -> Spans {
+        let fields = match value.get_ref() {
+            DeValue::Table(table) => table.iter().map(|(k, v)| (k.get_ref().to_string(), v.span())).collect(),
+            _ => Vec::new(),
+        };
+        Spans { whole: value.span(), fields }
+    }
+
+    /// The value of `name`, or the whole table where it is not written out.
+    fn field(&self, name: &str) -> Range<usize> {
+        self.fields.iter().find(|(n, _)| n == name).map_or_else(|| self.whole.clone(), |(_, s)| s.clone())
+    }
+}
+
+fn of_toml(text: &str, error: &toml::de::Error, otherwise: usize) -> SceneTextError {
+    SceneTextError::at(text, error.span().map_or(otherwise, |s| s.start), one_line(error.message()))
+}
+
+fn utf8(bytes: &[u8]) -> Result<&str, SceneTextError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let good = &bytes[..error.valid_up_to()];
+        let text = String::from_utf8_lossy(good);
+        SceneTextError::at(&text, text.len(), "not text; expected TOML in UTF-8".to_owned())
+    })
+}
+
+fn one_line(message: &str) -> String {
+    message.lines().collect::<Vec<_>>().join(", ").replace('`', "\"")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Carrier;
+    use proptest::prelude::*;
+
+    fn scene() -> SceneFile {
+        let objects = vec![
+            Object::Point(Point { x_metres: 0.1 + 0.2, y_metres: 1e-300, reflectivity: -2.5 }),
+            Object::Line(Line { direction_degrees: 30.0, ..Line::vertical(1.0, 2.0, 0.1, 75) }),
+            Object::Gaussian(GaussianCluster {
+                x_metres: -5.0,
+                y_metres: 20.0,
+                x_std_metres: 1.0,
+                y_std_metres: 0.5,
+                count: 40,
+                seed: 9,
+                reflectivity: 1.0,
+            }),
+        ];
+        let scene = Scene {
+            name: "All \"three\"".to_owned(),
+            notes: "First line.\nSecond: 'x'.".to_owned(),
+            noise_seed: 9,
+            objects,
+        };
+        SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, ..Radar::default() } }
+    }
+
+    #[test]
+    fn every_kind_round_trips() {
+        let text = to_toml(&scene()).unwrap();
+        assert!(text.contains("carrier = \"two-way\"") && !text.contains("bandwidth"), "{text}");
+        assert_eq!(from_toml(&text).unwrap(), scene());
+    }
+
+    #[test]
+    fn a_line_without_a_direction_leads_straight_ahead() {
+        let text = "[[object]]\nkind = \"line\"\nx_metres = 1\ny_start_metres = 2\nspacing_metres = 0.5\ncount = 3\n";
+        let line = Object::Line(Line::vertical(1.0, 2.0, 0.5, 3));
+        let file = from_toml(text).unwrap();
+        assert_eq!(file.scene.objects, [line]);
+        assert!(!to_toml(&file).unwrap().contains("direction"));
+    }
+
+    #[test]
+    fn an_empty_file_is_an_empty_scene() {
+        assert_eq!(from_toml("").unwrap(), SceneFile::default());
+        assert_eq!(from_toml(&to_toml(&SceneFile::default()).unwrap()).unwrap(), SceneFile::default());
+    }
+
+    #[test]
+    fn faults_name_their_place_and_what_was_expected() {
+        let point = "[[object]]\nkind = \"point\"\nx_metres = 1\n";
+        let crowd =
+            |kind: &str, keys| format!("[[object]]\nkind = \"{kind}\"\nx_metres = 1\n{keys}\ncount = 1000000000000\n");
+        for (text, line, parts) in [
+            ("name = 3", 1, vec!["integer", "string"]),
+            ("\ncolour = 3", 2, vec!["colour", "object", "radar"]),
+            ("[radar]\ncarier = \"one-way\"", 2, vec!["carier", "carrier"]),
+            ("[radar]\nelements = 1024\ncarrier_hz = -5", 3, vec!["carrier_hz", "above 0"]),
+            ("[radar]\nelements = 3", 2, vec!["elements", "between 6"]),
+            ("object = 3", 1, vec!["[[object]]"]),
+            ("object = [3]", 1, vec!["object 1", "[[object]]"]),
+            ("[[object]]\nx_metres = 1", 1, vec!["object 1", "kind", "gaussian"]),
+            ("[[object]]\nkind = \"sphere\"", 2, vec!["sphere", "gaussian"]),
+            (point, 1, vec!["object 1", "y_metres"]),
+            (&format!("{point}y_metres = \"two\"\n"), 4, vec!["object 1", "string", "f64"]),
+            (&format!("{point}y_metres = 2\ncolour = 1\n"), 5, vec!["object 1", "colour", "reflectivity"]),
+            (&format!("{point}y_metres = nan\n"), 4, vec!["object 1", "y_metres", "NaN", "finite"]),
+            (&format!("{point}y_metres = 2\n{point}y_metres = 1e13\n"), 8, vec!["object 2", "1e12"]),
+            (
+                "[[object]]\nkind = \"line\"\nx_metres = 1\ny_start_metres = 1\nspacing_metres = 1\ncount = -4",
+                6,
+                vec!["object 1", "-4"],
+            ),
+            ("[radar]\nsamples = 65536\nelements = 65536", 3, vec!["65536 elements", "1.0 TiB", "4.0 GiB"]),
+            ("[radar]\nsamples = 65536\nelements = 65535", 2, vec!["samples"]),
+            ("[radar]\nelements = 10000000000000", 2, vec!["elements", "65536"]),
+            (&crowd("line", "y_start_metres = 1\nspacing_metres = 1"), 1, vec!["1000000000000 reflectors", "200000"]),
+            (&crowd("gaussian", "y_metres = 1\nx_std_metres = 1\ny_std_metres = 1"), 1, vec!["reflectors", "200000"]),
+            (&format!("notes = \"{}\"", ".".repeat(MAX_MARKS)), 1, vec!["values and tables"]),
+            ("[[object]", 1, vec!["]"]),
+            ("a = 1\na = 2", 2, vec!["duplicate"]),
+        ] {
+            let error = from_toml(text).unwrap_err();
+            assert_eq!(error.line, line, "{text}\n{error}");
+            assert!(parts.iter().all(|p| error.message.contains(p)), "{text}\n{error}");
+        }
+    }
+
+    #[test]
+    fn a_table_of_somebody_elses_travels_along() {
+        let beside = toml::Table::from_iter([("here".to_owned(), 3.into())]);
+        for file in [scene(), SceneFile::default()] {
+            let text = to_toml_beside(&file, "other", &beside).unwrap();
+            assert_eq!(from_toml_beside(&text, "other").unwrap(), (file, Some(beside.clone())));
+            assert!(from_toml(&text).unwrap_err().message.contains("other"));
+        }
+        let on_element =
+            "[radar]\nelements = 7\nend_elements = 3\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 0\n";
+        assert!(from_toml(on_element).is_err());
+        assert_eq!(from_toml_beside::<IgnoredAny>(on_element, "other").unwrap().0.scene.objects.len(), 1);
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "\\PC{0,40}(\n(\\[\\[object\\]\\]|kind = \"point\"|x_metres = [0-9e.-]{1,6}|\\PC{0,12})){0,6}") {
+            if let Err(error) = from_toml(&text) {
+                prop_assert!(error.line <= text.matches('\n').count() + 1);
+            }
+        }
+
+        #[test]
+        fn positions_keep_every_bit(x in -1e12f64..1e12, y in 1e-3f64..1e12, reflectivity in -1e100f64..1e100) {
+            let objects = vec![Object::Point(Point { x_metres: x, y_metres: y, reflectivity })];
+            let file = SceneFile { scene: Scene { objects, ..Scene::default() }, radar: Radar::default() };
+            prop_assert_eq!(from_toml(&to_toml(&file).unwrap()).unwrap(), file);
+        }
+    }
+}

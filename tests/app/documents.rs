@@ -1,0 +1,125 @@
+//! The document: what undo, saving, a kill and a restart do to it.
+
+use crate::session::{Session, harness, step_until};
+use apertura::app::{Command, NewObject};
+use apertura::interact::Document;
+use apertura::radar::{Carrier, Radar, WindowFunction};
+use apertura::reconstruct::Baseline;
+use apertura::scene::file::{self, SceneFile};
+use apertura::scene::{Object, Scene};
+use eframe::egui::{Key, Modifiers};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+fn undo(s: &mut Session) {
+    s.press(Modifiers::COMMAND, Key::Z);
+}
+
+fn title(s: &Session) -> String {
+    s.state().editor().document().title()
+}
+
+/// A file of `points` reflectors before a radar of 64 elements.
+fn write(s: &Session, name: &str, points: usize) -> PathBuf {
+    let path = s.folder.path().join(name);
+    let scene = Scene::of_points((0..points).map(|i| (i as f64, 10.0)));
+    let radar =
+        if name.ends_with("npz") { Radar::default() } else { Radar { elements: 64, samples: 64, ..Radar::default() } };
+    file::save(&path, &SceneFile { scene, radar }).unwrap();
+    path
+}
+
+fn points(path: &Path) -> usize {
+    Document::read(path).unwrap().scene().objects.len()
+}
+
+#[test]
+fn undo_of_open_and_save_write_each_scene_into_its_own_file() {
+    let mut s = Session::start();
+    let (a, b) = (s.folder.path().join("scene.toml"), write(&s, "b.toml", 5));
+    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(Command::OpenPath(b.clone()));
+    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("b.toml", 64));
+    undo(&mut s);
+    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
+    s.ask(Command::Save);
+    assert_eq!((title(&s).as_str(), points(&a), points(&b)), ("scene.toml", 3, 5));
+}
+
+#[test]
+fn a_new_scene_has_the_usual_radar_and_undo_brings_back_the_other() {
+    let mut s = Session::start();
+    s.ask(Command::New);
+    assert_eq!((title(&s).as_str(), **s.state().editor().radar() == Radar::default()), ("untitled", true));
+    undo(&mut s);
+    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml", 128));
+}
+
+#[test]
+fn carrier_and_window_are_edits() {
+    let mut s = Session::start();
+    s.ask(Command::SetCarrier(Carrier::TwoWay));
+    assert_eq!(title(&s), "scene.toml •");
+    s.ask(Command::SetWindow(WindowFunction::Hamming));
+    undo(&mut s);
+    undo(&mut s);
+    assert_eq!((title(&s).as_str(), s.state().editor().radar().carrier), ("scene.toml", Carrier::OneWay));
+    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    s.ask(Command::Save);
+    let saved = Document::read(&s.folder.path().join("scene.toml")).unwrap();
+    assert_eq!(saved.radar().carrier, Carrier::TwoWay);
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_told_and_stays_unsaved() {
+    let mut s = Session::start();
+    let path = write(&s, "points.npz", 2);
+    s.ask(Command::OpenPath(path.clone()));
+    s.ask(Command::Add(NewObject::Line, None));
+    let before = s.state().messages();
+    s.ask(Command::Save);
+    assert_eq!(title(&s), "points.npz •");
+    assert_eq!(s.state().messages(), before + 1);
+    assert!(matches!(s.state().editor().scene().objects.last(), Some(Object::Line(_))));
+}
+
+#[test]
+fn a_start_with_a_file_loses_neither_the_file_nor_what_was_unsaved() {
+    let mut s = Session::start();
+    let b = write(&s, "b.toml", 5);
+    s.ask(Command::Add(NewObject::Point, None));
+    let unsaved = s.state().editor().scene().clone();
+    let copy = s.folder.path().join("data/autosave.toml");
+    step_until(&mut s, "no autosave", |_| copy.exists());
+    let Session { app, folder } = s;
+    drop(app);
+    // Twice: closing the window with the file on screen must not lose it either.
+    for _ in 0..2 {
+        let app = harness(folder.path(), Some("b.toml"), vec![Arc::new(Baseline)]);
+        let mut s = Session { app, folder: tempfile::tempdir().unwrap() };
+        s.settle();
+        assert_eq!(title(&s), "b.toml");
+        assert_eq!(s.state().editor().left().len(), 1);
+        assert_eq!(s.state().editor().left()[0].scene(), &unsaved);
+    }
+    let app = harness(folder.path(), Some("b.toml"), vec![Arc::new(Baseline)]);
+    let mut s = Session { app, folder };
+    s.settle();
+    assert_eq!((s.state().editor().left()[0].title().as_str(), points(&b)), ("scene.toml •", 5));
+}
+
+#[test]
+fn a_named_scene_comes_back_under_its_name() {
+    let mut s = Session::start();
+    s.ask(Command::Add(NewObject::Point, None));
+    let copy = s.folder.path().join("data/autosave.toml");
+    step_until(&mut s, "no autosave", |_| copy.exists());
+    let Session { app, folder } = s;
+    drop(app);
+    let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
+    let mut s = Session { app, folder };
+    s.settle();
+    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
+    s.ask(Command::Save);
+    assert_eq!((title(&s).as_str(), points(&s.folder.path().join("scene.toml"))), ("scene.toml", 3));
+}

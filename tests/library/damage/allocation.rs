@@ -1,0 +1,79 @@
+//! An allocator that counts: what a thread holds, and the most it held.
+//!
+//! Readers work on the thread that calls them, so that other tests beside them don't matter.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+thread_local! {
+    static HELD: Cell<isize> = const { Cell::new(0) };
+    static MOST: Cell<isize> = const { Cell::new(0) };
+    /// What the thread is at, told where it asks for more than can be had.
+    static AT: Cell<(&'static str, u64)> = const { Cell::new(("", 0)) };
+}
+
+/// Requests larger than this are told before the system refuses them and the process ends.
+const ABSURD: usize = 1 << 32;
+
+pub struct Counting;
+
+fn add(bytes: isize) {
+    // A thread that ends has no counters any more.
+    let _ending = HELD.try_with(|held| {
+        held.set(held.get() + bytes);
+        let _ending = MOST.try_with(|most| most.set(most.get().max(held.get())));
+    });
+}
+
+fn tell_absurd(size: usize) {
+    if size > ABSURD {
+        let _ending = AT.try_with(|at| eprintln!("{size} bytes asked for at input {} of {}", at.get().1, at.get().0));
+    }
+}
+
+// SAFETY: every call goes to the system's allocator as it came; counting allocates nothing.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        tell_absurd(layout.size());
+        add(layout.size() as isize);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        tell_absurd(layout.size());
+        add(layout.size() as isize);
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        add(-(layout.size() as isize));
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        tell_absurd(size);
+        // Both may be there at once.
+        add(size as isize);
+        add(-(layout.size() as isize));
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+/// Runs `work` on input `number` of `what`; the most bytes it held at once beside what the thread held before.
+pub fn most_held<T>(what: &'static str, number: u64, work: impl FnOnce() -> T) -> (T, usize) {
+    AT.set((what, number));
+    let before = HELD.get();
+    MOST.set(before);
+    let result = work();
+    (result, (MOST.get() - before).max(0) as usize)
+}
+
+#[test]
+fn the_most_that_was_held_is_counted() {
+    let (kept, most) = most_held("test", 0, || {
+        drop(std::hint::black_box(vec![1u8; 1 << 20]));
+        std::hint::black_box(vec![0u8; 1000])
+    });
+    assert!((1 << 20..(1 << 20) + 4096).contains(&most), "{most}");
+    drop(kept);
+}

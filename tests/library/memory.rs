@@ -1,0 +1,101 @@
+//! What a radar asks for stays below what `Radar::memory_bytes` counts, whoever makes its maps.
+//!
+//! Each measurement has a process of its own: this test program again, asked for the test called `child`.
+
+use apertura::files::archive::write_maps;
+use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident_bytes};
+use apertura::live::{Engine, Wanted};
+use apertura::methods;
+use apertura::radar::Radar;
+use apertura::reconstruct::Request;
+use apertura::scene::Scene;
+use apertura::signal::{Floor, simulate};
+use std::process::Command;
+
+/// What the child is asked to do: `WORK ELEMENTS SAMPLES END`.
+const ASKED: &str = "APERTURA_TEST_MEMORY";
+
+/// What the program and its threads hold beside the maps, bytes.
+const OVERHEAD: u64 = 32 << 20;
+
+#[test]
+#[ignore = "the child of the tests below"]
+fn child() {
+    let Ok(asked) = std::env::var(ASKED) else { return };
+    let words: Vec<&str> = asked.split(' ').collect();
+    let [work, numbers @ ..] = words.as_slice() else { panic!("{asked}") };
+    let numbers: Vec<usize> = numbers.iter().map(|n| n.parse().unwrap()).collect();
+    let radar = Radar { elements: numbers[0], samples: numbers[1], end_elements: numbers[2], ..Radar::default() };
+    radar.validate().unwrap();
+    let range = radar.max_range_metres();
+    let scene = Scene::of_points((0..12).map(|i| (0.05 * range * f64::from(i - 6), 0.03 * range * f64::from(i + 8))));
+    // The list of methods holds weights; they are no part of a map.
+    let methods = methods::all();
+    reset_peak_resident();
+    let before = resident_bytes().unwrap_or(0);
+    match *work {
+        "export" => {
+            let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            write_maps(&folder.path().join("maps.npz"), &radar, &scene, &signal).unwrap();
+        }
+        "engine" => {
+            let mut engine = Engine::new(radar.clone());
+            for floor in [Floor::Thesis, Floor::Exact] {
+                engine.update(&scene, &Wanted { floor, ..Wanted::default() }).unwrap();
+            }
+        }
+        name => {
+            let method = methods.iter().find(|m| m.name() == name).unwrap();
+            let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
+            // A method may refuse a radar; then it asks for nothing.
+            let _maybe_refused = method.reconstruct(&radar, &signal.two_ends(&radar), &Request::default());
+        }
+    }
+    println!("\nheld {}", peak_resident_bytes().unwrap_or(0).saturating_sub(before));
+}
+
+/// Bytes that `work` for `radar` held at most; `None` where the system tells no peaks.
+fn held(work: &str, radar: &Radar) -> Option<u64> {
+    let mut child = Command::new(std::env::current_exe().unwrap());
+    child.args(["--exact", "memory::child", "--ignored", "--nocapture"]);
+    child.env(ASKED, format!("{work} {} {} {}", radar.elements, radar.samples, radar.end_elements));
+    let output = child.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{work}: {said} {}", String::from_utf8_lossy(&output.stderr));
+    let bytes = said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok());
+    bytes.filter(|b| *b > 0)
+}
+
+fn check(work: &str, radar: &Radar) {
+    let Some(held) = held(work, radar) else { return println!("skipped: the system tells no peaks") };
+    let (cells, counted) = (radar.elements * radar.samples, radar.memory_bytes());
+    println!(
+        "{work}: {} elements, {} samples, ends of {}: {held} bytes held, {:.0} a cell, {counted} counted",
+        radar.elements,
+        radar.samples,
+        radar.end_elements,
+        held as f64 / cells as f64
+    );
+    assert!(held <= counted + OVERHEAD, "{work} held {held} bytes where {counted} are counted");
+}
+
+#[test]
+fn maps_and_exports_stay_below_what_is_counted() {
+    let radar = Radar { elements: 1024, samples: 1024, ..Radar::default() };
+    for work in ["export", "engine"] {
+        check(work, &radar);
+    }
+}
+
+#[test]
+#[ignore = "long: every method on larger radars"]
+fn every_method_stays_below_what_is_counted() {
+    let large = Radar { elements: 2048, samples: 1024, ..Radar::default() };
+    let wide_ends = Radar { elements: 1024, samples: 64, end_elements: 512, ..Radar::default() };
+    for radar in [large, wide_ends] {
+        for work in ["export", "engine"].into_iter().chain(methods::all().iter().map(|m| m.name())) {
+            check(work, &radar);
+        }
+    }
+}
