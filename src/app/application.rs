@@ -214,7 +214,7 @@ impl eframe::App for App {
         }
         let commands = self.draw(ui);
         self.apply(&ctx, commands);
-        if self.state.pointer.turn(self.state.radar()) {
+        if self.state.pointer.turn(self.state.editor.radar()) {
             // Panels drawn before the one under it still show the old place.
             ctx.request_repaint();
         }

@@ -110,7 +110,7 @@ impl<'a> Contents<'a> {
         let found = pipeline.output().filter(|_| settings.show_found && kind.needs_output());
         let input = map::Input {
             kind,
-            radar: self.state.radar(),
+            radar: self.state.editor.radar(),
             projection: settings.projection,
             colours: settings.colours,
             texture,

@@ -7,7 +7,7 @@ use crate::files::write_bytes;
 use crate::picture::{Format, Style, compose};
 use crate::reconstruct::Request;
 use crate::signal;
-use crate::task::{Task, panic_message};
+use crate::task::panic_message;
 use eframe::egui::{ColorImage, Context};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};

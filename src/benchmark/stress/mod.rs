@@ -352,6 +352,7 @@ mod tests {
         let mut edits = EditReport {
             edits: 100,
             worst_difference: 1e-15,
+            most_difference: 1e-13,
             cache_bytes_early: 1000,
             cache_bytes: 1000,
             resident_bytes_early: Some(50 << 20),
