@@ -19,12 +19,13 @@ impl Later {
         let typed = |e: &Event| matches!(e, Event::Text(_) | Event::Paste(_));
         let from_first =
             |is: &dyn Fn(&Event) -> bool, from: usize| events[from..].iter().position(is).map(|i| i + from);
+        let pressed = |e: &Event| typed(e) || matches!(e, Event::Key { pressed: true, .. });
         let first_typed = from_first(&typed, 0).unwrap_or(events.len());
         let first_move = from_first(&moves, 0).unwrap_or(events.len());
-        // Letters, then a move: the move waits. A move, then letters: the letters wait.
+        // Letters, then a move: the move waits. A move, then any key: the key waits.
         let end = match first_typed < first_move {
             true => first_move,
-            false => from_first(&|e| typed(e) || moves(e), (first_move + 1).min(events.len())).unwrap_or(events.len()),
+            false => from_first(&pressed, (first_move + 1).min(events.len())).unwrap_or(events.len()),
         };
         self.0 = events.split_off(end);
         input.events = events;

@@ -170,7 +170,9 @@ fn figures_are_of_one_pair_of_maps_and_a_slow_output_is_marked_as_old() {
     s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
     let target = s.state().report().unwrap().total;
     step_until(&mut s, "the maps are new", |s| s.state().report().unwrap().total != target);
-    step_until(&mut s, "the output is told to be old", |s| s.app.query_by_label_contains("(updating)").is_some());
+    step_until(&mut s, "the output is told to be old", |s| {
+        s.app.query_all_by_label_contains("(updating)").next().is_some()
+    });
     assert!(s.state().output_is_outdated());
     assert_eq!(s.state().metrics(), Some(before), "the figures are those of the output that is shown");
     s.settle();
@@ -212,10 +214,10 @@ fn exported_maps_hold_the_output() {
 fn open_shows_a_dialog_of_the_windows_own_where_the_system_has_none() {
     let mut s = Session::start();
     s.ask(Command::Open);
-    assert!(s.app.query_by_label_contains("Open a scene").is_some());
-    s.app.get_by_label("scene.toml").click();
+    assert!(s.app.query_all_by_label_contains("Open a scene").next().is_some());
+    s.app.get_by_label("🗋 scene.toml").click();
     s.settle();
     s.app.get_by_label("Open").click();
     s.settle();
-    assert!(s.app.query_by_label_contains("Open a scene").is_none());
+    assert!(s.app.query_all_by_label_contains("Open a scene").next().is_none());
 }

@@ -31,7 +31,7 @@ impl Memory {
         };
         let dialog = dialog
             .title(purpose.title())
-            .id("file dialog")
+            .id(Id::unique("file dialog"))
             .default_filename(purpose.name())
             .default_size([480.0, 360.0])
             .show_rename(false)

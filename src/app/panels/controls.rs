@@ -349,12 +349,11 @@ mod tests {
     #[test]
     fn the_focus_passes_through_a_threshold_without_rounding_it() {
         assert_eq!((moved(0.851, 0.85), moved(0.851, 0.86)), (None, Some(0.86)));
-        let mut settings = Settings::default();
-        settings.target_eta = 0.851;
-        let radar = Radar::default();
+        let settings = Settings { target_eta: 0.851, ..Settings::default() };
+        let (radar, capon) = (Radar::default(), CAPON);
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
             let (eta, run) = (0.123, Run::default());
-            let input = Input { settings: &settings, radar: &radar, methods: &[], method: Some(&CAPON), eta, run };
+            let input = Input { settings: &settings, radar: &radar, methods: &[], method: Some(&capon), eta, run };
             asked.extend(show(ui, input));
         };
         let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
