@@ -47,12 +47,11 @@ impl Ends {
         self.x_metres.iter().map(move |x| seen_from(*x, range_metres, cos_theta).range_metres)
     }
 
-    /// What each element heard from that place, as if all stood equally far: 1 in every element for a reflector there whose samples
-    /// at the centre have amplitude 1.
+    /// What each element heard from that place, the phase of its distance taken off: alike in every element but for the distance for
+    /// a reflector there.
     pub fn heard_from(&self, range_metres: f64, cos_theta: f64) -> impl Iterator<Item = Complex64> + '_ {
-        self.distances_metres(range_metres, cos_theta).enumerate().map(move |(channel, distance)| {
-            // Amplitudes fall with the square of the distance.
-            self.profiles.at(channel, distance) * (distance / range_metres).powi(2)
-        })
+        self.distances_metres(range_metres, cos_theta)
+            .enumerate()
+            .map(move |(channel, distance)| self.profiles.at(channel, distance))
     }
 }

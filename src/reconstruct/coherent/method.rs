@@ -1,7 +1,7 @@
 //! A coherent method is one closure; everything around it is written here once.
 
 use super::ends::Ends;
-use super::model::{Model, Share};
+use super::model::{Model, Update};
 use super::peaks::{Peak, apart, gains, peaks};
 use super::places::places;
 use super::sectors::Sectors;
@@ -27,12 +27,7 @@ pub(super) const TOLD: &str = "nothing about the scene or the floor; it measures
 #[derive(Debug, Clone, Copy)]
 pub struct CoherentMethod {
     pub(super) about: About,
-    /// The next power of a vector.
-    pub(super) update: fn(Share) -> f64,
-    /// How often all powers are updated.
-    pub(super) iterations: usize,
-    /// Least noise a model reckons with, as a part of the mean power heard: what steering vectors leave of a real echo.
-    pub(super) least_noise: f64,
+    pub(super) update: Update,
     /// A direction's least power, as a part of its model's strongest, to be taken for a reflector.
     pub(super) least_part: f64,
 }
@@ -70,7 +65,7 @@ impl Reconstructor for CoherentMethod {
         let found: Vec<Vec<Peak>> = places
             .par_iter()
             .map(|place| {
-                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(self, task)?;
+                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(&self.update, task)?;
                 Ok(peaks(&sectors, place, &powers, self.least_part))
             })
             .collect::<Result<_, ReconstructError>>()?;

@@ -2,7 +2,6 @@
 
 use super::ends::Ends;
 use super::linear::{Steering, explained};
-use super::method::CoherentMethod;
 use super::places::Place;
 use super::sectors::Sectors;
 use crate::radar::Radar;
@@ -15,17 +14,16 @@ use num_complex::Complex64;
 const BEAMS_PER_WIDTH: f64 = 2.0;
 
 /// Beam widths around the sector from which no such waves are taken: both ends' own vectors account for them.
-const CLEAR_WIDTHS: f64 = 0.5;
+const CLEAR_WIDTHS: f64 = 0.2;
 
 /// What both ends heard from a place, and the vectors that may explain it.
 pub(super) struct Model {
     steering: Steering,
     /// What each element heard.
     heard: Vec<Complex64>,
-    /// Squared norms of the vectors.
+    /// Squared norms of the vectors: first those of the sector's directions, then of one end's plane waves.
     squares: Vec<f64>,
-    /// The first vectors are the directions of the sector; the others one end's plane waves.
-    directions: usize,
+    /// Power of the noise in an element.
     noise: f64,
 }
 
@@ -40,12 +38,26 @@ pub(super) struct Share {
     pub held: f64,
 }
 
+/// How powers are found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Update {
+    /// The next power of a vector.
+    pub next: fn(Share) -> f64,
+    /// How often all powers are updated.
+    pub iterations: usize,
+    /// Least noise that is reckoned with, as a part of the mean power heard: what steering vectors leave of a real echo.
+    pub least_noise: f64,
+}
+
 impl Model {
     /// The model of `place`; `noise_power` is that of one element's profile.
     pub fn new(radar: &Radar, ends: &Ends, sectors: &Sectors, place: &Place, noise_power: f64) -> Self {
         let (range, middle) = (place.range_metres, place.sector.middle_cos);
-        let heard: Vec<Complex64> = ends.heard_from(range, middle).collect();
         let own: Vec<f64> = ends.distances_metres(range, middle).collect();
+        // Amplitudes fall with the square of the distance: as if all elements stood equally far.
+        let nearer: Vec<f64> = own.iter().map(|distance| (distance / range).powi(2)).collect();
+        let heard: Vec<Complex64> = ends.heard_from(range, middle).zip(&nearer).map(|(h, n)| h * n).collect();
+        let noise = noise_power * nearer.iter().map(|n| n * n).sum::<f64>() / nearer.len() as f64;
         let resolution = radar.range_resolution_metres();
         let mut vectors: Vec<Vec<Complex64>> = sectors
             .steps_cos
@@ -57,37 +69,35 @@ impl Model {
                 further.map(|metres| ends.profiles.phase(metres) * response(metres)).collect()
             })
             .collect();
-        let directions = vectors.len();
         if sectors.all.len() > 1 {
             vectors.extend(one_end_waves(radar, ends, place));
         }
         let squares = vectors.iter().map(|v| v.iter().map(Complex64::norm_sqr).sum()).collect();
         let steering = Steering::new(ends.len(), vectors.len(), |n, k| vectors[k][n]);
-        Model { steering, heard, squares, directions, noise: noise_power }
+        Model { steering, heard, squares, noise }
     }
 
-    /// Powers of the sector's directions by `method`'s iteration, from those of the matched filter.
+    /// Powers of all vectors, the sector's directions first, by `update` from those of the matched filter.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn powers(&self, method: &CoherentMethod, task: &Task) -> Result<Vec<f64>, ReconstructError> {
+    pub fn powers(&self, update: &Update, task: &Task) -> Result<Vec<f64>, ReconstructError> {
         let mean = self.heard.iter().map(Complex64::norm_sqr).sum::<f64>() / self.heard.len() as f64;
-        let noise = self.noise.max(mean * method.least_noise);
+        let noise = self.noise.max(mean * update.least_noise);
         let count = self.squares.len();
         // Without any power the covariance is the noise alone: the matched filter.
         let Some(start) = explained(&self.steering, &vec![0.0; count], noise, &self.heard) else {
-            return Ok(vec![0.0; self.directions]);
+            return Ok(vec![0.0; count]);
         };
         let mut powers: Vec<f64> = (0..count).map(|k| start.matched[k] * (noise / self.squares[k]).powi(2)).collect();
-        for _ in 0..method.iterations {
+        for _ in 0..update.iterations {
             task.check()?;
             let Some(now) = explained(&self.steering, &powers, noise, &self.heard) else { break };
             for (k, power) in powers.iter_mut().enumerate() {
-                let next = (method.update)(Share { power: *power, matched: now.matched[k], held: now.held[k] });
+                let next = (update.next)(Share { power: *power, matched: now.matched[k], held: now.held[k] });
                 *power = if next.is_finite() { next } else { 0.0 };
             }
         }
-        powers.truncate(self.directions);
         Ok(powers)
     }
 }

@@ -35,17 +35,16 @@ pub(super) struct Peak {
     pub power: f64,
 }
 
-/// Maxima of `powers` over the sector's directions that are at least `least_part` of the largest.
+/// Maxima of `powers` over the sector's directions, the first of them, that are at least `least_part` of the largest of all.
 pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part: f64) -> Vec<Peak> {
     let largest = powers.iter().copied().fold(0.0, f64::max);
-    let at = |i: usize| powers.get(i).copied().unwrap_or(0.0);
-    (0..powers.len())
-        .filter(|&i| {
-            let before = if i == 0 { 0.0 } else { at(i - 1) };
-            at(i) > 0.0 && at(i) >= least_part * largest && at(i) > before && at(i) >= at(i + 1)
-        })
+    let powers = &powers[..sectors.steps_cos.len().min(powers.len())];
+    let at = |i: usize| powers[i];
+    // What rises up to the edge belongs to a neighbour, whose own directions reach over it.
+    (1..powers.len().saturating_sub(1))
+        .filter(|&i| at(i) > 0.0 && at(i) >= least_part * largest && at(i) > at(i - 1) && at(i) >= at(i + 1))
         .map(|i| {
-            let around = i.saturating_sub(1)..(i + 2).min(powers.len());
+            let around = i - 1..i + 2;
             let power: f64 = around.clone().map(at).sum();
             let step = around.map(|k| at(k) * sectors.steps_cos[k]).sum::<f64>() / power;
             let cos_theta = (place.sector.middle_cos + step).clamp(-1.0, 1.0);

@@ -100,9 +100,8 @@ pub(super) fn places(
         .map(|sector| {
             task.check()?;
             let power = |i: usize| {
-                let from: Vec<Complex64> = ends.heard_from(range(i as f64), sector.middle_cos).collect();
-                // Compared as the elements hear it: what is near is not noisier.
-                beams.power(&from, ends.first_count)
+                let heard: Vec<Complex64> = ends.heard_from(range(i as f64), sector.middle_cos).collect();
+                beams.power(&heard, ends.first_count)
             };
             Ok((0..count).map(|i| if i < NEAREST_BIN * PER_BIN { 0.0 } else { power(i) }).collect())
         })
@@ -132,8 +131,8 @@ fn side_lobes(strongest: &[f64]) -> Vec<f64> {
         .map(|i| {
             let bins = i as f64 / PER_BIN as f64;
             // Beyond the main lobe the highest of each side lobe, at half bins.
-            let level = if bins < 2.0 { 0.0 } else { range_response(bins.floor() + 0.5).abs() };
-            if bins < 1.0 { LEAST_BESIDE } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_BESIDE) }
+            let level = range_response(bins.floor() + 0.5);
+            if bins < 2.0 { LEAST_BESIDE } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_BESIDE) }
         })
         .collect();
     (0..strongest.len())

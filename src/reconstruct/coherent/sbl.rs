@@ -1,6 +1,7 @@
 //! Sparse Bayesian learning.
 
 use super::method::{CoherentMethod, TOLD};
+use super::model::Update;
 use crate::reconstruct::reconstructor::About;
 
 /// Every direction's gain is drawn from a normal distribution of its own variance; the variances under which what was heard is
@@ -14,11 +15,13 @@ pub const SBL: CoherentMethod = CoherentMethod {
         name: "sbl",
         description: "the fewest directions that explain what both ends heard as one aperture, and the exact map of them",
         told: TOLD,
-        eta: 0.856, // by examples/choose_eta.rs
+        eta: 0.856, // omp's, whose maps are made alike; not yet chosen on validation scenes
     },
-    // The variance that makes the posterior gain's square, over how well it is determined, agree with itself.
-    update: |share| share.power * share.matched / share.held,
-    iterations: 30,
-    least_noise: 3e-3,
+    update: Update {
+        // The variance that makes the posterior gain's square, over how well it is determined, agree with itself.
+        next: |share| share.power * share.matched / share.held,
+        iterations: 30,
+        least_noise: 3e-3,
+    },
     least_part: 0.05,
 };

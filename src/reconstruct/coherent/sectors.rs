@@ -49,13 +49,12 @@ impl Sectors {
         let sector = |i: usize| Sector { middle_cos: (2 * i + 1) as f64 * half_width_cos - 1.0, half_width_cos };
         let turns_per_cos = span_metres * radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
         let per_fringe = if count == 1 { PER_FRINGE_ALONE } else { PER_FRINGE };
-        let directions = (2.0 * half_width_cos * turns_per_cos * per_fringe).ceil().max(8.0) as usize;
+        let fringe_cos = 1.0 / turns_per_cos.max(f64::MIN_POSITIVE);
+        // A fringe more to either side, so that no maximum stands on an edge.
+        let reach_cos = half_width_cos + fringe_cos.min(half_width_cos);
+        let directions = (2.0 * reach_cos * turns_per_cos * per_fringe).ceil().max(8.0) as usize;
         let directions = directions.min(MOST_DIRECTIONS);
-        let step = |i: usize| (2 * i + 1) as f64 * half_width_cos / directions as f64 - half_width_cos;
-        Sectors {
-            all: (0..count).map(sector).collect(),
-            steps_cos: (0..directions).map(step).collect(),
-            fringe_cos: 1.0 / turns_per_cos.max(f64::MIN_POSITIVE),
-        }
+        let step = |i: usize| ((2 * i + 1) as f64 / directions as f64 - 1.0) * reach_cos;
+        Sectors { all: (0..count).map(sector).collect(), steps_cos: (0..directions).map(step).collect(), fringe_cos }
     }
 }
