@@ -15,6 +15,7 @@ mod network_args;
 mod open;
 mod output;
 mod reconstruct;
+mod robustness;
 mod scenes;
 mod stress;
 #[cfg(feature = "network")]
@@ -56,6 +57,7 @@ enum Command {
     Layouts(layouts::Args),
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
+    Robustness(robustness::Args),
     Scenes(scenes::Args),
     Stress(stress::Args),
     #[cfg(feature = "network")]
@@ -72,6 +74,7 @@ impl Command {
             Command::Layouts(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
+            Command::Robustness(args) => args.run(),
             Command::Scenes(args) => args.run(),
             Command::Stress(args) => args.run(),
             #[cfg(feature = "network")]

@@ -51,6 +51,15 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
+    /// All of them `factor` times as large.
+    pub fn times(&self, factor: f64) -> Self {
+        Tolerances {
+            gain: Decibels(factor * self.gain.0),
+            phase_degrees: factor * self.phase_degrees,
+            position_millimetres: factor * self.position_millimetres,
+        }
+    }
+
     /// An array built with these tolerances; the same seed builds the same, and one of twice the tolerances is twice as far off.
     pub fn build(&self, radar: &Radar, seed: u64) -> BuiltArray {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);

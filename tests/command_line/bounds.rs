@@ -1,4 +1,4 @@
-//! `apertura bounds` and `apertura layouts` from outside.
+//! `apertura bounds`, `apertura layouts` and `apertura robustness` from outside.
 
 use assert_cmd::Command;
 use predicates::str::contains;
@@ -58,4 +58,21 @@ fn what_is_wrong_is_named() {
     apertura(&["bounds", "--apart", "1e6"]).assert().failure().stderr(contains("beyond the array's axis"));
     apertura(&["bounds", "--layout", "random=2000"]).assert().failure().stderr(contains("1 to 1024"));
     apertura(&["layouts", "--layout", "mimo=3x3", "--count", "1"]).assert().failure().stderr(contains("own grid"));
+}
+
+#[test]
+fn robustness_prints_a_line_for_each_method_and_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = apertura(&["robustness", "--method", "bartlett,baseline", "--count", "1", "--scale", "0,2", "--output"])
+        .arg(folder.path())
+        .assert()
+        .success();
+    let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+    assert_eq!((lines.len(), lines[0].len(), lines[0][0]), (5, 9, "method"));
+    assert_eq!((lines[2][0], lines[2][1], lines[2][3]), ("bartlett", "2", "20"));
+    assert_ne!(lines[3][5], lines[4][5], "elements that are off change the map");
+    assert_eq!(std::fs::read_to_string(folder.path().join("robustness.csv")).unwrap().trim_end(), text.trim_end());
+    assert!(std::fs::read_to_string(folder.path().join("robustness.svg")).unwrap().contains("baseline"));
+    apertura(&["robustness", "--phase-degrees", "200"]).assert().failure().stderr(contains("number from 0 to 180"));
 }

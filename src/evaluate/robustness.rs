@@ -1,0 +1,162 @@
+//! How methods bear elements that are not as they should be.
+
+use super::campaign::CampaignError;
+use super::estimate::Estimate;
+use super::metrics::Metrics;
+use super::trial::Trial;
+use crate::maps::Normalisation;
+use crate::radar::{Radar, Tolerances};
+use crate::reconstruct::{Reconstructor, Request};
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::scene::{Reflector, SceneError};
+use crate::signal::{Floor, TwoEnds, calibrate, simulate_built};
+use crate::task::Task;
+use serde::Serialize;
+
+/// Which scenes methods are tried on, and how far the elements are off.
+#[derive(Debug, Clone)]
+pub struct Robustness {
+    /// The radar, as it should be.
+    pub radar: Radar,
+    /// Kind of the test scenes.
+    pub kind: Kind,
+    /// Seed of the scenes, of their noise and of the elements' errors.
+    pub seed: u64,
+    /// Number of scenes; each meets an array of its own.
+    pub count: u32,
+    /// What lies beneath the reflectors.
+    pub floor: Floor,
+    /// Errors at scale 1.
+    pub tolerances: Tolerances,
+    /// What the errors are multiplied with, in the order of the answer.
+    pub scales: Vec<f64>,
+    /// Whether the array is first calibrated on the scene's strongest reflector.
+    pub calibrated: bool,
+}
+
+/// One method at one scale of errors; figures against the map of the array as it should be.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RobustnessRow {
+    /// Name of the method.
+    pub method: &'static str,
+    /// What the tolerances were multiplied with.
+    pub scale: f64,
+    /// Standard deviation of the elements' gains.
+    pub gain_decibels: f64,
+    /// Standard deviation of the elements' phases.
+    pub phase_degrees: f64,
+    /// Standard deviation of the elements' places.
+    pub position_millimetres: f64,
+    /// SE.
+    pub squared_error: Estimate,
+    /// P_D at the method's own threshold.
+    pub detection: Estimate,
+    /// P_FA there.
+    pub false_alarm: Estimate,
+}
+
+impl Robustness {
+    /// Tries every method at every scale: the same scenes, the same errors but for the scale. `on_map` is called after every map.
+    ///
+    /// # Errors
+    /// [`CampaignError`] names the scene, and the method that failed or was cancelled through `task`.
+    pub fn run(
+        &self,
+        methods: &[&dyn Reconstructor],
+        task: &Task,
+        mut on_map: impl FnMut(),
+    ) -> Result<Vec<RobustnessRow>, CampaignError> {
+        let mut metrics = vec![vec![Vec::new(); self.scales.len()]; methods.len()];
+        let request = Request { floor: self.floor, task: task.clone(), ..Request::default() };
+        let set = || format!("{:?}", self.kind);
+        for index in 0..self.count {
+            let (mut trial, ends) =
+                self.trial(index).map_err(|source| CampaignError::Scene { set: set(), index, source })?;
+            for (i, ends) in ends.into_iter().enumerate() {
+                trial.ends = ends;
+                for (method, metrics) in methods.iter().zip(&mut metrics) {
+                    let answer = trial.ask(*method, &request).map_err(|source| CampaignError::Method {
+                        method: method.name(),
+                        set: set(),
+                        index,
+                        source,
+                    })?;
+                    metrics[i].push(answer.metrics);
+                    on_map();
+                }
+            }
+        }
+        let rows = methods.iter().zip(&metrics).flat_map(|(method, metrics)| {
+            self.scales.iter().zip(metrics).map(|(scale, metrics)| self.row(method.name(), *scale, metrics))
+        });
+        Ok(rows.collect())
+    }
+
+    fn row(&self, method: &'static str, scale: f64, metrics: &[Metrics]) -> RobustnessRow {
+        let estimate =
+            |of: fn(&Metrics) -> Option<f64>| Estimate::of(&metrics.iter().filter_map(of).collect::<Vec<f64>>());
+        let tolerances = self.tolerances.times(scale);
+        RobustnessRow {
+            method,
+            scale,
+            gain_decibels: tolerances.gain.0,
+            phase_degrees: tolerances.phase_degrees,
+            position_millimetres: tolerances.position_millimetres,
+            squared_error: estimate(|m| Some(m.squared_error)),
+            detection: estimate(|m| m.detection),
+            false_alarm: estimate(|m| Some(m.false_alarm)),
+        }
+    }
+
+    /// The scene over the array as it should be, and the ends at every scale of errors.
+    fn trial(&self, number: u32) -> Result<(Trial, Vec<TwoEnds>), SceneError> {
+        let radar = &self.radar;
+        let scene = Generator::new(radar, Reading::Program, Purpose::Test, self.seed).scene(self.kind, number);
+        let trial = Trial::new(radar, &scene, self.floor, Normalisation::MinMax)?;
+        let loudness = |r: &Reflector| r.reflectivity.abs() / (r.x_metres.powi(2) + r.y_metres.powi(2));
+        let loudest = scene.reflectors().into_iter().max_by(|a, b| loudness(a).total_cmp(&loudness(b)));
+        let ends = |scale: &f64| {
+            let array = self.tolerances.times(*scale).build(radar, self.seed.wrapping_add(u64::from(number)));
+            let mut signal = simulate_built(radar, &scene, &array, self.floor, scene.noise_seed)?;
+            let on = loudest.filter(|_| self.calibrated).and_then(|r| calibrate(radar, &signal, &r));
+            if let Some(calibration) = on {
+                calibration.take_off(&mut signal);
+            }
+            Ok(signal.two_ends(radar))
+        };
+        let ends = self.scales.iter().map(ends).collect::<Result<_, SceneError>>()?;
+        Ok((trial, ends))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Decibels;
+    use crate::reconstruct::{MatchedFilter, Omp};
+
+    #[test]
+    fn worse_elements_cost_and_calibration_pays() {
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 40.0, position_millimetres: 0.0 };
+        let robustness = Robustness {
+            radar: Radar { elements: 256, samples: 256, ..Radar::default() },
+            kind: Kind::Set1,
+            seed: 3,
+            count: 2,
+            floor: Floor::Snr(Decibels(40.0)),
+            tolerances,
+            scales: vec![0.0, 1.0],
+            calibrated: false,
+        };
+        let methods: [&dyn Reconstructor; 2] = [&Omp::default(), &MatchedFilter::Incoherent];
+        let mut maps = 0;
+        let rows = robustness.run(&methods, &Task::default(), || maps += 1).unwrap();
+        assert_eq!((rows.len(), maps), (4, 8));
+        assert_eq!((rows[0].method, rows[0].scale, rows[1].phase_degrees), ("omp", 0.0, 40.0));
+        let error = |row: &RobustnessRow| row.squared_error.mean;
+        assert!(error(&rows[1]) > error(&rows[0]), "{rows:?}");
+        // One point alone calibrates its own array.
+        let calibrated = Robustness { calibrated: true, ..robustness }.run(&methods, &Task::default(), || ()).unwrap();
+        assert!(error(&calibrated[1]) < 0.5 * (error(&rows[0]) + error(&rows[1])), "{calibrated:?} {rows:?}");
+    }
+}
