@@ -5,6 +5,8 @@ use super::losses::Loss;
 use super::thesis::ThesisConfig;
 use super::unet::UnetConfig;
 use crate::scene::generate::Kind;
+use burn::optim::momentum::MomentumConfig;
+use burn::optim::{AdamWConfig, ModuleOptimizer, SgdConfig};
 use serde::{Deserialize, Serialize};
 
 /// The recipes that come with the program, by name.
@@ -48,6 +50,16 @@ pub enum Optimizer {
 }
 
 impl Optimizer {
+    /// A fresh optimizer of burn's.
+    pub(super) fn fresh(&self) -> ModuleOptimizer {
+        match self {
+            Optimizer::Sgd { momentum, .. } => {
+                SgdConfig::new().with_momentum(Some(MomentumConfig::new().with_momentum(*momentum))).init()
+            }
+            Optimizer::AdamW { .. } => AdamWConfig::new().with_weight_decay(1e-4).init(),
+        }
+    }
+
     /// Step size before any decay.
     pub fn learning_rate(&self) -> f64 {
         match self {

@@ -3,6 +3,7 @@
 use super::backend::Backend;
 use super::students::{Student, ThesisInput, UnetTables};
 use super::thesis::{Thesis, ThesisConfig};
+use super::trained_for::check_radar;
 use super::unet::{Unet, UnetConfig};
 use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
@@ -72,6 +73,7 @@ impl Reconstructor for ThesisMethod {
         ends: &TwoEnds,
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
+        check_radar(self.name, radar)?;
         check_ends(radar, ends)?;
         request.task.check()?;
         let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
@@ -82,6 +84,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+        check_radar(self.name, radar)?;
         let size = [radar.samples, radar.elements];
         let expected = vec![4, size[0], size[1]];
         if input.shape() != expected {
@@ -137,6 +140,7 @@ impl Reconstructor for UnetMethod {
         ends: &TwoEnds,
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
+        check_radar(Unet::NAME, radar)?;
         check_ends(radar, ends)?;
         request.task.check()?;
         let Some((ends, _)) = unit_gain(ends) else { return Ok(silence(radar)) };
