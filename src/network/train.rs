@@ -31,19 +31,11 @@ pub fn train<S: Student>(
     mut watch: impl FnMut(&Progress),
 ) -> Result<Progress, TrainError> {
     let device = run.device.clone().autodiff();
-    device.seed(recipe.seed);
-    let mut network = S::fresh(config, &device);
-    let mut optimizer = recipe.optimizer.fresh();
-    let mut progress = Progress::default();
     let at = run.folder.join("checkpoint");
-    let mut initial = None;
-    if resume {
-        let found = checkpoint::load(&at, recipe, &mut network, &mut optimizer)?;
-        (progress, initial) = (found.progress, Some(found.weights_sha256));
-    } else if at.exists() {
+    let (mut network, mut optimizer, mut progress) = begin::<S>(recipe, config, run, resume.then_some(&at), &device)?;
+    if !resume && at.exists() {
         return Err(TrainError::Occupied { folder: run.folder.clone() });
     }
-    progress.parts.push(Part::starting(run, initial, progress.maps));
     fs::create_dir_all(&run.folder).map_err(file(&run.folder))?;
     let mut log = Log::open(&run.folder.join("log.csv"), resume)?;
     let tables = S::tables(config, &run.radar)?;
@@ -87,6 +79,26 @@ pub fn train<S: Student>(
     let validation = validate::<S>(&network.valid(), recipe, config, run)?;
     export::<S>(&network.valid(), recipe, run, &progress, &validation)?;
     Ok(progress)
+}
+
+/// Network, optimizer and progress of a run that starts, or goes on from the checkpoint `from`; its new part is recorded.
+fn begin<S: Student>(
+    recipe: &Recipe,
+    config: &S::Config,
+    run: &Run,
+    from: Option<&PathBuf>,
+    device: &Device,
+) -> Result<(S, ModuleOptimizer, Progress), TrainError> {
+    device.seed(recipe.seed);
+    let mut network = S::fresh(config, device);
+    let mut optimizer = recipe.optimizer.fresh();
+    let (mut progress, mut initial) = (Progress::default(), None);
+    if let Some(folder) = from {
+        let found = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
+        (progress, initial) = (found.progress, Some(found.weights_sha256));
+    }
+    progress.parts.push(Part::starting(run, initial, progress.maps));
+    Ok((network, optimizer, progress))
 }
 
 /// One step over `lessons`: the network that has moved, or the one that was given where the loss is not finite; and the loss.
