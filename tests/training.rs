@@ -6,8 +6,9 @@
 use apertura::network::backend::Backend;
 use apertura::network::losses::Loss;
 use apertura::network::recipe::{Decay, Network, Optimizer, Recipe, Share};
+use apertura::network::run::Run;
 use apertura::network::thesis::{Thesis, ThesisConfig};
-use apertura::network::train::{Run, train};
+use apertura::network::train::train;
 use apertura::network::weights::WeightFile;
 use apertura::radar::Radar;
 use apertura::scene::generate::Kind;
@@ -22,7 +23,7 @@ fn run(folder: &Path, max_steps: u64) -> Run {
         max_steps: Some(max_steps),
         max_time: None,
         checkpoint_every: Duration::from_secs(3600),
-        commit: "none".into(),
+        origin: Default::default(),
     }
 }
 
@@ -47,6 +48,7 @@ fn a_run_in_two_parts_ends_where_a_whole_one_does() {
         network: Network::Thesis(config),
         optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
         decay: Some(Decay { epochs: 1, factor: 0.5 }),
+        thermal: None,
         scenes: vec![Share { kind: Kind::Points(2), count: 6 }],
     };
     let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
@@ -61,6 +63,14 @@ fn a_run_in_two_parts_ends_where_a_whole_one_does() {
     let worst = pairs.iter().map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert_eq!(worst, 0.0, "exact resume");
     assert_ne!(half, weights(parts.path()), "the second part must have moved the weights");
+    let [first, second] = &end.parts[..] else { panic!("two parts are recorded: {:?}", end.parts) };
+    assert_eq!((first.maps_before, first.maps_seen, second.maps_before, second.maps_seen), (0, 4, 4, 6));
+    assert_eq!(first.initial_weights_sha256, None, "drawn from the seed");
+    let started = second.initial_weights_sha256.as_ref().expect("the second part went on from a file");
+    assert!(started.len() == 64 && second.started_unix_seconds >= first.started_unix_seconds);
+    let written = std::fs::read(parts.path().join("weights.safetensors")).unwrap();
+    let record = WeightFile::parse("weights", &written).unwrap().provenance;
+    assert!(record.get("parts").contains(started), "the weights say what they were made of");
     let log = std::fs::read_to_string(parts.path().join("log.csv")).unwrap();
     assert_eq!(log.lines().count(), 6, "a header and five steps");
 }

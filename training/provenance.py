@@ -37,9 +37,10 @@ class Part:
     def __init__(self, initial, maps):
         import torch
         self.began, self.first = time.time(), maps
+        # Of paths the last part says enough; where it lies on somebody's disk is nobody's business.
         self.record = {
             "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-            "commit": commit(), "programs_sha256": programs(), "arguments": sys.argv[1:], "torch": torch.__version__,
+            "commit": commit(), "programs_sha256": programs(), "arguments": [a.rsplit("/", 1)[-1] for a in sys.argv[1:]], "torch": torch.__version__,
             "initial_weights_sha256": sha256(initial) if initial else None, "maps_before": maps,
         }
 

@@ -4,9 +4,11 @@ use super::{CommandError, print};
 use crate::network::backend::Backend;
 use crate::network::live::Live;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
+use crate::network::run::{Origin, Progress, Run};
+use crate::network::sha256;
 use crate::network::students::Student;
 use crate::network::thesis::Thesis;
-use crate::network::train::{Progress, Run, train};
+use crate::network::train::train;
 use crate::network::unet::Unet;
 use crate::radar::Radar;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -65,7 +67,7 @@ impl Args {
             max_steps: self.steps,
             max_time: minutes.map(|m| Duration::from_secs_f64(60.0 * m)),
             checkpoint_every: Duration::from_secs(120),
-            commit: commit(),
+            origin: origin(),
         };
         match &recipe.network {
             Network::Thesis(config) => go::<Thesis>(&recipe, config, &run, resume),
@@ -117,6 +119,16 @@ fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &Run, resume: bool) 
         end.loss,
         run.folder.join("weights.safetensors").display()
     ))
+}
+
+/// What trains: asked for once, when it starts.
+fn origin() -> Origin {
+    let program = std::env::current_exe().and_then(|path| sha256::of_file(&path));
+    Origin {
+        commit: commit(),
+        program_sha256: program.unwrap_or_else(|_| "unknown".to_owned()),
+        arguments: std::env::args().skip(1).collect(),
+    }
 }
 
 /// The commit of the working folder, for the record in the weights; "unknown" outside a repository.

@@ -1,8 +1,9 @@
 //! Checkpoints: a run goes on from one as if it had never stopped.
 
 use super::recipe::Recipe;
+use super::run::{Progress, TrainError, file};
+use super::sha256;
 use super::students::Student;
-use super::train::{Progress, TrainError, file, optimizer_of};
 use burn::optim::ModuleOptimizer;
 use burn::store::{BurnpackStore, ModuleSnapshot};
 use std::fs;
@@ -54,6 +55,15 @@ pub fn save<S: Student>(
     fs::rename(&next, folder).map_err(file(&next))
 }
 
+/// Where a run stands, and the weights it goes on from.
+#[derive(Debug)]
+pub struct Checkpoint {
+    /// Where the run stands.
+    pub progress: Progress,
+    /// SHA-256 of the file of weights.
+    pub weights_sha256: String,
+}
+
 /// Loads the checkpoint at `folder` into network and optimizer and says where the run stands.
 ///
 /// # Errors
@@ -63,7 +73,7 @@ pub fn load<S: Student>(
     recipe: &Recipe,
     network: &mut S,
     optimizer: &mut ModuleOptimizer,
-) -> Result<Progress, TrainError> {
+) -> Result<Checkpoint, TrainError> {
     let old = folder.with_extension("old");
     let folder = if !folder.exists() && old.exists() { &old } else { folder };
     let bad = |reason: String| TrainError::Checkpoint { path: folder.to_owned(), reason };
@@ -75,9 +85,10 @@ pub fn load<S: Student>(
         return Err(bad("it belongs to another recipe; resume with the recipe it was started with".into()));
     }
     let progress = toml::from_str(&read(PROGRESS)?).map_err(|e| bad(format!("{PROGRESS}: {e}")))?;
-    let mut store = BurnpackStore::from_file(folder.join(MODEL));
+    let model = folder.join(MODEL);
+    let weights_sha256 = sha256::of_file(&model).map_err(file(&model))?;
+    let mut store = BurnpackStore::from_file(model);
     network.load_from(&mut store).map_err(|e| bad(format!("{MODEL}: {e}")))?;
-    *optimizer =
-        optimizer_of(&recipe.optimizer).load(folder.join(OPTIMIZER)).map_err(|e| bad(format!("{OPTIMIZER}: {e}")))?;
-    Ok(progress)
+    *optimizer = recipe.optimizer.fresh().load(folder.join(OPTIMIZER)).map_err(|e| bad(format!("{OPTIMIZER}: {e}")))?;
+    Ok(Checkpoint { progress, weights_sha256 })
 }

@@ -5,21 +5,26 @@
 //! | [`live`] | the live network: features, burn module, an engine without a framework |
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`unet`] | the thesis' failing U-Net |
-//! | [`recipe`], [`losses`], [`students`], [`train`] | training: what, towards what, from what, and how |
-//! | [`checkpoint`], [`validation`] | going on with a run; what the trained network is worth, and its weight file |
+//! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |
+//! | [`run`], [`train`], [`checkpoint`], [`sha256`] | what a run is and what it was made of, how it goes, and going on with it |
+//! | [`validation`] | what the trained network is worth, and its weight file |
 //! | [`backend`] | which of burn's backends computes |
 //! | [`weights`], [`pytorch`] | weight files: checking, loading, what they say about themselves |
 
 pub mod backend;
 pub mod checkpoint;
+mod lesson;
 pub mod live;
 pub mod losses;
 pub mod pytorch;
 pub mod recipe;
+pub mod run;
+pub mod sha256;
 pub mod students;
 pub mod thesis;
 pub mod thesis_method;
 pub mod train;
+mod trained_for;
 pub mod unet;
 pub mod validation;
 pub mod weights;
@@ -74,7 +79,12 @@ pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>
 }
 
 fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
-    Ok(match file.network() {
+    // A file of the thesis' author says nothing; its tensors do.
+    let network = match file.network() {
+        "" if Thesis::config_of(&file).is_ok() => Thesis::NAME,
+        named => named,
+    };
+    Ok(match network {
         Live::NAME => Arc::new(LiveMethod::new(file)?),
         Unet::NAME => Arc::new(UnetMethod::new(file, backend)?),
         Thesis::NAME => {
@@ -89,7 +99,7 @@ fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor
             };
             Arc::new(ThesisMethod::new(name, description, file, backend)?)
         }
-        other => return Err(file.foreign(other, "live, thesis or unet")),
+        _ => return Err(file.foreign("live, thesis or unet")),
     })
 }
 

@@ -4,7 +4,13 @@ use super::live::LiveConfig;
 use super::losses::Loss;
 use super::thesis::ThesisConfig;
 use super::unet::UnetConfig;
+use crate::radar::Decibels;
 use crate::scene::generate::Kind;
+use crate::signal::Floor;
+use burn::optim::momentum::MomentumConfig;
+use burn::optim::{AdamWConfig, ModuleOptimizer, SgdConfig};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// The recipes that come with the program, by name.
@@ -48,6 +54,16 @@ pub enum Optimizer {
 }
 
 impl Optimizer {
+    /// A fresh optimizer of burn's.
+    pub(super) fn fresh(&self) -> ModuleOptimizer {
+        match self {
+            Optimizer::Sgd { momentum, .. } => {
+                SgdConfig::new().with_momentum(Some(MomentumConfig::new().with_momentum(*momentum))).init()
+            }
+            Optimizer::AdamW { .. } => AdamWConfig::new().with_weight_decay(1e-4).init(),
+        }
+    }
+
     /// Step size before any decay.
     pub fn learning_rate(&self) -> f64 {
         match self {
@@ -81,6 +97,18 @@ const MAX_BATCH: usize = 1024;
 const MAX_SCENES: u64 = 10_000_000;
 const MAX_VALIDATION_SCENES: u32 = 10_000;
 
+/// A part of the training scenes that lies over thermal noise instead of the thesis' rounding floor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Thermal {
+    /// The part, 0 to 1.
+    pub share: f64,
+    /// Lowest ratio of signal to noise.
+    pub from_decibels: f64,
+    /// Highest ratio; scenes are uniform in between.
+    pub to_decibels: f64,
+}
+
 /// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -105,6 +133,9 @@ pub struct Recipe {
     pub optimizer: Optimizer,
     /// Learning-rate decay.
     pub decay: Option<Decay>,
+    /// Scenes over thermal noise; none where nothing is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal: Option<Thermal>,
     /// The training scenes. They, the validation and the test scenes come from disjoint random streams.
     pub scenes: Vec<Share>,
 }
@@ -178,6 +209,14 @@ impl Recipe {
                 return fail("decay.factor", &decay.factor, "above 0 and at most 1");
             }
         }
+        if let Some(Thermal { share, from_decibels, to_decibels }) = self.thermal {
+            if !(0.0..=1.0).contains(&share) {
+                return fail("thermal.share", &share, "0 to 1");
+            }
+            if !(from_decibels.is_finite() && to_decibels.is_finite() && from_decibels < to_decibels) {
+                return fail("thermal.to_decibels", &to_decibels, "a number above from_decibels");
+            }
+        }
         let total: u64 = self.scenes.iter().map(|s| u64::from(s.count)).sum();
         if total < self.batch as u64 {
             return fail("scenes", &total, "at least one batch in all");
@@ -219,6 +258,17 @@ impl Recipe {
         self.optimizer.learning_rate() * decays
     }
 
+    /// What lies beneath the training scene whose noise has this seed.
+    pub fn floor(&self, noise_seed: u64) -> Floor {
+        let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
+        match self.thermal {
+            Some(Thermal { share, from_decibels, to_decibels }) if rng.random::<f64>() < share => {
+                Floor::Snr(Decibels(rng.random_range(from_decibels..to_decibels)))
+            }
+            _ => Floor::Thesis,
+        }
+    }
+
     /// Every training scene, as (kind, number).
     pub fn training_scenes(&self) -> Vec<(Kind, u32)> {
         self.scenes.iter().flat_map(|share| (0..share.count).map(|number| (share.kind, number))).collect()
@@ -244,6 +294,16 @@ mod tests {
     }
 
     #[test]
+    fn a_third_of_the_live_networks_scenes_lie_over_thermal_noise() {
+        let live = Recipe::shipped("live").unwrap().unwrap();
+        let noisy = (0..3000).filter(|seed| matches!(live.floor(*seed), Floor::Snr(Decibels(10.0..60.0)))).count();
+        assert!((900..1100).contains(&noisy), "{noisy}");
+        assert_eq!(live.floor(7), live.floor(7));
+        let two = Recipe::shipped("experiment-2").unwrap().unwrap();
+        assert!((0..100).all(|seed| two.floor(seed) == Floor::Thesis));
+    }
+
+    #[test]
     fn bad_recipes_are_named() {
         let good = SHIPPED[0].1;
         for (from, to, expected) in [
@@ -254,6 +314,11 @@ mod tests {
             ("momentum = 0.9", "momentum = 1.5", "optimizer.momentum is 1.5"),
             ("learning_rate = 0.1", "learning_rate = nan", "optimizer.learning_rate is NaN"),
             ("factor = 0.8", "factor = 0.0", "decay.factor is 0"),
+            (
+                "batch = 8",
+                "batch = 8\nthermal = { share = 2.0, from_decibels = 1.0, to_decibels = 2.0 }",
+                "thermal.share is 2",
+            ),
             ("levels = 5", "levels = 50", "network.levels is 50"),
             ("loss = \"mean-square\"", "loss = \"mean-cube\"", "mean-cube"),
         ] {

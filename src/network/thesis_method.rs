@@ -3,6 +3,7 @@
 use super::backend::Backend;
 use super::students::{Student, ThesisInput, UnetTables};
 use super::thesis::{Thesis, ThesisConfig};
+use super::trained_for::check_radar;
 use super::unet::{Unet, UnetConfig};
 use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
@@ -63,7 +64,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        Thesis::tables(&self.config, radar).map(|_| ())
+        check_radar(self.name, radar)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -74,6 +75,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+        check_radar(self.name, radar)?;
         let size = [radar.samples, radar.elements];
         let expected = vec![4, size[0], size[1]];
         if input.shape() != expected {

@@ -1,109 +1,23 @@
 //! Training: scenes simulated as they are needed, checkpoints that a run goes on from as if it had never stopped.
 
 use super::checkpoint;
-use super::recipe::{Optimizer, Recipe, RecipeError};
+use super::lesson::lesson;
+use super::recipe::Recipe;
+use super::run::{Part, Progress, Run, TrainError, file};
 use super::students::Student;
 use super::validation::{export, validate};
 use crate::maps::RangeAngleMap;
-use crate::radar::Radar;
-use crate::reconstruct::ReconstructError;
-use crate::scene::SceneError;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::{Floor, simulate};
-use burn::optim::momentum::MomentumConfig;
-use burn::optim::{AdamWConfig, GradientsParams, ModuleOptimizer, SgdConfig};
+use burn::optim::{GradientsParams, ModuleOptimizer};
 use burn::tensor::{Device, Tensor, TensorData};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-
-/// What a run needs beside its recipe.
-#[derive(Debug, Clone)]
-pub struct Run {
-    /// Folder of checkpoints, log and weights.
-    pub folder: PathBuf,
-    /// Where tensors live.
-    pub device: Device,
-    /// The radar.
-    pub radar: Radar,
-    /// Stop, with a checkpoint, after so many steps in all.
-    pub max_steps: Option<u64>,
-    /// Stop, with a checkpoint, after so long.
-    pub max_time: Option<Duration>,
-    /// Time between checkpoints.
-    pub checkpoint_every: Duration,
-    /// Recorded in the weights: the commit that trained them.
-    pub commit: String,
-}
-
-/// Where a run stands.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Progress {
-    /// Whole epochs done.
-    pub epoch: u32,
-    /// Steps done in the epoch that is under way.
-    pub step_of_epoch: u64,
-    /// Steps done in all.
-    pub step: u64,
-    /// Maps seen.
-    pub maps: u64,
-    /// Seconds of training.
-    pub seconds: f64,
-    /// Smoothed loss.
-    pub loss: f64,
-}
-
-/// Why training stopped early or could not start.
-#[derive(Debug, thiserror::Error)]
-pub enum TrainError {
-    /// The loss is NaN or infinite.
-    #[error("the loss is {loss} at step {step}; the last good checkpoint is kept in {}", folder.display())]
-    NotFinite {
-        /// The step.
-        step: u64,
-        /// The loss.
-        loss: f32,
-        /// The run's folder.
-        folder: PathBuf,
-    },
-    /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// A checkpoint can't be used.
-    #[error("checkpoint {}: {reason}", path.display())]
-    Checkpoint {
-        /// The checkpoint.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The folder already holds another run.
-    #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
-    Occupied {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The recipe is unsound.
-    #[error(transparent)]
-    Recipe(#[from] RecipeError),
-    /// A scene could not be simulated.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The network can't use the samples.
-    #[error(transparent)]
-    Input(#[from] ReconstructError),
-}
+use std::time::Instant;
 
 /// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
 ///
@@ -117,14 +31,9 @@ pub fn train<S: Student>(
     mut watch: impl FnMut(&Progress),
 ) -> Result<Progress, TrainError> {
     let device = run.device.clone().autodiff();
-    device.seed(recipe.seed);
-    let mut network = S::fresh(config, &device);
-    let mut optimizer = optimizer_of(&recipe.optimizer);
-    let mut progress = Progress::default();
     let at = run.folder.join("checkpoint");
-    if resume {
-        progress = checkpoint::load(&at, recipe, &mut network, &mut optimizer)?;
-    } else if at.exists() {
+    let (mut network, mut optimizer, mut progress) = begin::<S>(recipe, config, run, resume.then_some(&at), &device)?;
+    if !resume && at.exists() {
         return Err(TrainError::Occupied { folder: run.folder.clone() });
     }
     fs::create_dir_all(&run.folder).map_err(file(&run.folder))?;
@@ -139,6 +48,7 @@ pub fn train<S: Student>(
     };
     'training: while progress.epoch < recipe.epochs {
         let order = epoch_order(recipe, progress.epoch);
+        let rate = recipe.learning_rate(progress.epoch);
         // A last, smaller batch is left out: batch statistics of very few scenes would disturb.
         for scenes in order.chunks_exact(recipe.batch).skip(progress.step_of_epoch as usize) {
             if finished(&progress) {
@@ -146,24 +56,16 @@ pub fn train<S: Student>(
             }
             let lessons = scenes
                 .par_iter()
-                .map(|(kind, number)| lesson::<S>(&tables, config, run, &generator, *kind, *number))
+                .map(|scene| lesson::<S>(&tables, config, run, &generator, *scene, |seed| recipe.floor(seed)))
                 .collect::<Result<Vec<_>, _>>()?;
-            let (inputs, targets): (Vec<_>, Vec<_>) = lessons.into_iter().unzip();
-            let output = network.estimate(&inputs, &device);
-            let loss = recipe.loss.of(output, target_tensor(&targets, &device));
-            let value = loss.clone().into_scalar::<f32>();
-            if !value.is_finite() {
-                return Err(TrainError::NotFinite { step: progress.step, loss: value, folder: run.folder.clone() });
+            let (moved, loss) = step(network, &mut optimizer, recipe, rate, lessons, &device);
+            if !loss.is_finite() {
+                return Err(TrainError::NotFinite { step: progress.step, loss, folder: run.folder.clone() });
             }
-            let gradients = GradientsParams::from_grads(loss.backward(), &network);
-            network = optimizer.step(recipe.learning_rate(progress.epoch), network, gradients);
-            progress.step += 1;
-            progress.step_of_epoch += 1;
-            progress.maps += scenes.len() as u64;
-            progress.seconds = before + began.elapsed().as_secs_f64();
-            let value = f64::from(value);
-            progress.loss = if progress.step == 1 { value } else { 0.95 * progress.loss + 0.05 * value };
-            log.line(&progress, value, recipe.learning_rate(progress.epoch))?;
+            network = moved;
+            let now = began.elapsed().as_secs_f64();
+            progress.step(scenes.len() as u64, f64::from(loss), [before + now, now]);
+            log.line(&progress, f64::from(loss), rate)?;
             watch(&progress);
             if saved.elapsed() >= run.checkpoint_every {
                 checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
@@ -179,14 +81,44 @@ pub fn train<S: Student>(
     Ok(progress)
 }
 
-/// A fresh optimizer.
-pub(super) fn optimizer_of(optimizer: &Optimizer) -> ModuleOptimizer {
-    match optimizer {
-        Optimizer::Sgd { momentum, .. } => {
-            SgdConfig::new().with_momentum(Some(MomentumConfig::new().with_momentum(*momentum))).init()
-        }
-        Optimizer::AdamW { .. } => AdamWConfig::new().with_weight_decay(1e-4).init(),
+/// Network, optimizer and progress of a run that starts, or goes on from the checkpoint `from`; its new part is recorded.
+fn begin<S: Student>(
+    recipe: &Recipe,
+    config: &S::Config,
+    run: &Run,
+    from: Option<&PathBuf>,
+    device: &Device,
+) -> Result<(S, ModuleOptimizer, Progress), TrainError> {
+    device.seed(recipe.seed);
+    let mut network = S::fresh(config, device);
+    let mut optimizer = recipe.optimizer.fresh();
+    let (mut progress, mut initial) = (Progress::default(), None);
+    if let Some(folder) = from {
+        let found = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
+        (progress, initial) = (found.progress, Some(found.weights_sha256));
     }
+    progress.parts.push(Part::starting(run, initial, progress.maps));
+    Ok((network, optimizer, progress))
+}
+
+/// One step over `lessons`: the network that has moved, or the one that was given where the loss is not finite; and the loss.
+fn step<S: Student>(
+    network: S,
+    optimizer: &mut ModuleOptimizer,
+    recipe: &Recipe,
+    rate: f64,
+    lessons: Vec<(S::Input, RangeAngleMap)>,
+    device: &Device,
+) -> (S, f32) {
+    let (inputs, targets): (Vec<_>, Vec<_>) = lessons.into_iter().unzip();
+    let output = network.estimate(&inputs, device);
+    let loss = recipe.loss.of(output, target_tensor(&targets, device));
+    let value = loss.clone().into_scalar::<f32>();
+    if !value.is_finite() {
+        return (network, value);
+    }
+    let gradients = GradientsParams::from_grads(loss.backward(), &network);
+    (optimizer.step(rate, network, gradients), value)
 }
 
 /// The training scenes of an epoch in the order that recipe and epoch alone decide.
@@ -198,31 +130,10 @@ fn epoch_order(recipe: &Recipe, epoch: u32) -> Vec<(Kind, u32)> {
     order
 }
 
-/// Input and target of one scene.
-pub(super) fn lesson<S: Student>(
-    tables: &S::Tables,
-    config: &S::Config,
-    run: &Run,
-    generator: &Generator,
-    kind: Kind,
-    number: u32,
-) -> Result<(S::Input, RangeAngleMap), TrainError> {
-    let scene = generator.scene(kind, number);
-    let signal = simulate(&run.radar, &scene, Floor::Thesis, scene.noise_seed)?;
-    let input = S::input(tables, &signal.two_ends(&run.radar))?;
-    Ok((input, S::target(config, &run.radar, &signal)))
-}
-
 fn target_tensor(targets: &[RangeAngleMap], device: &Device) -> Tensor<3> {
     let (rows, columns) = targets.first().map_or((0, 0), |t| t.lambda.dim());
     let values: Vec<f32> = targets.iter().flat_map(|t| t.lambda.iter().copied()).collect();
     Tensor::from_data(TensorData::new(values, vec![targets.len(), rows, columns]), device)
-}
-
-/// For `map_err`: an error about the file `path`.
-pub(super) fn file(path: &Path) -> impl FnOnce(std::io::Error) -> TrainError {
-    let path = path.to_owned();
-    move |source| TrainError::File { path, source }
 }
 
 /// The run's CSV log.
@@ -259,8 +170,10 @@ impl Log {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::recipe::{Decay, Network, Share};
+    use crate::network::recipe::{Decay, Network, Optimizer, Share};
     use crate::network::thesis::{Thesis, ThesisConfig};
+    use crate::radar::Radar;
+    use std::time::Duration;
 
     fn radar() -> Radar {
         Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() }
@@ -279,6 +192,7 @@ mod tests {
             network: Network::Thesis(config),
             optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
             decay: Some(Decay { epochs: 1, factor: 0.5 }),
+            thermal: None,
             scenes: vec![Share { kind: Kind::Points(2), count: 6 }],
         };
         (recipe, config)
@@ -292,7 +206,7 @@ mod tests {
             max_steps: Some(max_steps),
             max_time: None,
             checkpoint_every: Duration::from_secs(3600),
-            commit: "none".into(),
+            origin: Default::default(),
         }
     }
 

@@ -1,11 +1,13 @@
 //! What a trained network is worth on validation scenes, and its weight file, which says so.
 
+use super::lesson::lesson;
 use super::recipe::Recipe;
+use super::run::{Progress, Run, TrainError};
 use super::students::Student;
-use super::train::{Progress, Run, TrainError, lesson};
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
 use crate::evaluate::{Metrics, Roc, TARGET_ETA};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::Floor;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
 use ndarray::Array2;
 
@@ -44,7 +46,7 @@ pub fn validate<S: Student>(
     for (kind, printed) in Kind::TEST_SETS.into_iter().zip(PRINTED_EXPERIMENT_2) {
         let (mut roc, mut error) = (Roc::default(), 0.0);
         for number in 0..recipe.validation_scenes {
-            let (input, target) = lesson::<S>(&tables, config, run, &generator, kind, number)?;
+            let (input, target) = lesson::<S>(&tables, config, run, &generator, (kind, number), |_| Floor::Thesis)?;
             let estimate = network.estimate(&[input], &run.device);
             let values = estimate.into_data().try_into_vec::<f32>().unwrap_or_default();
             let lambda = Array2::from_shape_vec(target.lambda.dim(), values)
@@ -93,6 +95,8 @@ pub fn export<S: Student>(
             format!("set {}: SE {:.0}, P_D {detection} at the thesis' P_FA", i + 1, set.squared_error)
         })
         .collect();
+    let parts = serde_json::to_string(&progress.parts)
+        .map_err(|e| TrainError::Checkpoint { path: path.clone(), reason: e.to_string() })?;
     let mut store = SafetensorsStore::from_file(&path)
         .overwrite(true)
         .with_to_adapter(BurnToPyTorchAdapter)
@@ -104,7 +108,8 @@ pub fn export<S: Student>(
         .metadata("maps_seen", progress.maps.to_string())
         .metadata("minutes", format!("{:.0}", progress.seconds / 60.0))
         .metadata("loss", format!("{:.6}", progress.loss))
-        .metadata("commit", &run.commit)
+        .metadata("commit", &run.origin.commit)
+        .metadata("parts", &parts)
         .metadata("eta", format!("{:.4}", validation.eta))
         .metadata("validation", format!("{} scenes a set: {}", recipe.validation_scenes, figures.join("; ")));
     network.save_into(&mut store).map_err(|e| TrainError::Checkpoint { path, reason: e.to_string() })

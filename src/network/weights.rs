@@ -3,8 +3,6 @@
 //! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
-use super::students::Student;
-use super::thesis::Thesis;
 use burn::module::Module;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
 use serde::{Deserialize, Serialize};
@@ -183,12 +181,9 @@ impl<'a> WeightFile<'a> {
         self.tensors.get(name).map(|tensor| tensor.shape.as_slice())
     }
 
-    /// Name of the network that the weights belong to: what the file says, or "thesis" for a file of its author's, which says nothing.
+    /// Name of the network that the weights belong to, as recorded in the file; "" where nothing is.
     pub fn network(&self) -> &str {
-        match self.provenance.get("network") {
-            "" if Thesis::config_of(self).is_ok() => Thesis::NAME,
-            named => named,
-        }
+        self.provenance.get("network")
     }
 
     /// Name of the file, for messages.
@@ -225,12 +220,13 @@ impl<'a> WeightFile<'a> {
     pub fn expect_network(&self, network: &str) -> Result<(), WeightsError> {
         match self.network() {
             found if found == network => Ok(()),
-            found => Err(self.foreign(found, network)),
+            _ => Err(self.foreign(network)),
         }
     }
 
-    /// The error of a file that holds weights of `found` where `expected` is wanted.
-    pub fn foreign(&self, found: &str, expected: &str) -> WeightsError {
+    /// The error of a file that holds other weights where those of `expected` are wanted.
+    pub fn foreign(&self, expected: &str) -> WeightsError {
+        let found = self.network();
         let found = if found.is_empty() { "no named network" } else { found }.to_owned();
         WeightsError::Foreign { file: self.name.clone(), found, expected: expected.to_owned() }
     }

@@ -4,12 +4,14 @@ use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::Tally;
 use apertura::methods;
-use apertura::radar::Radar;
+use apertura::radar::{Carrier, Radar};
 use apertura::reconstruct::Request;
 use apertura::scene::generate::{Kind, Purpose};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::{Floor, TwoEnds, simulate};
 use apertura::task::Task;
+use rayon::prelude::*;
+use std::time::Duration;
 
 fn tally(kind: Kind, count: u32) -> Tally {
     let live = methods::by_name("live").expect("the live network ships with the program");
@@ -64,11 +66,35 @@ fn loudness_does_not_matter() {
 }
 
 #[test]
-fn a_radar_it_was_not_trained_for_is_an_error() {
-    let live = methods::by_name("live").unwrap();
-    let other = Radar { elements: 512, ..Radar::default() };
-    let signal = simulate(&other, &Scene::of_points([(0.0, 5.0)]), Floor::Exact, 0);
-    let ends = signal.unwrap().two_ends(&other);
-    let message = live.reconstruct(&other, &ends, &Request::default()).unwrap_err().to_string();
-    assert!(message.contains("table 3.1"), "{message}");
+fn a_radar_they_were_not_trained_for_is_an_error() {
+    let smaller = Radar { elements: 512, ..Radar::default() };
+    let two_way = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+    for name in ["live", "thesis", "thesis-1", "unet"] {
+        let method = methods::by_name(name).unwrap();
+        for other in [&smaller, &two_way] {
+            let signal = simulate(other, &Scene::of_points([(0.0, 5.0)]), Floor::Exact, 0);
+            let ends = signal.unwrap().two_ends(other);
+            let message = method.reconstruct(other, &ends, &Request::default()).unwrap_err().to_string();
+            assert!(message.contains("table 3.1") && message.contains("one-way"), "{name}: {message}");
+        }
+    }
+}
+
+/// A caller's own parallel loop hands a thread that waits inside one map the next map to make.
+#[test]
+fn callers_in_a_parallel_loop_do_not_block_each_other() {
+    let (done, finished) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let radar = Radar::default();
+        let live = methods::by_name("live").unwrap();
+        let ends = ends_of(&[Reflector { x_metres: 4.0, y_metres: 15.0, reflectivity: 1.0 }]);
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let request = Request::default();
+        let made: Vec<_> = threads.install(|| {
+            (0..8).into_par_iter().map(|_| live.reconstruct(&radar, &ends, &request).unwrap().lambda).collect()
+        });
+        let _nobody_waits_any_more = done.send(made);
+    });
+    let made = finished.recv_timeout(Duration::from_secs(120)).expect("eight maps take seconds");
+    assert!(made.iter().all(|map| *map == made[0]), "the same samples give the same map on every thread");
 }

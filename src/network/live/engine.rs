@@ -4,9 +4,10 @@
 
 use super::fastmath::{exp10, log10};
 use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
-use super::kernel::{LANES, Packed, convolve, padded, product};
+use super::kernel::{Packed, convolve, padded, product};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::planes::{Block, Context, Plane, apply, fill_halo, pooled_mix, with_halo};
+use super::vector::LANES;
 use crate::network::weights::{WeightFile, WeightsError};
 use rayon::prelude::*;
 

@@ -8,6 +8,7 @@
 //! Everything is measured relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
 
 use crate::maps::{channels_range_transform, windowed_range_transform};
+use crate::network::trained_for::check_radar;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::{ReconstructError, check_ends};
 use crate::signal::TwoEnds;
@@ -82,27 +83,13 @@ pub struct FeatureExtractor {
 }
 
 impl FeatureExtractor {
-    /// Says whether the network was trained for `radar`.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Unusable`] for any but the radar of table 3.1.
-    pub fn check_radar(radar: &Radar) -> Result<(), ReconstructError> {
-        if *radar != Radar::default() {
-            return Err(ReconstructError::Unusable {
-                method: "live",
-                reason: "the network was trained for the radar of table 3.1 with its one-way carrier and Hann window, and knows no other".into(),
-            });
-        }
-        Ok(())
-    }
-
     /// Tables for `radar`.
     ///
     /// # Errors
     /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements half a wavelength apart and ends of 12, which the
     /// network was trained for.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
-        Self::check_radar(radar)?;
+        check_radar("live", radar)?;
         let ends = End::BOTH.map(|end| radar.end_centre_metres(end));
         let table = |columns, from: f64, to: f64| registration(radar, columns, from, to);
         Ok(FeatureExtractor {

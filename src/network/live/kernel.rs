@@ -3,10 +3,10 @@
 //! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; which one
 //! runs is decided on the machine it runs on.
 
+#[cfg(target_arch = "x86_64")]
+use super::vector::x86;
+use super::vector::{LANES, Portable, Vector};
 use rayon::prelude::*;
-
-/// Output channels of a vector; every tensor's channels are padded to a multiple of it.
-pub const LANES: usize = 16;
 
 /// Channels rounded up to whole vectors.
 pub const fn padded(channels: usize) -> usize {
@@ -123,91 +123,6 @@ struct Block<'a> {
     lanes: usize,
 }
 
-/// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
-trait Vector: Copy {
-    /// # Safety
-    /// `from` must hold 16 values, and the CPU must have the features.
-    unsafe fn load(from: *const f32) -> Self;
-    /// # Safety
-    /// `to` must have room for 16 values, and the CPU must have the features.
-    unsafe fn store(self, to: *mut f32);
-    /// `self + value * weight`.
-    ///
-    /// # Safety
-    /// The CPU must have the features.
-    unsafe fn add_product(self, value: f32, weight: Self) -> Self;
-}
-
-/// Works everywhere; multiplies and adds apart.
-#[derive(Clone, Copy)]
-struct Portable([f32; LANES]);
-
-impl Vector for Portable {
-    #[inline(always)]
-    unsafe fn load(from: *const f32) -> Self {
-        // SAFETY: the caller's promise.
-        Portable(unsafe { from.cast::<[f32; LANES]>().read() })
-    }
-    #[inline(always)]
-    unsafe fn store(self, to: *mut f32) {
-        // SAFETY: the caller's promise.
-        unsafe { to.cast::<[f32; LANES]>().write(self.0) }
-    }
-    #[inline(always)]
-    unsafe fn add_product(self, value: f32, weight: Self) -> Self {
-        Portable(std::array::from_fn(|l| self.0[l] + value * weight.0[l]))
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-mod x86 {
-    use super::Vector;
-    use std::arch::x86_64::*;
-
-    #[derive(Clone, Copy)]
-    pub struct Avx512(__m512);
-
-    impl Vector for Avx512 {
-        #[inline(always)]
-        unsafe fn load(from: *const f32) -> Self {
-            // SAFETY: the caller's promise, here and below.
-            Avx512(unsafe { _mm512_loadu_ps(from) })
-        }
-        #[inline(always)]
-        unsafe fn store(self, to: *mut f32) {
-            unsafe { _mm512_storeu_ps(to, self.0) }
-        }
-        #[inline(always)]
-        unsafe fn add_product(self, value: f32, weight: Self) -> Self {
-            Avx512(unsafe { _mm512_fmadd_ps(_mm512_set1_ps(value), weight.0, self.0) })
-        }
-    }
-
-    #[derive(Clone, Copy)]
-    pub struct Avx2(__m256, __m256);
-
-    impl Vector for Avx2 {
-        #[inline(always)]
-        unsafe fn load(from: *const f32) -> Self {
-            unsafe { Avx2(_mm256_loadu_ps(from), _mm256_loadu_ps(from.add(8))) }
-        }
-        #[inline(always)]
-        unsafe fn store(self, to: *mut f32) {
-            unsafe {
-                _mm256_storeu_ps(to, self.0);
-                _mm256_storeu_ps(to.add(8), self.1);
-            }
-        }
-        #[inline(always)]
-        unsafe fn add_product(self, value: f32, weight: Self) -> Self {
-            unsafe {
-                let value = _mm256_set1_ps(value);
-                Avx2(_mm256_fmadd_ps(value, weight.0, self.0), _mm256_fmadd_ps(value, weight.1, self.1))
-            }
-        }
-    }
-}
-
 /// Computes one line for one block of output channels with the widest vectors the machine has.
 fn dispatch(job: &Job, block: Block, out: &mut [f32]) {
     job.check(&block, out);
@@ -223,7 +138,7 @@ fn dispatch(job: &Job, block: Block, out: &mut [f32]) {
         }
     }
     // SAFETY: needs no feature; the slices were checked.
-    unsafe { line::<Portable, 2>(job, block, out) };
+    unsafe { line::<Portable, 2, 1>(job, block, out) };
 }
 
 impl Job<'_> {
@@ -243,70 +158,80 @@ impl Job<'_> {
 #[target_feature(enable = "avx512f")]
 unsafe fn line_avx512(job: &Job, block: Block, out: &mut [f32]) {
     // SAFETY: the caller's promise.
-    unsafe { line::<x86::Avx512, 8>(job, block, out) };
+    unsafe { line::<x86::Avx512, 8, 2>(job, block, out) };
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 unsafe fn line_avx2(job: &Job, block: Block, out: &mut [f32]) {
     // SAFETY: the caller's promise.
-    unsafe { line::<x86::Avx2, 3>(job, block, out) };
+    unsafe { line::<x86::Avx2, 6, 1>(job, block, out) };
 }
 
-/// A line in tiles of `CELLS` cells, as many as the registers hold beside the weights.
+/// A line in tiles of `CELLS` cells times `VECTORS` vectors: as many sums as the registers hold beside the weights and one value.
+///
+/// # Safety
+/// [`Job::check`] must have passed, and the CPU must have the vector's features.
 #[inline(always)]
-unsafe fn line<V: Vector, const CELLS: usize>(job: &Job, block: Block, out: &mut [f32]) {
+unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, block: Block, out: &mut [f32]) {
+    let vectors = block.bias.len() / LANES;
     let mut x = 0;
-    let pair = block.bias.len() == 2 * LANES;
     while x < job.width {
         let whole = job.width - x >= CELLS;
-        // SAFETY: the caller checked the slices; a tile stays inside the line.
-        unsafe {
-            match (pair, whole) {
-                (true, true) => tile::<V, CELLS, 2>(job, x, block, out),
-                (true, false) => tile::<V, 1, 2>(job, x, block, out),
-                (false, true) => tile::<V, CELLS, 1>(job, x, block, out),
-                (false, false) => tile::<V, 1, 1>(job, x, block, out),
+        let mut first = 0;
+        while first < vectors {
+            let many = vectors - first >= VECTORS;
+            // SAFETY: the caller checked the slices; a tile stays inside the line and the block.
+            unsafe {
+                match (whole, many) {
+                    (true, true) => tile::<V, CELLS, VECTORS>(job, x, block, first, out),
+                    (true, false) => tile::<V, CELLS, 1>(job, x, block, first, out),
+                    (false, true) => tile::<V, 1, VECTORS>(job, x, block, first, out),
+                    (false, false) => tile::<V, 1, 1>(job, x, block, first, out),
+                }
             }
+            first += if many { VECTORS } else { 1 };
         }
         x += if whole { CELLS } else { 1 };
     }
 }
 
-/// `CELLS` neighbouring cells times `VECTORS` vectors of output channels, all held in registers.
+/// `CELLS` neighbouring cells times `VECTORS` vectors of output channels from vector `first` of the block, all held in registers.
 ///
 /// # Safety
-/// [`Job::check`] must have passed and `x + CELLS` be at most the line's width.
+/// [`Job::check`] must have passed, `x + CELLS` be at most the line's width and `first + VECTORS` at most the block's vectors.
 #[inline(always)]
 unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
     job: &Job,
     x: usize,
     block: Block,
+    first: usize,
     out: &mut [f32],
 ) {
     // SAFETY: all offsets lie inside what `Job::check` found.
     unsafe {
-        let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(v * LANES)));
+        let from = first * LANES;
+        let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(from + v * LANES)));
         let mut sums = [bias; CELLS];
         let step = job.stride * job.channels;
-        let mut w = block.weights.as_ptr();
+        let mut w = block.weights.as_ptr().add(from);
         for ky in 0..job.kernel {
-            for kx in 0..job.kernel {
-                let cells = job.input.as_ptr().add((ky * job.row_cells + x * job.stride + kx) * job.channels);
-                for i in 0..job.channels {
-                    let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
-                    for (p, sums) in sums.iter_mut().enumerate() {
-                        let value = *cells.add(p * step + i);
-                        for (sum, weight) in sums.iter_mut().zip(weight) {
-                            *sum = sum.add_product(value, weight);
-                        }
+            // The channels of the kernel's columns lie side by side.
+            let mut value = job.input.as_ptr().add((ky * job.row_cells + x * job.stride) * job.channels);
+            for _ in 0..job.kernel * job.channels {
+                let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
+                for (p, sums) in sums.iter_mut().enumerate() {
+                    let value = *value.add(p * step);
+                    for (sum, weight) in sums.iter_mut().zip(weight) {
+                        *sum = sum.add_product(value, weight);
                     }
-                    w = w.add(VECTORS * LANES);
                 }
+                value = value.add(1);
+                w = w.add(block.bias.len());
             }
         }
         for (p, sums) in sums.into_iter().enumerate() {
-            let to = out.as_mut_ptr().add((x + p) * block.lanes + block.start);
+            let to = out.as_mut_ptr().add((x + p) * block.lanes + block.start + from);
             for (v, sum) in sums.into_iter().enumerate() {
                 sum.store(to.add(v * LANES));
             }
@@ -383,7 +308,7 @@ mod tests {
         let block = Block { weights: &w, bias: &bias, start: 0, lanes: 32 };
         dispatch(&job, block, &mut a);
         // SAFETY: `dispatch` checked the same slices.
-        unsafe { line::<Portable, 2>(&job, block, &mut b) };
+        unsafe { line::<Portable, 2, 1>(&job, block, &mut b) };
         assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-5));
     }
 

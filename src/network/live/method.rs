@@ -14,12 +14,17 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Name of the network, on the command line and in weight files.
 pub const NAME: &str = "live";
 
+/// Buffers kept for later passes; each takes some 30 MB.
+const MOST_IDLE: usize = 2;
+
 /// The live network with its weights.
 #[derive(Debug)]
 pub struct LiveMethod {
     engine: LiveEngine,
     extractor: OnceLock<FeatureExtractor>,
-    scratch: Mutex<Scratch>,
+    /// Buffers that nobody uses. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
+    /// where rayon hands it another caller's work, take others.
+    idle: Mutex<Vec<Scratch>>,
     eta: f32,
     /// Where the weights come from.
     pub provenance: Provenance,
@@ -34,7 +39,7 @@ impl LiveMethod {
         Ok(LiveMethod {
             engine: LiveEngine::new(&file, &LiveConfig::default())?,
             extractor: OnceLock::new(),
-            scratch: Mutex::default(),
+            idle: Mutex::default(),
             eta: file.provenance.eta().unwrap_or(0.8),
             provenance: file.provenance,
         })
@@ -55,8 +60,15 @@ impl LiveMethod {
         };
         let input = extractor.extract(ends)?;
         // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
-        let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let taken = idle().pop();
+        let mut scratch = taken.unwrap_or_default();
         let mut decades = self.engine.forward(&input, &mut scratch);
+        let mut idle = idle();
+        if idle.len() < MOST_IDLE {
+            idle.push(scratch);
+        }
+        drop(idle);
         let gain = input.gain as f32;
         decades.map.iter_mut().for_each(|v| *v += gain);
         decades.minimum += gain;

@@ -14,7 +14,7 @@
 //! |---|---|
 //! | [`features`] | raw samples of the two ends to the network's tensors |
 //! | [`module`], `layers` | the network as a burn module: what trains |
-//! | [`engine`], `planes`, [`kernel`], [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
+//! | [`engine`], `planes`, [`kernel`], `vector`, [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
 
 pub mod engine;
@@ -25,6 +25,7 @@ mod layers;
 pub mod method;
 pub mod module;
 mod planes;
+mod vector;
 
 pub use method::LiveMethod;
 pub use module::{Live, LiveBatch, LiveConfig};

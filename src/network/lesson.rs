@@ -1,0 +1,60 @@
+//! What is learned from one scene.
+
+use super::run::{Run, TrainError};
+use super::students::Student;
+use crate::maps::RangeAngleMap;
+use crate::scene::generate::{Generator, Kind};
+use crate::signal::{Floor, simulate};
+
+/// Input and target of scene `number` of a kind over the floor that `floor` chooses by the seed of the scene's own noise.
+///
+/// # Errors
+/// [`TrainError`] when the scene can't be simulated or the network can't use its samples.
+pub(super) fn lesson<S: Student>(
+    tables: &S::Tables,
+    config: &S::Config,
+    run: &Run,
+    generator: &Generator,
+    (kind, number): (Kind, u32),
+    floor: impl Fn(u64) -> Floor,
+) -> Result<(S::Input, RangeAngleMap), TrainError> {
+    let scene = generator.scene(kind, number);
+    let signal = simulate(&run.radar, &scene, floor(scene.noise_seed), scene.noise_seed)?;
+    let input = S::input(tables, &signal.two_ends(&run.radar))?;
+    Ok((input, S::target(config, &run.radar, &signal)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::thesis::{Thesis, ThesisConfig};
+    use crate::radar::Radar;
+    use crate::scene::generate::{Purpose, Reading};
+    use std::time::Duration;
+
+    #[test]
+    fn a_lesson_lies_over_noise_of_its_own() {
+        let radar = Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() };
+        let run = Run {
+            folder: "none".into(),
+            device: burn::tensor::Device::flex(),
+            radar: radar.clone(),
+            max_steps: None,
+            max_time: None,
+            checkpoint_every: Duration::ZERO,
+            origin: Default::default(),
+        };
+        let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
+        let generator = |purpose| Generator::new(&radar, Reading::Program, purpose, 0);
+        let target = |purpose| {
+            let lesson =
+                lesson::<Thesis>(&radar, &config, &run, &generator(purpose), (Kind::Set1, 0), |_| Floor::Thesis);
+            lesson.unwrap().1.lambda
+        };
+        let scene = |purpose| generator(purpose).scene(Kind::Set1, 0);
+        assert_ne!(scene(Purpose::Training).noise_seed, scene(Purpose::Test).noise_seed);
+        let plain = simulate(&radar, &scene(Purpose::Training), Floor::Thesis, 0).unwrap();
+        let plain = Thesis::target(&config, &radar, &plain).lambda;
+        assert_ne!(target(Purpose::Training), plain, "not the seed that every scene once shared");
+    }
+}

@@ -1,0 +1,89 @@
+//! Sixteen numbers at a time, for processors with AVX-512, with AVX2 and without either.
+
+/// Output channels of a vector; every tensor's channels are padded to a multiple of it.
+pub const LANES: usize = 16;
+
+/// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
+pub(super) trait Vector: Copy {
+    /// # Safety
+    /// `from` must hold 16 values, and the CPU must have the features.
+    unsafe fn load(from: *const f32) -> Self;
+    /// # Safety
+    /// `to` must have room for 16 values, and the CPU must have the features.
+    unsafe fn store(self, to: *mut f32);
+    /// `self + value * weight`.
+    ///
+    /// # Safety
+    /// The CPU must have the features.
+    unsafe fn add_product(self, value: f32, weight: Self) -> Self;
+}
+
+/// Works everywhere; multiplies and adds apart.
+#[derive(Clone, Copy)]
+pub(super) struct Portable([f32; LANES]);
+
+impl Vector for Portable {
+    #[inline(always)]
+    unsafe fn load(from: *const f32) -> Self {
+        // SAFETY: the caller's promise.
+        Portable(unsafe { from.cast::<[f32; LANES]>().read() })
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut f32) {
+        // SAFETY: the caller's promise.
+        unsafe { to.cast::<[f32; LANES]>().write(self.0) }
+    }
+    #[inline(always)]
+    unsafe fn add_product(self, value: f32, weight: Self) -> Self {
+        Portable(std::array::from_fn(|l| self.0[l] + value * weight.0[l]))
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) mod x86 {
+    use super::Vector;
+    use std::arch::x86_64::*;
+
+    #[derive(Clone, Copy)]
+    pub struct Avx512(__m512);
+
+    impl Vector for Avx512 {
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            // SAFETY: the caller's promise, here and below.
+            Avx512(unsafe { _mm512_loadu_ps(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            unsafe { _mm512_storeu_ps(to, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn add_product(self, value: f32, weight: Self) -> Self {
+            Avx512(unsafe { _mm512_fmadd_ps(_mm512_set1_ps(value), weight.0, self.0) })
+        }
+    }
+
+    #[derive(Clone, Copy)]
+    pub struct Avx2(__m256, __m256);
+
+    impl Vector for Avx2 {
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            unsafe { Avx2(_mm256_loadu_ps(from), _mm256_loadu_ps(from.add(8))) }
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            unsafe {
+                _mm256_storeu_ps(to, self.0);
+                _mm256_storeu_ps(to.add(8), self.1);
+            }
+        }
+        #[inline(always)]
+        unsafe fn add_product(self, value: f32, weight: Self) -> Self {
+            unsafe {
+                let value = _mm256_set1_ps(value);
+                Avx2(_mm256_fmadd_ps(value, weight.0, self.0), _mm256_fmadd_ps(value, weight.1, self.1))
+            }
+        }
+    }
+}

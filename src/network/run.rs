@@ -1,0 +1,153 @@
+//! What a training run is: where it lives, where it stands, what it was made of, and why it may stop.
+
+use super::recipe::RecipeError;
+use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
+use crate::scene::SceneError;
+use burn::tensor::Device;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// What a run needs beside its recipe.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Folder of checkpoints, log and weights.
+    pub folder: PathBuf,
+    /// Where tensors live.
+    pub device: Device,
+    /// The radar.
+    pub radar: Radar,
+    /// Stop, with a checkpoint, after so many steps in all.
+    pub max_steps: Option<u64>,
+    /// Stop, with a checkpoint, after so long.
+    pub max_time: Option<Duration>,
+    /// Time between checkpoints.
+    pub checkpoint_every: Duration,
+    /// What trains, as found when this part of the run started.
+    pub origin: Origin,
+}
+
+/// What trains: found out when a program starts, and never later.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Origin {
+    /// The commit of the working folder.
+    pub commit: String,
+    /// SHA-256 of the program that runs, hexadecimal.
+    pub program_sha256: String,
+    /// Its arguments.
+    pub arguments: Vec<String>,
+}
+
+/// One start of a run, until it stopped.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// When it started, in seconds since 1970.
+    pub started_unix_seconds: u64,
+    /// What trained.
+    pub origin: Origin,
+    /// SHA-256 of the weights it started from; none where they were drawn from the recipe's seed.
+    pub initial_weights_sha256: Option<String>,
+    /// Maps of the whole run before this part.
+    pub maps_before: u64,
+    /// Maps seen in this part.
+    pub maps_seen: u64,
+    /// Minutes of wall clock of this part.
+    pub minutes: f64,
+}
+
+impl Part {
+    /// A part that starts now, after `maps_before` maps of the run.
+    pub fn starting(run: &Run, initial_weights_sha256: Option<String>, maps_before: u64) -> Part {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let (started_unix_seconds, origin) = (since.as_secs(), run.origin.clone());
+        Part { started_unix_seconds, origin, initial_weights_sha256, maps_before, maps_seen: 0, minutes: 0.0 }
+    }
+}
+
+/// Where a run stands.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Progress {
+    /// Whole epochs done.
+    pub epoch: u32,
+    /// Steps done in the epoch that is under way.
+    pub step_of_epoch: u64,
+    /// Steps done in all.
+    pub step: u64,
+    /// Maps seen.
+    pub maps: u64,
+    /// Seconds of training.
+    pub seconds: f64,
+    /// Smoothed loss.
+    pub loss: f64,
+    /// Every part of the run, the one under way last.
+    #[serde(default)]
+    pub parts: Vec<Part>,
+}
+
+impl Progress {
+    /// Counts one step over `maps` maps; `seconds` is the training time so far, of all parts and of this one.
+    pub(super) fn step(&mut self, maps: u64, loss: f64, [seconds, of_part]: [f64; 2]) {
+        self.step += 1;
+        self.step_of_epoch += 1;
+        self.maps += maps;
+        self.seconds = seconds;
+        self.loss = if self.step == 1 { loss } else { 0.95 * self.loss + 0.05 * loss };
+        if let Some(part) = self.parts.last_mut() {
+            part.maps_seen += maps;
+            part.minutes = of_part / 60.0;
+        }
+    }
+}
+
+/// Why training stopped early or could not start.
+#[derive(Debug, thiserror::Error)]
+pub enum TrainError {
+    /// The loss is NaN or infinite.
+    #[error("the loss is {loss} at step {step}; the last good checkpoint is kept in {}", folder.display())]
+    NotFinite {
+        /// The step.
+        step: u64,
+        /// The loss.
+        loss: f32,
+        /// The run's folder.
+        folder: PathBuf,
+    },
+    /// A file could not be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A checkpoint can't be used.
+    #[error("checkpoint {}: {reason}", path.display())]
+    Checkpoint {
+        /// The checkpoint.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The folder already holds another run.
+    #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
+    Occupied {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The recipe is unsound.
+    #[error(transparent)]
+    Recipe(#[from] RecipeError),
+    /// A scene could not be simulated.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The network can't use the samples.
+    #[error(transparent)]
+    Input(#[from] ReconstructError),
+}
+
+/// For `map_err`: an error about the file `path`.
+pub(super) fn file(path: &Path) -> impl FnOnce(std::io::Error) -> TrainError {
+    let path = path.to_owned();
+    move |source| TrainError::File { path, source }
+}
