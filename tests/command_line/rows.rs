@@ -12,11 +12,8 @@ use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Nets need theirs; everything else is as true of the others.
-#[cfg(feature = "network")]
-const METHODS: [&str; 2] = ["live", "baseline"];
-#[cfg(not(feature = "network"))]
-const METHODS: [&str; 2] = ["bartlett", "baseline"];
+/// The one whose figures are reproduced by hand.
+const METHOD: &str = if cfg!(feature = "network") { "live" } else { "matched-filter-incoherent" };
 
 fn apertura(folder: &TempDir, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
@@ -38,6 +35,11 @@ fn json(folder: &TempDir, arguments: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// The JSON reader may miss the last bit.
+fn same(a: &Value, b: f64) -> bool {
+    a.as_f64().is_some_and(|a| (a - b).abs() <= 4e-16 * b.abs())
+}
+
 /// A table's lines without the times at their ends.
 fn without_times(table: &[u8]) -> Vec<String> {
     let text = String::from_utf8(table.to_vec()).unwrap();
@@ -47,7 +49,7 @@ fn without_times(table: &[u8]) -> Vec<String> {
 #[test]
 fn the_printed_means_are_those_of_the_rows_and_shards_add_up() {
     let folder = folder();
-    let evaluate = format!("evaluate --method {} --set 1,3 --count 5 --seed 4", METHODS.join(","));
+    let evaluate = "evaluate --method bartlett,baseline --set 1,3 --count 5 --seed 4";
     let whole = json(&folder, &format!("{evaluate} --json --rows whole.csv"));
     let all = rows(&folder, "whole.csv");
     assert_eq!(all.len(), 2 * 2 * 5);
@@ -59,12 +61,12 @@ fn the_printed_means_are_those_of_the_rows_and_shards_add_up() {
             };
             let mean = |value: fn(&Row) -> Option<f64>| Estimate::of(&own().filter_map(value).collect::<Vec<_>>()).mean;
             assert_eq!(own().count(), 5);
-            assert_eq!(method["squared_error"]["mean"], mean(|r| Some(r.squared_error)));
-            assert_eq!(method["detection"]["mean"], mean(|r| r.detection));
-            assert_eq!(method["false_alarm"]["mean"], mean(|r| Some(r.false_alarm)));
-            assert_eq!(method["detection_at_printed_false_alarm"]["detection"], mean(|r| r.detection_at_printed));
-            assert_eq!(method["missed"]["mean"], mean(|r| Some(r.missed as f64)));
-            assert_eq!(method["ghosts"]["mean"], mean(|r| Some(r.ghosts as f64)));
+            assert!(same(&method["squared_error"]["mean"], mean(|r| Some(r.squared_error))));
+            assert!(same(&method["detection"]["mean"], mean(|r| r.detection)));
+            assert!(same(&method["false_alarm"]["mean"], mean(|r| Some(r.false_alarm))));
+            assert!(same(&method["detection_at_printed_false_alarm"]["detection"], mean(|r| r.detection_at_printed)));
+            assert!(same(&method["missed"]["mean"], mean(|r| Some(r.missed as f64))));
+            assert!(same(&method["ghosts"]["mean"], mean(|r| Some(r.ghosts as f64))));
         }
     }
     for part in ["0", "1"] {
@@ -77,7 +79,7 @@ fn the_printed_means_are_those_of_the_rows_and_shards_add_up() {
     };
     let merged = printed("evaluate --merge 1.csv 0.csv --rows merged.csv");
     assert_eq!(merged, printed("evaluate --merge whole.csv"));
-    assert_eq!(merged, printed(&evaluate), "figure for figure");
+    assert_eq!(merged, printed(evaluate), "figure for figure");
     let figures = |rows: Vec<Row>| rows.into_iter().map(|r| Row { milliseconds: 0.0, ..r }).collect::<Vec<_>>();
     assert_eq!(figures(rows(&folder, "merged.csv")), figures(all));
 }
@@ -94,20 +96,20 @@ fn error_by_hand(folder: &Path) -> f64 {
 #[test]
 fn a_row_can_be_reproduced_by_hand_to_the_last_digit() {
     let folder = folder();
-    let [method, _] = METHODS;
-    let evaluate = format!("evaluate --method {method} --set 2,walls --count 3 --seed 9 --rows rows.csv");
+    let evaluate = format!("evaluate --method {METHOD} --set 2,walls --count 2 --shard 1/2 --seed 9 --rows rows.csv");
     apertura(&folder, &evaluate).assert().success();
-    for row in rows(&folder, "rows.csv").iter().filter(|r| r.index != 1) {
+    assert_eq!(rows(&folder, "rows.csv").len(), 2);
+    for row in &rows(&folder, "rows.csv") {
         let Row { set, seed, index, .. } = row;
         apertura(&folder, &format!("scenes --set {set} --seed {seed} --index {index} -o s.toml")).assert().success();
         apertura(&folder, "maps s.toml -o maps.npz").assert().success();
-        apertura(&folder, &format!("reconstruct maps.npz --method {method} -o out.npz")).assert().success();
+        apertura(&folder, &format!("reconstruct maps.npz --method {METHOD} -o out.npz")).assert().success();
         assert_eq!(error_by_hand(folder.path()), row.squared_error, "scene {index} of {set}");
     }
     // The last one alone in a folder is a test set with the same figures.
     std::fs::create_dir(folder.path().join("own")).unwrap();
     std::fs::rename(folder.path().join("s.toml"), folder.path().join("own/s.toml")).unwrap();
-    apertura(&folder, &format!("evaluate --method {method} --scenes own --rows own.csv")).assert().success();
+    apertura(&folder, &format!("evaluate --method {METHOD} --scenes own --rows own.csv")).assert().success();
     let (own, all) = (rows(&folder, "own.csv"), rows(&folder, "rows.csv"));
     let last = all.last().unwrap();
     let place = Row { set: "own".into(), index: 0, seed: 0, milliseconds: own[0].milliseconds, ..last.clone() };
@@ -160,7 +162,7 @@ fn worsen_repeats_itself_and_what_it_writes_is_as_bad_as_it_says() {
     apertura(&folder, "reconstruct maps.npz --method baseline -o out.npz").assert().success();
     let after = text.lines().find(|l| l.starts_with("after")).unwrap();
     assert!(after.contains(&format!("SE {:.1},", error_by_hand(folder.path()))), "{text}");
-    apertura(&folder, "worsen s.toml --method baseline --tries 8 --within -1 -o x.toml")
+    apertura(&folder, "worsen s.toml --method baseline --tries 8 --within 0 -o x.toml")
         .assert()
         .failure()
         .stderr(contains("reach"));
