@@ -10,6 +10,7 @@ mod conditioning;
 mod covariance;
 mod drawing;
 mod fista;
+pub mod found;
 mod hybrid;
 mod layout_filter;
 mod linear_prediction;

@@ -4,4 +4,5 @@ mod bounds;
 mod cli;
 #[cfg(feature = "network")]
 mod reconstruct;
+mod recordings;
 mod rows;
