@@ -10,8 +10,9 @@ use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
 use crate::radar::Carrier;
 use crate::reconstruct::Reconstructor;
+use crate::recording::explain::explain;
 use crate::recording::{self, Recording};
-use crate::scene::file::SceneFile;
+use crate::scene::file::{self, SceneFile};
 use crate::signal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -50,6 +51,10 @@ pub struct Args {
     #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
     colours: ColourMap,
 
+    /// Recording: take the echoes of this scene's reflectors off first, their gains fitted; what they leave unexplained is drawn
+    #[arg(long, value_name = "SCENE")]
+    explain: Option<PathBuf>,
+
     /// Seed of the floor's noise; overrides the scene's
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
@@ -60,6 +65,11 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let output = Output::of_path(&self.output)?;
         match Input::load(&self.input)? {
+            Input::Scene(_) if self.explain.is_some() => {
+                return Err(CommandError::Usage(
+                    "--explain takes reflectors off a recording; expected one as input".into(),
+                ));
+            }
             Input::Scene(file) => self.of_scene(file, output)?,
             Input::Recording(recording) => self.of_recording(*recording, output)?,
         }
@@ -68,8 +78,8 @@ impl Args {
 
     fn of_scene(&self, SceneFile { scene, mut radar }: SceneFile, output: Output) -> Result<(), CommandError> {
         radar.carrier = self.carrier.unwrap_or(radar.carrier);
-        let signal =
-            signal::simulate(&radar, &scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed)).map_err(CommandError::on(&self.input))?;
+        let signal = signal::simulate(&radar, &scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed))
+            .map_err(CommandError::on(&self.input))?;
         match output {
             Output::Archive => {
                 write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))
@@ -86,6 +96,12 @@ impl Args {
 
     fn of_recording(&self, mut recording: Recording, output: Output) -> Result<(), CommandError> {
         recording.radar.carrier = self.carrier.unwrap_or(recording.radar.carrier);
+        if let Some(path) = &self.explain {
+            let scene = file::load(path).map_err(CommandError::failed)?.scene;
+            let found = explain(&recording, &scene).map_err(CommandError::on(path))?;
+            print(&format!("{} explains {:.2} % of the power", path.display(), 100.0 * found.explained))?;
+            recording = found.residual;
+        }
         match output {
             Output::Archive => {
                 let (_, full) = maps_of(&recording);

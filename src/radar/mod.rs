@@ -4,6 +4,7 @@
 
 mod layout;
 mod layout_kind;
+pub mod presets;
 mod units;
 mod window;
 

@@ -117,7 +117,7 @@ mod tests {
             for reflector in scene.reflectors() {
                 let place = radar.polar_of(reflector.x_metres, reflector.y_metres);
                 let near = |f: &&Found| {
-                    (f.range_metres - place.range_metres).abs() < 0.1 && (f.cos_theta - place.cos_theta).abs() < 0.03
+                    (f.range_metres - place.range_metres).abs() < 0.1 && (f.cos_theta - place.cos_theta).abs() < 0.1
                 };
                 assert!(found.iter().take(4).any(|f| near(&f)), "{}: {place:?} in {found:?}", method.name());
             }

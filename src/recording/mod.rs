@@ -11,12 +11,13 @@
 //! | `axes` | an array of any shape to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
 //!
-//! [`presets`] come with the program.
+//! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
 
 mod axes;
 mod calibration;
 mod capture;
 mod error;
+pub mod explain;
 pub mod file;
 mod matlab;
 mod numbers;

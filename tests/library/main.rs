@@ -7,4 +7,5 @@ mod house;
 #[cfg(feature = "network")]
 mod live_network;
 mod methods;
+mod snapshot;
 mod stress;
