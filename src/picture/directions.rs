@@ -1,7 +1,7 @@
 //! A snapshot as curves over direction: what all elements see, what one end sees, and what a method makes of both ends.
 
-use super::text::{self, Weight};
 use super::canvas::{Area, Drawing, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
+use super::text::{self, Weight};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 

@@ -1,8 +1,8 @@
 //! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
 
+use super::canvas::Drawing;
 use super::compose::{ComposeError, Format, Style};
 use super::directions::{Curve, Directions, Mark};
-use super::canvas::Drawing;
 use super::{Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
 use crate::radar::{Carrier, Decibels, End, Radar};
