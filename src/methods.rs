@@ -1,5 +1,6 @@
 //! Every reconstruction method by name: the one list behind the command line, the tables and the app.
 
+use crate::radar::Radar;
 use crate::reconstruct::nomp::Nomp;
 use crate::reconstruct::{
     BARTLETT, Baseline, CAPON, Fista, Hybrid, IAA, LINEAR_PREDICTION, MUSIC, MatchedFilter, Omp, ROOT_MUSIC,
@@ -38,6 +39,14 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
 /// The method whose output is shown where nobody chose one.
 pub fn preferred() -> Arc<dyn Reconstructor> {
     by_name("live").unwrap_or_else(|_| Arc::new(Baseline))
+}
+
+/// The method whose output is shown for samples of `radar` where nobody chose one: the networks know one radar only.
+pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
+    if *radar == Radar::default() {
+        return preferred();
+    }
+    by_name("iaa").unwrap_or_else(|_| Arc::new(MatchedFilter::Incoherent))
 }
 
 /// A method's name that is not known.

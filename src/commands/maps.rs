@@ -1,26 +1,32 @@
-//! `apertura maps`: the maps of one scene, as numbers or as a picture.
+//! `apertura maps`: the maps of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
+use super::input::Input;
 use super::{CommandError, print};
-use crate::files::archive::write_maps;
+use crate::files::archive::{write_maps, write_recorded_maps};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::methods;
-use crate::picture::{ColourMap, Format, Style, compose};
+use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
 use crate::radar::Carrier;
-use crate::scene::file;
+use crate::reconstruct::Reconstructor;
+use crate::recording::explain::explain;
+use crate::recording::{self, Recording};
+use crate::scene::file::{self, SceneFile};
 use crate::signal;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Compute the maps of a scene, to an .npz archive or a .png or .svg picture
+/// Compute the maps of a scene or a recording, to an .npz archive or a .png or .svg picture
 ///
 /// The archive holds all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
-/// (f64 [4, 512, 1024], the network's input): the keys of the thesis author's program.
+/// (f64 [4, 512, 1024], the network's input): the keys of the thesis author's program. That of a recording lacks what is not known:
+/// positions always, polar_full where the two ends alone were recorded.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene to look at (.toml or .npz)
-    scene: PathBuf,
+    /// Scene (.toml or .npz) or recording (.toml with [recording]) to look at
+    input: PathBuf,
 
     /// File to write (.npz, .png or .svg)
     #[arg(short, long, value_name = "OUT")]
@@ -45,43 +51,83 @@ pub struct Args {
     #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
     colours: ColourMap,
 
+    /// Recording: take the echoes of this scene's reflectors off first, their gains fitted; what they leave unexplained is drawn
+    #[arg(long, value_name = "SCENE")]
+    explain: Option<PathBuf>,
+
     /// Seed of the floor's noise; overrides the scene's
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
 }
 
 impl Args {
-    /// Simulates the scene and writes its maps.
+    /// Simulates the scene, or reads the recording, and writes its maps.
     pub fn run(self) -> Result<(), CommandError> {
         let output = Output::of_path(&self.output)?;
-        let file::SceneFile { scene, mut radar } = file::load(&self.scene).map_err(CommandError::failed)?;
-        if let Some(carrier) = self.carrier {
-            radar.carrier = carrier;
-        }
-        let seed = self.seed.unwrap_or(scene.noise_seed);
-        let signal = signal::simulate(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.scene))?;
-        match output {
-            Output::Archive => {
-                write_maps(&self.output, &radar, &scene, &signal, None).map_err(CommandError::on(&self.output))?;
+        match Input::load(&self.input)? {
+            Input::Scene(_) if self.explain.is_some() => {
+                return Err(CommandError::Usage(
+                    "--explain takes reflectors off a recording; expected one as input".into(),
+                ));
             }
-            Output::Picture(format) => {
-                let method = match &self.method {
-                    Some(name) => methods::by_name(name).map_err(CommandError::failed)?,
-                    None => methods::preferred(),
-                };
-                let style = Style {
-                    floor: self.floor.floor,
-                    normalisation: self.normalisation,
-                    colours: self.colours,
-                    eta: None,
-                };
-                let bytes =
-                    compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
-                write_bytes(&self.output, &bytes)
-                    .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
-            }
+            Input::Scene(file) => self.of_scene(file, output)?,
+            Input::Recording(recording) => self.of_recording(*recording, output)?,
         }
         print(&format!("wrote {}", self.output.display()))
+    }
+
+    fn of_scene(&self, SceneFile { scene, mut radar }: SceneFile, output: Output) -> Result<(), CommandError> {
+        radar.carrier = self.carrier.unwrap_or(radar.carrier);
+        let signal = signal::simulate(&radar, &scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed))
+            .map_err(CommandError::on(&self.input))?;
+        match output {
+            Output::Archive => {
+                write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))
+            }
+            Output::Picture(format) => {
+                let method = self.method(methods::preferred)?;
+                let style = Style { floor: self.floor.floor, ..self.style() };
+                let bytes =
+                    compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
+                self.write(&bytes)
+            }
+        }
+    }
+
+    fn of_recording(&self, mut recording: Recording, output: Output) -> Result<(), CommandError> {
+        recording.radar.carrier = self.carrier.unwrap_or(recording.radar.carrier);
+        if let Some(path) = &self.explain {
+            let scene = file::load(path).map_err(CommandError::failed)?.scene;
+            let found = explain(&recording, &scene).map_err(CommandError::on(path))?;
+            print(&format!("{} explains {:.2} % of the power", path.display(), 100.0 * found.explained))?;
+            recording = found.residual;
+        }
+        match output {
+            Output::Archive => {
+                let (_, full) = maps_of(&recording);
+                write_recorded_maps(&self.output, &recording.radar, &recording.two_ends(), full.as_ref())
+                    .map_err(CommandError::on(&self.output))
+            }
+            Output::Picture(format) => {
+                let method = self.method(|| methods::preferred_for(&recording.radar))?;
+                let bytes = compose_recording(&recording, method.as_ref(), &self.style(), format)
+                    .map_err(CommandError::on(&self.input))?;
+                self.write(&bytes)
+            }
+        }
+    }
+
+    fn method(&self, usual: impl FnOnce() -> Arc<dyn Reconstructor>) -> Result<Arc<dyn Reconstructor>, CommandError> {
+        self.method.as_deref().map_or_else(|| Ok(usual()), |name| methods::by_name(name).map_err(CommandError::failed))
+    }
+
+    /// How a recording is drawn; a scene's floor is its own.
+    fn style(&self) -> Style {
+        Style { floor: recording::FLOOR, normalisation: self.normalisation, colours: self.colours, eta: None }
+    }
+
+    fn write(&self, bytes: &[u8]) -> Result<(), CommandError> {
+        write_bytes(&self.output, bytes).map_err(|source| CommandError::File { path: self.output.clone(), source })
     }
 }
 

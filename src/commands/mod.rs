@@ -9,11 +9,13 @@ mod bounds;
 mod error;
 mod evaluate;
 mod figure;
+mod input;
 mod layouts;
 mod maps;
 mod network_args;
 mod open;
 mod output;
+mod radar_arg;
 mod reconstruct;
 mod robustness;
 mod scenes;
@@ -31,7 +33,7 @@ use std::process::ExitCode;
 
 /// See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
 ///
-/// Without a command the app opens, on SCENE where one is given. Where there is no display, the scene's panels are drawn to
+/// Without a command the app opens, on a scene or a recording where one is given. Where there is no display, its panels are drawn to
 /// apertura.png instead.
 #[derive(Debug, Parser)]
 #[command(version, about, args_conflicts_with_subcommands = true, after_help = ENVIRONMENT)]

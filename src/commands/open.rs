@@ -1,10 +1,12 @@
 //! No subcommand: the app, or a picture where there is no display.
 
+use super::input::Input;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::methods;
-use crate::picture::{Format, Style, compose, is_our_png};
-use crate::scene::file::{self, SceneFile};
+use crate::picture::{Format, Style, compose, compose_recording, is_our_png};
+use crate::recording;
+use crate::scene::file::SceneFile;
 use crate::scene::presets;
 use crate::signal;
 use std::path::{Path, PathBuf};
@@ -13,7 +15,7 @@ use std::time::Instant;
 /// What to open.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene to open (.toml or .npz)
+    /// Scene (.toml or .npz) or recording (.toml with [recording]) to open
     pub scene: Option<PathBuf>,
 
     /// Write the app's time for every frame to this CSV file
@@ -28,9 +30,9 @@ impl Args {
     /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
     pub fn run(self) -> Result<(), CommandError> {
         let started = Instant::now();
-        let file = match &self.scene {
-            Some(path) => file::load(path).map_err(CommandError::failed)?,
-            None => presets::default_scene(),
+        let input = match &self.scene {
+            Some(path) => Input::load(path)?,
+            None => Input::Scene(presets::default_scene()),
         };
         let reason = match self.open_window(started) {
             Ok(()) => return Ok(()),
@@ -39,8 +41,8 @@ impl Args {
             Err(WindowError::Failed(error)) => return Err(CommandError::failed(error)),
         };
         let reason = without_source_place(&reason);
-        eprintln!("apertura: {reason}; drawing the scene's panels to a picture instead");
-        draw_instead(&file)
+        eprintln!("apertura: {reason}; drawing its panels to a picture instead");
+        draw_instead(&input)
     }
 
     /// Opens the app and returns when it is closed.
@@ -84,12 +86,20 @@ enum WindowError {
     Failed(crate::app::AppError),
 }
 
-fn draw_instead(file: &SceneFile) -> Result<(), CommandError> {
-    let SceneFile { scene, radar } = file;
+fn draw_instead(input: &Input) -> Result<(), CommandError> {
     let style = Style::default();
-    let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
-    let bytes = compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
-        .map_err(CommandError::failed)?;
+    let bytes = match input {
+        Input::Scene(SceneFile { scene, radar }) => {
+            let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
+            compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
+        }
+        Input::Recording(recording) => {
+            let style = Style { floor: recording::FLOOR, ..style };
+            let method = methods::preferred_for(&recording.radar);
+            compose_recording(recording, method.as_ref(), &style, Format::Png)
+        }
+    }
+    .map_err(CommandError::failed)?;
     let path = free_name(Path::new("."));
     write_bytes(&path, &bytes).map_err(|source| CommandError::File { path: path.clone(), source })?;
     print(&format!("wrote {}", path.display()))

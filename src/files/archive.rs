@@ -1,10 +1,10 @@
 //! A scene's samples and maps as a NumPy archive with the keys of the thesis author's program.
 
-use super::npz::{NpzError, write_npz};
-use crate::maps::{self, Aperture, RangeAngleMap, network_input};
+use super::npz::{NpzError, NpzOutput, write_npz};
+use crate::maps::{self, Aperture, LogMap, RangeAngleMap, channels_map, network_input};
 use crate::radar::{End, Radar};
 use crate::scene::{Scene, npz};
-use crate::signal::BeatSignal;
+use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::Axis;
 use std::path::Path;
 
@@ -23,19 +23,37 @@ pub fn write_maps(
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
     let profiles = maps::range_transform(radar, signal);
-    let map = |aperture| maps::angle_transform(radar, &profiles, aperture);
-    let [first, last] = End::BOTH.map(|end| map(Aperture::End(end)));
-    let full = map(Aperture::Full).log_magnitude();
+    let full = maps::angle_transform(radar, &profiles, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
-        for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
-            out.add(key, &signal.end(radar, end).t().as_standard_layout())?;
-        }
-        out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
-        out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))?;
+        add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
         match output {
             Some(output) => out.add("output", &output.lambda.view().insert_axis(Axis(0))),
             None => Ok(()),
         }
     })
+}
+
+/// The same of a recording: nothing is known of its reflectors, and `polar_full` is there where all its elements were recorded.
+///
+/// # Errors
+/// As [`write_maps`].
+pub fn write_recorded_maps(path: &Path, radar: &Radar, ends: &TwoEnds, full: Option<&LogMap>) -> Result<(), NpzError> {
+    write_npz(path, |out| add_samples_and_maps(out, radar, ends, full))
+}
+
+fn add_samples_and_maps(
+    out: &mut NpzOutput,
+    radar: &Radar,
+    ends: &TwoEnds,
+    full: Option<&LogMap>,
+) -> Result<(), NpzError> {
+    let [first, last] = End::BOTH.map(|end| channels_map(radar, ends.end(end).view()));
+    for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
+        out.add(key, &ends.end(end).t().as_standard_layout())?;
+    }
+    if let Some(full) = full {
+        out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
+    }
+    out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))
 }

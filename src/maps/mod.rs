@@ -8,6 +8,7 @@ pub mod fast;
 mod lambda;
 mod log_map;
 pub mod network_input;
+pub mod peaks;
 mod spectra;
 pub mod tolerance;
 mod transform;

@@ -122,6 +122,10 @@ impl Reconstructor for UnetMethod {
         }
     }
 
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        check_radar(Unet::NAME, radar)
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let tables: UnetTables = Unet::tables(&self.config, radar)?;
         let rows = self.config.rows;

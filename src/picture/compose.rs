@@ -2,7 +2,7 @@
 
 use super::{ColourMap, Panels, PictureError, encode_png, render, render_svg};
 use crate::maps::{LogMaps, Normalisation};
-use crate::radar::Radar;
+use crate::radar::{Carrier, Radar};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::Scene;
 use crate::signal::{BeatSignal, Floor};
@@ -68,13 +68,23 @@ pub fn compose(
     let maps = LogMaps::of_signal(radar, signal);
     let request = Request { floor, normalisation, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
+    let carrier = match radar.carrier {
+        Carrier::OneWay => "one-way carrier",
+        Carrier::TwoWay => "two-way carrier",
+    };
+    let reflectors = match scene.reflector_count() {
+        0 => "no reflector".to_owned(),
+        1 => "1 reflector".to_owned(),
+        n => format!("{n} reflectors"),
+    };
     let panels = Panels {
         scene,
+        objects_title: "Scene",
         radar,
-        conditions: &format!("floor {floor}, normalisation {normalisation}"),
+        about: &format!("{reflectors}, {carrier}, floor {floor}, normalisation {normalisation}"),
         first: &maps.first.normalise(normalisation),
         last: &maps.last.normalise(normalisation),
-        target: &maps.full.normalise(normalisation),
+        target: Some(&maps.full.normalise(normalisation)),
         output: &output.lambda,
         method: method.name(),
         eta: eta.unwrap_or_else(|| method.eta()),

@@ -6,21 +6,25 @@
 mod canvas;
 pub mod colour;
 mod compose;
+mod directions;
 mod map_panel;
 mod png;
+mod recording;
 mod scene_panel;
 mod text;
 
 pub(crate) use text::register_fonts;
 
-pub use canvas::PictureError;
+pub use canvas::{Drawing, PictureError};
 pub use colour::ColourMap;
 pub use compose::{ComposeError, Format, Style, compose};
+pub use directions::{Curve, Directions, Mark};
 pub use png::{encode_png, is_our_png};
+pub use recording::{compose_recording, maps_of};
 
 use crate::evaluate::{Metrics, TARGET_ETA};
 use crate::maps::RangeAngleMap;
-use crate::radar::{Carrier, End, Radar};
+use crate::radar::{End, Radar};
 use crate::scene::Scene;
 use canvas::{Area, FAINT_INK, INK, PAPER};
 use image::RgbImage;
@@ -31,18 +35,20 @@ use scene_panel::Content;
 /// Everything a picture shows.
 #[derive(Debug, Clone, Copy)]
 pub struct Panels<'a> {
-    /// The scene.
+    /// The scene; of a recording its name and notes, and what was found in it.
     pub scene: &'a Scene,
+    /// What the scene's objects are: "Scene", or "Found by" a method.
+    pub objects_title: &'a str,
     /// The radar that looks at it.
     pub radar: &'a Radar,
-    /// What the maps were made with (floor, normalisation), in words.
-    pub conditions: &'a str,
+    /// What the maps were made of (reflectors, carrier, floor, normalisation), in words.
+    pub about: &'a str,
     /// Lambda of the first end ("input 0").
     pub first: &'a RangeAngleMap,
     /// Lambda of the last end ("input 1").
     pub last: &'a RangeAngleMap,
-    /// Lambda of the whole array ("target").
-    pub target: &'a RangeAngleMap,
+    /// Lambda of the whole array ("target"), where it is known.
+    pub target: Option<&'a RangeAngleMap>,
     /// What a method makes of the two ends.
     pub output: &'a RangeAngleMap,
     /// Name of the method.
@@ -59,32 +65,34 @@ const HEADER: i32 = 84;
 const LEFT: i32 = 700;
 const MARGIN: i32 = 24;
 
-/// Draws the picture, 2180 x 1120 pixels.
+/// Draws a picture on a bitmap; the panels are 2180 x 1120 pixels.
 ///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
-pub fn render(panels: &Panels) -> Result<RgbImage, PictureError> {
+pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
     text::register_fonts()?;
-    let mut buffer = vec![0; (WIDTH * HEIGHT * 3) as usize];
-    {
-        let root = BitMapBackend::with_buffer(&mut buffer, (WIDTH, HEIGHT)).into_drawing_area();
-        panels.draw(&root)?;
-    }
-    RgbImage::from_raw(WIDTH, HEIGHT, buffer).ok_or_else(|| PictureError::new("its buffer is too small"))
+    let (width, height) = drawing.size();
+    let mut buffer = vec![0; (width * height * 3) as usize];
+    drawing.draw(&BitMapBackend::with_buffer(&mut buffer, (width, height)).into_drawing_area())?;
+    RgbImage::from_raw(width, height, buffer).ok_or_else(|| PictureError::new("its buffer is too small"))
 }
 
 /// Draws the same picture as SVG: lines and text stay sharp at any size, the maps are bitmaps in it.
 ///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
-pub fn render_svg(panels: &Panels) -> Result<String, PictureError> {
+pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
     text::register_fonts()?;
     let mut svg = String::new();
-    panels.draw(&SVGBackend::with_string(&mut svg, (WIDTH, HEIGHT)).into_drawing_area())?;
+    drawing.draw(&SVGBackend::with_string(&mut svg, drawing.size()).into_drawing_area())?;
     Ok(svg)
 }
 
-impl Panels<'_> {
+impl Drawing for Panels<'_> {
+    fn size(&self) -> (u32, u32) {
+        (WIDTH, HEIGHT)
+    }
+
     fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
         root.fill(&PAPER).map_err(PictureError::new)?;
         self.header(root)?;
@@ -92,9 +100,12 @@ impl Panels<'_> {
         let field = |row: i32| {
             root.clone().shrink((MARGIN, HEADER + 8 + row * (field_height + 12)), (field_width, field_height))
         };
-        scene_panel::draw(&field(0), self.radar, "Scene", Content::Scene(self.scene))?;
-        let target = Content::Map(self.target, self.colours);
-        scene_panel::draw(&field(1), self.radar, "Target, seen from above", target)?;
+        scene_panel::draw(&field(0), self.radar, self.objects_title, Content::Scene(self.scene))?;
+        let (title, map) = match self.target {
+            Some(target) => ("Target, seen from above", target),
+            None => ("Output, seen from above", self.output),
+        };
+        scene_panel::draw(&field(1), self.radar, title, Content::Map(map, self.colours))?;
         let below = HEADER + 8 + 2 * (field_height + 12);
         let text = root.clone().shrink((MARGIN + 8, below), (field_width - 8, HEIGHT as i32 - below - 8));
         self.figures_and_notes(&text)?;
@@ -107,47 +118,47 @@ impl Panels<'_> {
         }
         root.present().map_err(PictureError::new)
     }
+}
 
+impl Panels<'_> {
     fn header<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
         let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
         let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
         let name = text::fitted(root, &name, 34, text::Weight::Bold, (LEFT - MARGIN) as u32)?;
         text::line(root, (MARGIN + 8, 16), &name, 34, text::Weight::Bold, &INK)?;
-        let carrier = match self.radar.carrier {
-            Carrier::OneWay => "one-way carrier",
-            Carrier::TwoWay => "two-way carrier",
-        };
-        let reflectors = match self.scene.reflector_count() {
-            0 => "no reflector".to_owned(),
-            1 => "1 reflector".to_owned(),
-            n => format!("{n} reflectors"),
-        };
-        let about = format!("{reflectors}, {carrier}, {}", self.conditions);
-        text::line(root, (LEFT + 62, 30), &about, 20, text::Weight::Normal, &FAINT_INK)
+        text::line(root, (LEFT + 62, 30), self.about, 20, text::Weight::Normal, &FAINT_INK)
     }
 
-    fn map_panels(&self) -> [MapPanel<'_>; 6] {
+    /// Three maps above; below them the output and both thresholds, or the output and its threshold where there is no target.
+    fn map_panels(&self) -> Vec<MapPanel<'_>> {
         let elements = |end| {
             let range = self.radar.end_range(end);
             format!("elements {} to {}", range.start, range.end - 1)
         };
         let lambda = |title: String, map| MapPanel { title, cells: Cells::Lambda(map, self.colours) };
-        [
+        let mut panels = vec![
             lambda(format!("Input 0: {}", elements(End::First)), self.first),
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),
-            lambda(format!("Target: all {} elements", self.radar.elements), self.target),
-            lambda(format!("Output: {}", self.method), self.output),
-            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(self.target, TARGET_ETA) },
-            MapPanel {
-                title: format!("Output > {:.2}", self.eta),
-                cells: Cells::Detections { target: self.target, output: self.output, eta: self.eta },
-            },
-        ]
+        ];
+        let output = lambda(format!("Output: {}", self.method), self.output);
+        let title = format!("Output > {:.2}", self.eta);
+        let Some(target) = self.target else {
+            panels.extend([output, MapPanel { title, cells: Cells::Above(self.output, self.eta) }]);
+            return panels;
+        };
+        panels.extend([
+            lambda(format!("Target: all {} elements", self.radar.elements), target),
+            output,
+            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(target, TARGET_ETA) },
+            MapPanel { title, cells: Cells::Detections { target, output: self.output, eta: self.eta } },
+        ]);
+        panels
     }
 
     /// The three figures of the tables for this scene, then the scene's notes.
     fn figures_and_notes<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let metrics = Metrics::of(self.target, self.output, self.eta);
+        let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
+        let metrics = Metrics::of(target, self.output, self.eta);
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
             ("SE", format!("{:.0}", metrics.squared_error)),
@@ -179,10 +190,11 @@ mod tests {
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,
-            conditions: "exact floor",
+            objects_title: "Scene",
+            about: "exact floor",
             first: &flat,
             last: &flat,
-            target: &flat,
+            target: Some(&flat),
             output: &flat,
             method: "baseline",
             eta: 0.9,
@@ -191,6 +203,9 @@ mod tests {
         let svg = render_svg(&panels).unwrap();
         assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
         assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
+        let without = render_svg(&Panels { target: None, ..panels }).unwrap();
+        assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");
+        assert!(without.contains("Output, seen from above") && !without.contains("P_FA"));
         let picture = render(&panels).unwrap();
         assert_eq!(picture.dimensions(), (WIDTH, HEIGHT));
         let bytes = encode_png(&picture).unwrap();

@@ -6,6 +6,7 @@ mod elements;
 mod layout;
 mod layout_kind;
 mod memory;
+pub mod presets;
 mod squint;
 mod units;
 mod window;

@@ -14,6 +14,7 @@ mod baseline;
 mod coherent;
 mod echoes;
 mod error;
+pub mod found;
 mod grid;
 mod hybrid;
 mod noise;

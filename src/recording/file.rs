@@ -109,6 +109,12 @@ pub fn is_recording(text: &str) -> bool {
     toml::de::DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("recording"))
 }
 
+/// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
+pub fn is_recording_at(path: &Path) -> bool {
+    let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    is_toml && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
+}
+
 /// Reads a recording: the TOML `path`, and what it names beside it.
 ///
 /// # Errors

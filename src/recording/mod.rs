@@ -11,12 +11,13 @@
 //! | `axes` | an array of any shape to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
 //!
-//! [`presets`] come with the program.
+//! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
 
 mod axes;
 mod calibration;
 mod capture;
 mod error;
+pub mod explain;
 pub mod file;
 mod matlab;
 mod numbers;
@@ -33,8 +34,11 @@ pub use numbers::MAX_NUMBERS;
 pub use numpy::NumpyError;
 pub use profile::{ProfileError, RadarProfile};
 
-use crate::radar::{End, Radar};
-use crate::signal::{BeatSignal, TwoEnds};
+use crate::radar::{Decibels, End, Radar};
+use crate::signal::{BeatSignal, Floor, TwoEnds};
+
+/// What lies beneath the reflectors of a recording: thermal noise, whose level methods measure themselves.
+pub const FLOOR: Floor = Floor::Snr(Decibels(40.0));
 
 /// Samples of a radar's elements, and the radar.
 #[derive(Debug, Clone, PartialEq)]

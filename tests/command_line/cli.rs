@@ -10,13 +10,13 @@ use std::path::Path;
 use tempfile::TempDir;
 
 /// The program in an empty folder, without a display.
-fn apertura(folder: &TempDir) -> Command {
+pub fn apertura(folder: &TempDir) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
     command.current_dir(folder).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     command
 }
 
-fn folder() -> TempDir {
+pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 

@@ -4,5 +4,6 @@ mod bounds;
 mod cli;
 #[cfg(feature = "network")]
 mod reconstruct;
+mod recordings;
 mod rows;
 mod same_bits;

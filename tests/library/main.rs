@@ -10,6 +10,7 @@ mod live_network;
 mod memory;
 mod methods;
 mod radars;
+mod snapshot;
 mod stress;
 mod whole_files;
 

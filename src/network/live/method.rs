@@ -87,7 +87,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        FeatureExtractor::check_radar(radar)
+        crate::network::trained_for::check_radar("live", radar)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

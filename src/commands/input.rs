@@ -1,0 +1,25 @@
+//! What a subcommand looks at: a scene that is simulated, or a recording.
+
+use super::CommandError;
+use crate::recording::{self, Recording};
+use crate::scene::file::{self, SceneFile};
+use std::path::Path;
+
+/// A scene or a recording, as the file says.
+#[derive(Debug, Clone)]
+pub enum Input {
+    /// A scene and the radar that looks at it.
+    Scene(SceneFile),
+    /// Samples and the radar that measured them.
+    Recording(Box<Recording>),
+}
+
+impl Input {
+    /// Reads a `.toml` with a table `[recording]` as a recording, anything else as a scene.
+    pub fn load(path: &Path) -> Result<Input, CommandError> {
+        if recording::file::is_recording_at(path) {
+            return Ok(Input::Recording(Box::new(recording::file::load(path).map_err(CommandError::failed)?)));
+        }
+        Ok(Input::Scene(file::load(path).map_err(CommandError::failed)?))
+    }
+}

@@ -1,0 +1,225 @@
+//! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
+
+use super::canvas::Drawing;
+use super::compose::{ComposeError, Format, Style};
+use super::directions::{Curve, Directions, Mark};
+use super::{Panels, encode_png, render, render_svg};
+use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
+use crate::radar::{Carrier, Decibels, End, Radar};
+use crate::reconstruct::found::{Found, reconstruct_and_find};
+use crate::reconstruct::{Reconstructor, Request};
+use crate::recording::{Recorded, Recording};
+use crate::scene::{Object, Point, Scene};
+use ndarray::{ArrayView1, Axis};
+use num_complex::Complex64;
+use plotters::style::RGBColor;
+
+/// Most things found that are drawn.
+const MOST_DRAWN: usize = 64;
+
+/// Columns that a snapshot's curves are padded to.
+const FINE_COLUMNS: usize = 8192;
+
+/// Dynamic range of a snapshot's curves.
+const CURVE_RANGE: Decibels = Decibels(60.0);
+
+const ALL_ELEMENTS: RGBColor = RGBColor(120, 128, 138);
+const ONE_END: RGBColor = RGBColor(226, 146, 38);
+const METHOD: RGBColor = RGBColor(24, 92, 168);
+
+/// Maps of both ends, and of the whole array where all its elements were recorded.
+pub fn maps_of(recording: &Recording) -> ([LogMap; 2], Option<LogMap>) {
+    let radar = &recording.radar;
+    match &recording.samples {
+        Recorded::All(signal) => {
+            let LogMaps { first, last, full } = LogMaps::of_signal(radar, signal);
+            ([first, last], Some(full))
+        }
+        Recorded::Ends(ends) => (End::BOTH.map(|end| channels_map(radar, ends.end(end).view()).log_magnitude()), None),
+    }
+}
+
+/// Reconstructs from the recording's two ends and draws what it shows; the bytes of a file.
+///
+/// # Errors
+/// [`ComposeError`] when the method fails or the picture can't be drawn.
+pub fn compose_recording(
+    recording: &Recording,
+    method: &dyn Reconstructor,
+    style: &Style,
+    format: Format,
+) -> Result<Vec<u8>, ComposeError> {
+    if recording.is_snapshot() {
+        curves(recording, method, style, format)
+    } else {
+        panels(recording, method, style, format)
+    }
+}
+
+fn bytes_of(drawing: &impl Drawing, format: Format) -> Result<Vec<u8>, ComposeError> {
+    Ok(match format {
+        Format::Png => encode_png(&render(drawing)?)?,
+        Format::Svg => render_svg(drawing)?.into_bytes(),
+    })
+}
+
+fn request(style: &Style) -> Request {
+    Request { floor: style.floor, normalisation: style.normalisation, ..Request::default() }
+}
+
+fn panels(
+    recording: &Recording,
+    method: &dyn Reconstructor,
+    style: &Style,
+    format: Format,
+) -> Result<Vec<u8>, ComposeError> {
+    let radar = &recording.radar;
+    let ([first, last], full) = maps_of(recording);
+    let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request(style))?;
+    let lambda = |map: &LogMap| -> RangeAngleMap { map.normalise(style.normalisation) };
+    let target = full.as_ref().map(lambda);
+    let scene = Scene {
+        name: recording.name.clone(),
+        notes: recording.notes.clone(),
+        objects: found.iter().take(MOST_DRAWN).map(|f| Object::Point(point(f))).collect(),
+        ..Scene::default()
+    };
+    let carrier = match radar.carrier {
+        Carrier::OneWay => "one-way carrier",
+        Carrier::TwoWay => "two-way carrier",
+    };
+    let missing = match recording.missing.len() {
+        0 => String::new(),
+        n => format!(", {n} missing"),
+    };
+    let about =
+        format!("recorded by {} elements{missing}, {carrier}, normalisation {}", radar.elements, style.normalisation);
+    let panels = Panels {
+        scene: &scene,
+        objects_title: &format!("Found by {}", method.name()),
+        radar,
+        about: &about,
+        first: &lambda(&first),
+        last: &lambda(&last),
+        target: target.as_ref(),
+        output: &output.lambda,
+        method: method.name(),
+        eta: style.eta.unwrap_or_else(|| method.eta()),
+        colours: style.colours,
+    };
+    bytes_of(&panels, format)
+}
+
+fn point(found: &Found) -> Point {
+    let Found { cos_theta, range_metres, .. } = *found;
+    Point::new(range_metres * cos_theta, range_metres * (1.0 - cos_theta * cos_theta).max(0.0).sqrt())
+}
+
+fn curves(
+    recording: &Recording,
+    method: &dyn Reconstructor,
+    style: &Style,
+    format: Format,
+) -> Result<Vec<u8>, ComposeError> {
+    let radar = &recording.radar;
+    let ends = recording.two_ends();
+    let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..*style };
+    let (output, found) = reconstruct_and_find(method, radar, &ends, &request(&in_decibels))?;
+    let mut curves = Vec::new();
+    if let Some(signal) = recording.signal() {
+        let name = format!("all {} elements", radar.elements);
+        curves.push(Curve {
+            name,
+            points: beam_pattern(radar, signal.samples.index_axis(Axis(1), 0)),
+            colour: ALL_ELEMENTS,
+        });
+    }
+    let one_end = beam_pattern(radar, ends.first.index_axis(Axis(1), 0));
+    curves.push(Curve {
+        name: format!("{} elements of one end", radar.end_elements),
+        points: one_end,
+        colour: ONE_END,
+    });
+    let row = output.lambda.lambda.index_axis(Axis(0), 0);
+    let decibels = row.iter().map(|v| (f64::from(*v) - 1.0) * CURVE_RANGE.0).collect();
+    let name = format!("{} of {} + {} elements", method.name(), radar.end_elements, radar.end_elements);
+    curves.push(Curve { name, points: over_degrees(radar, decibels), colour: METHOD });
+    let range = recording.range_metres.unwrap_or_default();
+    let found: Vec<Mark> = found
+        .iter()
+        .map(|f| Mark { angle_degrees: degrees(f.cos_theta), below_strongest_db: f.relative_db.0 })
+        .collect();
+    let about =
+        format!("one snapshot at about {range} m, {} elements; found by {}: stems", radar.elements, method.name());
+    bytes_of(&Directions { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
+}
+
+/// Angle from broadside, degrees.
+fn degrees(cos_theta: f64) -> f64 {
+    cos_theta.clamp(-1.0, 1.0).asin().to_degrees()
+}
+
+/// Decibels, one a column of a map that has so many, over degrees; directions beyond end-fire are left out.
+fn over_degrees(radar: &Radar, decibels: Vec<f64>) -> Vec<(f64, f64)> {
+    let fine = Radar { elements: decibels.len(), ..radar.clone() };
+    let place = |(column, db): (usize, f64)| (fine.cos_of_column(column as f64), db);
+    let seen = decibels.into_iter().enumerate().map(place).filter(|(cos, _)| cos.abs() <= 1.0);
+    let mut points: Vec<(f64, f64)> = seen.map(|(cos, db)| (degrees(cos), db)).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+/// Decibels over degrees of plain beamforming with neighbouring elements, under the radar's window.
+fn beam_pattern(radar: &Radar, samples: ArrayView1<'_, Complex64>) -> Vec<(f64, f64)> {
+    let window = radar.window.weights(samples.len());
+    let mut beams = Spectrum::new(FINE_COLUMNS).of(samples.iter().zip(window).map(|(v, w)| v * w));
+    beams.rotate_right(FINE_COLUMNS / 2);
+    let strongest = beams.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.norm()));
+    over_degrees(radar, beams.iter().map(|v| 20.0 * (v.norm() / strongest).max(1e-20).log10()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reconstruct::Baseline;
+    use crate::recording::presets::Preset;
+
+    #[test]
+    fn the_whole_array_sees_both_directions_and_one_end_a_hump() {
+        let recording = Preset::by_id("cascade-86").unwrap().load().unwrap();
+        let tops = |points: &[(f64, f64)]| -> Vec<f64> {
+            let top = |w: &&[(f64, f64)]| w[1].1 > -6.0 && w[1].1 > w[0].1 && w[1].1 > w[2].1;
+            points.windows(3).filter(top).map(|w| w[1].0).collect()
+        };
+        let signal = recording.signal().unwrap();
+        let all = tops(&beam_pattern(&recording.radar, signal.samples.index_axis(Axis(1), 0)));
+        assert_eq!(all.len(), 2, "{all:?}");
+        assert!(all[0].abs() < 0.1 && (all[1] - 7.0).abs() < 0.1, "{all:?}");
+        let end = tops(&beam_pattern(&recording.radar, recording.two_ends().first.index_axis(Axis(1), 0)));
+        assert!(end.len() == 1 && (2.0..6.0).contains(&end[0]), "{end:?}");
+    }
+
+    #[test]
+    fn the_map_of_the_chip_is_numpys() {
+        let recording = Preset::by_id("chip-8").unwrap().load().unwrap();
+        let (_, full) = maps_of(&recording);
+        let full = full.unwrap();
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/chip-8-map.npy");
+        let expected: ndarray::Array2<f64> = ndarray_npy::read_npy(path).unwrap();
+        assert_eq!(full.decades().dim(), expected.dim());
+        let worst = full.decades().iter().zip(&expected).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(worst < 1e-9, "by scripts/reference_maps.py: {worst}");
+    }
+
+    #[test]
+    fn recordings_with_and_without_a_target_are_drawn() {
+        let mut recording = Preset::by_id("chip-8").unwrap().load().unwrap();
+        let svg = |r: &Recording| {
+            let bytes = compose_recording(r, &Baseline, &Style::default(), Format::Svg).unwrap();
+            String::from_utf8(bytes).unwrap()
+        };
+        assert!(svg(&recording).contains("Target: all 8 elements"));
+        recording.samples = Recorded::Ends(recording.two_ends());
+        assert!(!svg(&recording).contains("Target"));
+    }
+}

@@ -1,0 +1,122 @@
+//! Radars that are built, and radars that show what a constant does.
+
+use super::{Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
+
+/// A radar ready to look with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadarPreset {
+    /// Short name.
+    pub id: &'static str,
+    /// Name for menus.
+    pub name: &'static str,
+    /// What it is, and what its maps show.
+    pub about: &'static str,
+    /// The radar.
+    pub radar: Radar,
+}
+
+/// Half the wavelength of a carrier, metres.
+const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
+    SPEED_OF_LIGHT / carrier_hz / 2.0
+}
+
+/// Table 3.1 of the thesis.
+const TABLE_3_1: Radar = Radar {
+    transmit_power_watts: 100.0,
+    bandwidth_hz: 2e9,
+    carrier_hz: 77e9,
+    element_spacing_metres: half_wavelength_metres(77e9),
+    elements: 1024,
+    end_elements: 12,
+    samples: 512,
+    carrier: Carrier::OneWay,
+    window: WindowFunction::Hann,
+};
+
+/// Every preset, table 3.1 first.
+pub const ALL: &[RadarPreset] = &[
+    RadarPreset {
+        id: "table-3.1",
+        name: "The thesis' radar (table 3.1)",
+        about: "1024 elements over 2 m at 77 GHz, 2 GHz of bandwidth: range bins of 7.5 cm, directions to a tenth of a degree. Every \
+                scene lies in its near field, which begins to end at 2 km.",
+        radar: TABLE_3_1,
+    },
+    RadarPreset {
+        id: "cascade-86",
+        name: "77 GHz cascade, 86 elements",
+        about: "Four radar chips side by side, whose virtual elements form a line of 86: 16 cm wide, a beam of a degree and a half. Its far \
+                field begins at 14 m, so plane waves are a fair assumption.",
+        radar: Radar { bandwidth_hz: 1e9, elements: 86, samples: 256, ..TABLE_3_1 },
+    },
+    RadarPreset {
+        id: "chip-8",
+        name: "77 GHz single chip, 8 elements",
+        about: "Two transmitters and four receivers on one chip, the radar of most laboratories: range bins of 5 cm up to 6 m, but a beam of \
+                14 degrees.",
+        radar: Radar { bandwidth_hz: 3.072e9, elements: 8, end_elements: 3, samples: 128, ..TABLE_3_1 },
+    },
+    RadarPreset {
+        id: "24-ghz",
+        name: "24 GHz, 256 elements",
+        about: "The older band: a wavelength three times as long makes the same number of elements three times as wide, and its 250 MHz allow \
+                range bins of 60 cm only.",
+        radar: Radar {
+            bandwidth_hz: 250e6,
+            carrier_hz: 24.125e9,
+            element_spacing_metres: half_wavelength_metres(24.125e9),
+            elements: 256,
+            samples: 256,
+            ..TABLE_3_1
+        },
+    },
+    RadarPreset {
+        id: "one-wavelength",
+        name: "Elements one wavelength apart",
+        about: "Table 3.1 with twice the spacing: the beam is half as wide, but each echo appears in two directions (grating lobes), for \
+                elements so far apart cannot tell them apart.",
+        radar: Radar { element_spacing_metres: 2.0 * half_wavelength_metres(77e9), ..TABLE_3_1 },
+    },
+    RadarPreset {
+        id: "150-mhz",
+        name: "150 MHz of bandwidth",
+        about: "Table 3.1 with a fraction of its bandwidth: a range bin is 1 m, as long as a range cell of long-range automotive radars, and \
+                what stands less than that apart merges.",
+        radar: Radar { bandwidth_hz: 150e6, ..TABLE_3_1 },
+    },
+];
+
+impl RadarPreset {
+    /// The preset called `id`.
+    pub fn by_id(id: &str) -> Option<&'static RadarPreset> {
+        ALL.iter().find(|p| p.id == id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn presets_are_valid_and_have_their_own_names() {
+        let mut seen = HashSet::new();
+        for preset in ALL {
+            preset.radar.validate().unwrap_or_else(|e| panic!("{}: {e}", preset.id));
+            assert!(seen.insert(preset.id) && seen.insert(preset.name) && preset.about.len() > 80, "{}", preset.id);
+            assert_eq!(RadarPreset::by_id(preset.id), Some(preset));
+        }
+        assert_eq!(ALL[0].radar, Radar::default());
+    }
+
+    #[test]
+    fn they_show_what_they_say() {
+        let radar = |id: &str| &RadarPreset::by_id(id).unwrap().radar;
+        assert!((radar("150-mhz").range_resolution_metres() - 1.0).abs() < 1e-3);
+        assert!((radar("24-ghz").range_resolution_metres() - 0.6).abs() < 1e-3);
+        assert!((13.0..15.0).contains(&radar("cascade-86").far_field_metres()));
+        assert!((radar("chip-8").max_range_metres() - 6.25).abs() < 0.01);
+        let twice = radar("one-wavelength");
+        assert!((twice.column_of_cos(0.3) - twice.column_of_cos(-0.7)).abs() < 1e-6, "two directions share a column");
+    }
+}

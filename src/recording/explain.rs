@@ -1,0 +1,222 @@
+//! What reflectors explain of a recording, and what they leave.
+
+use super::{Recorded, Recording};
+use crate::radar::{End, Radar};
+use crate::scene::{Reflector, Scene, SceneError};
+use crate::signal::echo::{ArrayEcho, add_echo};
+use crate::signal::phase::EchoModel;
+use crate::signal::{BeatSignal, TwoEnds};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use ndarray::{Array2, Axis, s};
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Most reflectors that a recording is explained with: their gains are fitted together.
+pub const MAX_EXPLAINING: usize = 512;
+
+/// What is added to the diagonal of the fit, relative to it: reflectors that no element tells apart share their gain.
+const RIDGE: f64 = 1e-10;
+
+/// A recording explained by reflectors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explanation {
+    /// Complex gain of each reflector: what the echo of reflectivity 1 at its place is multiplied with. Its magnitude is the reflectivity
+    /// in the recording's own unit.
+    pub gains: Vec<Complex64>,
+    /// Part of the recording's power that they explain, 0 to 1.
+    pub explained: f64,
+    /// The recording less their echoes.
+    pub residual: Recording,
+}
+
+/// Why reflectors can't explain a recording.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExplainError {
+    /// The recording's radar can't see the scene.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// Too many gains to fit.
+    #[error("the scene has {0} reflectors; at most {MAX_EXPLAINING} are fitted to a recording")]
+    TooMany(usize),
+    /// The gains can't be told from each other at all.
+    #[error("the gains of these reflectors can't be fitted: {0}")]
+    Unsolvable(String),
+}
+
+/// Fits a complex gain to the echo of each of `scene`'s reflectors, all together by least squares over every sample that was recorded,
+/// and takes them off: y = sum of `g_l a_l` + residual, `g` least squares. Reflectivities of the scene don't matter, places do.
+///
+/// # Errors
+/// [`ExplainError`] where the scene can't be seen by the recording's radar, or has too many reflectors.
+pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, ExplainError> {
+    let radar = &recording.radar;
+    scene.validate(radar)?;
+    let count = scene.reflector_count();
+    if count > MAX_EXPLAINING {
+        return Err(ExplainError::TooMany(count));
+    }
+    let reflectors = scene.reflectors();
+    let elements = heard(recording);
+    let mut rows = rows_of(recording, &elements);
+    let before = power(&rows);
+    let gains = fit(radar, &reflectors, &elements, &rows)?;
+    let model = EchoModel::new(radar);
+    rows.axis_iter_mut(Axis(0)).into_par_iter().zip(&elements).for_each(|(mut row, element)| {
+        let Some(samples) = row.as_slice_mut() else { return };
+        for (reflector, gain) in reflectors.iter().zip(&gains) {
+            let unit = Reflector { reflectivity: 1.0, ..*reflector };
+            add_echo(&model, radar.element_x_metres(*element), &unit, -gain, samples);
+        }
+    });
+    let explained = if before > 0.0 { (1.0 - power(&rows) / before).clamp(0.0, 1.0) } else { 0.0 };
+    let residual = Recording { samples: with_rows(recording, &elements, &rows), ..recording.clone() };
+    Ok(Explanation { gains, explained, residual })
+}
+
+fn power(samples: &Array2<Complex64>) -> f64 {
+    samples.iter().map(Complex64::norm_sqr).sum()
+}
+
+/// Elements of the whole array that were recorded.
+fn heard(recording: &Recording) -> Vec<usize> {
+    let radar = &recording.radar;
+    let recorded: Vec<usize> = match recording.samples {
+        Recorded::All(_) => (0..radar.elements).collect(),
+        Recorded::Ends(_) => End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect(),
+    };
+    recorded.into_iter().filter(|n| !recording.missing.contains(n)).collect()
+}
+
+/// The samples of these elements, `[elements, samples]`.
+fn rows_of(recording: &Recording, elements: &[usize]) -> Array2<Complex64> {
+    let radar = &recording.radar;
+    match &recording.samples {
+        Recorded::All(signal) => signal.samples.select(Axis(0), elements),
+        Recorded::Ends(ends) => {
+            let mut rows = Array2::zeros((elements.len(), radar.samples));
+            for (mut row, element) in rows.outer_iter_mut().zip(elements) {
+                row.assign(&match element.checked_sub(radar.end_range(End::Last).start) {
+                    Some(within) => ends.last.row(within),
+                    None => ends.first.row(*element),
+                });
+            }
+            rows
+        }
+    }
+}
+
+/// The recording's samples with these rows in their places, silence elsewhere.
+fn with_rows(recording: &Recording, elements: &[usize], rows: &Array2<Complex64>) -> Recorded {
+    let radar = &recording.radar;
+    let mut signal = BeatSignal::silence(radar);
+    for (row, element) in rows.outer_iter().zip(elements) {
+        signal.samples.row_mut(*element).assign(&row);
+    }
+    match recording.samples {
+        Recorded::All(_) => Recorded::All(signal),
+        Recorded::Ends(_) => {
+            let end = |end| signal.samples.slice(s![radar.end_range(end), ..]).to_owned();
+            Recorded::Ends(TwoEnds { first: end(End::First), last: end(End::Last) })
+        }
+    }
+}
+
+/// The gains: normal equations of the unit echoes, whose inner products are known in closed form.
+fn fit(
+    radar: &Radar,
+    reflectors: &[Reflector],
+    elements: &[usize],
+    rows: &Array2<Complex64>,
+) -> Result<Vec<Complex64>, ExplainError> {
+    if reflectors.is_empty() {
+        return Ok(Vec::new());
+    }
+    let xs: Vec<f64> = elements.iter().map(|n| radar.element_x_metres(*n)).collect();
+    let echoes: Vec<ArrayEcho> = reflectors
+        .par_iter()
+        .map(|r| {
+            let place = radar.polar_of(r.x_metres, r.y_metres);
+            ArrayEcho::heard_by(radar, &xs, place.range_metres, place.cos_theta)
+        })
+        .collect();
+    let y: Vec<Complex64> = rows.iter().copied().collect();
+    let heard: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&y)).collect();
+    let ridge = |i: usize, j: usize| if i == j { RIDGE } else { 0.0 };
+    let gram = Mat::from_fn(echoes.len(), echoes.len(), |i, j| echoes[i].inner(&echoes[j]) + ridge(i, j));
+    let factor = gram.llt(Side::Lower).map_err(|e| ExplainError::Unsolvable(format!("{e:?}")))?;
+    let solved = factor.solve(Mat::from_fn(echoes.len(), 1, |i, _| heard[i]));
+    Ok(echoes.iter().enumerate().map(|(i, e)| solved[(i, 0)] / e.norm()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::{Aperture, angle_transform, range_transform};
+    use crate::signal::{Floor, simulate};
+
+    fn radar() -> Radar {
+        Radar { elements: 64, end_elements: 6, samples: 96, ..Radar::default() }
+    }
+
+    /// Three points, everything turned and amplified as a real receiver would.
+    fn recorded() -> Recording {
+        let scene = Scene::of_points([(0.0, 3.0), (1.5, 4.0), (-2.0, 5.0)]);
+        let mut signal = simulate(&radar(), &scene, Floor::Exact, 0).unwrap();
+        signal.samples.mapv_inplace(|v| v * Complex64::from_polar(7.0, 1.1));
+        Recording::of_signal(radar(), signal)
+    }
+
+    #[test]
+    fn all_reflectors_explain_everything_and_their_gain_is_the_receivers() {
+        let found = explain(&recorded(), &Scene::of_points([(0.0, 3.0), (1.5, 4.0), (-2.0, 5.0)])).unwrap();
+        assert!(found.explained > 1.0 - 1e-12, "{}", found.explained);
+        for gain in &found.gains {
+            assert!((gain - Complex64::from_polar(7.0, 1.1)).norm() < 1e-6, "{gain}");
+        }
+        let left = found.residual.signal().unwrap().peak() / recorded().signal().unwrap().peak();
+        assert!(left < 1e-8, "{left:e}");
+    }
+
+    #[test]
+    fn what_is_left_is_what_was_not_named() {
+        let found = explain(&recorded(), &Scene::of_points([(0.0, 3.0), (1.5, 4.0)])).unwrap();
+        assert!((0.5..0.99).contains(&found.explained), "{}", found.explained);
+        let radar = radar();
+        let profiles = range_transform(&radar, found.residual.signal().unwrap());
+        let map = angle_transform(&radar, &profiles, Aperture::Full).log_magnitude();
+        let ((bin, column), _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let place = radar.polar_of(-2.0, 5.0);
+        assert!((bin as f64 - radar.bin_of_range(place.range_metres)).abs() < 1.5, "{bin}");
+        assert!((column as f64 - radar.column_of_cos(place.cos_theta)).abs() < 2.0, "{column}");
+    }
+
+    #[test]
+    fn two_ends_and_missing_elements_are_explained_alike() {
+        let mut recording = recorded();
+        recording.samples = Recorded::Ends(recording.two_ends());
+        recording.missing = vec![2, 61];
+        for element in [2, 61] {
+            if let Recorded::Ends(ends) = &mut recording.samples {
+                let end = if element < 6 { &mut ends.first } else { &mut ends.last };
+                end.row_mut(element % 58).fill(Complex64::default());
+            }
+        }
+        let scene = Scene::of_points([(0.0, 3.0), (1.5, 4.0), (-2.0, 5.0)]);
+        let found = explain(&recording, &scene).unwrap();
+        assert!(found.explained > 1.0 - 1e-12, "{}", found.explained);
+        assert_eq!(found.residual.two_ends().first.row(2).iter().map(|v| v.norm()).sum::<f64>(), 0.0);
+    }
+
+    #[test]
+    fn the_same_place_twice_shares_the_gain_and_nothing_explains_nothing() {
+        let twice = explain(&recorded(), &Scene::of_points([(0.0, 3.0), (0.0, 3.0)])).unwrap();
+        assert!((twice.gains[0] - twice.gains[1]).norm() < 1e-3 * twice.gains[0].norm(), "{:?}", twice.gains);
+        let nothing = explain(&recorded(), &Scene::default()).unwrap();
+        assert_eq!((nothing.explained, nothing.residual), (0.0, recorded()));
+        let silence = Recording::of_signal(radar(), BeatSignal::silence(&radar()));
+        assert_eq!(explain(&silence, &Scene::of_points([(0.0, 3.0)])).unwrap().explained, 0.0);
+        let many = Scene::of_points((0..513).map(|i| (0.0, 1.0 + f64::from(i))));
+        assert!(explain(&silence, &many).unwrap_err().to_string().contains("513"));
+    }
+}

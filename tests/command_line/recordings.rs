@@ -1,0 +1,205 @@
+//! Recordings on the command line: maps, pictures, reconstructions, and what is refused.
+
+use super::cli::{apertura, folder};
+use apertura::files::npz::{Npz, write_npz};
+use apertura::radar::Radar;
+use apertura::scene::Scene;
+use apertura::signal::{Floor, simulate};
+use ndarray::{Array2, Axis, Ix1, Ix2, Ix3};
+use ndarray_npy::NpzReader;
+use num_complex::Complex64;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use std::fs::File;
+use std::path::Path;
+use tempfile::TempDir;
+
+const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/recordings");
+
+#[test]
+fn a_recording_gives_its_maps_and_no_positions() {
+    let folder = folder();
+    apertura(&folder).arg("maps").arg(format!("{SHIPPED}/chip-8.toml")).args(["-o", "m.npz"]).assert().success();
+    let mut found = Npz::open(&folder.path().join("m.npz")).unwrap();
+    assert!(!found.has("all_point_x"));
+    assert_eq!(found.complexes::<Ix2>("sub0").unwrap().dim(), (128, 3));
+    assert_eq!(found.reals::<Ix3>("polar_partial_mag_phase").unwrap().dim(), (4, 128, 8));
+    let full = found.reals::<Ix3>("polar_full").unwrap();
+    let reference: Array2<f64> =
+        ndarray_npy::read_npy(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/chip-8-map.npy")).unwrap();
+    let worst = full.index_axis(Axis(0), 0).iter().zip(&reference).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+    assert!(worst < 1e-9, "NumPy's map of the same file: {worst}");
+}
+
+#[test]
+fn recordings_are_drawn() {
+    let folder = folder();
+    let draw = |recording: &str, out: &str| {
+        let mut command = apertura(&folder);
+        command.arg("maps").arg(format!("{SHIPPED}/{recording}.toml")).args(["-o", out]);
+        command.args(["--method", "bartlett"]).assert()
+    };
+    draw("chip-8", "chip.svg").success();
+    let svg = std::fs::read_to_string(folder.path().join("chip.svg")).unwrap();
+    assert!(svg.contains("A room, 8 elements") && svg.contains("Found by bartlett"));
+    apertura(&folder).arg(format!("{SHIPPED}/chip-8.toml")).assert().success().stdout(contains("apertura.png"));
+}
+
+#[test]
+fn what_reflectors_leave_unexplained_is_a_map() {
+    let folder = folder();
+    write_recording(&folder, RADARS[0].1, &Scene::of_points([(0.0, 2.0), (1.0, 3.0)]));
+    let near = "[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 2\n";
+    std::fs::write(folder.path().join("near.toml"), near).unwrap();
+    let mut command = apertura(&folder);
+    command.args(["maps", "r.toml", "--explain", "near.toml", "-o", "left.npz"]);
+    command.assert().success().stdout(contains("near.toml explains 8"));
+    let mut maps = Npz::open(&folder.path().join("left.npz")).unwrap();
+    let full = maps.reals::<Ix3>("polar_full").unwrap();
+    let ((_, bin, _), _) = full.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+    assert!((41..=43).contains(&bin), "the other one, at 3.16 m: {bin}");
+    apertura(&folder).args(["maps", "near.toml", "--explain", "near.toml", "-o", "x.npz"]).assert().failure();
+}
+
+#[test]
+fn a_recording_that_cannot_be_read_is_told() {
+    let folder = folder();
+    let toml = std::fs::read_to_string(format!("{SHIPPED}/chip-8.toml")).unwrap();
+    std::fs::write(folder.path().join("r.toml"), &toml).unwrap();
+    let told = |part: &'static str| {
+        let mut command = apertura(&folder);
+        command.args(["maps", "r.toml", "-o", "m.npz"]).assert().failure().stdout("").stderr(contains(part));
+    };
+    told("chip-8.npz: No such file");
+    std::fs::copy(format!("{SHIPPED}/chip-8.npz"), folder.path().join("chip-8.npz")).unwrap();
+    std::fs::write(folder.path().join("r.toml"), toml.replace("chirp = 0", "")).unwrap();
+    told("the array has 4 chirps; expected recording.chirp = 0 to 3");
+    assert!(!folder.path().join("m.npz").exists());
+}
+
+/// Radars that the thesis never had: the name, what its TOML says, and two places in metres that each of them tells apart.
+const RADARS: [(&str, &str, [(f64, f64); 2]); 5] = [
+    ("86 elements", "elements = 86\nend_elements = 12\nsamples = 64\n", [(0.0, 2.0), (1.0, 3.0)]),
+    ("8 elements", "elements = 8\nend_elements = 3\nsamples = 128\n", [(0.0, 2.0), (2.0, 6.0)]),
+    (
+        "24 GHz",
+        "carrier_hz = 24e9\nbandwidth_hz = 1e9\nelement_spacing_metres = 0.006245\nelements = 256\nend_elements = 12\nsamples = 128\n",
+        [(0.0, 6.0), (4.0, 12.0)],
+    ),
+    ("two ways", "carrier = \"two-way\"\nelements = 128\nend_elements = 12\nsamples = 128\n", [(0.0, 3.0), (1.0, 7.0)]),
+    (
+        "one wavelength",
+        "element_spacing_metres = 0.003893\nelements = 128\nend_elements = 12\nsamples = 128\n",
+        [(0.0, 3.0), (1.0, 7.0)],
+    ),
+];
+
+/// Model-based methods; the networks know one radar only and say so.
+fn methods() -> Vec<&'static str> {
+    let networks = ["live", "thesis", "thesis-1", "unet"];
+    apertura::methods::all().iter().map(|m| m.name()).filter(|name| !networks.contains(name)).collect()
+}
+
+fn radar_of(text: &str) -> Radar {
+    let table: toml::Table = text.parse().unwrap();
+    table.try_into().unwrap()
+}
+
+/// Simulated samples of all elements with a TOML beside them.
+fn write_recording(folder: &TempDir, radar: &str, scene: &Scene) -> Radar {
+    let whole = radar_of(radar);
+    let signal = simulate(&whole, scene, Floor::Snr(apertura::radar::Decibels(40.0)), 1).unwrap();
+    write_npz(&folder.path().join("d.npz"), |out| out.add("samples", &signal.samples)).unwrap();
+    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, .. } = whole;
+    let said: toml::Table = radar.parse().unwrap();
+    let number =
+        |key: &str, value: f64| if said.contains_key(key) { String::new() } else { format!("{key} = {value:?}\n") };
+    let more = number("carrier_hz", carrier_hz)
+        + &number("bandwidth_hz", bandwidth_hz)
+        + &number("element_spacing_metres", element_spacing_metres);
+    let recording = "[recording]\nfile = \"d.npz\"\narray = \"samples\"\naxes = [\"element\", \"sample\"]\n";
+    std::fs::write(folder.path().join("r.toml"), format!("[radar]\n{radar}{more}{recording}")).unwrap();
+    whole
+}
+
+fn lists(path: &Path) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let mut npz = Npz::open(path).unwrap();
+    let mut list = |key: &str| npz.reals::<Ix1>(key).unwrap().to_vec();
+    (list("found_cos_theta"), list("found_range_metres"), list("found_db"))
+}
+
+/// Bins and columns between two places of the map, which wrap around.
+fn apart(radar: &Radar, cos: f64, range: f64, (x, y): (f64, f64)) -> (f64, f64) {
+    let place = radar.polar_of(x, y);
+    let around = |d: f64, len: f64| ((d + len / 2.0).rem_euclid(len) - len / 2.0).abs();
+    let columns = radar.column_of_cos(cos) - radar.column_of_cos(place.cos_theta);
+    let bins = radar.bin_of_range(range) - radar.bin_of_range(place.range_metres);
+    (around(bins, radar.samples as f64), around(columns, radar.elements as f64))
+}
+
+#[test]
+fn every_radar_goes_through_maps_and_every_model_based_method() {
+    let folder = folder();
+    let mut refused = Vec::new();
+    for (name, text, places) in RADARS {
+        let radar = write_recording(&folder, text, &Scene::of_points(places));
+        apertura(&folder).args(["maps", "r.toml", "-o", "maps.npz"]).assert().success();
+        let mut maps = Npz::open(&folder.path().join("maps.npz")).unwrap();
+        assert_eq!(maps.reals::<Ix3>("polar_full").unwrap().dim(), (1, radar.samples, radar.elements), "{name}");
+        assert_eq!(maps.complexes::<Ix2>("sub1").unwrap().dim(), (radar.samples, radar.end_elements), "{name}");
+        for method in methods() {
+            let mut command = apertura(&folder);
+            command.args(["reconstruct", "maps.npz", "--radar", "r.toml", "--floor", "snr=40", "-o", "out.npz"]);
+            let output = command.args(["--method", method]).output().unwrap();
+            if !output.status.success() {
+                let reason = String::from_utf8_lossy(&output.stderr).into_owned();
+                assert!(
+                    reason.starts_with("error: maps.npz: ") && reason.contains(method),
+                    "{name}, {method}: {reason}"
+                );
+                refused.push(format!("{name}: {reason}"));
+                continue;
+            }
+            let out = folder.path().join("out.npz");
+            let mut npz = NpzReader::new(File::open(&out).unwrap()).unwrap();
+            let map: Array2<f32> = npz.by_name("net_output").unwrap();
+            assert_eq!(map.dim(), (radar.samples, radar.elements), "{name}, {method}");
+            assert!(map.iter().all(|v| (0.0..=1.0).contains(v)), "{name}, {method}");
+            let (cos, range, db) = lists(&out);
+            assert!(cos.len() == range.len() && cos.len() == db.len() && !cos.is_empty(), "{name}, {method}");
+            assert!(db[0] == 0.0 && db.windows(2).all(|w| w[0] >= w[1]), "{name}, {method}: {db:?}");
+            // The strongest stands at one of the two places, and the nearer one is among what was found: within two bins, and
+            // within the beam of one end.
+            let beam = 2.0 * radar.elements as f64 / radar.end_elements as f64;
+            let is_at = |i: usize, place| {
+                let (bins, columns) = apart(&radar, cos[i], range[i], place);
+                bins < 2.0 && columns < beam
+            };
+            let told = format!("{name}, {method}: cosines {cos:.3?} at {range:.3?} m");
+            assert!(places.iter().any(|p| is_at(0, *p)), "{told}");
+            assert!((0..cos.len()).any(|i| is_at(i, places[0])), "{told}");
+        }
+    }
+    println!("refused:\n{}", refused.join(""));
+    assert!(refused.len() <= RADARS.len(), "a method may refuse, but most must not:\n{}", refused.join(""));
+}
+
+#[test]
+fn samples_of_another_radar_are_told() {
+    let folder = folder();
+    let end = Array2::<Complex64>::ones((64, 12));
+    write_npz(&folder.path().join("in.npz"), |out| {
+        out.add("sub0", &end)?;
+        out.add("sub1", &end)
+    })
+    .unwrap();
+    let run = |radar: &str| {
+        std::fs::write(folder.path().join("radar.toml"), radar).unwrap();
+        let mut command = apertura(&folder);
+        command.args(["reconstruct", "in.npz", "--radar", "radar.toml", "-o", "o.npz", "--method", "bartlett"]).assert()
+    };
+    run("[radar]\nsamples = 128\n").failure().stderr(contains("[12, 64]").and(contains("[12, 128]")));
+    run("[radar]\nsamples = 0\n").failure().stderr(contains("radar.toml: radar.samples is 0"));
+    run("name = \"no radar\"\n").failure().stderr(contains("expected a table [radar]"));
+    assert!(!folder.path().join("o.npz").exists());
+}
