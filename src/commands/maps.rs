@@ -82,7 +82,7 @@ impl Args {
             .map_err(CommandError::on(&self.input))?;
         match output {
             Output::Archive => {
-                write_maps(&self.output, &radar, &scene, &signal).map_err(CommandError::on(&self.output))
+                write_maps(&self.output, &radar, &scene, &signal, None).map_err(CommandError::on(&self.output))
             }
             Output::Picture(format) => {
                 let method = self.method(methods::preferred)?;

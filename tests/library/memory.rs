@@ -4,7 +4,7 @@
 
 use apertura::files::archive::write_maps;
 use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident_bytes};
-use apertura::live::{Engine, Wanted};
+use apertura::engine::{Engine, Wanted};
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::Request;
@@ -37,7 +37,7 @@ fn child() {
         "export" => {
             let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
             let folder = tempfile::tempdir().unwrap();
-            write_maps(&folder.path().join("maps.npz"), &radar, &scene, &signal).unwrap();
+            write_maps(&folder.path().join("maps.npz"), &radar, &scene, &signal, None).unwrap();
         }
         "engine" => {
             let mut engine = Engine::new(radar.clone());
