@@ -1,8 +1,9 @@
 //! `apertura bench --growth`: how the time from scratch grows with the number of reflectors.
 
-use super::{CommandError, measured, print};
+use super::measured::measured;
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow, FrontTask};
 use crate::commands::figure::{Drawn, Figure, save};
+use crate::commands::{CommandError, print};
 use crate::files::write_bytes;
 use crate::signal::Precision;
 use plotters::coord::Shift;

@@ -1,7 +1,7 @@
 //! What the planner chooses, timed with every instruction set: each in a process of its own, since a process keeps to one.
 
-use super::{CommandError, print};
 use crate::benchmark::front::Front;
+use crate::commands::{CommandError, print};
 use crate::signal::simd::{SIMD_VARIABLE, Simd};
 use std::process::Command;
 

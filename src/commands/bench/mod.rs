@@ -3,14 +3,15 @@
 mod chart;
 mod growth;
 mod instructions;
+mod measured;
 mod methods;
 mod mouse;
 mod others;
 
 use super::{CommandError, print};
-use crate::benchmark::front::{self, Entrant, Front, FrontRequest, FrontRow};
+use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
 use crate::files::write_bytes;
-use crate::radar::Radar;
+use measured::measured;
 use others::Equal;
 use std::path::PathBuf;
 
@@ -112,15 +113,6 @@ impl Args {
         }
         report.others.as_ref().map_or(Ok(()), Equal::print)
     }
-}
-
-/// Measures `request` under a progress bar.
-fn measured(request: &FrontRequest) -> Result<Front, CommandError> {
-    let bar = indicatif::ProgressBar::new(1000);
-    let on_row = |part: f32, _: &FrontRow| bar.set_position((1e3 * part) as u64);
-    let front = front::measure(&Radar::default(), request, on_row, || false).map_err(CommandError::failed)?;
-    bar.finish_and_clear();
-    Ok(front)
 }
 
 fn heading(front: &Front, repeats: u32) -> String {

@@ -1,7 +1,7 @@
 //! The same tasks by other tools: same scene, same maps, same accuracy, one thread on both sides.
 
-use super::{CommandError, print};
 use crate::benchmark::front::{Convention, scattered};
+use crate::commands::{CommandError, print};
 use crate::engine::{Engine, Forced, Wanted};
 use crate::files::npz::write_npz;
 use crate::maps::channels_range_transform;
