@@ -3,9 +3,9 @@
 use super::application::App;
 use super::state::{Arrangement, Command, MapKind, Settings};
 use crate::bounds::PositionBound;
+use crate::engine::Report;
 use crate::evaluate::Metrics;
 use crate::interact::Editor;
-use crate::engine::Report;
 use crate::radar::Radar;
 
 impl App {

@@ -1,9 +1,9 @@
 //! The signal as a built array hears it, and calibrating such an array on a reflector of known place.
 
 use super::echo::{ArrayEcho, add_echo};
+use super::floor::Floor;
 use super::phase::EchoModel;
 use super::samples::BeatSignal;
-use super::floor::Floor;
 use super::simulate::simulate_echoes;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar};
 use crate::scene::{Reflector, Scene, SceneError};

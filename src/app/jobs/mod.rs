@@ -144,9 +144,7 @@ impl Jobs {
 
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy()
-            || self.bounds.is_busy()
-            || self.autosave.as_ref().is_some_and(|a| a.is_busy())
+        self.pipeline.is_busy() || self.bounds.is_busy() || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::painter::{Paint, Painter, Picture, Subject};
 use crate::app::state::{MapKind, Projection};
-use crate::evaluate::{Metrics, Roc, RocPoint, blobs};
 use crate::engine::{Engine, Frame, ReadyMap, Wanted};
+use crate::evaluate::{Metrics, Roc, RocPoint, blobs};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
 use crate::radar::Radar;
