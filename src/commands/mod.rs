@@ -9,6 +9,8 @@ mod bounds;
 mod error;
 mod evaluate;
 mod figure;
+#[cfg(feature = "network")]
+mod figures;
 mod input;
 mod layouts;
 mod maps;
@@ -56,6 +58,8 @@ enum Command {
     Bench(bench::Args),
     Bounds(bounds::Args),
     Evaluate(evaluate::Args),
+    #[cfg(feature = "network")]
+    Figures(figures::Args),
     Layouts(layouts::Args),
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
@@ -73,6 +77,8 @@ impl Command {
             Command::Bench(args) => args.run(),
             Command::Bounds(args) => args.run(),
             Command::Evaluate(args) => args.run(),
+            #[cfg(feature = "network")]
+            Command::Figures(args) => args.run(),
             Command::Layouts(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
