@@ -3,8 +3,9 @@
 use super::Figure;
 use crate::evaluate::campaign::{Campaign, CampaignError};
 use crate::evaluate::tables::{PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
-use crate::reconstruct::{Reconstructor, Task};
+use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
+use crate::task::Task;
 use std::fmt::Write;
 
 /// Methods of the tables, each beside the column the thesis prints for it.
