@@ -85,3 +85,10 @@ fn every_challenge_starts_unmet_and_its_solution_meets_it() {
     }
     assert!(failures.is_empty(), "{failures:#?}");
 }
+
+#[test]
+fn the_worked_example_is_a_lesson() {
+    let page = include_str!("../../docs/lessons.md");
+    let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    assert_eq!(Lesson::from_toml(example).map(|l| l.steps.len()), Ok(2));
+}
