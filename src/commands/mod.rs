@@ -13,6 +13,8 @@ mod figure;
 mod figures;
 mod input;
 mod layouts;
+#[cfg(feature = "app")]
+mod lesson;
 mod maps;
 mod network_args;
 mod open;
@@ -61,6 +63,8 @@ enum Command {
     #[cfg(feature = "network")]
     Figures(figures::Args),
     Layouts(layouts::Args),
+    #[cfg(feature = "app")]
+    Lesson(lesson::Args),
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
     Robustness(robustness::Args),
@@ -80,6 +84,8 @@ impl Command {
             #[cfg(feature = "network")]
             Command::Figures(args) => args.run(),
             Command::Layouts(args) => args.run(),
+            #[cfg(feature = "app")]
+            Command::Lesson(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
             Command::Robustness(args) => args.run(),

@@ -2,6 +2,7 @@
 
 use super::Figure;
 use crate::evaluate::campaign::{Campaign, CampaignError};
+use crate::evaluate::sets::SceneSet;
 use crate::evaluate::tables::{PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
@@ -33,17 +34,19 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
     let campaign = Campaign { count: scenes, ..Campaign::default() };
     let mut text = String::from("## Tables 4.1 to 4.3\n\n");
     let _ = writeln!(text, "{scenes} test scenes a set, seed 0; P_D and P_FA at each method's own threshold.\n");
-    for (set, kind) in Kind::TEST_SETS.into_iter().enumerate() {
-        let tallies = campaign.run(kind, methods, &Task::default(), || ())?;
+    let sets = Kind::TEST_SETS.map(SceneSet::Generated);
+    let rows = campaign.run(&sets, methods, &Task::default(), |_| ())?;
+    for (set, scenes) in sets.iter().enumerate() {
+        let scenes = scenes.to_string();
         let _ = writeln!(text, "**Set {}**\n\n| | SE | P_D % | P_FA % |\n|---|---|---|---|", set + 1);
-        for (method, tally) in methods.iter().zip(&tallies) {
-            let name = method.name();
+        for name in methods.iter().map(|m| m.name()) {
+            let tally = Tally::of(rows.iter().filter(|row| row.method == name && row.set == scenes));
             if let Some((_, Some(printed))) = TABLE_METHODS.iter().find(|(n, _)| *n == name) {
                 let Printed { squared_error, detection, false_alarm } = printed[set];
                 let (detection, false_alarm) = (100.0 * detection, 100.0 * false_alarm);
                 let _ = writeln!(text, "| {name}, printed | {squared_error:.0} | {detection:.2} | {false_alarm:.2} |");
             }
-            let _ = writeln!(text, "| {name} | {} |", cells(tally));
+            let _ = writeln!(text, "| {name} | {} |", cells(&tally));
         }
         text.push('\n');
     }
