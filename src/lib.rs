@@ -49,6 +49,8 @@
 //! | [`benchmark`] | scenes of any size | run time against error, and whether numerics hold |
 //! | [`engine`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
 //! | [`picture`] | a scene and its maps | colours and panels, without a display |
+//! | [`lesson`] | lesson files | questions, judged on the maps |
+//! | [`figures`] | the thesis' scenes | every figure of the thesis, as sheets of panels |
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |
 #![warn(missing_docs)]
 
@@ -59,8 +61,11 @@ pub mod bounds;
 pub mod commands;
 pub mod engine;
 pub mod evaluate;
+#[cfg(feature = "network")]
+pub mod figures;
 pub mod files;
 pub mod interact;
+pub mod lesson;
 pub mod maps;
 pub mod methods;
 #[cfg(feature = "network")]

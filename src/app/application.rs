@@ -8,6 +8,7 @@ use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::state::{Arrangement, Command, Methods, Notices, Pointer, Settings, State};
 use super::widgets::theme;
 use crate::interact::{Document, Editor};
+use crate::lesson::Progress;
 use crate::reconstruct::Reconstructor;
 use crate::scene::presets;
 use eframe::egui;
@@ -32,6 +33,8 @@ pub struct Options {
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
     pub data_folder: Option<PathBuf>,
+    /// Lesson to begin.
+    pub lesson: Option<PathBuf>,
     /// Whether files are asked for by the window's own dialog even where the system has one.
     pub own_dialogs: bool,
 }
@@ -44,6 +47,7 @@ struct Kept {
     #[serde(alias = "layout")]
     arrangement: Arrangement,
     recent: Vec<PathBuf>,
+    progress: Progress,
 }
 
 /// The app.
@@ -90,6 +94,8 @@ impl App {
             map_views: Default::default(),
             pointer: Pointer::default(),
             guided: Default::default(),
+            lesson: None,
+            progress: kept.progress,
             recent: kept.recent,
             dark: ctx.theme() == egui::Theme::Dark,
         };
@@ -97,8 +103,9 @@ impl App {
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
         start(&mut state, &jobs, options.scene);
+        let asked = options.lesson.map(Command::OpenLessonFile).into_iter().collect();
         let memory = Memory::default();
-        Ok(App { state, jobs, memory, asked: Vec::new(), frame_log, title: String::new(), later: Default::default() })
+        Ok(App { state, jobs, memory, asked, frame_log, title: String::new(), later: Default::default() })
     }
 
     /// Does commands, and what they ask of the window.
@@ -227,7 +234,12 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let state = &mut self.state;
         let arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
-        let kept = Kept { settings: state.settings.clone(), arrangement, recent: state.recent.clone() };
+        let kept = Kept {
+            settings: state.settings.clone(),
+            arrangement,
+            recent: state.recent.clone(),
+            progress: state.progress.clone(),
+        };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         state.arrangement = kept.arrangement;
         if let Some(autosave) = &mut self.jobs.autosave

@@ -1,5 +1,7 @@
 //! What each command does: the only place that changes settings, and the only one that starts work.
 
+mod lessons;
+
 use super::jobs::{EvaluationPlan, Jobs, Purpose, tell};
 use super::state::{
     Arrangement, Brightness, Command, EvaluationChoice, MapViews, NewObject, Projection, Settings, State,
@@ -46,6 +48,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Eff
     let left = settings(&mut state.settings, command)
         .and_then(|c| edit(state, c))
         .and_then(|c| scenes(state, jobs, c))
+        .and_then(|c| lessons::apply(state, jobs, c))
         .and_then(|c| panels(state, c))
         .and_then(|c| exports(state, jobs, c))
         .and_then(|c| work(state, jobs, c))?;

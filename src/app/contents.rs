@@ -4,7 +4,7 @@ use super::chrome::tiles::Draw;
 use super::chrome::{menu, status_bar};
 use super::jobs::Jobs;
 use super::panels::{
-    bounds, controls, cuts, evaluation, guide, inspector, map, roc, run_time, scene, timing, training,
+    bounds, controls, cuts, evaluation, guide, inspector, lesson, map, roc, run_time, scene, timing, training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
@@ -24,6 +24,8 @@ pub struct Memory {
     run_time: run_time::Memory,
     training: training::Memory,
     guide: guide::Memory,
+    lesson: lesson::Memory,
+    hidden: Texture,
 }
 
 /// The reflectors of the scene on screen: spelled out once a scene, not once a map and frame.
@@ -119,6 +121,7 @@ impl<'a> Contents<'a> {
             marks: map::Marks { reflectors, found: found.map_or(&[], |o| &o.found.reflectors) },
             cursor: self.state.pointer.now,
             error: error(self.state, self.jobs, kind),
+            veil: veil(self.state, kind),
         };
         map::show(ui, input, self.state.map_views.of(settings.projection))
     }
@@ -193,6 +196,13 @@ impl<'a> Contents<'a> {
         run_time::show(ui, input, &mut self.memory.run_time)
     }
 
+    fn lesson(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let hidden = self.jobs.lessons.hidden();
+        let texture = hidden.map(|image| self.memory.hidden.of(ui.ctx(), "hidden", image, TextureOptions::NEAREST));
+        let input = lesson::Input { run: self.state.lesson.as_ref(), progress: &self.state.progress, hidden: texture };
+        lesson::show(ui, input, &mut self.memory.lesson)
+    }
+
     fn training(&mut self, ui: &mut Ui) -> Vec<Command> {
         let job = &self.jobs.training;
         let running = job.is_running().then(|| job.progress().unwrap_or(0.0));
@@ -219,6 +229,7 @@ impl Draw for Contents<'_> {
             Panel::RunTime => self.run_time(ui),
             Panel::Training => self.training(ui),
             Panel::Guide => guide::show(ui, &mut self.memory.guide),
+            Panel::Lesson => self.lesson(ui),
         };
         self.commands.extend(commands);
     }
@@ -253,6 +264,12 @@ fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
 
 fn cells_of(map: &ReadyMap) -> map::Cells<'_> {
     map::Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
+}
+
+/// Why a map is hidden: a lesson asks for a prediction first.
+fn veil(state: &State, kind: MapKind) -> Option<map::Veil> {
+    let run = state.lesson.as_ref().filter(|run| run.is_predicting())?;
+    Some(map::Veil { is_clicked: run.clicked_map() == Some(kind) })
 }
 
 /// Why a map has no picture, and what would help.

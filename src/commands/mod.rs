@@ -9,8 +9,12 @@ mod bounds;
 mod error;
 mod evaluate;
 mod figure;
+#[cfg(feature = "network")]
+mod figures;
 mod input;
 mod layouts;
+#[cfg(feature = "app")]
+mod lesson;
 mod maps;
 mod network_args;
 mod open;
@@ -56,7 +60,11 @@ enum Command {
     Bench(bench::Args),
     Bounds(bounds::Args),
     Evaluate(evaluate::Args),
+    #[cfg(feature = "network")]
+    Figures(figures::Args),
     Layouts(layouts::Args),
+    #[cfg(feature = "app")]
+    Lesson(lesson::Args),
     Maps(maps::Args),
     Reconstruct(reconstruct::Args),
     Robustness(robustness::Args),
@@ -73,7 +81,11 @@ impl Command {
             Command::Bench(args) => args.run(),
             Command::Bounds(args) => args.run(),
             Command::Evaluate(args) => args.run(),
+            #[cfg(feature = "network")]
+            Command::Figures(args) => args.run(),
             Command::Layouts(args) => args.run(),
+            #[cfg(feature = "app")]
+            Command::Lesson(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
             Command::Robustness(args) => args.run(),

@@ -10,7 +10,7 @@ use std::fmt::Display;
 pub struct PictureError(String);
 
 impl PictureError {
-    pub(super) fn new(error: impl Display) -> Self {
+    pub(crate) fn new(error: impl Display) -> Self {
         PictureError(error.to_string())
     }
 }

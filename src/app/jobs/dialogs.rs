@@ -17,6 +17,8 @@ pub enum Purpose {
     Open,
     /// The log of a training to watch.
     OpenLog,
+    /// A lesson to begin.
+    OpenLesson,
     /// Where the scene is to be saved.
     SaveScene,
     /// Where a picture is to be written.
@@ -33,6 +35,7 @@ impl Purpose {
         match self {
             Purpose::Open => Command::OpenPath(path),
             Purpose::OpenLog => Command::WatchLog(path),
+            Purpose::OpenLesson => Command::OpenLessonFile(path),
             Purpose::SaveScene => Command::SaveTo(path),
             Purpose::ExportPicture => Command::ExportPictureTo(path),
             Purpose::ExportMaps => Command::ExportMapsTo(path),
@@ -42,7 +45,7 @@ impl Purpose {
 
     /// Whether the file is read, not written.
     pub fn reads(self) -> bool {
-        matches!(self, Purpose::Open | Purpose::OpenLog)
+        matches!(self, Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson)
     }
 
     /// Title of the dialog.
@@ -50,6 +53,7 @@ impl Purpose {
         match self {
             Purpose::Open => "Open a scene",
             Purpose::OpenLog => "Open the log of a training",
+            Purpose::OpenLesson => "Open a lesson",
             Purpose::SaveScene => "Save the scene",
             Purpose::ExportPicture => "Export a picture",
             Purpose::ExportMaps => "Export the maps",
@@ -61,6 +65,7 @@ impl Purpose {
     pub fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Purpose::Open | Purpose::SaveScene => ("Scenes", &["toml", "npz"]),
+            Purpose::OpenLesson => ("Lessons", &["toml"]),
             Purpose::OpenLog | Purpose::ExportMetrics => ("Table", &["csv"]),
             Purpose::ExportPicture => ("Picture", &["png", "svg"]),
             Purpose::ExportMaps => ("NumPy arrays", &["npz"]),
@@ -70,7 +75,7 @@ impl Purpose {
     /// Name of the file where nobody chooses another.
     pub fn name(self) -> &'static str {
         match self {
-            Purpose::Open | Purpose::OpenLog => "",
+            Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson => "",
             Purpose::SaveScene => "scene.toml",
             Purpose::ExportPicture => "apertura.png",
             Purpose::ExportMaps => "maps.npz",

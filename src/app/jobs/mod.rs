@@ -6,6 +6,7 @@ mod dialogs;
 mod evaluation;
 mod export;
 mod frame_log;
+mod lessons;
 mod painter;
 mod pipeline;
 mod rows;
@@ -18,6 +19,7 @@ pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
 pub use frame_log::FrameLog;
+pub use lessons::Lessons;
 pub use pipeline::{Pipeline, Refusal};
 pub use run_time::RunTime;
 pub use scene_maps::Scores;
@@ -44,6 +46,8 @@ pub struct Jobs {
     pub run_time: RunTime,
     /// A training that is watched.
     pub training: Training,
+    /// Answers being judged.
+    pub lessons: Lessons,
     /// Files being written.
     pub exports: Exports,
     /// Files being chosen.
@@ -70,7 +74,8 @@ impl Jobs {
             bounds: Bounds::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
             run_time: RunTime::start(wake.clone())?,
-            training: Training::start(wake)?,
+            training: Training::start(wake.clone())?,
+            lessons: Lessons::start(wake)?,
             exports: Exports::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
@@ -86,6 +91,7 @@ impl Jobs {
         errors.extend(self.evaluation.poll());
         errors.extend(self.run_time.poll());
         errors.extend(self.training.poll());
+        errors.extend(self.lessons.poll(state));
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.finished() {
             tell(state, export.message());
@@ -98,6 +104,7 @@ impl Jobs {
     /// Asks for what the panels of this frame need, if that changed.
     pub fn ask(&mut self, state: &mut State) {
         self.pipeline.ask(state);
+        self.lessons.ask(state);
         let shown = state.arrangement.shown();
         if shown.contains(&Panel::Bounds) {
             self.bounds.ask(state);

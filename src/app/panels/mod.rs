@@ -6,6 +6,7 @@ pub mod cuts;
 pub mod evaluation;
 pub mod guide;
 pub mod inspector;
+pub mod lesson;
 pub mod map;
 pub mod roc;
 pub mod run_time;

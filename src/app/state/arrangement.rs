@@ -24,13 +24,13 @@ impl Default for Arrangement {
         let [in0, in1, target, output, target_above, output_above, difference] =
             MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
         let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-        let [guide, tools @ ..] = Panel::TOOLS.map(pane);
-        for closed in [timing, guide].iter().chain(&tools) {
+        let [guide, lesson, tools @ ..] = Panel::TOOLS.map(pane);
+        for closed in [timing, guide, lesson].iter().chain(&tools) {
             tiles.set_visible(*closed, false);
         }
         let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
         let scene = tabs(&mut tiles, vec![scene]);
-        let controls = tabs(&mut tiles, vec![controls, timing, guide]);
+        let controls = tabs(&mut tiles, vec![controls, timing, guide, lesson]);
         let inspector = tabs(&mut tiles, vec![inspector]);
         let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
         let first = tabs(&mut tiles, vec![in0]);

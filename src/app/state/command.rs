@@ -5,6 +5,7 @@ use super::panel::Panel;
 use super::settings::Projection;
 use super::view::Cursor;
 use crate::interact::{Place, Snap};
+use crate::lesson::Guess;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, WindowFunction};
@@ -182,6 +183,24 @@ pub enum Command {
     CancelMeasurement,
     /// Do these for the guide: undo takes back the settings they change, too.
     Guided(Vec<Command>),
+    /// Begin a lesson that comes with the program.
+    BeginLesson(usize),
+    /// Ask for a lesson file and begin it.
+    OpenLesson,
+    /// Begin the lesson in this file.
+    OpenLessonFile(PathBuf),
+    /// Go to a step of the lesson, from 0.
+    LessonStep(usize),
+    /// Predict.
+    Predict(Guess),
+    /// Put a way to meet the challenge on screen.
+    ShowSolution,
+    /// End the lesson; scene and settings come back.
+    LeaveLesson,
+    /// Somebody else learns now.
+    SetLearner(String),
+    /// Forget what the learner did.
+    ForgetProgress,
     /// Close every message.
     CloseMessages,
     /// Light or dark.

@@ -68,6 +68,8 @@ const TABLE: &[Entry] = {
         entry(Escape, "Deselect", "Cancel a drag, show all panels, select nothing", key(Key::Escape)),
         entry(FitScene, "Fit scene", "Show the whole scene", key(Key::F)),
         entry(ResetMaps, "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
+        entry(OpenLesson, "Open lesson…", "Begin a lesson from a TOML file", None),
+        entry(LeaveLesson, "Leave lesson", "End the lesson; your scene and settings come back", None),
         entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
         entry(
             ToggleProjection,
@@ -149,6 +151,7 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Controls, Key::F2),
     (Panel::Inspector, Key::F3),
     (Panel::Cuts, Key::F4),
+    (Panel::Lesson, Key::F5),
     (Panel::Roc, Key::F6),
     (Panel::Timing, Key::F7),
     (Panel::Bounds, Key::F8),

@@ -6,6 +6,7 @@ mod bounds_settings;
 mod command;
 mod command_table;
 mod guided;
+mod lesson_run;
 mod methods;
 mod notices;
 mod panel;
@@ -17,6 +18,7 @@ pub use bounds_settings::{BoundsSettings, Elements};
 pub use command::{Command, EvaluationChoice, NewObject};
 pub use command_table::{listed, shortcuts};
 pub use guided::{Guided, Setup};
+pub use lesson_run::LessonRun;
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, Panel};
@@ -24,6 +26,7 @@ pub use settings::{Brightness, Projection, Settings};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
+use crate::lesson::Progress;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use std::path::{Path, PathBuf};
@@ -52,6 +55,10 @@ pub struct State {
     pub pointer: Pointer,
     /// What the guide did.
     pub guided: Guided,
+    /// The lesson being taken.
+    pub lesson: Option<LessonRun>,
+    /// Who has answered what.
+    pub progress: Progress,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
     /// Whether the window is dark at the moment.

@@ -30,11 +30,14 @@ pub enum Panel {
     Training,
     /// What the maps show and why.
     Guide,
+    /// Predict, look, change.
+    Lesson,
 }
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 5] = [Panel::Guide, Panel::Bounds, Panel::Evaluation, Panel::RunTime, Panel::Training];
+    pub const TOOLS: [Panel; 6] =
+        [Panel::Guide, Panel::Lesson, Panel::Bounds, Panel::Evaluation, Panel::RunTime, Panel::Training];
 
     /// All panels, in the order menus list them.
     pub fn all() -> Vec<Panel> {
@@ -60,6 +63,7 @@ impl Panel {
             Panel::RunTime => "Run time",
             Panel::Training => "Training",
             Panel::Guide => "Guide",
+            Panel::Lesson => "Lessons",
         }
     }
 
@@ -78,6 +82,7 @@ impl Panel {
             Panel::RunTime => "Run time against error of the simulation on this machine",
             Panel::Training => "The loss of a network while it is trained",
             Panel::Guide => "What the maps show and why, with something to try",
+            Panel::Lesson => "Questions to answer before the maps are shown, and things to bring about",
         }
     }
 }

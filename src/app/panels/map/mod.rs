@@ -39,6 +39,15 @@ pub struct Input<'a> {
     pub cursor: Option<Cursor>,
     /// Why there is no picture.
     pub error: Option<Problem<'a>>,
+    /// Hides the picture: a prediction is asked for.
+    pub veil: Option<Veil>,
+}
+
+/// A map that is hidden until somebody has predicted what it shows.
+#[derive(Clone, Copy)]
+pub struct Veil {
+    /// Whether the prediction is a click in this map.
+    pub is_clicked: bool,
 }
 
 /// Why there is no picture.
@@ -72,19 +81,30 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
     };
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(rect.intersect(area));
-    match input.texture {
+    let texture = input.texture.filter(|_| input.veil.is_none());
+    match texture {
         Some(texture) => {
             let uv = Rect::from_min_max(pos2(view.low.x, view.high.y), pos2(view.high.x, view.low.y));
             let tint = if input.stale { Color32::from_gray(120) } else { Color32::WHITE };
             inner.rect_filled(rect, 0.0, Inks::of(ui.visuals()).beyond);
             inner.image(texture, rect, uv, tint);
         }
+        None if input.veil.is_some() => {
+            veil(&inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals().weak_text_color());
+        }
         None => empty(ui, &inner, rect, input.error.as_ref(), &mut asked),
     }
     draw_axes(ui, &painter, frame);
-    overlay::marks(&inner, frame, &input.marks, response.hover_pos());
+    if input.veil.is_none() {
+        overlay::marks(&inner, frame, &input.marks, response.hover_pos());
+    }
     if let Some(pos) = response.hover_pos() {
-        asked.extend(cursor_at(input.radar, input.projection, view.at(rect, pos)).map(Command::Hover));
+        let under = cursor_at(input.radar, input.projection, view.at(rect, pos));
+        if let Some(cursor) = under.filter(|_| input.veil.is_some_and(|v| v.is_clicked) && response.clicked()) {
+            let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
+            asked.push(Command::Predict(crate::lesson::Guess::Place(cell)));
+        }
+        asked.extend(under.map(Command::Hover));
     }
     if let Some(cursor) = &input.cursor {
         overlay::cursor(&inner, frame, cursor, input.cells.as_ref());
@@ -227,6 +247,12 @@ fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<'_>>
     });
 }
 
+/// What a hidden map says.
+fn veil(painter: &Painter, rect: Rect, is_clicked: bool, ink: Color32) {
+    let text = if is_clicked { "Click where you expect it" } else { "Hidden until you have predicted" };
+    painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(14.0), ink);
+}
+
 fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
     for command in [
         Command::Maximise(Panel::Map(kind)),
@@ -258,6 +284,7 @@ mod tests {
             marks: Marks { reflectors: &[], found: &[] },
             cursor: None,
             error,
+            veil: None,
         };
         asked.extend(show(ui, input, &mut MapView::default()));
     }

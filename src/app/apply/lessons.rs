@@ -1,0 +1,87 @@
+//! Commands of lessons: begin, predict, go on, leave.
+
+use crate::app::jobs::{Jobs, Purpose};
+use crate::app::state::{Command, LessonRun, Panel, State};
+use crate::interact::Document;
+use crate::lesson::{Lesson, shipped};
+use crate::scene::Scene;
+use crate::scene::file::SceneFile;
+use std::path::Path;
+
+/// Does a command of a lesson; hands any other on.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+    match command {
+        Command::BeginLesson(index) => {
+            let Some(file) = shipped::ALL.get(index) else { return None };
+            match file.load() {
+                Ok(lesson) => begin(state, file.id.to_owned(), lesson),
+                Err(error) => state.notices.error(format!("Lesson {}: {error}", file.id)),
+            }
+        }
+        Command::OpenLesson => jobs.choose_file(state, Purpose::OpenLesson),
+        Command::OpenLessonFile(path) => open(state, &path),
+        Command::LessonStep(step) => {
+            state.lesson.iter_mut().for_each(|run| run.go_to(step));
+            set_up(state);
+        }
+        Command::Predict(guess) => {
+            if let Some(run) = state.lesson.as_mut().filter(|run| run.is_predicting()) {
+                run.guess = Some(guess);
+            }
+        }
+        Command::ShowSolution => show_solution(state),
+        Command::LeaveLesson => leave(state),
+        Command::SetLearner(name) => state.progress.set_learner(&name),
+        Command::ForgetProgress => state.progress.reset(),
+        other => return Some(other),
+    }
+    None
+}
+
+fn open(state: &mut State, path: &Path) {
+    match Lesson::load(path) {
+        Ok(lesson) => begin(state, path.display().to_string(), lesson),
+        Err(error) => state.notices.error(format!("{error}\nNo lesson was begun.")),
+    }
+}
+
+fn begin(state: &mut State, id: String, lesson: Lesson) {
+    leave(state);
+    let before = state.setup();
+    state.lesson = Some(LessonRun::new(id, lesson, before));
+    state.arrangement.set_open(Panel::Lesson, true);
+    set_up(state);
+}
+
+/// Puts the step's scene, radar and conditions on screen.
+fn set_up(state: &mut State) {
+    let Some(step) = state.lesson.as_ref().and_then(|run| run.current()).cloned() else { return };
+    state.settings.floor = step.view.floor;
+    state.settings.seed = step.view.seed;
+    state.settings.normalisation = step.view.normalisation;
+    state.settings.method.clone_from(&step.view.method);
+    let scene = Scene { noise_seed: step.view.seed, ..step.scene() };
+    state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar }));
+}
+
+fn show_solution(state: &mut State) {
+    let step = state.lesson.as_ref().and_then(|run| run.current());
+    let Some(challenge) = step.and_then(|s| s.challenge.clone()) else { return };
+    let mut file = state.editor.document().to_file();
+    if !challenge.solution.objects.is_empty() {
+        file.scene.objects = challenge.solution.objects;
+    }
+    if let Some(radar) = challenge.solution.radar {
+        file.radar = radar;
+    }
+    state.set_document("solution", Document::shipped(file));
+}
+
+/// Ends the lesson: scene, radar and settings are again what they were before.
+fn leave(state: &mut State) {
+    let Some(run) = state.lesson.take() else { return };
+    let after = state.settings.clone();
+    while state.editor.history().depth() > run.before.depth && state.editor.undo() {}
+    state.settings.take_back(&run.before.settings, &after);
+    state.settings.seed = run.before.settings.seed;
+}

@@ -1,0 +1,140 @@
+//! Predictions judged and challenges measured, off the UI thread.
+
+use crate::app::state::{LessonRun, State};
+use crate::app::widgets::textures::colour_table;
+use crate::lesson::{Guess, Judgement, Lesson, MapName, Measured, Stage, Step};
+use crate::maps::RangeAngleMap;
+use crate::picture::ColourMap;
+use crate::radar::Radar;
+use crate::scene::Scene;
+use crate::task::{Reply, Task, Worker};
+use eframe::egui::ColorImage;
+use std::sync::Arc;
+
+/// What is to be judged.
+#[derive(Clone)]
+struct Request {
+    lesson: Arc<Lesson>,
+    step: usize,
+    guess: Option<Guess>,
+    radar: Radar,
+    scene: Arc<Scene>,
+}
+
+impl Request {
+    fn same(&self, other: &Request) -> bool {
+        Arc::ptr_eq(&self.lesson, &other.lesson)
+            && (self.step, self.guess) == (other.step, other.guess)
+            && self.radar == other.radar
+            && Arc::ptr_eq(&self.scene, &other.scene)
+    }
+}
+
+/// What came of it.
+#[derive(Default)]
+struct Outcome {
+    judgement: Option<Result<Judgement, String>>,
+    measured: Option<Result<Vec<Measured>, String>>,
+    hidden: Option<Arc<ColorImage>>,
+}
+
+fn work(request: &Request) -> Outcome {
+    let Some(step) = request.lesson.steps.get(request.step) else { return Outcome::default() };
+    let judgement = request.guess.zip(step.predict.as_ref()).map(|(guess, question)| {
+        let stage = Stage::new(&step.radar, &step.scene(), &step.view, question.needs_output());
+        stage.map_err(|e| e.to_string()).and_then(|stage| question.judge(&stage, guess))
+    });
+    let (measured, hidden) = challenge(step, request).unzip();
+    Outcome { judgement, measured, hidden: hidden.flatten() }
+}
+
+type Challenged = (Result<Vec<Measured>, String>, Option<Arc<ColorImage>>);
+
+/// The challenge measured on what the learner made, and a picture of what is to be explained.
+fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
+    let challenge = step.challenge.as_ref()?;
+    let hidden = challenge.hidden_scene().and_then(|scene| Stage::new(&step.radar, &scene, &step.view, false).ok());
+    let picture = hidden.as_ref().and_then(|stage| stage.map(MapName::Target).ok()).map(picture);
+    let stage = Stage::new(&request.radar, &request.scene, &step.view, challenge.needs_output());
+    let measured = stage.map_err(|e| e.to_string()).and_then(|stage| challenge.measure(&stage, hidden.as_ref()));
+    Some((measured, picture))
+}
+
+/// Every second cell, the farthest row on top.
+fn picture(map: &RangeAngleMap) -> Arc<ColorImage> {
+    let table = colour_table(ColourMap::default());
+    let cells = map.lambda.slice(ndarray::s![..;-2, ..;2]);
+    let pixels = cells.iter().map(|v| table[(v.clamp(0.0, 1.0) * 255.0) as usize]).collect();
+    Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
+}
+
+/// The worker, what it was asked last, and what is to be explained.
+pub struct Lessons {
+    worker: Worker<Request, (Request, Outcome)>,
+    asked: Option<Request>,
+    hidden: Option<Arc<ColorImage>>,
+}
+
+impl Lessons {
+    /// Starts the worker, which waits; `wake` is called from its thread.
+    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Lessons> {
+        let work = |_: &mut (), request: Request, _: &Task| {
+            let outcome = work(&request);
+            (request, outcome)
+        };
+        Ok(Lessons { worker: Worker::spawn("lessons", || (), work, wake)?, asked: None, hidden: None })
+    }
+
+    /// Asks for what the lesson on screen needs, if that changed.
+    pub fn ask(&mut self, state: &State) {
+        let Some(run) = &state.lesson else {
+            (self.asked, self.hidden) = (None, None);
+            return;
+        };
+        let request = Request {
+            lesson: run.lesson.clone(),
+            step: run.step,
+            guess: run.guess,
+            radar: state.radar().clone(),
+            scene: state.editor.scene().clone(),
+        };
+        if !self.asked.as_ref().is_some_and(|asked| asked.same(&request)) {
+            self.asked = Some(request.clone());
+            self.worker.request(request);
+        }
+    }
+
+    /// What is to be explained, where the step hides something.
+    pub fn hidden(&self) -> Option<&Arc<ColorImage>> {
+        self.hidden.as_ref()
+    }
+
+    /// Takes in what was judged. Returns a message for the user.
+    pub fn poll(&mut self, state: &mut State) -> Option<String> {
+        let mut message = None;
+        for reply in self.worker.replies() {
+            match reply {
+                Reply::Done { result: (request, outcome), .. } => {
+                    let Some(run) = state.lesson.as_mut().filter(|run| is_of(run, &request)) else { continue };
+                    self.hidden = outcome.hidden;
+                    if let (None, Some(Ok(judgement))) = (&run.judgement, &outcome.judgement) {
+                        state.progress.note_guess(&run.id, run.step, judgement.is_right);
+                    }
+                    run.judgement = outcome.judgement;
+                    run.measured = outcome.measured;
+                    if run.is_met() && !run.is_predicting() {
+                        state.progress.note_challenge(&run.id, run.step);
+                    }
+                }
+                Reply::Panicked { message: said, .. } => {
+                    message = Some(format!("The answer could not be judged ({said}). Change it to try again."));
+                }
+            }
+        }
+        message
+    }
+}
+
+fn is_of(run: &LessonRun, request: &Request) -> bool {
+    Arc::ptr_eq(&run.lesson, &request.lesson) && run.step == request.step && run.guess == request.guess
+}

@@ -1,0 +1,79 @@
+//! `apertura figures`: every figure of the thesis from this program.
+
+use super::{CommandError, print};
+use crate::figures::{ALL, Figure, Source, by_number, draw, pages};
+use crate::files::write_bytes;
+use crate::methods;
+use crate::reconstruct::Reconstructor;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Draw the thesis' figures and tables from this program's own data
+///
+/// Writes figures/NUMBER.png and .svg into DIR, and figures.md, the page that shows them all with what differs from the printed
+/// ones. Figure 6-1 is another program's (a ray-tracing solver) and not among them.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Draw these figures alone, as 4-7 or 2-1,2-2; leaves figures.md as it is
+    #[arg(long, value_delimiter = ',', value_name = "NUMBERS")]
+    only: Vec<String>,
+
+    /// Test scenes a set for tables 4.1 to 4.3
+    #[arg(long, default_value_t = 10, value_name = "N")]
+    scenes: u32,
+
+    /// Folder to write into
+    #[arg(short, long, value_name = "DIR", default_value = "docs")]
+    output: PathBuf,
+}
+
+impl Args {
+    /// Draws the figures.
+    pub fn run(self) -> Result<(), CommandError> {
+        let chosen = self.chosen()?;
+        let folder = self.output.join("figures");
+        std::fs::create_dir_all(&folder).map_err(|source| CommandError::File { path: folder.clone(), source })?;
+        let source = Source::new();
+        for figure in &chosen {
+            let failed = |e: &dyn std::fmt::Display| CommandError::Usage(format!("figure {}: {e}", figure.number));
+            let sheet = (figure.sheet)(&source).map_err(|e| failed(&e))?;
+            write(&folder, &format!("{}.png", figure.number), &draw::png(&sheet).map_err(|e| failed(&e))?)?;
+            write(&folder, &format!("{}.svg", figure.number), draw::svg(&sheet).map_err(|e| failed(&e))?.as_bytes())?;
+            print(&format!("figure {}", figure.number))?;
+        }
+        if self.only.is_empty() {
+            write(&self.output, "figures.md", self.page()?.as_bytes())?;
+        }
+        print(&format!("wrote {} figures into {}", chosen.len(), folder.display()))
+    }
+
+    fn chosen(&self) -> Result<Vec<&'static Figure>, CommandError> {
+        if self.only.is_empty() {
+            return Ok(ALL.iter().collect());
+        }
+        let unknown = |number: &str| {
+            let known: Vec<&str> = ALL.iter().map(|f| f.number).collect();
+            CommandError::Usage(format!("there is no figure \"{number}\"; known: {}", known.join(", ")))
+        };
+        self.only.iter().map(|number| by_number(number.trim()).ok_or_else(|| unknown(number))).collect()
+    }
+
+    fn page(&self) -> Result<String, CommandError> {
+        let named = pages::TABLE_METHODS.iter().map(|(name, _)| methods::by_name(name));
+        let methods: Vec<Arc<dyn Reconstructor>> = named.collect::<Result<_, _>>().map_err(CommandError::failed)?;
+        let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
+        let mut page = String::from(
+            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG. Figure 6-1, made by a \
+             ray-tracing solver in 40 minutes a scene, is not among them.\n\n",
+        );
+        page.push_str(&pages::tables(&methods, self.scenes).map_err(CommandError::failed)?);
+        page.push_str("## Figures\n\n");
+        page.extend(ALL.iter().map(|figure| pages::entry(figure, "figures")));
+        Ok(page)
+    }
+}
+
+fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CommandError> {
+    let path = folder.join(name);
+    write_bytes(&path, bytes).map_err(|source| CommandError::File { path, source })
+}

@@ -1,0 +1,35 @@
+//! `apertura lesson`: the app on a lesson.
+
+use super::{CommandError, print};
+use crate::app::{self, AppError};
+use crate::lesson::Lesson;
+use std::path::PathBuf;
+
+/// Begin a lesson from a file
+///
+/// Reads and checks the lesson, then opens the app on it; without a display it says what the lesson holds. docs/lessons.md describes
+/// the format.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The lesson (.toml)
+    file: PathBuf,
+
+    /// Only check the file
+    #[arg(long)]
+    check: bool,
+}
+
+impl Args {
+    /// Opens the lesson.
+    pub fn run(self) -> Result<(), CommandError> {
+        let lesson = Lesson::load(&self.file).map_err(CommandError::failed)?;
+        let about = format!("{}: {} steps. {}", lesson.title, lesson.steps.len(), lesson.about);
+        if self.check {
+            return print(&about);
+        }
+        match app::run(app::Options { lesson: Some(self.file), ..app::Options::default() }) {
+            Err(AppError::Window(_)) => print(&about),
+            other => other.map_err(CommandError::failed),
+        }
+    }
+}

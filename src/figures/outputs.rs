@@ -1,0 +1,149 @@
+//! Figures 3-2, 4-1 to 4-8, 5-3 to 5-5 and 5-7: what methods make of scenes.
+
+use super::sheet::{Panel, Sheet};
+use super::source::{FigureError, Seen, Source};
+use crate::evaluate::{Metrics, TARGET_ETA};
+use crate::maps::RangeAngleMap;
+use crate::picture::ColourMap;
+use crate::scene::Scene;
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+
+const PANEL: (u32, u32) = (460, 380);
+const EXPERIMENT_1: &str = "thesis-1";
+const EXPERIMENT_2: &str = "thesis";
+
+fn title(method: &str, seen: &Seen, output: &RangeAngleMap) -> String {
+    let metrics = Metrics::of(&seen.lambda[2], output, TARGET_ETA);
+    format!("{method}: SE {:.0}", metrics.squared_error)
+}
+
+/// Inputs and target, then the thesis' network, `live` and `hybrid` on the same scene.
+fn beside(source: &Source, seen: &Seen, network: &str) -> Result<Sheet, FigureError> {
+    let [first, last, full] = &seen.lambda;
+    let mut panels = vec![
+        source.lambda_panel("Input 0", first),
+        source.lambda_panel("Input 1", last),
+        source.lambda_panel("Target", full),
+    ];
+    for method in [network, "live", "hybrid"] {
+        let output = source.output(method, seen)?;
+        panels.push(source.lambda_panel(title(method, seen, &output), &output));
+    }
+    Ok(Sheet::of(3, PANEL, panels))
+}
+
+/// The U-Net on a training sample: its output is near zero.
+pub fn unet_on_training(source: &Source) -> Result<Sheet, FigureError> {
+    let generator = Generator::new(&source.radar, Reading::Program, Purpose::Training, 0);
+    let seen = source.see(generator.scene(Kind::Points(3), 0))?;
+    let [first, last, full] = &seen.lambda;
+    let output = source.output("unet", &seen)?;
+    let above = |map: &RangeAngleMap| RangeAngleMap { lambda: map.lambda.mapv(|v| f32::from(v > TARGET_ETA)) };
+    let largest = output.lambda.iter().fold(0.0f32, |m, v| m.max(*v));
+    let panel = |name: String, map: &RangeAngleMap| source.cartesian_panel(name, map, ColourMap::Grey);
+    let panels = vec![
+        panel("Input 0 > 0.9".to_owned(), &above(first)),
+        panel("Input 1 > 0.9".to_owned(), &above(last)),
+        panel("Target > 0.9".to_owned(), &above(full)),
+        panel(format!("U-Net's output, at most {largest:.3}"), &output),
+    ];
+    Ok(Sheet::of(2, (560, 340), panels))
+}
+
+/// Experiment 1's network on set 2.
+pub fn experiment_1_points(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_1)
+}
+
+/// Experiment 1's network on set 3.
+pub fn experiment_1_lines(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_1)
+}
+
+/// Experiments 1 and 2 on two points at one range of 31 m.
+pub fn merged_and_apart(source: &Source) -> Result<Sheet, FigureError> {
+    let place = |cos: f64| (31.0 * cos, 31.0 * (1.0 - cos * cos).sqrt());
+    let seen = source.see(Scene::of_points([place(0.30), place(0.40)]))?;
+    let mut panels = vec![source.lambda_panel("Target", &seen.lambda[2])];
+    for method in [EXPERIMENT_1, EXPERIMENT_2, "live", "hybrid"] {
+        let output = source.output(method, &seen)?;
+        panels.push(source.lambda_panel(title(method, &seen, &output), &output));
+    }
+    Ok(Sheet::of(3, PANEL, panels))
+}
+
+/// Experiment 2's network on set 2.
+pub fn experiment_2_points(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_2)
+}
+
+/// Experiment 2's network on set 1.
+pub fn experiment_2_point(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.test_scene(Kind::Set1, 0)?, EXPERIMENT_2)
+}
+
+/// Experiment 2's network on set 3.
+pub fn experiment_2_lines(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_2)
+}
+
+/// Outputs on set 3 before and after thresholds of 0.7 and 0.9.
+pub fn thresholds(source: &Source) -> Result<Sheet, FigureError> {
+    let seen = source.test_scene(Kind::Set3, 0)?;
+    let row = |name: &str, map: &RangeAngleMap| -> Vec<Panel> {
+        let above = |eta: f32| source.above_panel(format!("{name} > {eta}"), map, eta);
+        vec![source.lambda_panel(name, map), above(0.7), above(TARGET_ETA)]
+    };
+    let mut panels = row("target", &seen.lambda[2]);
+    for method in [EXPERIMENT_2, "live", "hybrid"] {
+        panels.extend(row(method, &source.output(method, &seen)?));
+    }
+    Ok(Sheet::of(3, (420, 330), panels))
+}
+
+/// The baseline: the first end above 0.9 beside the target above 0.9.
+pub fn baseline(source: &Source) -> Result<Sheet, FigureError> {
+    let seen = source.test_scene(Kind::Set3, 0)?;
+    let panels = vec![
+        source.above_panel("Baseline: Λ₀ > 0.9", &seen.lambda[0], TARGET_ETA),
+        source.above_panel("Target: Λ > 0.9", &seen.lambda[2], TARGET_ETA),
+    ];
+    Ok(Sheet::of(2, (560, 420), panels))
+}
+
+/// Points beside a line.
+pub fn taken_for_a_line(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.preset("points-by-a-line")?, EXPERIMENT_2)
+}
+
+/// Inputs of two points a tenth of a radian apart: alike in the middle, different at the edges.
+pub fn a_tenth_of_a_radian(source: &Source) -> Result<Sheet, FigureError> {
+    let ahead = source.preset("one-at-20-m")?;
+    let off = source.preset("one-at-20-m-a-tenth-of-a-radian-off")?;
+    let (a, b) = (&ahead.lambda[0], &off.lambda[0]);
+    let difference = ndarray::Zip::from(&a.lambda).and(&b.lambda).map_collect(|a, b| 0.5 + (b - a).clamp(-0.5, 0.5));
+    let panels = vec![
+        source.lambda_panel("Λ₀ of a point at (0, 20) m", a),
+        source.lambda_panel("Λ₀ of one a tenth of a radian off", b),
+        source.cells_panel("Their difference", difference, ColourMap::Diverging, Some(("-0.5", "+0.5"))),
+    ];
+    Ok(Sheet::of(3, PANEL, panels))
+}
+
+/// Gaussian clusters, which no training scene of the thesis holds.
+pub fn clusters(source: &Source) -> Result<Sheet, FigureError> {
+    beside(source, &source.preset("gaussian-clusters")?, EXPERIMENT_2)
+}
+
+/// A point hidden behind a line for one end.
+pub fn hidden(source: &Source) -> Result<Sheet, FigureError> {
+    let seen = source.preset("point-behind-a-line")?;
+    let [first, last, full] = &seen.lambda;
+    let panels = vec![
+        source.scene_panel("The scene", &seen.scene),
+        source.lambda_panel("Input 0", first),
+        source.lambda_panel("Input 1", last),
+        source.lambda_panel("Target", full),
+    ];
+    Ok(Sheet::of(2, (520, 400), panels))
+}

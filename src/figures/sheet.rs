@@ -1,0 +1,246 @@
+//! What a figure consists of: panels side by side, each a chart, a map or a sketch. Nothing here draws.
+
+use crate::picture::ColourMap;
+use ndarray::Array2;
+use std::ops::Range;
+
+/// A drawn figure's content: panels in rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// Panels, in reading order.
+    pub panels: Vec<Panel>,
+    /// Panels beside one another; the rest follow below.
+    pub columns: usize,
+    /// Width and height of one panel in pixels.
+    pub panel_pixels: (u32, u32),
+}
+
+/// One panel with its title.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// Title above the panel.
+    pub title: String,
+    /// What it shows.
+    pub content: Content,
+}
+
+/// What a panel shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// Curves over two axes.
+    Chart(Chart),
+    /// Coloured cells over two axes.
+    Cells(Cells),
+    /// Lines, circles and words in a plane without axes.
+    Sketch(Sketch),
+}
+
+/// An axis: what stands beside it and what it spans.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: &'static str,
+    /// From and to, in that unit; from may be the larger.
+    pub span: Range<f64>,
+}
+
+/// Curves over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// Across.
+    pub x: Axis,
+    /// Up.
+    pub y: Axis,
+    /// Curves, in the order of the legend.
+    pub series: Vec<Series>,
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// A line from point to point.
+    Solid,
+    /// A dashed line from point to point.
+    Dashed,
+    /// A stem from zero to each point.
+    Stems,
+    /// Points alone.
+    Dots,
+}
+
+/// A named curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend; empty for none.
+    pub name: &'static str,
+    /// How it is drawn.
+    pub stroke: Stroke,
+    /// Points, in the axes' units.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Coloured cells over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cells {
+    /// Across.
+    pub x: Axis,
+    /// Up.
+    pub y: Axis,
+    /// Values in [0, 1], `[rows from below, columns]`; NaN stays paper.
+    pub values: Array2<f32>,
+    /// How values become colours.
+    pub colours: ColourMap,
+    /// What 0 and 1 stand for, beside the colour bar; `None` for no bar.
+    pub ends_of_bar: Option<(&'static str, &'static str)>,
+    /// Places with a ring around them, in the axes' units.
+    pub rings: Vec<(f64, f64)>,
+}
+
+/// Shapes in a plane of any unit, x to the right and y up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sketch {
+    /// What the plane spans across.
+    pub x: Range<f64>,
+    /// What the plane spans upwards.
+    pub y: Range<f64>,
+    /// Shapes, the last on top.
+    pub shapes: Vec<Shape>,
+}
+
+/// Ink of a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ink {
+    /// The colour of text.
+    Dark,
+    /// Paler than text.
+    Pale,
+    /// What the figure is about.
+    Accent,
+    /// What it is compared with.
+    Second,
+}
+
+/// A shape of a sketch.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A line through places; an arrow head at its end if `arrow`.
+    Line {
+        /// Places.
+        places: Vec<(f64, f64)>,
+        /// Whether it ends in an arrow head.
+        arrow: bool,
+        /// Its ink.
+        ink: Ink,
+    },
+    /// A filled dot, its radius in pixels.
+    Dot {
+        /// Centre.
+        at: (f64, f64),
+        /// Radius in pixels.
+        pixels: i32,
+        /// Its ink.
+        ink: Ink,
+    },
+    /// A filled area.
+    Area {
+        /// Corners.
+        corners: Vec<(f64, f64)>,
+        /// Its ink, thinned.
+        ink: Ink,
+    },
+    /// A box with its text in the middle.
+    Block {
+        /// Lower left corner.
+        low: (f64, f64),
+        /// Upper right corner.
+        high: (f64, f64),
+        /// Lines of text.
+        text: String,
+    },
+    /// Words, their middle at a place.
+    Words {
+        /// The middle.
+        at: (f64, f64),
+        /// The words.
+        text: String,
+        /// Their ink.
+        ink: Ink,
+    },
+}
+
+impl Axis {
+    /// An axis from `from` to `to`.
+    pub fn new(label: &'static str, from: f64, to: f64) -> Self {
+        Axis { label, span: from..to }
+    }
+}
+
+impl Series {
+    /// A solid line.
+    pub fn line(name: &'static str, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        Series { name, stroke: Stroke::Solid, points: points.into_iter().collect() }
+    }
+
+    /// The same points drawn otherwise.
+    pub fn with(self, stroke: Stroke) -> Self {
+        Series { stroke, ..self }
+    }
+}
+
+impl Panel {
+    /// A panel of curves.
+    pub fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
+        Panel { title: title.into(), content: Content::Chart(Chart { x, y, series }) }
+    }
+
+    /// A panel of shapes.
+    pub fn sketch(title: impl Into<String>, x: Range<f64>, y: Range<f64>, shapes: Vec<Shape>) -> Self {
+        Panel { title: title.into(), content: Content::Sketch(Sketch { x, y, shapes }) }
+    }
+
+    /// A panel of cells.
+    pub fn cells(title: impl Into<String>, cells: Cells) -> Self {
+        Panel { title: title.into(), content: Content::Cells(cells) }
+    }
+}
+
+impl Shape {
+    /// A line without an arrow head.
+    pub fn line(places: impl IntoIterator<Item = (f64, f64)>, ink: Ink) -> Self {
+        Shape::Line { places: places.into_iter().collect(), arrow: false, ink }
+    }
+
+    /// A line with an arrow head.
+    pub fn arrow(from: (f64, f64), to: (f64, f64), ink: Ink) -> Self {
+        Shape::Line { places: vec![from, to], arrow: true, ink }
+    }
+
+    /// A dot.
+    pub fn dot(at: (f64, f64), pixels: i32, ink: Ink) -> Self {
+        Shape::Dot { at, pixels, ink }
+    }
+
+    /// A box with text.
+    pub fn block(low: (f64, f64), high: (f64, f64), text: impl Into<String>) -> Self {
+        Shape::Block { low, high, text: text.into() }
+    }
+
+    /// Words.
+    pub fn words(at: (f64, f64), text: impl Into<String>, ink: Ink) -> Self {
+        Shape::Words { at, text: text.into(), ink }
+    }
+}
+
+impl Sheet {
+    /// Panels beside one another, `columns` in a row.
+    pub fn of(columns: usize, panel_pixels: (u32, u32), panels: Vec<Panel>) -> Self {
+        Sheet { panels, columns: columns.max(1), panel_pixels }
+    }
+
+    /// Width and height in pixels.
+    pub fn pixels(&self) -> (u32, u32) {
+        let columns = self.columns.min(self.panels.len()).max(1);
+        let rows = self.panels.len().div_ceil(columns).max(1);
+        (columns as u32 * self.panel_pixels.0, rows as u32 * self.panel_pixels.1)
+    }
+}

@@ -1,0 +1,158 @@
+//! Where figures take their data from: the thesis' radar, this program's simulation, maps and methods.
+
+use super::sheet::{Axis, Cells, Panel, Series, Stroke};
+use crate::maps::cartesian::project;
+use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
+use crate::methods;
+use crate::picture::{ColourMap, PictureError};
+use crate::radar::Radar;
+use crate::reconstruct::{ReconstructError, Request};
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::scene::presets::Preset;
+use crate::scene::{Scene, SceneError};
+use crate::signal::{self, BeatSignal, Floor};
+use ndarray::Array2;
+
+/// Why a figure could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureError {
+    /// Its scene can't be simulated.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A method failed.
+    #[error(transparent)]
+    Reconstruct(#[from] ReconstructError),
+    /// It shows a method or a scene that this build lacks.
+    #[error("{0}")]
+    Missing(String),
+    /// It can't be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// The thesis' radar and conventions: table 3.1, its floor, min-max.
+pub struct Source {
+    /// Table 3.1.
+    pub radar: Radar,
+}
+
+/// A scene simulated and transformed.
+pub struct Seen {
+    /// The scene.
+    pub scene: Scene,
+    /// Its samples.
+    pub signal: BeatSignal,
+    /// Lambda of the first end, the last end and the whole array.
+    pub lambda: [RangeAngleMap; 3],
+}
+
+impl Source {
+    /// Table 3.1.
+    pub fn new() -> Self {
+        Source { radar: Radar::default() }
+    }
+
+    /// The scene over `floor`, seed 0.
+    ///
+    /// # Errors
+    /// [`FigureError::Scene`].
+    pub fn see_over(&self, scene: Scene, floor: Floor) -> Result<Seen, FigureError> {
+        let signal = signal::simulate(&self.radar, &scene, floor, 0)?;
+        let maps = LogMaps::of_signal(&self.radar, &signal);
+        let lambda = [maps.first, maps.last, maps.full].map(|m| m.normalise(Normalisation::MinMax));
+        Ok(Seen { scene, signal, lambda })
+    }
+
+    /// The scene over the thesis' floor.
+    ///
+    /// # Errors
+    /// [`FigureError::Scene`].
+    pub fn see(&self, scene: Scene) -> Result<Seen, FigureError> {
+        self.see_over(scene, Floor::Thesis)
+    }
+
+    /// A preset over the thesis' floor.
+    ///
+    /// # Errors
+    /// [`FigureError`] when there is no such preset or it can't be simulated.
+    pub fn preset(&self, id: &str) -> Result<Seen, FigureError> {
+        self.see(preset(id)?)
+    }
+
+    /// Test scene `number` of a set (seed 0) over the thesis' floor.
+    ///
+    /// # Errors
+    /// [`FigureError::Scene`].
+    pub fn test_scene(&self, kind: Kind, number: u32) -> Result<Seen, FigureError> {
+        self.see(Generator::new(&self.radar, Reading::Program, Purpose::Test, 0).scene(kind, number))
+    }
+
+    /// What a method makes of the two ends.
+    ///
+    /// # Errors
+    /// [`FigureError`] when there is no such method or it fails.
+    pub fn output(&self, method: &str, seen: &Seen) -> Result<RangeAngleMap, FigureError> {
+        let method = methods::by_name(method).map_err(|e| FigureError::Missing(e.to_string()))?;
+        let ends = seen.signal.two_ends(&self.radar);
+        Ok(method.reconstruct(&self.radar, &ends, &Request::default())?.lambda)
+    }
+
+    /// Range, from 0 to the maximum.
+    pub fn range_axis(&self) -> Axis {
+        Axis::new("range (m)", 0.0, self.radar.max_range_metres())
+    }
+
+    /// Lambda over cos(theta) and range.
+    pub fn lambda_panel(&self, title: impl Into<String>, map: &RangeAngleMap) -> Panel {
+        self.cells_panel(title, map.lambda.clone(), ColourMap::default(), Some(("Λ 0", "Λ 1")))
+    }
+
+    /// Cells above a threshold, white on black.
+    pub fn above_panel(&self, title: impl Into<String>, map: &RangeAngleMap, eta: f32) -> Panel {
+        self.cells_panel(title, map.lambda.mapv(|v| f32::from(v > eta)), ColourMap::Grey, None)
+    }
+
+    /// Values in [0, 1] over cos(theta) and range.
+    pub fn cells_panel(
+        &self,
+        title: impl Into<String>,
+        values: Array2<f32>,
+        colours: ColourMap,
+        ends_of_bar: Option<(&'static str, &'static str)>,
+    ) -> Panel {
+        let x = Axis::new("cos θ", -1.0, 1.0);
+        Panel::cells(title, Cells { x, y: self.range_axis(), values, colours, ends_of_bar, rings: Vec::new() })
+    }
+
+    /// A map over x and y.
+    pub fn cartesian_panel(&self, title: impl Into<String>, map: &RangeAngleMap, colours: ColourMap) -> Panel {
+        let extent = self.radar.max_range_metres();
+        let values = project(&self.radar, map, 300).lambda;
+        let (x, y) = (Axis::new("x (m)", -extent, extent), Axis::new("y (m)", 0.0, extent));
+        Panel::cells(title, Cells { x, y, values, colours, ends_of_bar: None, rings: Vec::new() })
+    }
+
+    /// The scene's reflectors over x and y.
+    pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> Panel {
+        let extent = self.radar.max_range_metres();
+        let places = scene.reflectors().into_iter().map(|r| (r.x_metres, r.y_metres.abs()));
+        let dots = Series::line("", places).with(Stroke::Dots);
+        Panel::chart(title, Axis::new("x (m)", -extent, extent), Axis::new("y (m)", 0.0, extent), vec![dots])
+    }
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Source::new()
+    }
+}
+
+/// The scene of a preset.
+///
+/// # Errors
+/// [`FigureError::Missing`] when there is none of that name.
+pub fn preset(id: &str) -> Result<Scene, FigureError> {
+    let missing = || FigureError::Missing(format!("there is no preset \"{id}\""));
+    let preset = Preset::by_id(id).ok_or_else(missing)?;
+    preset.load().map(|file| file.scene).map_err(|e| FigureError::Missing(e.to_string()))
+}

@@ -1,0 +1,247 @@
+//! Challenges: "now change it until ...", checked by the engine.
+
+use super::file::ObjectNumber;
+use super::quantity::Quantity;
+use super::stage::{MapName, Stage};
+use crate::evaluate::squared_error;
+use crate::radar::Radar;
+use crate::scene::{Object, Scene};
+use serde::Deserialize;
+
+/// Something to bring about by changing the scene or the radar.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Challenge {
+    /// What is asked for.
+    pub ask: String,
+    /// Every one must hold.
+    #[serde(rename = "require")]
+    pub requirements: Vec<Requirement>,
+    /// Objects the learner can't see but in the maps, to be explained by those placed.
+    #[serde(default)]
+    pub hidden: Vec<Object>,
+    /// A way to meet it: what tests try, and what is shown to who gives up.
+    pub solution: Solution,
+}
+
+/// A state of scene and radar that meets a challenge.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Solution {
+    /// The objects; those of the step where there are none.
+    #[serde(default, rename = "object")]
+    pub objects: Vec<Object>,
+    /// The radar; that of the step where there is none.
+    #[serde(default)]
+    pub radar: Option<Radar>,
+}
+
+/// A bound on something measured.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Requirement {
+    /// What is measured.
+    pub measure: Measure,
+    /// Smallest value that does.
+    #[serde(default)]
+    pub at_least: Option<f64>,
+    /// Largest value that does.
+    #[serde(default)]
+    pub at_most: Option<f64>,
+}
+
+/// Something that is measured on the maps or read from the radar.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Measure {
+    /// Lambda of an object's blob.
+    Lambda {
+        /// In this map.
+        map: MapName,
+        /// The object.
+        object: ObjectNumber,
+    },
+    /// How far Lambda falls between two objects' blobs, below the weaker of the two.
+    Dip {
+        /// In this map.
+        map: MapName,
+        /// The two objects.
+        objects: [ObjectNumber; 2],
+    },
+    /// SE of the output.
+    SquaredError,
+    /// SE of the learner's whole-array map against that of the hidden objects.
+    Unexplained,
+    /// Number of objects.
+    Objects,
+    /// Distance between two objects, metres.
+    Distance {
+        /// The two objects.
+        objects: [ObjectNumber; 2],
+    },
+    /// Bandwidth, gigahertz.
+    BandwidthGigahertz,
+    /// Range of an object from the array's centre, metres.
+    Range {
+        /// The object.
+        object: ObjectNumber,
+    },
+    /// Part of a map's cells that are brighter than `above`.
+    BrightPart {
+        /// In this map.
+        map: MapName,
+        /// Lambda.
+        above: f32,
+    },
+    /// A quantity of the radar or of an object.
+    Quantity {
+        /// Which.
+        quantity: Quantity,
+        /// The object it belongs to.
+        #[serde(default)]
+        object: Option<ObjectNumber>,
+    },
+}
+
+/// A requirement, measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// What was measured, in words.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// The bound, in words.
+    pub bound: String,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+impl Challenge {
+    /// Checks that the challenge can be set on a scene of `objects` objects.
+    pub(super) fn check(&self, objects: usize) -> Result<(), String> {
+        if self.requirements.is_empty() {
+            return Err("the challenge requires nothing; expected [[step.challenge.require]]".to_owned());
+        }
+        let solved = if self.solution.objects.is_empty() { objects } else { self.solution.objects.len() };
+        for requirement in &self.requirements {
+            if requirement.at_least.is_none() && requirement.at_most.is_none() {
+                return Err("a requirement has no bound; expected at_least or at_most".to_owned());
+            }
+            match &requirement.measure {
+                Measure::Lambda { object, .. } | Measure::Range { object } => {
+                    object.index(objects.max(solved)).map(drop)?
+                }
+                Measure::Dip { objects: pair, .. } | Measure::Distance { objects: pair } => {
+                    pair.iter().try_for_each(|o| o.index(objects.max(solved)).map(drop))?;
+                }
+                Measure::Unexplained if self.hidden.is_empty() => {
+                    return Err("unexplained needs [[step.challenge.hidden]] objects".to_owned());
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a method's output is measured.
+    pub fn needs_output(&self) -> bool {
+        self.requirements.iter().any(|r| match &r.measure {
+            Measure::Lambda { map, .. } | Measure::Dip { map, .. } => *map == MapName::Output,
+            Measure::SquaredError => true,
+            _ => false,
+        })
+    }
+
+    /// The scene whose maps are to be explained, where there is one.
+    pub fn hidden_scene(&self) -> Option<Scene> {
+        (!self.hidden.is_empty()).then(|| Scene { objects: self.hidden.clone(), ..Scene::default() })
+    }
+
+    /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
+    ///
+    /// # Errors
+    /// A sentence when something can't be measured: an object is gone, the method refuses.
+    pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
+        self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
+    }
+}
+
+impl Requirement {
+    fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
+        let (name, value) = self.measure.value(stage, hidden)?;
+        let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);
+        let bound = match (self.at_least, self.at_most) {
+            (Some(low), Some(high)) => format!("from {low} to {high}"),
+            (Some(low), None) => format!("at least {low}"),
+            (None, Some(high)) => format!("at most {high}"),
+            (None, None) => "anything".to_owned(),
+        };
+        Ok(Measured { name, value, bound, holds })
+    }
+}
+
+impl Measure {
+    fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<(String, f64), String> {
+        let object =
+            |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);
+        Ok(match self {
+            Measure::Lambda { map, object: number } => {
+                let (_, lambda) = stage.blob(stage.map(*map)?, object(number)?);
+                (format!("Λ of object {} in {}", number.0, map.words()), f64::from(lambda))
+            }
+            Measure::Dip { map, objects } => {
+                let shown = stage.map(*map)?;
+                let [a, b] = stage.blobs_apart(shown, [object(&objects[0])?, object(&objects[1])?]);
+                let steps = (a.0.bin - b.0.bin).abs().max((a.0.column - b.0.column).abs()).max(1.0) as usize;
+                let between = (0..=steps).map(|i| {
+                    let part = i as f64 / steps as f64;
+                    let at = |from: f64, to: f64| (from + part * (to - from)).round() as usize;
+                    shown.lambda[[at(a.0.bin, b.0.bin), at(a.0.column, b.0.column)]]
+                });
+                let lowest = between.fold(f32::INFINITY, f32::min);
+                let name = format!("dip between objects {} and {} in {}", objects[0].0, objects[1].0, map.words());
+                (name, f64::from(a.1.min(b.1) - lowest))
+            }
+            Measure::SquaredError => {
+                let (target, output) = (stage.map(MapName::Target)?, stage.map(MapName::Output)?);
+                ("squared error of the output".to_owned(), squared_error(target, output))
+            }
+            Measure::Unexplained => {
+                let hidden = hidden.ok_or_else(|| "nothing is hidden".to_owned())?;
+                let error = squared_error(hidden.map(MapName::Target)?, stage.map(MapName::Target)?);
+                ("squared error against the hidden scene".to_owned(), error)
+            }
+            Measure::Objects => ("objects".to_owned(), stage.scene.objects.len() as f64),
+            Measure::Distance { objects } => {
+                let [a, b] = [object(&objects[0])?.centre_metres(), object(&objects[1])?.centre_metres()];
+                let name = format!("metres between objects {} and {}", objects[0].0, objects[1].0);
+                (name, (a[0] - b[0]).hypot(a[1] - b[1]))
+            }
+            Measure::BandwidthGigahertz => ("bandwidth in GHz".to_owned(), stage.radar.bandwidth_hz / 1e9),
+            Measure::Range { object: number } => {
+                let [x, y] = object(number)?.centre_metres();
+                (format!("range of object {} in metres", number.0), x.hypot(y))
+            }
+            Measure::BrightPart { map, above } => {
+                let shown = stage.map(*map)?;
+                let part = shown.above(*above).count() as f64 / shown.lambda.len() as f64;
+                (format!("part of {} above {above}", map.words()), part)
+            }
+            Measure::Quantity { quantity, object } => {
+                (quantity.words().to_owned(), quantity.of(&stage.radar, &stage.scene, *object)?)
+            }
+        })
+    }
+}
+
+impl MapName {
+    /// Its name in sentences.
+    pub fn words(self) -> &'static str {
+        match self {
+            MapName::Input0 => "input 0",
+            MapName::Input1 => "input 1",
+            MapName::Target => "the target",
+            MapName::Output => "the output",
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Lesson files: TOML that a teacher writes without Rust. `docs/lessons.md` describes the format with a worked example.
+
+use super::challenge::Challenge;
+use super::question::Question;
+use super::stage::View;
+use crate::radar::Radar;
+use crate::scene::presets::Preset;
+use crate::scene::{Object, Scene, SceneError};
+use serde::{Deserialize, Serialize};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// The version of the format this program reads.
+pub const FORMAT: u32 = 1;
+
+/// Largest lesson file that is read, bytes: sixty times the longest shipped one.
+pub const MOST_BYTES: u64 = 1 << 20;
+
+/// A lesson: a few steps, each a text, a scene, a prediction and something to change.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lesson {
+    /// Version of the format, [`FORMAT`].
+    pub format: u32,
+    /// Title.
+    pub title: String,
+    /// What the learner will know afterwards, one sentence.
+    pub about: String,
+    /// Steps, at least one.
+    #[serde(rename = "step")]
+    pub steps: Vec<Step>,
+}
+
+/// One step of a lesson.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// What the learner reads first.
+    pub text: String,
+    /// Name of a scene that comes with the program, in place of `object`s.
+    #[serde(default)]
+    pub preset: Option<String>,
+    /// The scene's objects.
+    #[serde(default, rename = "object")]
+    pub objects: Vec<Object>,
+    /// What differs from table 3.1.
+    #[serde(default)]
+    pub radar: Radar,
+    /// How it is looked at.
+    #[serde(default)]
+    pub view: View,
+    /// The prediction, made before the maps are shown.
+    #[serde(default)]
+    pub predict: Option<Question>,
+    /// What the learner changes afterwards.
+    #[serde(default)]
+    pub challenge: Option<Challenge>,
+}
+
+/// What is wrong with a lesson's text, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {message}")]
+pub struct LessonTextError {
+    /// Line, from 1.
+    pub line: usize,
+    /// What is wrong, with the key, and what was expected.
+    pub message: String,
+}
+
+/// Why a lesson could not be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum LessonError {
+    /// The system could not read the file.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is larger than any lesson.
+    #[error("{}: larger than {MOST_BYTES} bytes, which no lesson is", path.display())]
+    Large {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The text is no lesson.
+    #[error("{}: {source}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// What and where.
+        source: LessonTextError,
+    },
+}
+
+impl Lesson {
+    /// Reads a lesson from TOML and checks every step.
+    ///
+    /// # Errors
+    /// [`LessonTextError`] names the line, the key or the step, and what was expected.
+    pub fn from_toml(text: &str) -> Result<Lesson, LessonTextError> {
+        let lesson: Lesson = toml::from_str(text).map_err(|e| LessonTextError {
+            line: e.span().map_or(1, |span| line_of(text, span.start)),
+            message: e.to_string().lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" "),
+        })?;
+        let whole = |message: String| LessonTextError { line: 1, message };
+        if lesson.format != FORMAT {
+            return Err(whole(format!("format is {}; this program reads format {FORMAT}", lesson.format)));
+        }
+        if lesson.steps.is_empty() {
+            return Err(whole("there is no [[step]]".to_owned()));
+        }
+        for (index, step) in lesson.steps.iter().enumerate() {
+            step.check().map_err(|message| LessonTextError {
+                line: line_of_step(text, index),
+                message: format!("step {}: {message}", index + 1),
+            })?;
+        }
+        Ok(lesson)
+    }
+
+    /// Reads a lesson file.
+    ///
+    /// # Errors
+    /// [`LessonError`] names the file, the line and what was expected.
+    pub fn load(path: &Path) -> Result<Lesson, LessonError> {
+        let io = |source| LessonError::Io { path: path.to_owned(), source };
+        let mut text = String::new();
+        std::fs::File::open(path).and_then(|f| f.take(MOST_BYTES + 1).read_to_string(&mut text)).map_err(io)?;
+        if text.len() as u64 > MOST_BYTES {
+            return Err(LessonError::Large { path: path.to_owned() });
+        }
+        Lesson::from_toml(&text).map_err(|source| LessonError::Text { path: path.to_owned(), source })
+    }
+}
+
+impl Step {
+    /// The scene the learner sees, or places things into.
+    pub fn scene(&self) -> Scene {
+        let preset = self.preset.as_deref().and_then(Preset::by_id).and_then(|p| p.load().ok());
+        preset.map_or_else(|| Scene { objects: self.objects.clone(), ..Scene::default() }, |file| file.scene)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if let Some(id) = &self.preset {
+            if !self.objects.is_empty() {
+                return Err("has a preset and objects; expected one of them".to_owned());
+            }
+            let known = || crate::scene::presets::ALL.iter().map(|p| p.id).collect::<Vec<_>>().join(", ");
+            Preset::by_id(id).ok_or_else(|| format!("preset \"{id}\" is not known; known: {}", known()))?;
+        }
+        self.radar.validate().map_err(|e| e.to_string())?;
+        let scene = self.scene();
+        scene.validate(&self.radar).map_err(|e: SceneError| e.to_string())?;
+        let objects = scene.objects.len();
+        if let Some(question) = &self.predict {
+            question.check(objects)?;
+        }
+        if let Some(challenge) = &self.challenge {
+            challenge.check(objects)?;
+        }
+        if self.predict.is_none() && self.challenge.is_none() {
+            return Err("asks nothing; expected [step.predict] or [step.challenge]".to_owned());
+        }
+        Ok(())
+    }
+}
+
+fn line_of(text: &str, byte: usize) -> usize {
+    text.bytes().take(byte).filter(|b| *b == b'\n').count() + 1
+}
+
+fn line_of_step(text: &str, index: usize) -> usize {
+    let steps = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("[[step]]"));
+    steps.map(|(number, _)| number + 1).nth(index).unwrap_or(1)
+}
+
+/// What stands in a file for an index from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct ObjectNumber(pub usize);
+
+impl ObjectNumber {
+    /// The index from 0, where there is such an object.
+    pub fn index(self, objects: usize) -> Result<usize, String> {
+        match self.0 {
+            number if (1..=objects).contains(&number) => Ok(number - 1),
+            number => Err(format!("object {number} is asked for; the scene has objects 1 to {objects}")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"
+format = 1
+title = "T"
+about = "A."
+
+[[step]]
+text = "Look."
+preset = "one-at-20-m"
+
+[step.predict]
+ask = "Where?"
+right = "Yes."
+wrong = "No."
+answer = { kind = "click", map = "target", object = 1, within_columns = 30.0, within_bins = 4.0 }
+"#;
+
+    #[test]
+    fn a_good_lesson_is_read() {
+        let lesson = Lesson::from_toml(GOOD).unwrap();
+        assert_eq!((lesson.steps.len(), lesson.steps[0].scene().objects.len()), (1, 1));
+    }
+
+    #[test]
+    fn mistakes_name_line_and_key() {
+        let error = |from: &str, to: &str| Lesson::from_toml(&GOOD.replace(from, to)).unwrap_err();
+        let e = error("about = \"A.\"", "abuot = \"A.\"");
+        assert!(e.message.contains("abuot") && e.line == 4, "{e}");
+        let e = error("object = 1,", "object = 2,");
+        assert!(e.message.contains("step 1") && e.message.contains("objects 1 to 1") && e.line == 6, "{e}");
+        let e = error("one-at-20-m", "nowhere");
+        assert!(e.message.contains("nowhere") && e.message.contains("street"), "{e}");
+        let e = error("format = 1", "format = 9");
+        assert!(e.message.contains("format 1"), "{e}");
+        assert!(Lesson::from_toml(&GOOD[..GOOD.len() / 2]).is_err());
+    }
+
+    #[test]
+    fn a_large_file_is_refused_before_it_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large.toml");
+        std::fs::write(&path, vec![b'#'; MOST_BYTES as usize + 10]).unwrap();
+        assert!(Lesson::load(&path).unwrap_err().to_string().contains("larger"));
+    }
+}

@@ -1,0 +1,27 @@
+//! Lessons that ask first: the learner predicts, the maps reveal, then something is changed until a condition holds.
+//!
+//! ```text
+//!   Lesson (TOML) ──► Step: text, scene, radar ──► Question ──► Guess ──► Judgement
+//!                                               └► Challenge ──► Measured requirements
+//! ```
+//!
+//! Truth comes from the simulation: a [`Stage`] holds the step's maps, and questions and challenges are checked on them. Predicting before
+//! seeing is what makes a demonstration teach (C. Crouch, A. Fagen, J. Callan, E. Mazur, "Classroom demonstrations: Learning tools or
+//! entertainment?", Am. J. Phys. 72, 2004).
+
+pub mod challenge;
+pub mod file;
+pub mod progress;
+pub mod quantity;
+pub mod question;
+pub mod shipped;
+pub mod stage;
+
+pub use challenge::{Challenge, Measured};
+pub use file::{Lesson, LessonError, LessonTextError, Step};
+pub use progress::Progress;
+pub use question::{Guess, Judgement, Question, Truth};
+pub use stage::{Cell, MapName, Stage, View};
+
+#[cfg(test)]
+mod tests;

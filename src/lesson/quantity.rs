@@ -1,0 +1,97 @@
+//! Quantities a learner may be asked for, from the radar and the scene by formula.
+
+use super::file::ObjectNumber;
+use crate::radar::{End, Radar};
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// A number that follows from the radar, or from the radar and an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// c / 2B, metres.
+    RangeBinMetres,
+    /// Samples times the range bin, metres.
+    MaximumRangeMetres,
+    /// Length of the whole array, metres.
+    ApertureMetres,
+    /// 2 D^2 / lambda, metres.
+    FarFieldMetres,
+    /// Columns of one beam of an end: the map's columns over the end's elements.
+    EndBeamColumns,
+    /// Wavelength over spacing: distance in cos(theta) from a reflector to its grating lobe, for the one-way carrier.
+    GratingLobeCos,
+    /// The range at which an object appears: its own, wrapped at the maximum, metres.
+    ApparentRangeMetres,
+    /// By how many range bins the two ends differ on the distance of an object.
+    EndsDifferenceBins,
+}
+
+impl Quantity {
+    /// Its name in sentences.
+    pub fn words(self) -> &'static str {
+        match self {
+            Quantity::RangeBinMetres => "range bin in metres",
+            Quantity::MaximumRangeMetres => "maximum range in metres",
+            Quantity::ApertureMetres => "aperture in metres",
+            Quantity::FarFieldMetres => "far-field distance in metres",
+            Quantity::EndBeamColumns => "beam of an end in columns",
+            Quantity::GratingLobeCos => "distance to the grating lobe in cos θ",
+            Quantity::ApparentRangeMetres => "apparent range in metres",
+            Quantity::EndsDifferenceBins => "difference between the ends in range bins",
+        }
+    }
+
+    /// Its value.
+    ///
+    /// # Errors
+    /// A sentence when it needs an object that is not named or not there.
+    pub fn of(self, radar: &Radar, scene: &Scene, object: Option<ObjectNumber>) -> Result<f64, String> {
+        let centre = || -> Result<[f64; 2], String> {
+            let number =
+                object.ok_or_else(|| "this quantity belongs to an object; expected object = NUMBER".to_owned())?;
+            Ok(scene.objects[number.index(scene.objects.len())?].centre_metres())
+        };
+        Ok(match self {
+            Quantity::RangeBinMetres => radar.range_resolution_metres(),
+            Quantity::MaximumRangeMetres => radar.max_range_metres(),
+            Quantity::ApertureMetres => radar.aperture_metres(),
+            Quantity::FarFieldMetres => radar.far_field_metres(),
+            Quantity::EndBeamColumns => radar.elements as f64 / radar.end_elements as f64,
+            Quantity::GratingLobeCos => {
+                radar.wavelength_metres() / radar.element_spacing_metres / radar.carrier.turns_per_wavelength().abs()
+            }
+            Quantity::ApparentRangeMetres => {
+                let [x, y] = centre()?;
+                x.hypot(y).rem_euclid(radar.max_range_metres())
+            }
+            Quantity::EndsDifferenceBins => {
+                let [x, y] = centre()?;
+                let from = |end| (x - radar.end_centre_metres(end)).hypot(y);
+                radar.bin_of_range((from(End::First) - from(End::Last)).abs())
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_of_table_3_1() {
+        let (radar, scene) = (Radar::default(), Scene::of_points([(18.0, 8.717), (0.0, 60.0)]));
+        let of = |q: Quantity, o| q.of(&radar, &scene, o).unwrap();
+        assert!((of(Quantity::RangeBinMetres, None) - 0.07495).abs() < 1e-4);
+        assert!((of(Quantity::GratingLobeCos, None) - 2.0).abs() < 1e-12);
+        // The two ends see a point at cos 0.9 and 20 m some 24 bins apart.
+        assert!((of(Quantity::EndsDifferenceBins, Some(ObjectNumber(1))) - 24.0).abs() < 1.0);
+        assert!(
+            (of(Quantity::ApparentRangeMetres, Some(ObjectNumber(2))) - (60.0 - radar.max_range_metres())).abs() < 1e-9
+        );
+        assert!(Quantity::ApparentRangeMetres.of(&radar, &scene, None).is_err());
+        assert!(
+            Quantity::ApparentRangeMetres.of(&radar, &scene, Some(ObjectNumber(3))).unwrap_err().contains("1 to 2")
+        );
+    }
+}

@@ -1,0 +1,199 @@
+//! Predictions: what a learner commits to before the maps are shown, and what it is worth.
+
+use super::file::ObjectNumber;
+use super::quantity::Quantity;
+use super::stage::{Cell, MapName, Stage};
+use crate::evaluate::{TARGET_ETA, detection_rates};
+use serde::Deserialize;
+
+/// A question with what is said of a right and of a wrong answer.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Question {
+    /// The question.
+    pub ask: String,
+    /// How it is answered.
+    pub answer: Answer,
+    /// What a right guess got right, one sentence.
+    pub right: String,
+    /// What a wrong guess got wrong, one sentence.
+    pub wrong: String,
+}
+
+/// How a question is answered; the truth comes from the simulation, never from the file, but for choices.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Answer {
+    /// By clicking where a peak will be in a map.
+    Click {
+        /// The map.
+        map: MapName,
+        /// The object whose blob is meant; the brightest cell of the map without.
+        #[serde(default)]
+        object: Option<ObjectNumber>,
+        /// Columns a right guess may be off.
+        within_columns: f64,
+        /// Range bins a right guess may be off.
+        within_bins: f64,
+    },
+    /// By a number.
+    Number {
+        /// What is asked for.
+        quantity: Quantity,
+        /// The object it belongs to.
+        #[serde(default)]
+        object: Option<ObjectNumber>,
+        /// Its unit, beside the field.
+        unit: String,
+        /// Percent a right guess may be off.
+        within_percent: f64,
+    },
+    /// By choosing.
+    Choice {
+        /// What can be chosen.
+        options: Vec<String>,
+        /// The right one, from 1.
+        right: usize,
+    },
+    /// By setting a threshold that keeps objects and lets few other cells through.
+    Threshold {
+        /// The map the threshold is for.
+        map: MapName,
+        /// Objects whose blobs must exceed it.
+        keep: Vec<ObjectNumber>,
+        /// Largest part of the cells outside the target's that may exceed it.
+        false_alarm_at_most: f64,
+    },
+}
+
+/// What a learner answered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Guess {
+    /// A place in a map.
+    Place(Cell),
+    /// A number.
+    Number(f64),
+    /// An option, from 1.
+    Choice(usize),
+    /// A threshold.
+    Eta(f32),
+}
+
+/// The truth that a guess is compared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Truth {
+    /// A place in a map.
+    Place(Cell),
+    /// A number.
+    Number(f64),
+    /// An option, from 1.
+    Choice(usize),
+    /// Thresholds that do.
+    Etas {
+        /// Smallest.
+        low: f32,
+        /// Largest.
+        high: f32,
+    },
+}
+
+/// What a guess was worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// Whether it is close enough.
+    pub is_right: bool,
+    /// How far off, in the question's own terms.
+    pub distance: String,
+    /// The question's sentence on it.
+    pub sentence: String,
+    /// What would have been exact.
+    pub truth: Truth,
+}
+
+impl Question {
+    /// Checks that the question can be asked of a scene of `objects` objects.
+    pub(super) fn check(&self, objects: usize) -> Result<(), String> {
+        match &self.answer {
+            Answer::Click { object: Some(number), .. } => number.index(objects).map(drop),
+            Answer::Number { object: Some(number), .. } => number.index(objects).map(drop),
+            Answer::Choice { options, right } if options.len() < 2 || !(1..=options.len()).contains(right) => {
+                Err(format!("right is {right}; there are options 1 to {} and at least two are needed", options.len()))
+            }
+            Answer::Threshold { keep, .. } => keep.iter().try_for_each(|number| number.index(objects).map(drop)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the method's output is needed to know the truth.
+    pub fn needs_output(&self) -> bool {
+        matches!(
+            &self.answer,
+            Answer::Click { map: MapName::Output, .. } | Answer::Threshold { map: MapName::Output, .. }
+        )
+    }
+
+    /// The truth, from the simulation.
+    ///
+    /// # Errors
+    /// A sentence when the method has no output or an object is missing.
+    pub fn truth(&self, stage: &Stage) -> Result<Truth, String> {
+        let object =
+            |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);
+        Ok(match &self.answer {
+            Answer::Click { map, object: number, .. } => {
+                let map = stage.map(*map)?;
+                Truth::Place(match number {
+                    Some(number) => stage.blob(map, object(number)?).0,
+                    None => stage.brightest(map),
+                })
+            }
+            Answer::Number { quantity, object, .. } => {
+                Truth::Number(quantity.of(&stage.radar, &stage.scene, *object)?)
+            }
+            Answer::Choice { right, .. } => Truth::Choice(*right),
+            Answer::Threshold { map, keep, false_alarm_at_most } => {
+                let shown = stage.map(*map)?;
+                let mut high = 1.0f32;
+                for number in keep {
+                    high = high.min(stage.blob(shown, object(number)?).1);
+                }
+                let target = stage.map(MapName::Target)?;
+                let passes = |eta: f32| detection_rates(target, shown, eta).1 <= *false_alarm_at_most;
+                let low = (0..=100).map(|i| i as f32 / 100.0).find(|eta| passes(*eta)).unwrap_or(TARGET_ETA);
+                Truth::Etas { low, high }
+            }
+        })
+    }
+
+    /// What `guess` is worth.
+    ///
+    /// # Errors
+    /// A sentence when the truth can't be had, or the guess is of another kind than the question.
+    pub fn judge(&self, stage: &Stage, guess: Guess) -> Result<Judgement, String> {
+        let truth = self.truth(stage)?;
+        let (is_right, distance) = match (&self.answer, guess, truth) {
+            (Answer::Click { within_columns, within_bins, .. }, Guess::Place(at), Truth::Place(peak)) => {
+                let width = stage.radar.elements as f64;
+                let columns = (at.column - peak.column).abs();
+                let columns = columns.min(width - columns);
+                let bins = (at.bin - peak.bin).abs();
+                let metres = bins * stage.radar.range_resolution_metres();
+                let off = format!("{metres:.2} m and {columns:.0} columns off");
+                (columns <= *within_columns && bins <= *within_bins, off)
+            }
+            (Answer::Number { within_percent, unit, .. }, Guess::Number(value), Truth::Number(exact)) => {
+                let percent = 100.0 * (value - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
+                (percent <= *within_percent, format!("{percent:.0} % off; it is {exact:.3} {unit}"))
+            }
+            (Answer::Choice { .. }, Guess::Choice(chosen), Truth::Choice(right)) => {
+                (chosen == right, if chosen == right { "right".to_owned() } else { format!("it is option {right}") })
+            }
+            (Answer::Threshold { .. }, Guess::Eta(eta), Truth::Etas { low, high }) => {
+                (eta >= low && eta < high, format!("from {low:.2} to {high:.2} does"))
+            }
+            _ => return Err("the answer is of another kind than the question".to_owned()),
+        };
+        let sentence = if is_right { &self.right } else { &self.wrong }.clone();
+        Ok(Judgement { is_right, distance, sentence, truth })
+    }
+}

@@ -1,0 +1,188 @@
+//! What a step's scene looks like to the radar: the maps that questions and challenges are checked on.
+
+use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
+use crate::methods;
+use crate::radar::Radar;
+use crate::reconstruct::Request;
+use crate::scene::{Object, Scene, SceneError};
+use crate::signal::{self, Floor};
+use serde::{Deserialize, Serialize};
+
+/// How a step's scene is looked at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct View {
+    /// What lies beneath the reflectors.
+    pub floor: Floor,
+    /// Seed of the floor's noise.
+    pub seed: u64,
+    /// How maps are normalised.
+    pub normalisation: Normalisation,
+    /// The method whose output is shown.
+    pub method: String,
+}
+
+impl Default for View {
+    /// No floor and 100 dB, so that what is seen is the effect and not the noise; `live` reconstructs.
+    fn default() -> Self {
+        View {
+            floor: Floor::Exact,
+            seed: 0,
+            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
+            method: "live".to_owned(),
+        }
+    }
+}
+
+/// A map, as lessons call it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MapName {
+    /// The first end's.
+    #[serde(rename = "input-0")]
+    Input0,
+    /// The last end's.
+    #[serde(rename = "input-1")]
+    Input1,
+    /// The whole array's.
+    Target,
+    /// The method's.
+    Output,
+}
+
+/// A cell of a map; fractions lie between cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Range bin.
+    pub bin: f64,
+    /// Column.
+    pub column: f64,
+}
+
+/// A scene simulated for checking.
+#[derive(Debug, Clone)]
+pub struct Stage {
+    /// The radar.
+    pub radar: Radar,
+    /// The scene.
+    pub scene: Scene,
+    maps: [RangeAngleMap; 3],
+    output: Result<RangeAngleMap, String>,
+    /// The method's threshold.
+    pub eta: f32,
+}
+
+impl Stage {
+    /// Simulates `scene` and, where `with_output`, reconstructs it.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the scene can't be simulated. A method that fails leaves its reason in [`Stage::map`].
+    pub fn new(radar: &Radar, scene: &Scene, view: &View, with_output: bool) -> Result<Stage, SceneError> {
+        let signal = signal::simulate(radar, scene, view.floor, view.seed)?;
+        let log = LogMaps::of_signal(radar, &signal);
+        let maps = [log.first, log.last, log.full].map(|m| m.normalise(view.normalisation));
+        let method = methods::by_name(&view.method).map_err(|e| e.to_string());
+        let eta = method.as_ref().map_or(crate::evaluate::TARGET_ETA, |m| m.eta());
+        let output = if with_output {
+            let request = Request { floor: view.floor, normalisation: view.normalisation, ..Request::default() };
+            method.and_then(|m| {
+                m.reconstruct(radar, &signal.two_ends(radar), &request).map(|r| r.lambda).map_err(|e| e.to_string())
+            })
+        } else {
+            Err("the output was not asked for".to_owned())
+        };
+        Ok(Stage { radar: radar.clone(), scene: scene.clone(), maps, output, eta })
+    }
+
+    /// A map.
+    ///
+    /// # Errors
+    /// Why the method has no output.
+    pub fn map(&self, name: MapName) -> Result<&RangeAngleMap, String> {
+        match name {
+            MapName::Input0 => Ok(&self.maps[0]),
+            MapName::Input1 => Ok(&self.maps[1]),
+            MapName::Target => Ok(&self.maps[2]),
+            MapName::Output => self.output.as_ref().map_err(Clone::clone),
+        }
+    }
+
+    /// Where the middle of an object is expected in every map: range wrapped, angle squinted by B / f, since the carrier counts one way
+    /// and the range both ways, so that mid-chirp the array hears f - B.
+    pub fn expected(&self, object: &Object) -> Cell {
+        let [x, y] = object.centre_metres();
+        let polar = self.radar.polar_of(x, y);
+        let bin = self.radar.bin_of_range(polar.range_metres).rem_euclid(self.radar.samples as f64);
+        let squint = 1.0
+            + 2.0 * self.radar.bandwidth_hz / (self.radar.carrier_hz * 2.0 * self.radar.carrier.turns_per_wavelength());
+        Cell { bin, column: self.radar.column_of_cos(polar.cos_theta * squint) }
+    }
+
+    /// The brightest cell of a map within some bins and columns of a place; columns wrap around.
+    pub fn peak_near(&self, map: &RangeAngleMap, at: Cell, bins: usize, columns: usize) -> Cell {
+        let (rows, width) = map.lambda.dim();
+        let (row, column) = (at.bin.round() as isize, at.column.round() as isize);
+        let (bins, columns) = (bins as isize, columns as isize);
+        let mut best = (f32::NEG_INFINITY, at);
+        for bin in (row - bins).max(0)..=(row + bins).min(rows as isize - 1) {
+            for offset in -columns..=columns {
+                let c = (column + offset).rem_euclid(width as isize) as usize;
+                let value = map.lambda[[bin as usize, c]];
+                if value > best.0 {
+                    best = (value, Cell { bin: bin as f64, column: c as f64 });
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Where an object shows in a map, and how bright: the brightest cell near its expected place.
+    pub fn blob(&self, map: &RangeAngleMap, object: &Object) -> (Cell, f32) {
+        self.blob_within(map, object, 8, self.radar.elements / 48)
+    }
+
+    fn blob_within(&self, map: &RangeAngleMap, object: &Object, bins: usize, columns: usize) -> (Cell, f32) {
+        let cell = self.peak_near(map, self.expected(object), bins, columns);
+        (cell, map.lambda[[cell.bin as usize, cell.column as usize]])
+    }
+
+    /// Where two objects show, each looked for in its own half of what lies between them, in the direction in which they are further apart.
+    pub fn blobs_apart(&self, map: &RangeAngleMap, [a, b]: [&Object; 2]) -> [(Cell, f32); 2] {
+        let (at, other) = (self.expected(a), self.expected(b));
+        let (bins, columns) = (8, self.radar.elements / 48);
+        let (bins_apart, columns_apart) = ((at.bin - other.bin).abs(), (at.column - other.column).abs());
+        let half = |distance: f64| (distance / 2.0 - 0.5).max(0.0) as usize;
+        let (bins, columns) = if bins_apart * columns as f64 >= columns_apart * bins as f64 {
+            (bins.min(half(bins_apart)), columns)
+        } else {
+            (bins, columns.min(half(columns_apart)))
+        };
+        [a, b].map(|object| self.blob_within(map, object, bins, columns))
+    }
+
+    /// The brightest cell of a whole map.
+    pub fn brightest(&self, map: &RangeAngleMap) -> Cell {
+        let (rows, columns) = map.lambda.dim();
+        let middle = Cell { bin: rows as f64 / 2.0, column: columns as f64 / 2.0 };
+        self.peak_near(map, middle, rows, columns / 2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blob_stands_where_it_is_expected_even_at_end_fire() {
+        for (x, y) in [(0.0, 20.0), (-16.6, 11.0), (25.0, 6.0), (3.0, 60.0)] {
+            let stage = Stage::new(&Radar::default(), &Scene::of_points([(x, y)]), &View::default(), false).unwrap();
+            let map = stage.map(MapName::Target).unwrap();
+            let (expected, (found, lambda)) =
+                (stage.expected(&stage.scene.objects[0]), stage.blob(map, &stage.scene.objects[0]));
+            assert!(lambda > 0.98, "({x}, {y}): {lambda}");
+            // A point is a plateau of some tens of columns; its middle is meant.
+            assert!((expected.bin - found.bin).abs() <= 4.0, "({x}, {y}): {expected:?} {found:?}");
+            assert!((expected.column - found.column).abs() <= 24.0, "({x}, {y}): {expected:?} {found:?}");
+        }
+    }
+}
