@@ -96,21 +96,10 @@ fn a_method_that_panics_is_a_message_and_the_app_goes_on() {
 struct Trained;
 
 impl Reconstructor for Trained {
-    fn name(&self) -> &'static str {
-        "trained"
+    fn about(&self) -> About {
+        About { name: "trained", description: "knows one radar", told: "", eta: 0.5 }
     }
-    fn description(&self) -> &'static str {
-        "knows one radar"
-    }
-    fn eta(&self) -> f32 {
-        0.5
-    }
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         if radar.carrier == Carrier::TwoWay {
             return Err(ReconstructError::Unusable { method: "trained", reason: "trained on one-way carriers".into() });
         }
@@ -137,21 +126,10 @@ fn a_method_that_refuses_leaves_nothing_of_its_last_output_and_offers_another() 
 struct Slow(Arc<AtomicU32>);
 
 impl Reconstructor for Slow {
-    fn name(&self) -> &'static str {
-        "slow"
+    fn about(&self) -> About {
+        About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
     }
-    fn description(&self) -> &'static str {
-        "takes its time"
-    }
-    fn eta(&self) -> f32 {
-        0.5
-    }
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let began = Instant::now();
         while began.elapsed() < Duration::from_millis(600) {
             request.task.check()?;

@@ -182,7 +182,7 @@ fn judgement(ui: &mut Ui, run: &LessonRun) {
         None => _ = ui.weak("looking…"),
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
-            let verdict = if judged.is_right { "✔ Right" } else { "✖ Not quite" };
+            let verdict = if judged.is_right { "Right" } else { "Not quite" };
             ui.label(RichText::new(format!("{verdict}: {}", judged.distance)).size(15.0).strong());
             ui.label(RichText::new(&judged.sentence).size(15.0));
         }
@@ -207,13 +207,13 @@ fn requirements(
         Some(Err(reason)) => _ = ui.label(reason),
         Some(Ok(measured)) => {
             for m in measured {
-                let mark = if m.holds { "✔" } else { "○" };
-                ui.label(format!("{mark} {}: {:.3} ({})", m.name, m.value, m.bound));
+                let verdict = if m.holds { "holds" } else { "not yet" };
+                ui.label(format!("{}: {:.3}, {} — {verdict}", m.name, m.value, m.bound));
             }
         }
     }
     if run.is_met() {
-        ui.label(RichText::new("✔ Done. Change more, or go on.").size(15.0).strong());
+        ui.label(RichText::new("Done. Change more, or go on.").size(15.0).strong());
     } else if ui.button("Show a way").on_hover_text("Puts a scene and a radar on screen that meet it").clicked() {
         asked.push(Command::ShowSolution);
     }
