@@ -113,7 +113,8 @@ mod tests {
             let directions = directions(&radar);
             assert!(directions.len().abs_diff(count) <= 1, "{} of {count}", directions.len());
             let cosines = || directions.iter().map(|d| d.cos_theta);
-            assert!(cosines().fold(1.0, f64::min) < -1.0 + 0.04 && cosines().fold(-1.0, f64::max) > 1.0 - 0.04);
+            let step = 1.01 * cos_period(&radar) / 64.0;
+            assert!(cosines().fold(1.0, f64::min) <= -1.0 + step && cosines().fold(-1.0, f64::max) >= 1.0 - step);
             for d in &directions {
                 let off = (radar.column_of_cos(d.cos_theta) - d.column as f64).rem_euclid(64.0);
                 assert!(off.min(64.0 - off) < 1e-6, "{d:?}");

@@ -165,9 +165,9 @@ fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
         (s.state().editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
     s.ask(Command::Maximise(Panel::Guide));
     for button in ["No window", "Hamming"] {
-        s.app.get_by_label(button).scroll_to_me();
+        s.app.get_by_role_and_label(eframe::egui::accesskit::Role::Button, button).scroll_to_me();
         s.settle();
-        s.app.get_by_label(button).click();
+        s.app.get_by_role_and_label(eframe::egui::accesskit::Role::Button, button).click();
         s.settle();
     }
     assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Hamming, Floor::Exact));

@@ -332,7 +332,7 @@ mod tests {
         let mut controls = panel(Run::default);
         controls.run();
         assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
-        for label in ["hamming", "Two-way", "Exact", "reflectors", "0.5 m", "Min–max"] {
+        for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Min–max"] {
             controls.get_by_label(label).click();
             controls.run();
         }
@@ -340,7 +340,7 @@ mod tests {
             Command::SetWindow(WindowFunction::Hamming),
             Command::SetCarrier(Carrier::TwoWay),
             Command::SetFloor(Floor::Exact),
-            Command::ToggleReflectors,
+            Command::ToggleFound,
             Command::SetSnap(Snap::Metres(0.5)),
         ];
         assert_eq!(controls.state(), &asked, "and what is chosen already is not asked for");

@@ -170,7 +170,7 @@ mod tests {
             state.1.extend(commands);
         };
         let mut guide = Harness::builder().with_size([640.0, 9000.0]).build_ui_state(draw, Default::default());
-        guide.get_by_label("Hamming").click();
+        guide.get_by_role_and_label(egui::accesskit::Role::Button, "Hamming").click();
         guide.step();
         let steps = scene("four-reflectors", window(WindowFunction::Hamming));
         assert_eq!(guide.state().1, [Command::Guided(steps)]);

@@ -192,7 +192,7 @@ mod tests {
         let _told = run_time.get_by_label_contains("128 elements");
         for label in ["thorough", "Measure", "Cancel"] {
             run_time.get_by_label(label).click();
-            run_time.step();
+            run_time.run_steps(2);
         }
         assert_eq!(run_time.state().1, [Command::Measure { thorough: true }, Command::CancelMeasurement]);
     }

@@ -274,7 +274,7 @@ mod tests {
             held.asked.extend(commands);
         };
         let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
-        let mut panel = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, held);
+        let mut panel = Harness::builder().with_size([600.0, 400.0]).with_step_dt(0.02).build_ui_state(draw, held);
         panel.step();
         panel
     }
