@@ -97,7 +97,7 @@ fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
             dy += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
         }
     });
-    ((dx, dy) != (0.0, 0.0)).then(|| Command::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres })
+    ((dx, dy) != (0.0, 0.0)).then_some(Command::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres })
 }
 
 #[cfg(test)]

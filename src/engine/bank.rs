@@ -253,12 +253,12 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let how = format!("{} in {}", plan.algorithm, T::NAME);
                 (format!("{evaluated} of {total} reflectors, {how}, the others as before"), changed)
             }
-            _ => self.from_scratch(job),
+            _ => self.build_anew(job),
         }
     }
 
     /// Makes the sum at rest hold the whole scene, and the other nothing.
-    fn from_scratch(&mut self, job: &Job<'_>) -> (String, Rows) {
+    fn build_anew(&mut self, job: &Job<'_>) -> (String, Rows) {
         let total = job.scene.reflector_count();
         let synthesis = self.synthesis(job, total);
         let mut changed = self.rest.profiles.touched.clone();

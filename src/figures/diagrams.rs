@@ -8,7 +8,7 @@ use crate::network::unet::UnetConfig;
 /// The U-Net: a step down a level, a step up a level, joined across.
 pub fn unet(_: &Source) -> Result<Sheet, FigureError> {
     let UnetConfig { channels, levels, rows } = UnetConfig::default();
-    let size = |level: usize| format!("{} × {} × {}", channels << level, rows >> level, 2 * rows >> level);
+    let size = |level: usize| format!("{} × {} × {}", channels << level, rows >> level, (2 * rows) >> level);
     let height = |level: usize| 3.0 * (levels - level) as f64;
     let mut shapes = Vec::new();
     let block = |x: f64, y: f64, text: String| Shape::block((x - 2.0, y), (x + 2.0, y + 1.6), text);

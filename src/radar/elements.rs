@@ -141,7 +141,7 @@ impl BuiltArray {
                 ("position_millimetres", e.position_millimetres, MOST_POSITION),
             ] {
                 // Not finite is not within either.
-                if !(value.abs() <= most) {
+                if value.is_nan() || value.abs() > most {
                     return Err(BuiltArrayError::Value { element, field, value, most });
                 }
             }

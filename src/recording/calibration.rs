@@ -62,7 +62,7 @@ impl Calibration {
                 return Err(CalibrationError::Length { list, found: values.len(), expected: elements });
             }
             // Not finite is not within either.
-            if let Some((element, value)) = values.iter().enumerate().find(|(_, v)| !(v.abs() <= most)) {
+            if let Some((element, value)) = values.iter().enumerate().find(|(_, v)| v.is_nan() || v.abs() > most) {
                 return Err(CalibrationError::Value { list, element, value: *value, most });
             }
         }

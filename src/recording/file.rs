@@ -199,7 +199,7 @@ fn radar(mut table: toml::Table, profile: Option<&RadarProfile>) -> Result<Radar
     }
     let snapshot = table.get("samples").and_then(toml::Value::as_integer) == Some(1);
     let needed = ["carrier_hz", "bandwidth_hz", "element_spacing_metres", "elements", "end_elements", "samples"];
-    if let Some(key) = needed.iter().find(|key| !table.contains_key(**key) && !(snapshot && **key == "bandwidth_hz")) {
+    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || snapshot && **key == "bandwidth_hz")) {
         return Err(Fault::key(&format!("radar.{key}"), "is missing", "it: a recording says which radar measured it"));
     }
     let radar: Radar = table.try_into().map_err(|e: toml::de::Error| {

@@ -138,8 +138,10 @@ fn ten_thousand_candidates_fit_into_bounded_memory() {
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{text}");
     let Some(grown) = text.lines().find_map(|l| l.strip_suffix(" MB grown")) else {
-        assert!(!cfg!(target_os = "linux"), "{text}");
-        return;
+        // Nothing but Linux tells.
+        return if cfg!(target_os = "linux") {
+            panic!("{text}")
+        };
     };
     let grown: f64 = grown.rsplit(' ').next().unwrap().parse().unwrap();
     assert!((200.0..600.0).contains(&grown), "grew by {grown} MB");

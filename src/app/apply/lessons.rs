@@ -12,7 +12,7 @@ use std::path::Path;
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
     match command {
         Command::BeginLesson(index) => {
-            let Some(file) = shipped::ALL.get(index) else { return None };
+            let file = shipped::ALL.get(index)?;
             match file.load() {
                 Ok(lesson) => begin(state, file.id.to_owned(), lesson),
                 Err(error) => state.notices.error(format!("Lesson {}: {error}", file.id)),

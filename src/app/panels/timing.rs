@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn an_output_of_an_earlier_scene_is_told() {
         let mut engine = Engine::new(Radar { elements: 64, samples: 32, ..Radar::default() });
-        let frame = engine.update(&Scene::of_points([(0.0, 10.0)]).into(), &Wanted::default()).unwrap();
+        let frame = engine.update(&Scene::of_points([(0.0, 10.0)]), &Wanted::default()).unwrap();
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
             let took = Duration::from_millis(12);
             let update =
