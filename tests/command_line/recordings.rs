@@ -77,8 +77,11 @@ fn a_recording_that_cannot_be_read_is_told() {
     assert!(!folder.path().join("m.npz").exists());
 }
 
+/// What it is called, its TOML, and where two points stand (x and y, metres).
+type SimulatedRadar = (&'static str, &'static str, [(f64, f64); 2]);
+
 /// Radars that the thesis never had: the name, what its TOML says, and two places in metres that each of them tells apart.
-const RADARS: [(&str, &str, [(f64, f64); 2]); 5] = [
+const RADARS: [SimulatedRadar; 5] = [
     ("86 elements", "elements = 86\nend_elements = 12\nsamples = 64\n", [(0.0, 2.0), (1.0, 3.0)]),
     ("8 elements", "elements = 8\nend_elements = 3\nsamples = 128\n", [(0.0, 2.0), (2.0, 6.0)]),
     (

@@ -55,10 +55,8 @@ fn the_printed_means_are_those_of_the_rows_and_shards_add_up() {
     assert_eq!(all.len(), 2 * 2 * 5);
     for set in whole["sets"].as_array().unwrap() {
         for method in set["methods"].as_array().unwrap() {
-            let own = || {
-                all.iter()
-                    .filter(|r| Value::from(r.set.parse::<u32>().unwrap()) == set["set"] && r.method == method["name"])
-            };
+            let own =
+                || all.iter().filter(|r| set["set"] == r.set.parse::<u32>().unwrap() && r.method == method["name"]);
             let mean = |value: fn(&Row) -> Option<f64>| Estimate::of(&own().filter_map(value).collect::<Vec<_>>()).mean;
             assert_eq!(own().count(), 5);
             assert!(same(&method["squared_error"]["mean"], mean(|r| Some(r.squared_error))));
