@@ -332,7 +332,7 @@ mod tests {
         let mut controls = panel(Run::default);
         controls.run();
         assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
-        for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Min–max"] {
+        for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Normalise"] {
             controls.get_by_label(label).click();
             controls.run();
         }
