@@ -35,6 +35,10 @@ impl Reconstructor for Hybrid {
         }
     }
 
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        super::nomp::no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let found = find(radar, ends, request, &self.settings)?;
         let mut drawn = found.reconstruction(radar, request);

@@ -44,6 +44,7 @@ fn one_reflector(radar: &Radar) -> Scene {
 #[test]
 fn a_reflector_is_where_the_whole_array_sees_it_or_the_method_says_why_not() {
     let floor = Floor::Snr(Decibels(50.0));
+    let mut misplaced = Vec::new();
     for (what, radar) in radars() {
         radar.validate().unwrap();
         let signal = simulate(&radar, &one_reflector(&radar), floor, 0).unwrap();
@@ -63,7 +64,8 @@ fn a_reflector_is_where_the_whole_array_sees_it_or_the_method_says_why_not() {
                 Err(error) => panic!("{name} on {what}: {error}"),
             };
             // The U-Net is there to show how it collapsed, and nothing promises that networks serve radars they don't know.
-            if NETWORKS.contains(&name) {
+            // The baseline is one end's own map, which sees a near reflector elsewhere than the array's middle does.
+            if NETWORKS.contains(&name) || name == "baseline" {
                 continue;
             }
             let (at, _) = found.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
@@ -76,9 +78,12 @@ fn a_reflector_is_where_the_whole_array_sees_it_or_the_method_says_why_not() {
                     target.lambda[[bin, (at.1 as isize + j).rem_euclid(columns) as usize]]
                 })
                 .fold(0.0f32, f32::max);
-            assert!(seen > 0.9, "{name} on {what}: strongest at {at:?}, where the whole array sees {seen}");
+            if seen <= 0.9 {
+                misplaced.push(format!("{name} on {what}: strongest at {at:?}, where the whole array sees {seen}"));
+            }
         }
     }
+    assert!(misplaced.is_empty(), "{misplaced:#?}");
 }
 
 proptest! {

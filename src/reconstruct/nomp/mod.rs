@@ -61,6 +61,12 @@ impl Nomp {
     }
 }
 
+/// Why a search for places can't work on a single sample, where it is one.
+pub(super) fn no_snapshot(radar: &Radar) -> Option<String> {
+    let why = "a snapshot has no ranges to search; it needs two samples or more";
+    (radar.samples < 2).then(|| why.to_owned())
+}
+
 impl Reconstructor for Nomp {
     fn about(&self) -> About {
         About {
@@ -69,6 +75,10 @@ impl Reconstructor for Nomp {
             told: TOLD,
             eta: ETA,
         }
+    }
+
+    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
