@@ -3,9 +3,9 @@
 use super::arguments::{self, FloorArgs};
 use super::input::Input;
 use super::{CommandError, print};
-use crate::files::archive::{write_maps, write_recorded_maps};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
+use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
 use crate::radar::Carrier;

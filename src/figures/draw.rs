@@ -1,17 +1,13 @@
 //! Sheets as PNG and SVG.
 
+use super::canvas::{Area, Drawn, words};
 use super::sheet::{Axis, Cells, Chart, Content, Panel, Series, Sheet, Stroke};
 use super::sketch;
 use crate::picture::{ColourMap, PictureError, encode_png, register_fonts};
 use image::RgbImage;
-use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-/// What drawing gives back.
-pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-/// A part of the drawing.
-pub(super) type Area<B> = DrawingArea<B, Shift>;
 type Axes<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 const PAPER: RGBColor = RGBColor(252, 252, 250);
@@ -67,11 +63,6 @@ fn draw_panel<B: DrawingBackend>(panel: &Panel, area: &Area<B>) -> Drawn<B> {
         Content::Cells(cells) => draw_cells(cells, &below),
         Content::Sketch(plane) => sketch::draw(plane, &below),
     }
-}
-
-/// A text style of this size in pixels.
-pub(super) fn words(size: f64, colour: &RGBColor) -> TextStyle<'static> {
-    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal).color(colour)
 }
 
 fn axes<'a, B: DrawingBackend>(

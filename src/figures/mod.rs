@@ -3,6 +3,7 @@
 //! A figure is a function from a [`Source`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets,
 //! [`pages`] the page that shows them beside one another. [`ALL`] lists them with what each shows and what differs from the printed one.
 
+mod canvas;
 mod diagrams;
 pub mod draw;
 mod fields;

@@ -1,6 +1,6 @@
 //! Sketches: lines, dots, boxes and words in a plane without axes.
 
-use super::draw::{Area, Drawn, words};
+use super::canvas::{Area, Drawn, words};
 use super::sheet::{Ink, Shape, Sketch};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

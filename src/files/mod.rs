@@ -1,6 +1,5 @@
 //! Files that are either whole or not there, and NumPy archives with errors that name the key.
 
-pub mod archive;
 pub mod memory;
 pub mod npy;
 pub mod npz;

@@ -1,6 +1,6 @@
 //! Challenges: "now change it until ...", checked by the engine.
 
-use super::file::ObjectNumber;
+use super::object_number::ObjectNumber;
 use super::quantity::Quantity;
 use super::stage::{MapName, Stage};
 use crate::evaluate::squared_error;

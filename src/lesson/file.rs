@@ -6,7 +6,7 @@ use super::stage::View;
 use crate::radar::Radar;
 use crate::scene::presets::Preset;
 use crate::scene::{Object, Scene, SceneError};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -174,21 +174,6 @@ fn line_of(text: &str, byte: usize) -> usize {
 fn line_of_step(text: &str, index: usize) -> usize {
     let steps = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("[[step]]"));
     steps.map(|(number, _)| number + 1).nth(index).unwrap_or(1)
-}
-
-/// What stands in a file for an index from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct ObjectNumber(pub usize);
-
-impl ObjectNumber {
-    /// The index from 0, where there is such an object.
-    pub fn index(self, objects: usize) -> Result<usize, String> {
-        match self.0 {
-            number if (1..=objects).contains(&number) => Ok(number - 1),
-            number => Err(format!("object {number} is asked for; the scene has objects 1 to {objects}")),
-        }
-    }
 }
 
 #[cfg(test)]

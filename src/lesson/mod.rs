@@ -11,6 +11,7 @@
 
 pub mod challenge;
 pub mod file;
+pub mod object_number;
 pub mod progress;
 pub mod quantity;
 pub mod question;

@@ -1,6 +1,6 @@
 //! Quantities a learner may be asked for, from the radar and the scene by formula.
 
-use super::file::ObjectNumber;
+use super::object_number::ObjectNumber;
 use crate::radar::{End, Radar};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};

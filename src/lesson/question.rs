@@ -1,6 +1,6 @@
 //! Predictions: what a learner commits to before the maps are shown, and what it is worth.
 
-use super::file::ObjectNumber;
+use super::object_number::ObjectNumber;
 use super::quantity::Quantity;
 use super::stage::{Cell, MapName, Stage};
 use crate::evaluate::{TARGET_ETA, detection_rates};

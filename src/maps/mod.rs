@@ -3,6 +3,7 @@
 //! Every map is `[range bin, column]`, row `k1` at `k1 * c / 2B`, column `k2` at cos(theta) = `(k2 - N_a/2) / (N_a/2)`
 //! (half-wavelength spacing). Transforms are orthonormal: `1/sqrt(N_r)` over range, `1/sqrt(N_a)` over the elements.
 
+pub mod archive;
 pub mod cartesian;
 pub mod fast;
 mod lambda;

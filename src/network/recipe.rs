@@ -227,6 +227,14 @@ impl Recipe {
         if self.validation_scenes > MAX_VALIDATION_SCENES {
             return fail("validation_scenes", &self.validation_scenes, "at most 10000");
         }
+        self.check_network(name)
+    }
+
+    /// As `check`, of the network's size.
+    fn check_network(&self, name: &str) -> Result<(), RecipeError> {
+        let fail = |field, value: &dyn std::fmt::Display, expected| {
+            Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
+        };
         match &self.network {
             Network::Thesis(c) if !(1..=ThesisConfig::MAX_FILTERS).contains(&c.filters) => {
                 fail("network.filters", &c.filters, "1 to 512")

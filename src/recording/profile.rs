@@ -86,12 +86,17 @@ impl Line<'_> {
     }
 }
 
-impl RadarProfile {
-    /// Reads a `.cfg`: profileCfg, channelCfg, chirpCfg and frameCfg are needed, adcCfg is checked, others are left alone.
-    ///
-    /// # Errors
-    /// [`ProfileError`] names the line, the command and what was expected.
-    pub fn parse(text: &str) -> Result<RadarProfile, ProfileError> {
+/// The commands that matter, as they stand in the file.
+struct Commands<'a> {
+    profile: Option<Line<'a>>,
+    channels: Option<Line<'a>>,
+    frame: Option<Line<'a>>,
+    /// Transmitters of each chirp that is defined.
+    chirps: Vec<Option<u32>>,
+}
+
+impl<'a> Commands<'a> {
+    fn read(text: &'a str) -> Result<Self, ProfileError> {
         let (mut profile, mut channels, mut frame) = (None, None, None);
         let mut chirps: Vec<Option<u32>> = vec![None; MOST_CHIRPS];
         for (number, text) in (1..).zip(text.lines()) {
@@ -121,6 +126,17 @@ impl RadarProfile {
                 _ => return Err(line.fault("advanced frames are not read; expected frameCfg".to_owned())),
             }
         }
+        Ok(Commands { profile, channels, frame, chirps })
+    }
+}
+
+impl RadarProfile {
+    /// Reads a `.cfg`: profileCfg, channelCfg, chirpCfg and frameCfg are needed, adcCfg is checked, others are left alone.
+    ///
+    /// # Errors
+    /// [`ProfileError`] names the line, the command and what was expected.
+    pub fn parse(text: &str) -> Result<RadarProfile, ProfileError> {
+        let Commands { profile, channels, frame, chirps } = Commands::read(text)?;
         let profile = profile.ok_or(ProfileError::Missing("profileCfg"))?;
         let channels = channels.ok_or(ProfileError::Missing("channelCfg"))?;
         let frame = frame.ok_or(ProfileError::Missing("frameCfg"))?;

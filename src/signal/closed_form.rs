@@ -219,12 +219,26 @@ mod tests {
     use super::super::simd::{LANES_F32, LANES_F64, Simd};
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
-    use crate::maps::range_transform;
     use crate::scene::Scene;
+    use ndarray::{Array1, Array2};
+    use num_complex::Complex64;
+
+    /// Windowed range profiles, one element after the other.
+    fn profiles_of(radar: &Radar, mut samples: Array2<Complex64>) -> Array2<Complex64> {
+        let scale = (radar.samples as f64).sqrt().recip();
+        let window = radar.window.weights(radar.samples);
+        let fft = rustfft::FftPlanner::new().plan_fft_forward(radar.samples);
+        for mut row in samples.outer_iter_mut() {
+            let mut profile: Vec<Complex64> = row.iter().zip(&window).map(|(v, w)| v * w * scale).collect();
+            fft.process(&mut profile);
+            row.assign(&Array1::from(profile));
+        }
+        samples
+    }
 
     /// Largest error of a cell relative to the largest cell, by either precision.
     fn error(radar: &Radar, reflectors: &[Reflector], plan: Plan) -> f64 {
-        let expected = range_transform(radar, &exact::beat_signal(radar, reflectors)).profiles;
+        let expected = profiles_of(radar, exact::beat_signal(radar, reflectors).samples);
         let peak = expected.iter().fold(0.0f64, |m, v| m.max(v.norm()));
         let worst = |profile: &dyn Fn(usize) -> Vec<num_complex::Complex64>| {
             let of = |n: usize| profile(n).iter().zip(expected.row(n)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);

@@ -200,29 +200,7 @@ fn bad_input_is_named_and_leaves_nothing() {
     let whole = std::fs::read(folder.path().join("inf.npz")).unwrap();
     std::fs::write(folder.path().join("cut.npz"), &whole[..whole.len() - 30]).unwrap();
     let before = names(folder.path());
-
-    for (scene, parts) in [
-        ("missing.toml", ["missing.toml", "No such file"]),
-        ("syntax.toml", ["syntax.toml: line 1", "expected"]),
-        ("key.toml", ["key.toml: line 4", "z_metres"]),
-        ("nan.toml", ["nan.toml: line 4", "finite"]),
-        ("element.toml", ["element.toml: line 4", "element 3"]),
-        ("large.toml", ["large.toml: line 2", "1.0 TiB"]),
-        ("crowd.toml", ["crowd.toml: line 1", "1000000000000 reflectors"]),
-        ("text.npz", ["text.npz", "numpy.savez"]),
-        ("half.npz", ["half.npz", "all_point_y"]),
-        ("shape.npz", ["shape.npz", "dimensions"]),
-        ("inf.npz", ["inf.npz", "finite"]),
-        ("cut.npz", ["cut.npz", "archive"]),
-        ("scene.yaml", ["scene.yaml", ".toml or .npz"]),
-    ] {
-        apertura(&folder)
-            .args(["maps", scene, "-o", "out.npz"])
-            .assert()
-            .failure()
-            .stdout("")
-            .stderr(contains("error: ").and(contains(parts[0])).and(contains(parts[1])));
-    }
+    bad_scenes_are_named(&folder);
     for (arguments, part) in [
         ("maps good.toml -o out.gif", ".npz, .png or .svg"),
         ("maps good.toml -o nowhere/out.npz", "nowhere"),
@@ -238,6 +216,31 @@ fn bad_input_is_named_and_leaves_nothing() {
         apertura(&folder).args(arguments.split(' ')).assert().failure().stdout("").stderr(contains(part));
     }
     assert_eq!(names(folder.path()), before, "nothing was written");
+}
+
+fn bad_scenes_are_named(folder: &tempfile::TempDir) {
+    for (scene, parts) in [
+        ("missing.toml", ["missing.toml", "No such file"]),
+        ("syntax.toml", ["syntax.toml: line 1", "expected"]),
+        ("key.toml", ["key.toml: line 4", "z_metres"]),
+        ("nan.toml", ["nan.toml: line 4", "finite"]),
+        ("element.toml", ["element.toml: line 4", "element 3"]),
+        ("large.toml", ["large.toml: line 2", "1.0 TiB"]),
+        ("crowd.toml", ["crowd.toml: line 1", "1000000000000 reflectors"]),
+        ("text.npz", ["text.npz", "numpy.savez"]),
+        ("half.npz", ["half.npz", "all_point_y"]),
+        ("shape.npz", ["shape.npz", "dimensions"]),
+        ("inf.npz", ["inf.npz", "finite"]),
+        ("cut.npz", ["cut.npz", "archive"]),
+        ("scene.yaml", ["scene.yaml", ".toml or .npz"]),
+    ] {
+        apertura(folder)
+            .args(["maps", scene, "-o", "out.npz"])
+            .assert()
+            .failure()
+            .stdout("")
+            .stderr(contains("error: ").and(contains(parts[0])).and(contains(parts[1])));
+    }
 }
 
 /// In a process of its own: the memory it holds is looked at too.

@@ -3,8 +3,8 @@
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 
 use apertura::engine::{Engine, Wanted};
-use apertura::files::archive::write_maps;
 use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident_bytes};
+use apertura::maps::archive::write_maps;
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::Request;

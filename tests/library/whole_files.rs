@@ -2,10 +2,10 @@
 //!
 //! The process that is killed is this test program again, asked for one of the tests that are called `child`.
 
-use apertura::files::archive::write_maps;
 use apertura::files::npz::Npz;
 use apertura::files::{write_atomically, write_bytes};
 use apertura::interact::{Autosave, Document, Editor, Restored};
+use apertura::maps::archive::write_maps;
 use apertura::radar::Radar;
 use apertura::scene::file::{self, SceneFile};
 use apertura::scene::{Object, Point, Scene};

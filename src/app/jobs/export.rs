@@ -2,8 +2,8 @@
 
 use super::pipeline::Pipeline;
 use crate::app::state::State;
-use crate::files::archive::write_maps;
 use crate::files::write_bytes;
+use crate::maps::archive::write_maps;
 use crate::picture::{Format, Style, compose};
 use crate::reconstruct::Request;
 use crate::signal;

@@ -217,6 +217,11 @@ pub struct Limits {
     pub least_gain: f64,
 }
 
+impl Limits {
+    /// Of a refinement that only tells good starts from bad ones.
+    pub const GLANCE: Limits = Limits { iterations: 12, least_gain: 1e-2 };
+}
+
 /// Solver of a positive semi-definite system, scaled to unit diagonal, with a ridge of rounding size.
 struct Ridge {
     factor: Option<faer::linalg::solvers::Llt<Complex64>>,

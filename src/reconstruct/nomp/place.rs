@@ -4,7 +4,6 @@ use super::atom::Atom;
 use super::detect::Candidate;
 use super::fit::{Fit, Limits, Problem, Tie};
 use super::lines::{LineCandidate, LineDetector};
-use super::search::GLANCE;
 use crate::radar::Radar;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -89,7 +88,7 @@ impl Placer<'_> {
     /// A line tried one and two points further along and with other numbers of points: each such slip is a local minimum of its
     /// own, in which all points but a few still meet.
     pub fn slid(&self, line: Atom) -> Fit {
-        let mut best = self.refined(line, GLANCE);
+        let mut best = self.refined(line, Limits::GLANCE);
         for _ in 0..MOST_SLIDES {
             let line = best.atoms[0];
             let moved = |(first, last)| stretched(line, first, last);
@@ -98,13 +97,13 @@ impl Placer<'_> {
             let lengths = lengths.into_iter().filter_map(moved).map(|atom| (atom, false));
             let trials: Vec<(Atom, bool)> = slips.chain(lengths).collect();
             let tried = trials.into_par_iter().map(|(atom, slipped)| {
-                if slipped { self.refined(atom, GLANCE) } else { self.problem.solve(&[atom], Tie::PerEnd) }
+                if slipped { self.refined(atom, Limits::GLANCE) } else { self.problem.solve(&[atom], Tie::PerEnd) }
             });
             let Some(trial) = cheapest(tried.collect()) else { return best };
             if trial.cost >= LEAST_SLIDE * best.cost {
                 break;
             }
-            best = self.refined(trial.atoms[0], GLANCE);
+            best = self.refined(trial.atoms[0], Limits::GLANCE);
         }
         best
     }

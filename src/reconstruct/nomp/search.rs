@@ -24,9 +24,6 @@ const TOGETHER: Limits = Limits { iterations: 100, least_gain: 1e-5 };
 /// Of a refinement of all atoms while more are to come.
 const GROWING: Limits = Limits { iterations: 100, least_gain: 1e-2 };
 
-/// Of a refinement that only tells good starts from bad ones.
-pub(super) const GLANCE: Limits = Limits { iterations: 12, least_gain: 1e-2 };
-
 /// A residual counts as the floor up to this many times the floor's expected energy: the rounding model is good to a factor of a few.
 const FLOOR_MARGIN: f64 = 16.0;
 
@@ -229,7 +226,7 @@ impl Search<'_> {
     fn best_of(&self, starts: Vec<Start>, fit: Fit) -> Fit {
         let glance = |start: Start| {
             let moving = self.beside(&start.atoms, start.range_metres);
-            self.problem().refine(start.atoms, Tie::PerEnd, &moving, GLANCE)
+            self.problem().refine(start.atoms, Tie::PerEnd, &moving, Limits::GLANCE)
         };
         let best = starts.into_par_iter().map(glance).min_by(|a, b| a.cost.total_cmp(&b.cost));
         match best.filter(|best| best.cost < fit.cost) {

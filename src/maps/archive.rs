@@ -1,7 +1,7 @@
 //! A scene's samples and maps as a NumPy archive with the keys of the thesis author's program.
 
-use super::npz::{NpzError, NpzOutput, write_npz};
-use crate::maps::{self, Aperture, LogMap, RangeAngleMap, channels_map, network_input};
+use super::{Aperture, LogMap, RangeAngleMap, angle_transform, channels_map, network_input, range_transform};
+use crate::files::npz::{NpzError, NpzOutput, write_npz};
 use crate::radar::{End, Radar};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, TwoEnds};
@@ -22,8 +22,8 @@ pub fn write_maps(
     signal: &BeatSignal,
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
-    let profiles = maps::range_transform(radar, signal);
-    let full = maps::angle_transform(radar, &profiles, Aperture::Full).log_magnitude();
+    let profiles = range_transform(radar, signal);
+    let full = angle_transform(radar, &profiles, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
         add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
