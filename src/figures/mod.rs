@@ -181,7 +181,7 @@ pub const ALL: &[Figure] = &[
     ),
     figure("3-5", true, range_angle::lambda_full, "Λ of the whole array for that scene.", MAP_SCENE),
     figure("3-6", true, range_angle::magnitude_and_phase, "Magnitude and phase of the first end's map.", MAP_SCENE),
-    figure("3-7", true, range_angle::cosine_sine_lambda, "Cosine and sine of that phase, and Λ'₀.", MAP_SCENE),
+    figure("3-7", true, range_angle::cosine_sine_lambda, "Cosine and sine of that phase, and Λ'0.", MAP_SCENE),
     figure(
         "3-8",
         true,
@@ -224,7 +224,7 @@ pub const ALL: &[Figure] = &[
         "4-8",
         true,
         outputs::baseline,
-        "The baseline: Λ₀ above 0.9 beside the target above 0.9.",
+        "The baseline: Λ0 above 0.9 beside the target above 0.9.",
         "The printed scene is not given; this is test scene 0 of set 3, seed 0.",
     ),
     figure(
@@ -252,7 +252,7 @@ pub const ALL: &[Figure] = &[
         "5-4",
         true,
         outputs::a_tenth_of_a_radian,
-        "Λ₀ of one point at (0, 20) m and of one a tenth of a radian off: alike in the middle, different at the edges.",
+        "Λ0 of one point at (0, 20) m and of one a tenth of a radian off: alike in the middle, different at the edges.",
         "Their difference is added.",
     ),
     figure(

@@ -105,7 +105,7 @@ pub fn thresholds(source: &Source) -> Result<Sheet, FigureError> {
 pub fn baseline(source: &Source) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 0)?;
     let panels = vec![
-        source.above_panel("Baseline: Λ₀ > 0.9", &seen.lambda[0], TARGET_ETA),
+        source.above_panel("Baseline: Λ0 > 0.9", &seen.lambda[0], TARGET_ETA),
         source.above_panel("Target: Λ > 0.9", &seen.lambda[2], TARGET_ETA),
     ];
     Ok(Sheet::of(2, (560, 420), panels))
@@ -123,8 +123,8 @@ pub fn a_tenth_of_a_radian(source: &Source) -> Result<Sheet, FigureError> {
     let (a, b) = (&ahead.lambda[0], &off.lambda[0]);
     let difference = ndarray::Zip::from(&a.lambda).and(&b.lambda).map_collect(|a, b| 0.5 + (b - a).clamp(-0.5, 0.5));
     let panels = vec![
-        source.lambda_panel("Λ₀ of a point at (0, 20) m", a),
-        source.lambda_panel("Λ₀ of one a tenth of a radian off", b),
+        source.lambda_panel("Λ0 of a point at (0, 20) m", a),
+        source.lambda_panel("Λ0 of one a tenth of a radian off", b),
         source.cells_panel("Their difference", difference, ColourMap::Diverging, Some(("-0.5", "+0.5"))),
     ];
     Ok(Sheet::of(3, PANEL, panels))

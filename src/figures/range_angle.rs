@@ -75,8 +75,8 @@ pub fn truth_and_maps(source: &Source) -> Result<Sheet, FigureError> {
     let panels = vec![
         source.scene_panel("Ground truth", &seen.scene),
         source.lambda_panel("log |Y|, 1024 elements", full),
-        source.lambda_panel("log |Y₀|, elements 0 to 11", first),
-        source.lambda_panel("log |Y₁|, elements 1012 to 1023", last),
+        source.lambda_panel("log |Y0|, elements 0 to 11", first),
+        source.lambda_panel("log |Y1|, elements 1012 to 1023", last),
     ];
     Ok(Sheet::of(2, (560, 420), panels))
 }
@@ -98,8 +98,8 @@ pub fn magnitude_and_phase(source: &Source) -> Result<Sheet, FigureError> {
     let magnitude = map.log_magnitude().normalise(Normalisation::MinMax);
     let phase = map.cells.mapv(|v| ((v.arg() + PI) / TAU) as f32);
     let panels = vec![
-        source.lambda_panel("log |Y₀|", &magnitude),
-        source.cells_panel("arg Y₀", phase, ColourMap::Viridis, Some(("-π", "+π"))),
+        source.lambda_panel("log |Y0|", &magnitude),
+        source.cells_panel("arg Y0", phase, ColourMap::Viridis, Some(("-π", "+π"))),
     ];
     Ok(Sheet::of(2, (560, 420), panels))
 }
@@ -111,9 +111,9 @@ pub fn cosine_sine_lambda(source: &Source) -> Result<Sheet, FigureError> {
     let lambda: RangeAngleMap = map.log_magnitude().normalise(Normalisation::MinMax);
     let bar = Some(("-1", "+1"));
     let panels = vec![
-        source.cells_panel("cos(arg Y₀)", part(f64::cos), ColourMap::Diverging, bar),
-        source.cells_panel("sin(arg Y₀)", part(f64::sin), ColourMap::Diverging, bar),
-        source.lambda_panel("Λ'₀", &lambda),
+        source.cells_panel("cos(arg Y0)", part(f64::cos), ColourMap::Diverging, bar),
+        source.cells_panel("sin(arg Y0)", part(f64::sin), ColourMap::Diverging, bar),
+        source.lambda_panel("Λ'0", &lambda),
     ];
     Ok(Sheet::of(3, (500, 400), panels))
 }
