@@ -107,15 +107,12 @@ impl Stage {
         }
     }
 
-    /// Where the middle of an object is expected in every map: range wrapped, angle squinted by B / f, since the carrier counts one way
-    /// and the range both ways, so that mid-chirp the array hears f - B.
+    /// Where the middle of an object is expected in every map: range wrapped, angle squinted.
     pub fn expected(&self, object: &Object) -> Cell {
-        let [x, y] = object.centre_metres();
-        let polar = self.radar.polar_of(x, y);
-        let bin = self.radar.bin_of_range(polar.range_metres).rem_euclid(self.radar.samples as f64);
-        let squint = 1.0
-            + 2.0 * self.radar.bandwidth_hz / (self.radar.carrier_hz * 2.0 * self.radar.carrier.turns_per_wavelength());
-        Cell { bin, column: self.radar.column_of_cos(polar.cos_theta * squint) }
+        let [x_metres, y_metres] = object.centre_metres();
+        let blob = self.radar.blob_of(0.0, x_metres, y_metres);
+        let bin = self.radar.bin_of_range(blob.range_metres).rem_euclid(self.radar.samples as f64);
+        Cell { bin, column: self.radar.column_of_cos(blob.cos_theta) }
     }
 
     /// The brightest cell of a map within some bins and columns of a place; columns wrap around.

@@ -16,7 +16,7 @@ pub struct Hybrid {
 }
 
 impl Hybrid {
-    /// Part of the samples' energy that may be left unexplained before the fallback is asked; by tests/choose_eta.rs.
+    /// Part of the samples' energy that may be left unexplained before the fallback is asked; by examples/choose_eta.rs.
     pub const MOST_UNEXPLAINED: f64 = 0.03;
 
     /// With the method that fills in.

@@ -18,7 +18,7 @@ pub(super) fn mid_chirp_turns_per_metre(radar: &Radar) -> f64 {
 
 /// The cosine at which a blob stands over the true cosine of its reflector: 0.974 for table 3.1, 1.013 with the two-way carrier.
 pub fn squint_factor(radar: &Radar) -> f64 {
-    mid_chirp_turns_per_metre(radar) * radar.wavelength_metres() / radar.carrier.turns_per_wavelength()
+    radar.squint()
 }
 
 /// Where the blob of a reflector at (`x_metres`, `y_metres`) stands on the map of an aperture: the range from the aperture's middle,
