@@ -1,11 +1,12 @@
 //! The one hot loop of the live network: a direct convolution over channels-last data, vectorised over output channels.
 //!
 //! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; which one
-//! runs is decided on the machine it runs on.
+//! runs is [`Simd::chosen`]'s decision, as for every other kernel.
 
 #[cfg(target_arch = "x86_64")]
 use super::vector::x86;
 use super::vector::{LANES, Portable, Vector};
+use crate::signal::simd::Simd;
 use rayon::prelude::*;
 
 /// Channels rounded up to whole vectors.
@@ -63,11 +64,12 @@ pub fn product(left: &[f32], right: &[f32], inner: usize, columns: usize, out: &
     // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
     let job = Job { input: left, row_cells: rows, channels: inner, kernel: 1, stride: 1, width: rows };
     const CELLS: usize = 32;
+    let simd = Simd::chosen();
     out.par_chunks_mut(CELLS * columns).enumerate().for_each(|(chunk, out)| {
         let first = chunk * CELLS;
         let job = Job { input: &left[first * inner..], width: out.len() / columns, ..job };
         for (block, right) in right.chunks_exact(2 * LANES * inner).enumerate() {
-            dispatch(&job, Block { weights: right, bias: &bias, start: block * 2 * LANES, lanes: columns }, out);
+            dispatch(simd, &job, Block { weights: right, bias: &bias, start: block * 2 * LANES, lanes: columns }, out);
         }
     });
 }
@@ -75,6 +77,10 @@ pub fn product(left: &[f32], right: &[f32], inner: usize, columns: usize, out: &
 /// Convolves `input`, which lies as rows of `row_cells` cells with a halo of one cell where the kernel is 3 wide, into `out`
 /// `[height, width, output]`.
 pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
+    convolve_with(Simd::chosen(), weights, input, row_cells, width, out);
+}
+
+fn convolve_with(simd: Simd, weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
     let line = width * weights.output;
     out.par_chunks_mut(line).enumerate().for_each(|(y, out)| {
         let job = Job {
@@ -90,7 +96,7 @@ pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize,
             let size = weights.kernel * weights.kernel * weights.input * lanes;
             let (weights, bias, all) =
                 (&weights.weights[at..at + size], &weights.bias[start..start + lanes], weights.output);
-            dispatch(&job, Block { weights, bias, start, lanes: all }, out);
+            dispatch(simd, &job, Block { weights, bias, start, lanes: all }, out);
             at += size;
         }
     });
@@ -123,19 +129,16 @@ struct Block<'a> {
     lanes: usize,
 }
 
-/// Computes one line for one block of output channels with the widest vectors the machine has.
-fn dispatch(job: &Job, block: Block, out: &mut [f32]) {
+/// Computes one line for one block of output channels with these instructions, or the best there are if this machine lacks them.
+fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
     job.check(&block, out);
     #[cfg(target_arch = "x86_64")]
-    {
-        if is_x86_feature_detected!("avx512f") {
-            // SAFETY: the feature was just found; the slices were checked.
-            return unsafe { line_avx512(job, block, out) };
-        }
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            // SAFETY: the features were just found; the slices were checked.
-            return unsafe { line_avx2(job, block, out) };
-        }
+    match simd.min(Simd::best()) {
+        // SAFETY: `Simd::best` has found the features on this machine; the slices were checked.
+        Simd::Avx512 => return unsafe { line_avx512(job, block, out) },
+        // SAFETY: as above.
+        Simd::Avx2 => return unsafe { line_avx2(job, block, out) },
+        Simd::Portable => {}
     }
     // SAFETY: needs no feature; the slices were checked.
     unsafe { line::<Portable, 2, 1>(job, block, out) };
@@ -286,30 +289,20 @@ mod tests {
             let x = numbers((height * stride + k) * cells * c);
             let (w, bias) = (numbers(o * c * k * k), numbers(o));
             let packed = Packed::new(&w, &bias, c, c, k, stride);
-            let mut out = vec![f32::NAN; height * width * packed.output()];
-            convolve(&packed, &x, cells, width, &mut out);
-            for y in 0..height {
-                for column in 0..width {
-                    for ch in 0..o {
-                        let expected = defined(&w, &bias, &x, cells, c, k, stride, [y, column, ch]);
-                        let found = out[(y * width + column) * packed.output() + ch];
-                        assert!((found - expected).abs() < 1e-4, "{c} {o} {k}: {found} for {expected}");
+            for simd in Simd::available() {
+                let mut out = vec![f32::NAN; height * width * packed.output()];
+                convolve_with(simd, &packed, &x, cells, width, &mut out);
+                for y in 0..height {
+                    for column in 0..width {
+                        for ch in 0..o {
+                            let expected = defined(&w, &bias, &x, cells, c, k, stride, [y, column, ch]);
+                            let found = out[(y * width + column) * packed.output() + ch];
+                            assert!((found - expected).abs() < 1e-4, "{simd}: {c} {o} {k}: {found} for {expected}");
+                        }
                     }
                 }
             }
         }
-    }
-
-    #[test]
-    fn the_portable_loop_agrees_with_the_chosen_one() {
-        let (x, w, bias) = (numbers(3 * 30 * 6), numbers(9 * 6 * 32), numbers(32));
-        let job = Job { input: &x, row_cells: 30, channels: 6, kernel: 3, stride: 1, width: 28 };
-        let (mut a, mut b) = (vec![0.0; 28 * 32], vec![0.0; 28 * 32]);
-        let block = Block { weights: &w, bias: &bias, start: 0, lanes: 32 };
-        dispatch(&job, block, &mut a);
-        // SAFETY: `dispatch` checked the same slices.
-        unsafe { line::<Portable, 2, 1>(&job, block, &mut b) };
-        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-5));
     }
 
     #[test]
