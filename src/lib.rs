@@ -50,6 +50,7 @@
 //! | [`engine`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
 //! | [`picture`] | a scene and its maps | colours and panels, without a display |
 //! | [`lesson`] | lesson files | questions, judged on the maps |
+//! | [`share`] | what is on screen | one line of text, and back |
 //! | [`figures`] | the thesis' scenes | every figure of the thesis, as sheets of panels |
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |
 #![warn(missing_docs)]
@@ -75,6 +76,7 @@ pub mod radar;
 pub mod reconstruct;
 pub mod recording;
 pub mod scene;
+pub mod share;
 pub mod signal;
 pub mod task;
 pub mod theory;

@@ -33,6 +33,8 @@ pub struct Options {
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
     pub data_folder: Option<PathBuf>,
+    /// What another copy of the program shared as text ([`crate::share`]).
+    pub shared: Option<String>,
     /// Lesson to begin.
     pub lesson: Option<PathBuf>,
     /// Whether files are asked for by the window's own dialog even where the system has one.
@@ -59,6 +61,8 @@ pub struct App {
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
     title: String,
+    /// Whether the window fills the screen because a lesson does.
+    is_full_screen: bool,
     /// Keys that came too quickly for one frame.
     later: input::Later,
 }
@@ -95,6 +99,7 @@ impl App {
             pointer: Pointer::default(),
             guided: Default::default(),
             lesson: None,
+            before_presenting: None,
             progress: kept.progress,
             recent: kept.recent,
             dark: ctx.theme() == egui::Theme::Dark,
@@ -103,9 +108,19 @@ impl App {
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
         start(&mut state, &jobs, options.scene);
-        let asked = options.lesson.map(Command::OpenLessonFile).into_iter().collect();
+        let asked = options.lesson.map(Command::OpenLessonFile).into_iter();
+        let asked = asked.chain(options.shared.map(Command::OpenShared)).collect();
         let memory = Memory::default();
-        Ok(App { state, jobs, memory, asked, frame_log, title: String::new(), later: Default::default() })
+        Ok(App {
+            state,
+            jobs,
+            memory,
+            asked,
+            frame_log,
+            title: String::new(),
+            is_full_screen: false,
+            later: Default::default(),
+        })
     }
 
     /// Does commands, and what they ask of the window.
@@ -143,7 +158,7 @@ impl App {
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let is_open = |panel| state.arrangement.is_open(panel);
-        let mut commands = menu::show(ui, contents::menu_input(state, &is_open), &mut memory.menu);
+        let mut commands = menu::show(ui, contents::menu_input(state, jobs, &is_open), &mut memory.menu);
         status_bar::show(ui, contents::status_input(state, jobs));
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
@@ -164,6 +179,14 @@ impl App {
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
+        }
+    }
+
+    fn update_full_screen(&mut self, ctx: &egui::Context) {
+        let full_screen = self.state.is_presenting();
+        if full_screen != self.is_full_screen {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full_screen));
+            self.is_full_screen = full_screen;
         }
     }
 
@@ -227,13 +250,14 @@ impl eframe::App for App {
         }
         self.jobs.ask(&mut self.state);
         self.update_title(&ctx);
+        self.update_full_screen(&ctx);
         messages::show(&ctx, &mut self.state.notices);
         self.write_frame_log(frame.info().cpu_usage);
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let state = &mut self.state;
-        let arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
+        let arrangement = std::mem::replace(state.kept_arrangement(), Arrangement::empty());
         let kept = Kept {
             settings: state.settings.clone(),
             arrangement,
@@ -241,7 +265,7 @@ impl eframe::App for App {
             progress: state.progress.clone(),
         };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
-        state.arrangement = kept.arrangement;
+        *state.kept_arrangement() = kept.arrangement;
         if let Some(autosave) = &mut self.jobs.autosave
             && let Err(error) = autosave.keep_now(&state.editor)
         {

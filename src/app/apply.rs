@@ -1,6 +1,9 @@
 //! What each command does: the only place that changes settings, and the only one that starts work.
 
 mod lessons;
+mod shared;
+
+pub use shared::of as shared_text;
 
 use super::jobs::{EvaluationPlan, Jobs, Purpose, tell};
 use super::state::{
@@ -45,7 +48,8 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Eff
         return None;
     }
     // Each looks for its own commands and hands the others on.
-    let left = settings(&mut state.settings, command)
+    let left = shared::apply(state, jobs, command)
+        .and_then(|c| settings(&mut state.settings, c))
         .and_then(|c| edit(state, c))
         .and_then(|c| scenes(state, jobs, c))
         .and_then(|c| lessons::apply(state, jobs, c))
@@ -89,6 +93,8 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
         Command::ToggleReflectors => settings.show_reflectors ^= true,
         Command::ToggleFound => settings.show_found ^= true,
         Command::ToggleFieldsOfView => settings.show_fields_of_view ^= true,
+        Command::SetSeveral(several) => settings.several = *several,
+        Command::ToggleTheory => settings.show_theory ^= true,
         Command::Method(name) => settings.method = name.to_owned(),
         other => return Some(other),
     }
@@ -118,6 +124,7 @@ fn edit(state: &mut State, command: Command) -> Option<Command> {
         Command::Add(kind, place) => add(state, kind, place),
         Command::SetCarrier(carrier) => edit_radar(state, "carrier", |r| r.carrier = carrier),
         Command::SetWindow(window) => edit_radar(state, "window", |r| r.window = window),
+        Command::SetRadar(radar) => edit_radar(state, "radar", |r| *r = *radar),
         other => return Some(other),
     }
     None
@@ -155,7 +162,10 @@ fn panels(state: &mut State, command: Command) -> Option<Command> {
         Command::ClosePanel(panel) => state.arrangement.set_open(panel, false),
         Command::OpenPanel(panel) => state.arrangement.set_open(panel, true),
         Command::Maximise(panel) => state.arrangement.toggle_maximised(panel),
-        Command::ResetLayout => state.arrangement = Arrangement::default(),
+        Command::ResetLayout => {
+            state.before_presenting = None;
+            state.arrangement = Arrangement::default();
+        }
         Command::CloseMessages => state.notices.clear(),
         other => return Some(other),
     }
@@ -168,6 +178,11 @@ fn exports(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Comma
         Command::ExportPicture => return choose(state, jobs, Purpose::ExportPicture),
         Command::ExportMaps => return choose(state, jobs, Purpose::ExportMaps),
         Command::ExportMetrics => return choose(state, jobs, Purpose::ExportMetrics),
+        Command::RecordDrag => return choose(state, jobs, Purpose::RecordDrag),
+        Command::DrawLesson => return choose(state, jobs, Purpose::DrawLesson),
+        Command::StopRecording => Ok(jobs.recorder.cancel().unwrap_or_else(|| "Nothing is recorded.".to_owned())),
+        Command::RecordDragTo(path) => jobs.recorder.record_drag(path),
+        Command::DrawLessonTo(path) => jobs.recorder.draw_lesson(state, path),
         Command::ExportPictureTo(path) => jobs.exports.picture(state, path),
         Command::ExportMapsTo(path) => jobs.exports.maps(state, path),
         Command::ExportMetricsTo(path) => jobs.exports.metrics(state, &jobs.pipeline, path),
@@ -215,6 +230,7 @@ fn window(state: &mut State, jobs: &Jobs, command: Command) -> Option<Effect> {
             return copied;
         }
         Command::Copy => return copy(state),
+        Command::CopyShared => Effect::Copy(shared::text(state)?),
         Command::CopyEvaluation => Effect::Copy(jobs.evaluation.to_csv()),
         Command::Paste => Effect::RequestPaste,
         Command::ToggleTheme => {
@@ -294,6 +310,8 @@ fn escape(state: &mut State) {
         state.editor.cancel_drag();
     } else if state.arrangement.maximised().is_some() {
         state.arrangement.restore();
+    } else if state.is_presenting() {
+        state.stop_presenting();
     } else {
         state.editor.select([], SelectionMode::Replace);
     }

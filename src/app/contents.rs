@@ -2,9 +2,9 @@
 
 use super::chrome::tiles::Draw;
 use super::chrome::{menu, status_bar};
-use super::jobs::Jobs;
+use super::jobs::{Jobs, TheoryResult};
 use super::panels::{
-    bounds, controls, cuts, evaluation, guide, inspector, lesson, map, roc, run_time, scene, timing, training,
+    bounds, controls, cuts, evaluation, guide, inspector, lesson, map, roc, run_time, scene, several, timing, training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
@@ -25,6 +25,7 @@ pub struct Memory {
     training: training::Memory,
     guide: guide::Memory,
     lesson: lesson::Memory,
+    several: several::Memory,
     hidden: Texture,
 }
 
@@ -66,7 +67,7 @@ impl<'a> Contents<'a> {
 
     fn scene(&mut self, ui: &mut Ui) -> Vec<Command> {
         let (state, pipeline) = (&mut *self.state, &self.jobs.pipeline);
-        let found = pipeline.output().filter(|_| state.settings.show_found);
+        let found = pipeline.output().filter(|_| state.settings.show_found && !state.is_predicting());
         let radar = state.editor.radar().clone();
         let input = scene::Input {
             radar: &radar,
@@ -119,6 +120,12 @@ impl<'a> Contents<'a> {
             stale: pipeline.is_stale(kind),
             cells: cells(self.jobs, kind),
             marks: map::Marks { reflectors, found: found.map_or(&[], |o| &o.found.reflectors) },
+            theory: self
+                .jobs
+                .theory
+                .result()
+                .filter(|r| r.request.radar == *self.state.radar())
+                .and_then(|r| theory(r, kind)),
             cursor: self.state.pointer.now,
             error: error(self.state, self.jobs, kind),
             veil: veil(self.state, kind),
@@ -135,13 +142,15 @@ impl<'a> Contents<'a> {
             (MapKind::Target, frame.and_then(|f| f.full.as_ref()).map(|m| &*m.lambda)),
             (MapKind::Output, pipeline.output().map(|o| &*o.pair.output)),
         ];
-        let maps = maps.into_iter().filter_map(|(kind, map)| Some((kind, map?))).collect();
+        let hidden = self.state.is_predicting();
+        let maps = maps.into_iter().filter_map(|(kind, map)| Some((kind, map?))).filter(|_| !hidden).collect();
         cuts::show(ui, cuts::Input { radar: self.state.radar(), cursor: self.state.cut_cursor(), maps })
     }
 
     fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
         let pipeline = &self.jobs.pipeline;
-        let points = pipeline.output().and(pipeline.result()).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
+        let shown = pipeline.result().filter(|_| !self.state.is_predicting());
+        let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
         let method = pipeline.output().map_or("output", |o| o.method);
         let refusal = pipeline.refusal().map(|r| r.reason.as_str());
         roc::show(ui, roc::Input { points, method, eta: self.state.output_eta(), refusal })
@@ -199,8 +208,24 @@ impl<'a> Contents<'a> {
     fn lesson(&mut self, ui: &mut Ui) -> Vec<Command> {
         let hidden = self.jobs.lessons.hidden();
         let texture = hidden.map(|image| self.memory.hidden.of(ui.ctx(), "hidden", image, TextureOptions::NEAREST));
-        let input = lesson::Input { run: self.state.lesson.as_ref(), progress: &self.state.progress, hidden: texture };
+        let input = lesson::Input {
+            run: self.state.lesson.as_ref(),
+            progress: &self.state.progress,
+            hidden: texture,
+            presenting: self.state.is_presenting(),
+        };
         lesson::show(ui, input, &mut self.memory.lesson)
+    }
+
+    fn several(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let input = several::Input {
+            several: &self.state.settings.several,
+            radar: self.state.radar(),
+            methods: &self.state.methods.all,
+            maps: self.jobs.several.shown(),
+            veiled: self.state.is_predicting(),
+        };
+        several::show(ui, input, &mut self.memory.several)
     }
 
     fn training(&mut self, ui: &mut Ui) -> Vec<Command> {
@@ -230,6 +255,7 @@ impl Draw for Contents<'_> {
             Panel::Training => self.training(ui),
             Panel::Guide => guide::show(ui, &mut self.memory.guide),
             Panel::Lesson => self.lesson(ui),
+            Panel::Several => self.several(ui),
         };
         self.commands.extend(commands);
     }
@@ -241,7 +267,7 @@ impl Draw for Contents<'_> {
             kind,
             method: pipeline.output().map(|o| o.method),
             updating: pipeline.is_stale(kind) || (kind.needs_output() && pipeline.output_is_outdated()),
-            metrics: pipeline.scores().map(|s| s.metrics),
+            metrics: pipeline.scores().map(|s| s.metrics).filter(|_| !self.state.is_predicting()),
             target_eta: self.state.settings.target_eta,
             output_eta: self.state.output_eta(),
         })
@@ -266,6 +292,24 @@ fn cells_of(map: &ReadyMap) -> map::Cells<'_> {
     map::Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
 }
 
+/// What the formulas say of the map.
+fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
+    let [first, last, full] = &result.overlays;
+    let overlay = match kind {
+        MapKind::Input0 => first,
+        MapKind::Input1 => last,
+        _ => full,
+    };
+    Some(map::Theory {
+        overlay: overlay.as_ref()?,
+        reflector: result.request.reflector,
+        ellipse: result.ellipse.filter(|_| !matches!(kind, MapKind::Input0 | MapKind::Input1)),
+        listening: result.request.elements.name(),
+        snr: result.request.snr,
+        comb: kind.needs_output(),
+    })
+}
+
 /// Why a map is hidden: a lesson asks for a prediction first.
 fn veil(state: &State, kind: MapKind) -> Option<map::Veil> {
     let run = state.lesson.as_ref().filter(|run| run.is_predicting())?;
@@ -282,7 +326,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
 }
 
 /// What the menu bar shows.
-pub fn menu_input<'a>(state: &'a State, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
+pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
     let history = state.editor.history();
     menu::Input {
         can_undo: state.can_undo(),
@@ -292,6 +336,7 @@ pub fn menu_input<'a>(state: &'a State, is_open: &'a dyn Fn(Panel) -> bool) -> m
         colours: state.settings.colours,
         random: (state.settings.random_seed, state.settings.random_number),
         recent: &state.recent,
+        is_recording: jobs.recorder.is_at_work(),
         is_open,
     }
 }

@@ -1,6 +1,7 @@
 //! What may be seen of the app from outside: tests ask it what was computed and what was not.
 
 use super::application::App;
+use super::apply;
 use super::state::{Arrangement, Command, MapKind, Settings};
 use crate::bounds::PositionBound;
 use crate::engine::Report;
@@ -93,6 +94,16 @@ impl App {
     /// What the evaluation has found, as CSV.
     pub fn evaluation_csv(&self) -> String {
         self.jobs.evaluation.to_csv()
+    }
+
+    /// What is on screen as a line of text, where it can be one ([`crate::share`]).
+    pub fn shared_text(&self) -> Option<String> {
+        apply::shared_text(&self.state).ok()
+    }
+
+    /// How many of several maps are of the latest scene and values.
+    pub fn several_maps_made(&self) -> usize {
+        self.jobs.several.shown().iter().filter(|small| small.is_current && small.made.is_some()).count()
     }
 
     /// Number of messages on screen.

@@ -3,6 +3,7 @@
 use super::CommandError;
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
+use crate::share::{Shared, is_shared};
 use std::path::Path;
 
 /// A scene or a recording, as the file says.
@@ -15,11 +16,19 @@ pub enum Input {
 }
 
 impl Input {
-    /// Reads a `.toml` with a table `[recording]` as a recording, anything else as a scene.
+    /// Reads what another copy of the program shared as text, a `.toml` with a table `[recording]` as a recording, anything else as a scene.
     pub fn load(path: &Path) -> Result<Input, CommandError> {
+        if let Some(text) = shared_text(path) {
+            return Ok(Input::Scene(Shared::from_text(text).map_err(CommandError::failed)?.file));
+        }
         if recording::file::is_recording_at(path) {
             return Ok(Input::Recording(Box::new(recording::file::load(path).map_err(CommandError::failed)?)));
         }
         Ok(Input::Scene(file::load(path).map_err(CommandError::failed)?))
     }
+}
+
+/// The text itself, where it stands in place of a file's name.
+pub fn shared_text(path: &Path) -> Option<&str> {
+    path.to_str().filter(|text| is_shared(text))
 }

@@ -15,7 +15,7 @@ use std::time::Instant;
 /// What to open.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene (.toml or .npz) or recording (.toml with [recording]) to open
+    /// Scene (.toml or .npz), recording (.toml with [recording]) or text that was copied in the app (apertura:...) to open
     pub scene: Option<PathBuf>,
 
     /// Write the app's time for every frame to this CSV file
@@ -49,8 +49,10 @@ impl Args {
     #[cfg(feature = "app")]
     fn open_window(self, started: Instant) -> Result<(), WindowError> {
         use crate::app::{self, AppError};
+        let shared = self.scene.as_deref().and_then(super::input::shared_text).map(str::to_owned);
         let options = app::Options {
-            scene: self.scene,
+            scene: self.scene.filter(|_| shared.is_none()),
+            shared,
             frame_log: self.frame_log,
             started: Some(started),
             ..app::Options::default()

@@ -72,6 +72,8 @@ pub enum Measure {
     SquaredError,
     /// SE of the learner's whole-array map against that of the hidden objects.
     Unexplained,
+    /// That SE, over the SE of what the method makes of both ends of the hidden objects: below 1 the learner is nearer than the method.
+    UnexplainedOverMethod,
     /// Number of objects.
     Objects,
     /// Distance between two objects, metres.
@@ -134,7 +136,7 @@ impl Challenge {
                 Measure::Dip { objects: pair, .. } | Measure::Distance { objects: pair } => {
                     pair.iter().try_for_each(|o| o.index(objects.max(solved)).map(drop))?;
                 }
-                Measure::Unexplained if self.hidden.is_empty() => {
+                Measure::Unexplained | Measure::UnexplainedOverMethod if self.hidden.is_empty() => {
                     return Err("unexplained needs [[step.challenge.hidden]] objects".to_owned());
                 }
                 _ => {}
@@ -150,6 +152,11 @@ impl Challenge {
             Measure::SquaredError => true,
             _ => false,
         })
+    }
+
+    /// Whether a method's output of the hidden objects is measured.
+    pub fn needs_hidden_output(&self) -> bool {
+        self.requirements.iter().any(|r| r.measure == Measure::UnexplainedOverMethod)
     }
 
     /// The scene whose maps are to be explained, where there is one.
@@ -210,6 +217,13 @@ impl Measure {
                 let hidden = hidden.ok_or_else(|| "nothing is hidden".to_owned())?;
                 let error = squared_error(hidden.map(MapName::Target)?, stage.map(MapName::Target)?);
                 ("squared error against the hidden scene".to_owned(), error)
+            }
+            Measure::UnexplainedOverMethod => {
+                let hidden = hidden.ok_or_else(|| "nothing is hidden".to_owned())?;
+                let truth = hidden.map(MapName::Target)?;
+                let ours = squared_error(truth, stage.map(MapName::Target)?);
+                let theirs = squared_error(truth, hidden.map(MapName::Output)?);
+                ("your squared error over the method's".to_owned(), ours / theirs.max(f64::MIN_POSITIVE))
             }
             Measure::Objects => ("objects".to_owned(), stage.scene.objects.len() as f64),
             Measure::Distance { objects } => {

@@ -188,8 +188,15 @@ impl Question {
             (Answer::Choice { .. }, Guess::Choice(chosen), Truth::Choice(right)) => {
                 (chosen == right, if chosen == right { "right".to_owned() } else { format!("it is option {right}") })
             }
-            (Answer::Threshold { .. }, Guess::Eta(eta), Truth::Etas { low, high }) => {
-                (eta >= low && eta < high, format!("from {low:.2} to {high:.2} does"))
+            (Answer::Threshold { map, .. }, Guess::Eta(eta), Truth::Etas { low, high }) => {
+                let through = 100.0 * detection_rates(stage.map(MapName::Target)?, stage.map(*map)?, eta).1;
+                let lost = if eta < high { "keeps what is asked for" } else { "loses what was to be kept" };
+                (
+                    eta >= low && eta < high,
+                    format!(
+                        "{eta:.2} {lost} and lets {through:.2} % of the dark cells through; {low:.2} to {high:.2} does"
+                    ),
+                )
             }
             _ => return Err("the answer is of another kind than the question".to_owned()),
         };

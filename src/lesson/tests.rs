@@ -65,7 +65,9 @@ fn every_challenge_starts_unmet_and_its_solution_meets_it() {
             let Some(challenge) = &step.challenge else { continue };
             let place = format!("{id}, step {}", number + 1);
             let output = challenge.needs_output();
-            let hidden = challenge.hidden_scene().map(|s| Stage::new(&step.radar, &s, &step.view, false).unwrap());
+            let with_output = challenge.needs_hidden_output();
+            let hidden =
+                challenge.hidden_scene().map(|s| Stage::new(&step.radar, &s, &step.view, with_output).unwrap());
             let before = challenge.measure(&stage(step, output), hidden.as_ref());
             let unmet = before.as_ref().map_or(true, |m| m.iter().any(|m| !m.holds));
             if !unmet {

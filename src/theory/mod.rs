@@ -10,6 +10,7 @@
 //! | [`comb`] | the teeth of two ends that listen together |
 //! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
 //! | [`ellipse`] | the area that no estimator's error can stay below |
+//! | [`overlay`] | all of it for one reflector on one map, to be drawn over it |
 //! | [`consequences`] | what a radar's constants mean before it sees anything |
 //!
 //! Nothing here looks at a simulated map; tests hold every prediction to one.
@@ -19,6 +20,7 @@ pub mod blob;
 pub mod comb;
 pub mod consequences;
 pub mod ellipse;
+pub mod overlay;
 pub mod pattern;
 pub mod response;
 pub mod squint;
@@ -29,6 +31,7 @@ pub use blob::{Blob, SideLobe};
 pub use comb::comb_teeth;
 pub use consequences::Consequences;
 pub use ellipse::Ellipse;
+pub use overlay::Overlay;
 pub use pattern::Pattern;
 pub use response::Response;
 pub use squint::{blob_cell, squint_factor};

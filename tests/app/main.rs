@@ -2,6 +2,7 @@
 #![cfg(feature = "app")]
 
 mod documents;
+mod lessons;
 mod panels;
 mod pictures;
 mod scene;

@@ -3,7 +3,7 @@
 use crate::app::jobs::{Jobs, Purpose};
 use crate::app::state::{Command, LessonRun, Panel, State};
 use crate::interact::Document;
-use crate::lesson::{Lesson, shipped};
+use crate::lesson::{Guess, Lesson, shipped};
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use std::path::Path;
@@ -27,10 +27,15 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Com
         Command::Predict(guess) => {
             if let Some(run) = state.lesson.as_mut().filter(|run| run.is_predicting()) {
                 run.guess = Some(guess);
+                // The maps of what exceeds the threshold show what was chosen.
+                if let Guess::Eta(eta) = guess {
+                    state.settings.target_eta = eta;
+                }
             }
         }
         Command::ShowSolution => show_solution(state),
         Command::LeaveLesson => leave(state),
+        Command::PresentLesson => state.present_lesson(),
         Command::SetLearner(name) => state.progress.set_learner(&name),
         Command::ForgetProgress => state.progress.reset(),
         other => return Some(other),
@@ -60,7 +65,9 @@ fn set_up(state: &mut State) {
     state.settings.seed = step.view.seed;
     state.settings.normalisation = step.view.normalisation;
     state.settings.method.clone_from(&step.view.method);
-    let scene = Scene { noise_seed: step.view.seed, ..step.scene() };
+    let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
+    // Name and notes of a scene tell what its maps show: that is asked for here.
+    let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };
     state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar }));
 }
 

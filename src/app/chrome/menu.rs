@@ -25,6 +25,8 @@ pub struct Input<'a> {
     pub random: (u64, u32),
     /// Files opened or saved lately, latest first.
     pub recent: &'a [PathBuf],
+    /// Whether something is recorded that can be stopped.
+    pub is_recording: bool,
     /// Whether a panel has a visible tile.
     pub is_open: &'a dyn Fn(Panel) -> bool,
 }
@@ -56,7 +58,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
         egui::MenuBar::new().ui(ui, |ui| {
-            ui.menu_button("File", |ui| file(ui, input.recent, &mut asked));
+            ui.menu_button("File", |ui| file(ui, &input, &mut asked));
             ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
             ui.menu_button("Scene", |ui| scene(ui, input.random, memory, &mut asked));
             ui.menu_button("View", |ui| view(ui, &input, &mut asked));
@@ -73,6 +75,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             ui.separator();
             button(ui, "Undo", Command::Undo, input.can_undo, &mut asked);
             button(ui, "Redo", Command::Redo, input.can_redo, &mut asked);
+            ui.separator();
+            button(ui, "Lessons", Command::OpenPanel(Panel::Lesson), true, &mut asked);
             let right = egui::Layout::right_to_left(egui::Align::Center);
             ui.with_layout(right, |ui| self::right(ui, input.projection, &mut asked));
         });
@@ -100,7 +104,8 @@ fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut
     }
 }
 
-fn file(ui: &mut Ui, recent: &[PathBuf], asked: &mut Vec<Command>) {
+fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let recent = input.recent;
     ui.set_min_width(220.0);
     entries(ui, [Command::New, Command::Open], asked);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
@@ -115,9 +120,11 @@ fn file(ui: &mut Ui, recent: &[PathBuf], asked: &mut Vec<Command>) {
         });
     });
     ui.separator();
-    entries(ui, [Command::Save, Command::SaveAs], asked);
+    entries(ui, [Command::Save, Command::SaveAs, Command::CopyShared], asked);
     ui.separator();
     entries(ui, [Command::ExportPicture, Command::ExportMaps, Command::ExportMetrics], asked);
+    entries(ui, [Command::RecordDrag, Command::DrawLesson], asked);
+    entry(ui, Command::StopRecording, input.is_recording, asked);
     ui.separator();
     entry(ui, Command::Quit, true, asked);
 }
@@ -199,6 +206,7 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         Command::ToggleReflectors,
         Command::ToggleFound,
         Command::ToggleFieldsOfView,
+        Command::ToggleTheory,
         Command::NextMethod,
     ];
     entries(ui, of_maps, asked);
@@ -224,6 +232,7 @@ mod tests {
                 colours: ColourMap::Grey,
                 random: (0, 0),
                 recent: &[],
+                is_recording: false,
                 is_open: &|panel| panel == Panel::Scene,
             };
             let commands = show(ui, input, &mut asked.0);

@@ -41,8 +41,8 @@ impl BoundsRequest {
     }
 }
 
-/// The reflector the bounds are of, with its name.
-fn subject(editor: &Editor) -> Option<(String, Reflector)> {
+/// The reflector that bounds and theory are of, with its name: the selected object's middle, or else the first's.
+pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
     let index = editor.selection().iter().next().unwrap_or(0);
     let object = editor.scene().objects.get(index)?;
     let [x_metres, y_metres] = object.centre_metres();

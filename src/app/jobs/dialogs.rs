@@ -25,6 +25,10 @@ pub enum Purpose {
     ExportPicture,
     /// Where the maps are to be written.
     ExportMaps,
+    /// Where the next drag is to be recorded.
+    RecordDrag,
+    /// Where the steps of a lesson are to be drawn.
+    DrawLesson,
     /// Where the figures are to be written.
     ExportMetrics,
 }
@@ -39,6 +43,8 @@ impl Purpose {
             Purpose::SaveScene => Command::SaveTo(path),
             Purpose::ExportPicture => Command::ExportPictureTo(path),
             Purpose::ExportMaps => Command::ExportMapsTo(path),
+            Purpose::RecordDrag => Command::RecordDragTo(path),
+            Purpose::DrawLesson => Command::DrawLessonTo(path),
             Purpose::ExportMetrics => Command::ExportMetricsTo(path),
         }
     }
@@ -57,6 +63,8 @@ impl Purpose {
             Purpose::SaveScene => "Save the scene",
             Purpose::ExportPicture => "Export a picture",
             Purpose::ExportMaps => "Export the maps",
+            Purpose::RecordDrag => "Record the next drag",
+            Purpose::DrawLesson => "Draw the steps of the lesson",
             Purpose::ExportMetrics => "Export the metrics",
         }
     }
@@ -69,6 +77,8 @@ impl Purpose {
             Purpose::OpenLog | Purpose::ExportMetrics => ("Table", &["csv"]),
             Purpose::ExportPicture => ("Picture", &["png", "svg"]),
             Purpose::ExportMaps => ("NumPy arrays", &["npz"]),
+            Purpose::RecordDrag => ("Animation", &["gif"]),
+            Purpose::DrawLesson => ("Pictures", &["png"]),
         }
     }
 
@@ -79,6 +89,8 @@ impl Purpose {
             Purpose::SaveScene => "scene.toml",
             Purpose::ExportPicture => "apertura.png",
             Purpose::ExportMaps => "maps.npz",
+            Purpose::RecordDrag => "drag.gif",
+            Purpose::DrawLesson => "lesson.png",
             Purpose::ExportMetrics => "metrics.csv",
         }
     }

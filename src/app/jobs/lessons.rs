@@ -53,7 +53,9 @@ type Challenged = (Result<Vec<Measured>, String>, Option<Arc<ColorImage>>);
 /// The challenge measured on what the learner made, and a picture of what is to be explained.
 fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
     let challenge = step.challenge.as_ref()?;
-    let hidden = challenge.hidden_scene().and_then(|scene| Stage::new(&step.radar, &scene, &step.view, false).ok());
+    let hidden = challenge
+        .hidden_scene()
+        .and_then(|scene| Stage::new(&step.radar, &scene, &step.view, challenge.needs_hidden_output()).ok());
     let picture = hidden.as_ref().and_then(|stage| stage.map(MapName::Target).ok()).map(picture);
     let stage = Stage::new(&request.radar, &request.scene, &step.view, challenge.needs_output());
     let measured = stage.map_err(|e| e.to_string()).and_then(|stage| challenge.measure(&stage, hidden.as_ref()));

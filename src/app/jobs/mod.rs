@@ -9,9 +9,12 @@ mod frame_log;
 mod lessons;
 mod painter;
 mod pipeline;
+mod recording;
 mod rows;
 mod run_time;
 mod scene_maps;
+mod several;
+mod theory;
 mod training;
 
 pub use bounds::{Bounds, BoundsRequest, BoundsResult};
@@ -21,8 +24,11 @@ pub use export::Exports;
 pub use frame_log::FrameLog;
 pub use lessons::Lessons;
 pub use pipeline::{Pipeline, Refusal};
+pub use recording::Recorder;
 pub use run_time::RunTime;
 pub use scene_maps::Scores;
+pub use several::{SeveralMaps, Small};
+pub use theory::{Theory, TheoryResult};
 pub use training::{Log, Training};
 
 use crate::app::state::{Command, Panel, State};
@@ -46,10 +52,16 @@ pub struct Jobs {
     pub run_time: RunTime,
     /// A training that is watched.
     pub training: Training,
+    /// One map for several values.
+    pub several: SeveralMaps,
+    /// What the formulas say of one reflector.
+    pub theory: Theory,
     /// Answers being judged.
     pub lessons: Lessons,
     /// Files being written.
     pub exports: Exports,
+    /// Pictures for slides.
+    pub recorder: Recorder,
     /// Files being chosen.
     pub dialogs: Dialogs,
     /// Where an unsaved scene is kept, if anywhere.
@@ -75,8 +87,11 @@ impl Jobs {
             evaluation: Evaluation::start(wake.clone())?,
             run_time: RunTime::start(wake.clone())?,
             training: Training::start(wake.clone())?,
+            several: SeveralMaps::start(wake.clone())?,
+            theory: Theory::start(wake.clone())?,
             lessons: Lessons::start(wake)?,
             exports: Exports::new(ctx.clone()),
+            recorder: Recorder::start(ctx.clone())?,
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
@@ -91,10 +106,15 @@ impl Jobs {
         errors.extend(self.evaluation.poll());
         errors.extend(self.run_time.poll());
         errors.extend(self.training.poll());
+        errors.extend(self.several.poll());
+        errors.extend(self.theory.poll());
         errors.extend(self.lessons.poll(state));
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.finished() {
             tell(state, export.message());
+        }
+        for said in self.recorder.poll() {
+            tell(state, said);
         }
         let (chosen, told) = self.dialogs.poll();
         told.into_iter().for_each(|t| state.notices.info(t));
@@ -105,6 +125,8 @@ impl Jobs {
     pub fn ask(&mut self, state: &mut State) {
         self.pipeline.ask(state);
         self.lessons.ask(state);
+        self.several.ask(state);
+        self.theory.ask(state);
         let shown = state.arrangement.shown();
         if shown.contains(&Panel::Bounds) {
             self.bounds.ask(state);
@@ -117,6 +139,7 @@ impl Jobs {
         if self.pipeline.is_busy() {
             self.wake.request_repaint_after(BAR);
         }
+        self.recorder.look(state.editor.dragged().is_some(), std::time::Instant::now());
         self.keep_unsaved(state);
     }
 
@@ -151,7 +174,11 @@ impl Jobs {
 
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy() || self.bounds.is_busy() || self.autosave.as_ref().is_some_and(|a| a.is_busy())
+        self.pipeline.is_busy()
+            || self.bounds.is_busy()
+            || self.theory.is_busy()
+            || self.several.is_busy()
+            || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }
 

@@ -288,6 +288,8 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
             mark(ui, settings.show_found, "found", "Reflectors that the method believes in", Command::ToggleFound);
             let tooltip = "What each end can see, in the scene (V)";
             mark(ui, settings.show_fields_of_view, "views", tooltip, Command::ToggleFieldsOfView);
+            let tooltip = "What the formulas say of the selected reflector, over every map (T)";
+            mark(ui, settings.show_theory, "theory", tooltip, Command::ToggleTheory);
             first
         })
         .inner

@@ -1,6 +1,7 @@
 //! Lessons: predict first, then look, then change something until a condition holds.
 
 use crate::app::state::{Command, LessonRun};
+use crate::app::widgets::entry::button;
 use crate::lesson::question::Answer;
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Challenge, Guess, Lesson, Progress, Question};
@@ -16,6 +17,8 @@ pub struct Input<'a> {
     pub progress: &'a Progress,
     /// The map that is to be explained, where the step hides something.
     pub hidden: Option<TextureId>,
+    /// Whether lessons have the whole screen.
+    pub presenting: bool,
 }
 
 /// What was typed but not answered yet.
@@ -35,7 +38,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             ui.set_max_width(ui.available_width().min(620.0));
             match input.run {
-                None => list(ui, input.progress, memory, &mut asked),
+                None => {
+                    whole_screen(ui, input.presenting, &mut asked);
+                    list(ui, input.progress, memory, &mut asked);
+                }
                 Some(run) => {
                     let of = Some((run.id.clone(), run.step));
                     if memory.of != of {
@@ -46,7 +52,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
                             number: String::new(),
                         };
                     }
-                    step(ui, run, input.hidden, memory, &mut asked);
+                    step(ui, run, &input, memory, &mut asked);
                 }
             }
         });
@@ -105,7 +111,7 @@ fn done(progress: &Progress, id: &str, lesson: &Lesson) -> String {
     format!("{} of {} steps", done.count(), lesson.steps.len())
 }
 
-fn step(ui: &mut Ui, run: &LessonRun, hidden: Option<TextureId>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     let Some(step) = run.current() else { return };
     ui.heading(&run.lesson.title);
     ui.weak(format!("Step {} of {}", run.step + 1, run.lesson.steps.len()));
@@ -121,7 +127,7 @@ fn step(ui: &mut Ui, run: &LessonRun, hidden: Option<TextureId>, memory: &mut Me
     }
     if let Some(challenge) = step.challenge.as_ref().filter(|_| !run.is_predicting()) {
         ui.add_space(8.0);
-        requirements(ui, run, challenge, hidden, asked);
+        requirements(ui, run, challenge, input.hidden, asked);
     }
     ui.add_space(12.0);
     ui.separator();
@@ -137,7 +143,14 @@ fn step(ui: &mut Ui, run: &LessonRun, hidden: Option<TextureId>, memory: &mut Me
         if ui.button(leave).on_hover_text("Your scene and your settings come back").clicked() {
             asked.push(Command::LeaveLesson);
         }
+        whole_screen(ui, input.presenting, asked);
     });
+}
+
+/// For a projector.
+fn whole_screen(ui: &mut Ui, presenting: bool, asked: &mut Vec<Command>) {
+    let label = if presenting { "Back to the window" } else { "Whole screen" };
+    button(ui, label, Command::PresentLesson, true, asked);
 }
 
 fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec<Command>) {
@@ -246,7 +259,11 @@ mod tests {
 
     fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
         let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
-            asked.extend(show(ui, Input { run: run.as_ref(), progress: &Progress::default(), hidden: None }, memory));
+            asked.extend(show(
+                ui,
+                Input { run: run.as_ref(), progress: &Progress::default(), hidden: None, presenting: false },
+                memory,
+            ));
         };
         Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (run, Memory::default(), Vec::new()))
     }
@@ -257,6 +274,14 @@ mod tests {
         panel.get_by_label("Range and bandwidth").click();
         panel.step();
         assert_eq!(panel.state().2, [Command::BeginLesson(0)]);
+    }
+
+    #[test]
+    fn lessons_ask_for_the_whole_screen() {
+        let mut panel = harness(Some(run("range-and-bandwidth", 0)));
+        panel.get_by_label("Whole screen").click();
+        panel.step();
+        assert_eq!(panel.state().2, [Command::PresentLesson]);
     }
 
     #[test]

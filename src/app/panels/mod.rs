@@ -11,5 +11,6 @@ pub mod map;
 pub mod roc;
 pub mod run_time;
 pub mod scene;
+pub mod several;
 pub mod timing;
 pub mod training;

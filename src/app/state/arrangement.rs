@@ -63,6 +63,27 @@ fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<TileId>, share
 }
 
 impl Arrangement {
+    /// A lesson large, with the scene and the four maps that lessons ask about: for a projector.
+    pub fn of_a_lesson() -> Self {
+        let mut tiles = Tiles::default();
+        let mut tab = |panel| {
+            let pane = tiles.insert_pane(panel);
+            tiles.insert_tab_tile(vec![pane])
+        };
+        let [lesson, scene] = [Panel::Lesson, Panel::Scene].map(&mut tab);
+        let [in0, in1, target, output] =
+            [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output].map(|kind| tab(Panel::Map(kind)));
+        let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
+        let middle = column(&mut tiles, vec![target, in0], &[1.0, 1.0]);
+        let right = column(&mut tiles, vec![output, in1], &[1.0, 1.0]);
+        let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, middle, right], &[1.15, 1.0, 1.0]);
+        Arrangement {
+            tree: Tree::new(egui::Id::unique("lesson"), root, tiles),
+            maximised: None,
+            shown: BTreeSet::new(),
+        }
+    }
+
     /// An arrangement of nothing, to stand in for one that is being drawn.
     pub fn empty() -> Self {
         let tree = Tree::empty(egui::Id::unique("no panels"));
@@ -145,6 +166,9 @@ mod tests {
             let closed = panel == Panel::Timing || Panel::TOOLS.contains(&panel);
             assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
         }
+        let lesson = Arrangement::of_a_lesson();
+        assert!([Panel::Lesson, Panel::Scene, Panel::Map(MapKind::Target)].iter().all(|p| lesson.is_open(*p)));
+        assert!(!lesson.is_open(Panel::Controls) && !lesson.is_open(Panel::Cuts));
         arrangement.toggle(Panel::Timing);
         arrangement.toggle(Panel::Cuts);
         assert!(arrangement.is_open(Panel::Cuts), "it was behind another tab");

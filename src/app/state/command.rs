@@ -3,12 +3,13 @@
 use super::bounds_settings::BoundsSettings;
 use super::panel::Panel;
 use super::settings::Projection;
+use super::several::Several;
 use super::view::Cursor;
 use crate::interact::{Place, Snap};
 use crate::lesson::Guess;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, WindowFunction};
+use crate::radar::{Carrier, Radar, WindowFunction};
 use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use std::path::PathBuf;
@@ -79,6 +80,16 @@ pub enum Command {
     ExportMaps,
     /// Save the maps in this file.
     ExportMapsTo(PathBuf),
+    /// Ask where to record the next drag.
+    RecordDrag,
+    /// Record the next drag in this file.
+    RecordDragTo(PathBuf),
+    /// Ask where to draw the steps of the lesson.
+    DrawLesson,
+    /// Draw them beside this file, numbered.
+    DrawLessonTo(PathBuf),
+    /// Give up what is recorded or drawn.
+    StopRecording,
     /// Ask where to save the figures as CSV.
     ExportMetrics,
     /// Save the figures in this file.
@@ -93,6 +104,10 @@ pub enum Command {
     Cut,
     /// Copy the selected objects as TOML.
     Copy,
+    /// Copy scene, radar, view, method and lesson step as one line of text.
+    CopyShared,
+    /// Open such a text.
+    OpenShared(String),
     /// Ask the system for the clipboard and add its objects.
     Paste,
     /// Add the objects in this text.
@@ -146,6 +161,8 @@ pub enum Command {
     SetCarrier(Carrier),
     /// Which window both transforms use.
     SetWindow(WindowFunction),
+    /// This radar before the scene.
+    SetRadar(Box<Radar>),
     /// eta', the threshold of the target.
     SetTargetEta(f32),
     /// eta of the method of this name; its own where `None`.
@@ -162,6 +179,10 @@ pub enum Command {
     ToggleFound,
     /// Draw the ends' fields of view or not.
     ToggleFieldsOfView,
+    /// Draw over the maps what the formulas say of the selected reflector, or not.
+    ToggleTheory,
+    /// Which map is shown several times, and what differs.
+    SetSeveral(Box<Several>),
     /// Reconstruct with the method of this name.
     Method(&'static str),
     /// The next reconstruction method.
@@ -195,6 +216,8 @@ pub enum Command {
     Predict(Guess),
     /// Put a way to meet the challenge on screen.
     ShowSolution,
+    /// Give lessons the whole screen, for a projector, or end that.
+    PresentLesson,
     /// End the lesson; scene and settings come back.
     LeaveLesson,
     /// Somebody else learns now.

@@ -11,6 +11,7 @@ mod methods;
 mod notices;
 mod panel;
 mod settings;
+mod several;
 mod view;
 
 pub use arrangement::Arrangement;
@@ -23,6 +24,7 @@ pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, Panel};
 pub use settings::{Brightness, Projection, Settings};
+pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
@@ -57,6 +59,8 @@ pub struct State {
     pub guided: Guided,
     /// The lesson being taken.
     pub lesson: Option<LessonRun>,
+    /// Where the panels were before a lesson took the whole screen.
+    pub before_presenting: Option<Arrangement>,
     /// Who has answered what.
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
@@ -70,6 +74,39 @@ impl State {
     pub fn set_document(&mut self, label: &str, document: Document) {
         self.editor.open(label, document);
         self.scene_view.fit = true;
+    }
+
+    /// Whether maps are hidden, since a lesson asks for a prediction.
+    pub fn is_predicting(&self) -> bool {
+        self.lesson.as_ref().is_some_and(LessonRun::is_predicting)
+    }
+
+    /// Whether a lesson has the whole screen.
+    pub fn is_presenting(&self) -> bool {
+        self.before_presenting.is_some()
+    }
+
+    /// Gives lessons the whole screen, or ends that.
+    pub fn present_lesson(&mut self) {
+        match self.is_presenting() {
+            true => self.stop_presenting(),
+            false => {
+                let before = std::mem::replace(&mut self.arrangement, Arrangement::of_a_lesson());
+                self.before_presenting = Some(before);
+            }
+        }
+    }
+
+    /// Puts the panels back to where they were before a lesson had the whole screen.
+    pub fn stop_presenting(&mut self) {
+        if let Some(before) = self.before_presenting.take() {
+            self.arrangement = before;
+        }
+    }
+
+    /// Where the panels are to be at the next start.
+    pub fn kept_arrangement(&mut self) -> &mut Arrangement {
+        self.before_presenting.as_mut().unwrap_or(&mut self.arrangement)
     }
 
     /// The radar before the scene.

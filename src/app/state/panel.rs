@@ -32,12 +32,21 @@ pub enum Panel {
     Guide,
     /// Predict, look, change.
     Lesson,
+    /// One map for several values of a constant.
+    Several,
 }
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 6] =
-        [Panel::Guide, Panel::Lesson, Panel::Bounds, Panel::Evaluation, Panel::RunTime, Panel::Training];
+    pub const TOOLS: [Panel; 7] = [
+        Panel::Guide,
+        Panel::Lesson,
+        Panel::Bounds,
+        Panel::Evaluation,
+        Panel::RunTime,
+        Panel::Training,
+        Panel::Several,
+    ];
 
     /// All panels, in the order menus list them.
     pub fn all() -> Vec<Panel> {
@@ -64,6 +73,7 @@ impl Panel {
             Panel::Training => "Training",
             Panel::Guide => "Guide",
             Panel::Lesson => "Lessons",
+            Panel::Several => "Several at once",
         }
     }
 
@@ -82,6 +92,9 @@ impl Panel {
             Panel::RunTime => "Run time against error of the simulation on this machine",
             Panel::Training => "The loss of a network while it is trained",
             Panel::Guide => "What the maps show and why, with something to try",
+            Panel::Several => {
+                "One map for several values of a constant: window, bandwidth, elements, spacing, SNR, method"
+            }
             Panel::Lesson => "Questions to answer before the maps are shown, and things to bring about",
         }
     }

@@ -1,6 +1,7 @@
 //! What the user chose: kept from one start to the next. What the radar is belongs to the scene's file instead.
 
 use super::bounds_settings::BoundsSettings;
+use super::several::Several;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
@@ -61,12 +62,16 @@ pub struct Settings {
     pub show_found: bool,
     /// Whether the ends' fields of view are drawn in the scene.
     pub show_fields_of_view: bool,
+    /// Whether what the formulas say of the selected reflector is drawn over the maps.
+    pub show_theory: bool,
     /// Where dragged objects come to rest.
     pub snap: Snap,
     /// Light or dark.
     pub theme: Brightness,
     /// What the bounds are computed for.
     pub bounds: BoundsSettings,
+    /// Which map is shown several times, and what differs.
+    pub several: Several,
     /// Seed of the next random scene.
     pub random_seed: u64,
     /// Its number among the scenes of that seed.
@@ -83,7 +88,18 @@ impl Settings {
                 })*
             };
         }
-        take_back!(floor, normalisation, dynamic_range, snr, projection, method, show_reflectors);
+        take_back!(
+            floor,
+            seed,
+            target_eta,
+            method_eta,
+            normalisation,
+            dynamic_range,
+            snr,
+            projection,
+            method,
+            show_reflectors
+        );
     }
 }
 
@@ -103,9 +119,11 @@ impl Default for Settings {
             show_reflectors: false,
             show_found: false,
             show_fields_of_view: false,
+            show_theory: false,
             snap: Snap::Off,
             theme: Brightness::System,
             bounds: BoundsSettings::default(),
+            several: Several::default(),
             random_seed: 0,
             random_number: 0,
         }

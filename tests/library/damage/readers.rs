@@ -21,7 +21,7 @@ pub struct Reader {
 }
 
 pub fn all() -> Vec<Reader> {
-    let mut all = vec![scenes(), autosaves(), archives(), recordings(), recorded_data(), profiles()];
+    let mut all = vec![scenes(), autosaves(), archives(), recordings(), recorded_data(), profiles(), shared()];
     #[cfg(feature = "network")]
     all.extend(networks::all());
     all
@@ -74,6 +74,37 @@ fn autosaves() -> Reader {
             file::from_toml_beside::<toml::Table>(text, "document").map(|_| ()).map_err(|e| e.to_string())
         },
         bound: |length| (1 << 20) + 1024 * length,
+        slow: 1,
+    }
+}
+
+fn shared() -> Reader {
+    use apertura::share::{Part, Shared, View};
+    let view = View {
+        floor: apertura::signal::Floor::Thesis,
+        seed: 3,
+        normalisation: apertura::maps::Normalisation::MinMax,
+        colours: apertura::picture::ColourMap::Grey,
+        cartesian: false,
+        range_angle_part: Part::default(),
+        cartesian_part: Part::default(),
+        target_eta: 0.9,
+        eta: None,
+        method: "live".to_owned(),
+        marks: false,
+        theory: true,
+        lesson: None,
+    };
+    let write = |file| Shared { file, view: view.clone() }.to_text().unwrap().into_bytes();
+    Reader {
+        name: "shared",
+        files: vec![write(scene()), write(SceneFile::default())],
+        read: |_, bytes| {
+            let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
+            Shared::from_text(text).map(|_| ()).map_err(|e| e.to_string())
+        },
+        // What a text may unpack to.
+        bound: |length| (12 << 20) + 1024 * length,
         slow: 1,
     }
 }

@@ -4,6 +4,7 @@ use crate::app::state::{Cursor, MapView, Projection};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{Polar, Radar};
 use crate::scene::Reflector;
+use crate::theory::Cell;
 use eframe::egui::{Pos2, Rect, pos2};
 
 /// Where on screen a map is, and which part of it.
@@ -30,6 +31,12 @@ impl Frame<'_> {
     /// Where it would be if its direction were that of the column.
     pub fn true_direction(&self, reflector: &Reflector) -> Pos2 {
         self.at(self.radar.polar_of(reflector.x_metres - self.centre_x_metres, reflector.y_metres))
+    }
+
+    /// Where a place between the map's cells is.
+    pub fn cell(&self, cell: Cell) -> Pos2 {
+        let range_metres = self.radar.range_of_bin_metres(cell.bin.rem_euclid(self.radar.samples as f64));
+        self.at(Polar { range_metres, cos_theta: self.radar.cos_of_column(cell.column) })
     }
 
     /// Where a cursor is.

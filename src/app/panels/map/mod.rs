@@ -3,8 +3,10 @@
 mod colour_bar;
 mod frame;
 mod overlay;
+mod theory;
 
 pub use frame::{Cells, Marks};
+pub use theory::Theory;
 
 use crate::app::state::{Command, Cursor, MapKind, MapView, Panel, Projection};
 use crate::app::widgets::axes::{self, Axis};
@@ -35,6 +37,8 @@ pub struct Input<'a> {
     pub cells: Option<Cells<'a>>,
     /// What is drawn over it.
     pub marks: Marks<'a>,
+    /// What the formulas say of a reflector, if that is drawn over it.
+    pub theory: Option<Theory<'a>>,
     /// Where the pointer is, in whichever panel.
     pub cursor: Option<Cursor>,
     /// Why there is no picture.
@@ -97,6 +101,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
     draw_axes(ui, &painter, frame);
     if input.veil.is_none() {
         overlay::marks(&inner, frame, &input.marks, response.hover_pos());
+        input.theory.iter().for_each(|theory| theory.draw(&inner, frame));
     }
     if let Some(pos) = response.hover_pos() {
         let under = cursor_at(input.radar, input.projection, view.at(rect, pos));
@@ -107,7 +112,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
         asked.extend(under.map(Command::Hover));
     }
     if let Some(cursor) = &input.cursor {
-        overlay::cursor(&inner, frame, cursor, input.cells.as_ref());
+        overlay::cursor(&inner, frame, cursor, input.cells.as_ref().filter(|_| input.veil.is_none()));
     }
     if input.stale {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
@@ -259,6 +264,7 @@ fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
         Command::ToggleProjection,
         Command::ResetMaps,
         Command::ToggleReflectors,
+        Command::ToggleTheory,
         Command::ClosePanel(Panel::Map(kind)),
     ] {
         entry(ui, command, true, asked);
@@ -282,6 +288,7 @@ mod tests {
             stale: false,
             cells: None,
             marks: Marks { reflectors: &[], found: &[] },
+            theory: None,
             cursor: None,
             error,
             veil: None,

@@ -1,0 +1,122 @@
+//! What is on screen as a line of text, and back.
+
+use super::lessons;
+use crate::app::jobs::Jobs;
+use crate::app::state::{Command, MapView, Projection, State};
+use crate::interact::Document;
+use crate::lesson::shipped;
+use crate::share::{LessonPlace, Part, ShareError, Shared, View, is_shared};
+use eframe::egui::pos2;
+
+/// Opens a text that was shared; hands any other command on.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+    match command {
+        Command::PasteText(text) if is_shared(&text) => open(state, jobs, &text),
+        Command::OpenShared(text) => open(state, jobs, &text),
+        other => return Some(other),
+    }
+    None
+}
+
+/// The text of what is on screen; says why where there can be none.
+pub fn text(state: &mut State) -> Option<String> {
+    match of(state) {
+        Ok(text) => {
+            let letters = text.len();
+            state.notices.info(format!("Copied all of this as {letters} letters: paste them into another apertura."));
+            Some(text)
+        }
+        Err(error) => {
+            state.notices.error(format!("Nothing was copied: {error}"));
+            None
+        }
+    }
+}
+
+/// What is on screen as text.
+///
+/// # Errors
+/// [`ShareError`] where it can't be one.
+pub fn of(state: &State) -> Result<String, ShareError> {
+    share(state).to_text()
+}
+
+fn share(state: &State) -> Shared {
+    let settings = &state.settings;
+    let method = state.method().map_or_else(String::new, |m| m.name().to_owned());
+    let is_shipped = |id: &str| shipped::ALL.iter().any(|s| s.id == id);
+    let lesson = state.lesson.as_ref().filter(|run| is_shipped(&run.id));
+    let view = View {
+        floor: settings.floor,
+        seed: settings.seed,
+        normalisation: settings.normalisation,
+        colours: settings.colours,
+        cartesian: settings.projection == Projection::Cartesian,
+        range_angle_part: part(state.map_views.range_angle),
+        cartesian_part: part(state.map_views.cartesian),
+        target_eta: settings.target_eta,
+        eta: settings.method_eta.get(&method).copied(),
+        method,
+        marks: settings.show_reflectors,
+        theory: settings.show_theory,
+        lesson: lesson.map(|run| LessonPlace { id: run.id.clone(), step: run.step + 1 }),
+    };
+    Shared { file: state.editor.document().to_file(), view }
+}
+
+fn part(view: MapView) -> Part {
+    let [left, bottom, right, top] =
+        [view.low.x, view.low.y, view.high.x, view.high.y].map(|edge| edge.clamp(0.0, 1.0));
+    Part { left, bottom, right, top }
+}
+
+fn open(state: &mut State, jobs: &mut Jobs, text: &str) {
+    let shared = match Shared::from_text(text) {
+        Ok(shared) => shared,
+        Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
+    };
+    let Shared { file, view } = shared;
+    if let Some(place) = &view.lesson {
+        let index = shipped::ALL.iter().position(|lesson| lesson.id == place.id);
+        match index {
+            Some(index) => {
+                lessons::apply(state, jobs, Command::BeginLesson(index));
+                lessons::apply(state, jobs, Command::LessonStep(place.step.saturating_sub(1)));
+            }
+            None => {
+                state.notices.error(format!("There is no lesson \"{}\" here; the scene was opened alone.", place.id))
+            }
+        }
+    }
+    let before = state.setup();
+    state.set_document("shared scene", Document::made(file));
+    look(state, view);
+    let after = state.setup();
+    // A lesson takes everything back when it is left.
+    if state.lesson.is_none() {
+        state.guided.push(before, after);
+    }
+}
+
+fn look(state: &mut State, view: View) {
+    if !state.methods.all.iter().any(|m| m.name() == view.method) {
+        state.notices.info(format!("There is no method \"{}\" here; another one is shown.", view.method));
+    }
+    let seen = |part: Part| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };
+    state.map_views.range_angle = seen(view.range_angle_part);
+    state.map_views.cartesian = seen(view.cartesian_part);
+    let settings = &mut state.settings;
+    settings.floor = view.floor;
+    settings.seed = view.seed;
+    settings.normalisation = view.normalisation;
+    settings.colours = view.colours;
+    settings.projection = if view.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
+    settings.target_eta = view.target_eta;
+    match view.eta {
+        Some(eta) => _ = settings.method_eta.insert(view.method.clone(), eta),
+        None => _ = settings.method_eta.remove(&view.method),
+    }
+    settings.method = view.method;
+    settings.show_reflectors = view.marks;
+    settings.show_theory = view.theory;
+}

@@ -1,0 +1,240 @@
+//! One map several times, off the UI thread: the latest request wins, and each map is shown as soon as it is there.
+
+use super::painter::{Paint, Painter, Subject};
+use crate::app::state::{MapKind, Panel, Projection, State, Variant};
+use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
+use crate::picture::ColourMap;
+use crate::radar::End;
+use crate::reconstruct::Request as MethodRequest;
+use crate::scene::Scene;
+use crate::signal;
+use crate::task::{Reply, Task, Worker};
+use eframe::egui::ColorImage;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+
+/// Maps of an earlier request are given up after this, unless something is dragged: then all of them are finished, so that something moves.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// What is to be made.
+#[derive(Clone)]
+struct Request {
+    number: u64,
+    scene: Arc<Scene>,
+    variants: Vec<Variant>,
+    map: MapKind,
+    seed: u64,
+    normalisation: Normalisation,
+    colours: ColourMap,
+    projection: Projection,
+}
+
+impl Request {
+    fn same(&self, other: &Request) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.variants.len() == other.variants.len()
+            && self.variants.iter().zip(&other.variants).all(|(a, b)| a.same(b))
+            && (self.map, self.seed, self.colours, self.projection)
+                == (other.map, other.seed, other.colours, other.projection)
+            && self.normalisation == other.normalisation
+    }
+}
+
+/// One of the maps, or why there is none.
+type Made = Result<Arc<ColorImage>, String>;
+
+/// A map that is finished: of which request, for which value, and what it is.
+struct Arrival {
+    request: u64,
+    label: String,
+    made: Made,
+}
+
+/// One map on screen.
+#[derive(Clone)]
+pub struct Small {
+    /// What is different about it.
+    pub variant: Variant,
+    /// Its picture, the latest there is, or why there is none.
+    pub made: Option<Made>,
+    /// Whether the picture is of the latest request.
+    pub is_current: bool,
+}
+
+/// The worker, and the maps on screen.
+pub struct SeveralMaps {
+    worker: Worker<Request, ()>,
+    arriving: Receiver<Arrival>,
+    asked: Option<Request>,
+    shown: Vec<Small>,
+    requests: u64,
+}
+
+impl SeveralMaps {
+    /// Starts the worker, which waits; `wake` is called from its thread.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn start(wake: impl Fn() + Clone + Send + 'static) -> std::io::Result<SeveralMaps> {
+        let (done, arriving) = channel();
+        let each = wake.clone();
+        let work = move |_: &mut (), request: Request, task: &Task| make(&request, task, &done, &each);
+        let worker = Worker::spawn("several maps", || (), work, wake)?;
+        Ok(SeveralMaps { worker, arriving, asked: None, shown: Vec::new(), requests: 0 })
+    }
+
+    /// Asks for the maps of the panel, if they changed; called while it is on screen.
+    pub fn ask(&mut self, state: &State) {
+        if !state.arrangement.shown().contains(&Panel::Several) {
+            return;
+        }
+        let settings = &state.settings;
+        let variants = settings.several.variants(state.radar(), settings.floor, state.method(), &state.methods.all);
+        let request = Request {
+            number: self.requests + 1,
+            scene: state.editor.scene().clone(),
+            variants,
+            map: settings.several.map,
+            seed: settings.seed,
+            normalisation: settings.normalisation,
+            colours: settings.colours,
+            projection: settings.projection,
+        };
+        if self.asked.as_ref().is_some_and(|asked| asked.same(&request)) {
+            return;
+        }
+        self.requests += 1;
+        if state.editor.dragged().is_none() {
+            self.worker.cancel_older_than(PATIENCE);
+        }
+        self.keep_pictures(&request.variants);
+        self.worker.request(request.clone());
+        self.asked = Some(request);
+    }
+
+    /// Nothing that is shown is taken away before its successor is there, as long as it stands for the same value.
+    fn keep_pictures(&mut self, variants: &[Variant]) {
+        let old = std::mem::take(&mut self.shown);
+        let made =
+            |variant: &Variant| old.iter().find(|s| s.variant.label == variant.label).and_then(|s| s.made.clone());
+        self.shown = variants
+            .iter()
+            .map(|variant| Small { made: made(variant), variant: variant.clone(), is_current: false })
+            .collect();
+    }
+
+    /// The maps.
+    pub fn shown(&self) -> &[Small] {
+        &self.shown
+    }
+
+    /// Whether it computes.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy()
+    }
+
+    /// Takes in what is finished. Returns a message for the user.
+    pub fn poll(&mut self) -> Option<String> {
+        for Arrival { request, label, made } in self.arriving.try_iter() {
+            let latest = self.asked.as_ref().is_some_and(|asked| asked.number == request);
+            // While something is dragged, maps of the last but one request still show the movement.
+            let of_value = |small: &&mut Small| small.variant.label == label && (latest || !small.is_current);
+            if let Some(small) = self.shown.iter_mut().find(of_value) {
+                small.made = Some(made);
+                small.is_current = latest;
+            }
+        }
+        let panicked = self.worker.replies().into_iter().find_map(|reply| match reply {
+            Reply::Panicked { message, .. } => Some(message),
+            Reply::Done { .. } => None,
+        })?;
+        Some(format!("Computing several maps failed ({panicked}). Change the scene or the values to try again."))
+    }
+}
+
+fn make(request: &Request, task: &Task, done: &Sender<Arrival>, wake: &impl Fn()) {
+    for variant in &request.variants {
+        if task.is_cancelled() {
+            return;
+        }
+        let made = map(request, variant, task).map(|map| picture(request, variant, map));
+        if task.is_cancelled() {
+            return;
+        }
+        // The window may be gone by now.
+        let _closed = done.send(Arrival { request: request.number, label: variant.label.clone(), made });
+        wake();
+    }
+}
+
+fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMap, String> {
+    let Variant { radar, floor, method, .. } = variant;
+    let signal = signal::simulate(radar, &request.scene, *floor, request.seed).map_err(|e| e.to_string())?;
+    let normalisation = request.normalisation;
+    let aperture = match request.map {
+        MapKind::Input0 => Aperture::End(End::First),
+        MapKind::Input1 => Aperture::End(End::Last),
+        MapKind::Output => {
+            let method = method.as_ref().ok_or("there is no method")?;
+            let wanted = MethodRequest { floor: *floor, normalisation, task: task.clone(), ..MethodRequest::default() };
+            let made = method.reconstruct(radar, &signal.two_ends(radar), &wanted);
+            return made.map(|made| made.lambda).map_err(|e| e.to_string());
+        }
+        _ => Aperture::Full,
+    };
+    let profiles = range_transform(radar, &signal);
+    Ok(angle_transform(radar, &profiles, aperture).log_magnitude().normalise(normalisation))
+}
+
+fn picture(request: &Request, variant: &Variant, map: RangeAngleMap) -> Arc<ColorImage> {
+    let paint = Paint::Lambda(request.colours);
+    let subject = Subject { map: Arc::new(map), minus: None, paint, projection: request.projection };
+    Painter::default().paint(&variant.radar, request.map, &subject).image
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::{Parameter, Several};
+    use crate::radar::Radar;
+    use crate::signal::Floor;
+
+    fn request(parameter: Parameter, number: u64) -> Request {
+        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let several = Several::default().with(parameter, &radar);
+        Request {
+            number,
+            scene: Arc::new(Scene::of_points([(0.3, 1.2)])),
+            variants: several.variants(&radar, Floor::Exact, None, &[]),
+            map: several.map,
+            seed: 0,
+            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
+            colours: ColourMap::Grey,
+            projection: Projection::RangeAngle,
+        }
+    }
+
+    #[test]
+    fn every_value_has_a_picture_of_its_own() {
+        for parameter in
+            [Parameter::Window, Parameter::Bandwidth, Parameter::Spacing, Parameter::Snr, Parameter::EndElements]
+        {
+            let (done, arriving) = channel();
+            let request = request(parameter, 1);
+            make(&request, &Task::default(), &done, &|| ());
+            let images: Vec<Arc<ColorImage>> = arriving.try_iter().map(|a| a.made.unwrap()).collect();
+            assert_eq!(images.len(), request.variants.len());
+            assert!(images.windows(2).all(|pair| pair[0].pixels != pair[1].pixels), "{parameter:?}");
+        }
+    }
+
+    #[test]
+    fn a_cancelled_request_makes_nothing_more() {
+        let (done, arriving) = channel();
+        let task = Task::default();
+        task.cancel();
+        make(&request(Parameter::Window, 1), &task, &done, &|| ());
+        assert_eq!(arriving.try_iter().count(), 0);
+    }
+}

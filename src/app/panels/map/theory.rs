@@ -1,0 +1,303 @@
+//! What the formulas say of one reflector, drawn over a map with the numbers in it.
+
+use super::frame::Frame;
+use crate::app::widgets::theme::MARK_EDGE;
+use crate::radar::Decibels;
+use crate::scene::Reflector;
+use crate::theory::overlay::STREAK;
+use crate::theory::{Cell, Ellipse, Overlay, blob_cell, fold_period_cos};
+use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub struct Theory<'a> {
+    /// What the formulas say of the reflector on this map.
+    pub overlay: &'a Overlay,
+    /// The reflector.
+    pub reflector: Reflector,
+    /// How well its place can be known, where that is to be drawn.
+    pub ellipse: Option<Ellipse>,
+    /// Who listens for that, in words.
+    pub listening: &'static str,
+    /// At which signal-to-noise ratio of a sample.
+    pub snr: Decibels,
+    /// Whether the comb of the two ends belongs on the map.
+    pub comb: bool,
+}
+
+/// Colours of what is drawn, and of the line that tells its numbers.
+const BIN: Color32 = Color32::WHITE;
+const BEAM: Color32 = Color32::from_rgb(120, 220, 255);
+const LOBE: Color32 = Color32::from_rgb(255, 224, 100);
+const DRAWN_OUT: Color32 = Color32::from_rgb(255, 170, 90);
+const COMB: Color32 = Color32::from_rgb(255, 140, 220);
+const BOUND: Color32 = Color32::from_rgb(150, 255, 160);
+const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
+
+/// Length of ticks, points.
+const TICK: f32 = 7.0;
+/// The ellipse is drawn larger than this, points.
+const ELLIPSE: f32 = 9.0;
+/// Least size of a map that has room for the numbers.
+const ROOM: Vec2 = vec2(250.0, 130.0);
+
+impl Theory<'_> {
+    /// Draws it.
+    pub fn draw(&self, painter: &Painter, frame: Frame<'_>) {
+        let Overlay { blob, streak, teeth, .. } = self.overlay;
+        let at =
+            |bin: f64, column: f64| frame.cell(Cell { bin: blob.peak.bin + bin, column: blob.peak.column + column });
+        let path: Vec<Pos2> = streak.path.iter().map(|cell| frame.cell(*cell)).collect();
+        line(painter, &path, frame.rect, DRAWN_OUT);
+        let [low, high] = streak.columns.map(|columns| columns as f64);
+        let across: Vec<Pos2> = (0..=24).map(|i| at(0.0, -low + (low + high) * f64::from(i) / 24.0)).collect();
+        let below: Vec<Pos2> = across.iter().map(|p| *p + vec2(0.0, 2.0 * TICK)).collect();
+        line(painter, &below, frame.rect, DRAWN_OUT);
+        for end in [below.first(), below.last()].into_iter().flatten() {
+            tick(painter, *end, DRAWN_OUT);
+        }
+        for column in lobe_columns(self.overlay) {
+            tick(painter, at(0.0, column), LOBE);
+        }
+        line(painter, &self.half_power(frame), frame.rect, BEAM);
+        if self.comb {
+            teeth.iter().for_each(|tooth| tick(painter, frame.cell(*tooth) + vec2(0.0, TICK), COMB));
+        }
+        if let Some((outline, _)) = self.outline(frame) {
+            line(painter, &outline, frame.rect, BOUND);
+        }
+        self.tell(painter, frame);
+    }
+
+    /// The half-power widths as a box around the peak, closed.
+    fn half_power(&self, frame: Frame<'_>) -> Vec<Pos2> {
+        let blob = &self.overlay.blob;
+        let ([left, right], [near, far]) = (blob.columns, blob.bins);
+        let corners = [(-near, -left), (-near, right), (far, right), (far, -left), (-near, -left)];
+        let cell = |(bin, column): (f64, f64)| Cell { bin: blob.peak.bin + bin, column: blob.peak.column + column };
+        corners.map(|corner| frame.cell(cell(corner))).to_vec()
+    }
+
+    /// The ellipse of the bound around the place the formulas give the reflector, and how many times larger than it is.
+    fn outline(&self, frame: Frame<'_>) -> Option<(Vec<Pos2>, f64)> {
+        let ellipse = self.ellipse?;
+        let Reflector { x_metres, y_metres, .. } = self.reflector;
+        let aperture = crate::maps::Aperture::Full;
+        let cell = |x: f64, y: f64| frame.cell(blob_cell(frame.radar, x, y, aperture));
+        let outline = |times: f64| -> Vec<Pos2> {
+            let points = ellipse.outline(48).into_iter().map(|[x, y]| cell(x_metres + times * x, y_metres + times * y));
+            let mut points: Vec<Pos2> = points.collect();
+            points.extend(points.first().copied());
+            points
+        };
+        let middle = cell(x_metres, y_metres);
+        let reach = |times: f64| outline(times).iter().map(|p| p.distance(middle)).fold(0.0f32, f32::max);
+        let times = (0..=9).map(|i| 10f64.powi(i)).find(|times| reach(*times) > ELLIPSE)?;
+        Some((outline(times), times))
+    }
+
+    /// The numbers, line by line with their colours.
+    fn lines(&self, frame: Frame<'_>) -> Vec<(Color32, String)> {
+        let radar = frame.radar;
+        let Overlay { place, blob, streak, .. } = self.overlay;
+        let bin_metres = radar.range_resolution_metres();
+        let columns = blob.columns[0] + blob.columns[1];
+        let column_cos = fold_period_cos(radar) / radar.elements as f64;
+        let mut lines = vec![
+            (BIN, format!("range bin c/2B {}", length(bin_metres))),
+            (
+                BEAM,
+                format!(
+                    "half power {} × {columns:.1} columns (cos θ {:.4})",
+                    length((blob.bins[0] + blob.bins[1]) * bin_metres),
+                    columns * column_cos
+                ),
+            ),
+        ];
+        if let Some(lobe) = blob.side_lobes.iter().flatten().max_by(|a, b| a.level.0.total_cmp(&b.level.0)) {
+            lines.push((LOBE, format!("first side lobe {:.1} dB, {:.1} columns off", lobe.level.0, lobe.columns)));
+        }
+        let [across, along] = [streak.columns, streak.bins].map(|[low, high]| low + high + 1);
+        lines.push((DRAWN_OUT, format!("drawn out over {across} columns, {along} bins at −{:.0} dB", STREAK.0)));
+        if self.comb {
+            let spacing = crate::theory::comb::tooth_spacing_cos(radar, *place) / column_cos;
+            lines.push((COMB, format!("comb of the two ends: a tooth every {spacing:.2} columns")));
+        }
+        lines.push((ALIAS, self.aliases(frame)));
+        if let (Some(ellipse), Some((_, times))) = (self.ellipse, self.outline(frame)) {
+            let (minor, major) = (length(ellipse.minor_metres), length(ellipse.major_metres));
+            let shown = if times > 1.0 { format!(", drawn × {times:.0}") } else { String::new() };
+            lines.push((BOUND, format!("σ ≥ {minor} × {major} for {} at {:.0} dB{shown}", self.listening, self.snr.0)));
+        }
+        lines
+    }
+
+    /// What else shows in the same cell.
+    fn aliases(&self, frame: Frame<'_>) -> String {
+        let Overlay { place, fold_partners, wrap_partners_metres, .. } = self.overlay;
+        let max = frame.radar.max_range_metres();
+        let wrapped =
+            if place.range_metres >= max { format!(" (stands at {:.1} m)", place.range_metres) } else { String::new() };
+        let ranges: Vec<String> = wrap_partners_metres.iter().map(|r| format!("{r:.1}")).collect();
+        let folds: Vec<String> = fold_partners.iter().map(|cos| format!("{cos:+.2}")).collect();
+        let period = fold_period_cos(frame.radar);
+        let folds = match folds.is_empty() {
+            true => format!("no grating lobe (every {period:.2} in cos θ)"),
+            false => format!("grating lobes cos θ {} (every {period:.2})", folds.join(", ")),
+        };
+        format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
+    }
+
+    /// Writes the numbers in the corner that is farthest from the blob.
+    fn tell(&self, painter: &Painter, frame: Frame<'_>) {
+        let rect = frame.rect;
+        if rect.width() < ROOM.x || rect.height() < ROOM.y {
+            return;
+        }
+        let font = FontId::proportional(10.5);
+        let lines = self.lines(frame);
+        let galleys: Vec<_> = lines
+            .into_iter()
+            .map(|(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0))
+            .collect();
+        let size = galleys.iter().fold(Vec2::ZERO, |s, g| vec2(s.x.max(g.size().x), s.y + g.size().y));
+        let patch = free_corner(rect, frame.cell(self.overlay.blob.peak), size + vec2(10.0, 6.0));
+        painter.rect_filled(patch, 3.0, Color32::from_black_alpha(190));
+        let mut at = patch.min + vec2(5.0, 3.0);
+        for galley in galleys {
+            let height = galley.size().y;
+            painter.galley(at, galley, Color32::WHITE);
+            at.y += height;
+        }
+    }
+}
+
+/// Columns from the peak to the first side lobes, signed.
+fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
+    let signed = [-1.0, 1.0].into_iter().zip(overlay.blob.side_lobes);
+    signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
+}
+
+/// A box of `size` in the corner of `rect` that is farthest from `from`, clear of the value under the pointer at the top.
+fn free_corner(rect: Rect, from: Pos2, size: Vec2) -> Rect {
+    let left = from.x > rect.center().x;
+    let x = if left { rect.left() + 6.0 } else { rect.right() - 6.0 - size.x };
+    let top = from.y > rect.center().y;
+    let y = if top { rect.top() + 28.0 } else { rect.bottom() - 6.0 - size.y };
+    Rect::from_min_size(pos2(x, y), size)
+}
+
+/// A length with the unit that suits it.
+fn length(metres: f64) -> String {
+    match metres {
+        m if m >= 1.0 => format!("{m:.2} m"),
+        m if m >= 0.01 => format!("{:.1} cm", m * 100.0),
+        m if m >= 1e-4 => format!("{:.2} mm", m * 1e3),
+        m => format!("{:.2} µm", m * 1e6),
+    }
+}
+
+/// A line over any picture; it doesn't cross the map where its places wrap around.
+fn line(painter: &Painter, points: &[Pos2], rect: Rect, colour: Color32) {
+    let whole = points
+        .windows(2)
+        .filter(|p| (p[0].x - p[1].x).abs() < rect.width() / 2.0 && (p[0].y - p[1].y).abs() < rect.height() / 2.0);
+    let segments: Vec<[Pos2; 2]> = whole.map(|p| [p[0], p[1]]).collect();
+    for (width, ink) in [(2.6, MARK_EDGE), (1.2, colour)] {
+        segments.iter().for_each(|segment| _ = painter.line_segment(*segment, Stroke::new(width, ink)));
+    }
+}
+
+fn tick(painter: &Painter, at: Pos2, colour: Color32) {
+    for (width, ink) in [(2.6, MARK_EDGE), (1.2, colour)] {
+        painter.vline(at.x, at.y - TICK..=at.y + TICK, Stroke::new(width, ink));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::{MapView, Projection};
+    use crate::maps::{Aperture, angle_transform, range_transform};
+    use crate::radar::Radar;
+    use crate::signal::exact;
+
+    const RECT: Rect = Rect { min: Pos2::ZERO, max: pos2(1280.0, 640.0) };
+
+    fn frame(radar: &Radar) -> Frame<'_> {
+        let view = MapView::default();
+        Frame { rect: RECT, view, radar, projection: Projection::RangeAngle, centre_x_metres: 0.0 }
+    }
+
+    fn theory<'a>(overlay: &'a Overlay, reflector: Reflector) -> Theory<'a> {
+        let ellipse = Some(Ellipse { major_metres: 0.003, minor_metres: 0.0002, angle_radians: 0.3 });
+        Theory { overlay, reflector, ellipse, listening: "the two ends", snr: Decibels(20.0), comb: true }
+    }
+
+    /// On screen, the box of the half-power widths holds the cells of the simulated map that are above half power in the peak's row and
+    /// column, and no others.
+    #[test]
+    fn the_box_is_drawn_around_what_the_map_has_above_half_power() {
+        for (x_metres, y_metres) in [(0.6, 2.6), (-2.0, 3.0), (1.0, 9.0)] {
+            let radar = Radar { elements: 128, samples: 64, ..Radar::default() };
+            let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
+            let profiles = range_transform(&radar, &exact::beat_signal(&radar, &[reflector]));
+            let map = angle_transform(&radar, &profiles, Aperture::Full).cells.mapv(|v| v.norm());
+            let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+            let frame = frame(&radar);
+            let drawn = theory(&overlay, reflector).half_power(frame);
+            let within = Rect::from_points(&drawn);
+            let ((bin, column), peak) = map.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+            let pixel = |bin: usize, column: usize| {
+                pos2((column as f32 + 0.5) * 10.0, RECT.bottom() - (bin as f32 + 0.5) * 10.0)
+            };
+            // Half a cell of ten points is the bar.
+            assert!(within.expand(5.0).contains(pixel(bin, column)), "the peak");
+            for side in [-1, 1] {
+                let columns = (1..40).map(|i| (column as i64 + side * i).rem_euclid(128) as usize);
+                // A streak ripples beyond its first fall to half power.
+                for c in columns {
+                    let (part, at) = (map[[bin, c]] / peak, pixel(bin, c));
+                    assert!(part < 0.75 || within.expand(5.0).contains(at), "column {c} at ({x_metres}, {y_metres})");
+                    if part < 0.65 {
+                        assert!(!within.shrink(5.0).contains(at), "column {c} at ({x_metres}, {y_metres})");
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_numbers_are_those_of_table_3_1() {
+        let radar = Radar::default();
+        let reflector = Reflector { x_metres: 0.0, y_metres: 20.0, reflectivity: 1.0 };
+        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        let text: Vec<String> = theory(&overlay, reflector).lines(frame(&radar)).into_iter().map(|(_, t)| t).collect();
+        let all = text.join("\n");
+        for part in [
+            "c/2B 7.5 cm",
+            "at −20 dB",
+            "every 1.04 columns",
+            "58.4",
+            "no grating lobe (every 2.05",
+            "at 20 dB, drawn × ",
+        ] {
+            assert!(all.contains(part), "{part} in:\n{all}");
+        }
+    }
+
+    #[test]
+    fn the_ellipse_is_large_enough_to_be_seen_and_told_how_much() {
+        let radar = Radar::default();
+        let reflector = Reflector { x_metres: 3.0, y_metres: 20.0, reflectivity: 1.0 };
+        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        let theory = theory(&overlay, reflector);
+        let (outline, times) = theory.outline(frame(&radar)).unwrap();
+        let size = Rect::from_points(&outline).size();
+        assert!(size.max_elem() > ELLIPSE && size.max_elem() < 400.0, "{size:?}");
+        assert!(times >= 10.0 && times.log10().fract() == 0.0, "{times}");
+        let corner = free_corner(RECT, outline[0], vec2(300.0, 90.0));
+        assert!(RECT.contains_rect(corner) && !corner.contains(outline[0]));
+    }
+}

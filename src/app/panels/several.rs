@@ -1,0 +1,263 @@
+//! One map several times, side by side: what one constant does to it.
+
+use crate::app::jobs::Small;
+use crate::app::state::{Command, MapKind, Parameter, Several, Variant};
+use crate::app::widgets::textures::Texture;
+use crate::radar::Radar;
+use crate::reconstruct::Reconstructor;
+use eframe::egui;
+use eframe::egui::{Align2, Color32, ComboBox, DragValue, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
+use std::sync::Arc;
+
+/// What is shown.
+pub struct Input<'a> {
+    /// What was chosen.
+    pub several: &'a Several,
+    /// The radar before the scene.
+    pub radar: &'a Radar,
+    /// Every method.
+    pub methods: &'a [Arc<dyn Reconstructor>],
+    /// The maps.
+    pub maps: &'a [Small],
+    /// Whether pictures are hidden: a prediction is asked for.
+    pub veiled: bool,
+}
+
+/// Pictures on the graphics card.
+#[derive(Default)]
+pub struct Memory {
+    textures: Vec<Texture>,
+}
+
+/// Height of a map's name.
+const NAME: f32 = 18.0;
+
+/// Draws the panel. A click on a map puts its value before the scene.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 6)).show(ui, |ui| {
+        choices(ui, &input, &mut asked);
+        if input.veiled {
+            ui.weak("Hidden until you have predicted.");
+            return;
+        }
+        if input.maps.is_empty() {
+            ui.weak("No radar can have these values.");
+            return;
+        }
+        memory.textures.resize_with(input.maps.len(), Texture::default);
+        let area = ui.available_rect_before_wrap();
+        let (columns, size) = grid(input.maps.len(), area.size());
+        for (index, (small, texture)) in input.maps.iter().zip(&mut memory.textures).enumerate() {
+            let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
+            let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
+            tile(ui, place, small, texture, input.several.parameter, &mut asked);
+        }
+    });
+    asked
+}
+
+/// How many columns make the largest maps twice as wide as high, and the size of each.
+fn grid(count: usize, area: Vec2) -> (usize, Vec2) {
+    let size = |columns: usize| vec2(area.x / columns as f32, area.y / count.div_ceil(columns) as f32);
+    let width = |columns: usize| size(columns).x.min(2.0 * (size(columns).y - NAME));
+    let columns = (1..=count.max(1)).max_by(|a, b| width(*a).total_cmp(&width(*b))).unwrap_or(1);
+    (columns, size(columns))
+}
+
+fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let mut several = input.several.clone();
+    ui.horizontal_wrapped(|ui| {
+        let label = ui.label("Compare");
+        let combo = ComboBox::from_id_salt("parameter").selected_text(several.parameter.name()).show_ui(ui, |ui| {
+            for parameter in Parameter::ALL {
+                if ui.selectable_label(several.parameter == parameter, parameter.name()).clicked() {
+                    several = several.with(parameter, input.radar);
+                }
+            }
+        });
+        combo.response.labelled_by(label.id);
+        let label = ui.label("in");
+        let combo = ComboBox::from_id_salt("map").selected_text(several.map.title()).show_ui(ui, |ui| {
+            for map in [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output] {
+                ui.selectable_value(&mut several.map, map, map.title()).on_hover_text(map.describe());
+            }
+        });
+        combo.response.labelled_by(label.id);
+        match several.parameter.unit() {
+            Some(unit) => numbers(ui, &mut several, unit),
+            None if several.parameter == Parameter::Method => methods(ui, &mut several, input.methods),
+            None => {}
+        }
+    });
+    if several != *input.several {
+        asked.push(Command::SetSeveral(Box::new(several)));
+    }
+}
+
+fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
+    let speed = ((several.high - several.low).abs() / 200.0).max(1e-3);
+    let value = |ui: &mut Ui, name: &str, value: &mut f64| {
+        let label = ui.label(name);
+        let field = DragValue::new(value).speed(speed).range(-100.0..=1e4).max_decimals(3).suffix(unit);
+        ui.add(field).labelled_by(label.id);
+    };
+    value(ui, "from", &mut several.low);
+    value(ui, "to", &mut several.high);
+    let label = ui.label("maps");
+    ui.add(DragValue::new(&mut several.count).range(2..=crate::app::state::MOST_AT_ONCE).speed(0.05))
+        .labelled_by(label.id);
+}
+
+fn methods(ui: &mut Ui, several: &mut Several, methods: &[Arc<dyn Reconstructor>]) {
+    ui.menu_button("Methods", |ui| {
+        for method in methods {
+            let mut chosen = several.methods.contains(method.name());
+            if ui.checkbox(&mut chosen, method.name()).on_hover_text(method.description()).changed() {
+                match chosen {
+                    true => several.methods.insert(method.name().to_owned()),
+                    false => several.methods.remove(method.name()),
+                };
+            }
+        }
+    })
+    .response
+    .on_hover_text("Which methods, at most eight; the first eight where none is chosen");
+}
+
+fn tile(
+    ui: &mut Ui,
+    place: Rect,
+    small: &Small,
+    texture: &mut Texture,
+    parameter: Parameter,
+    asked: &mut Vec<Command>,
+) {
+    let Variant { label, .. } = &small.variant;
+    let response = ui.interact(place, ui.scope_id().with(("small map", label)), Sense::click());
+    let name = format!("{}: {label}", parameter.name());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let picture = Rect::from_min_max(pos2(place.left(), place.top() + NAME), place.max);
+    let painter = ui.painter().with_clip_rect(place);
+    painter.rect_filled(picture, 0.0, ui.visuals().extreme_bg_color);
+    let ink = if response.hovered() || response.has_focus() {
+        ui.visuals().strong_text_color()
+    } else {
+        ui.visuals().text_color()
+    };
+    painter.text(place.left_top(), Align2::LEFT_TOP, label, FontId::proportional(12.5), ink);
+    match &small.made {
+        Some(Ok(image)) => {
+            let texture = texture.of(ui.ctx(), &name, image, TextureOptions::LINEAR);
+            let uv = Rect::from_min_max(pos2(0.0, 1.0), pos2(1.0, 0.0));
+            painter.image(
+                texture,
+                picture,
+                uv,
+                if small.is_current { Color32::WHITE } else { Color32::from_gray(190) },
+            );
+        }
+        Some(Err(reason)) => {
+            let galley = painter.layout(reason.clone(), FontId::proportional(11.0), ink, picture.width() - 8.0);
+            painter.galley(picture.min + vec2(4.0, 4.0), galley, ink);
+        }
+        None => {
+            _ = painter.text(picture.center(), Align2::CENTER_CENTER, "computing…", FontId::proportional(11.0), ink)
+        }
+    }
+    if response.on_hover_text("Put this value before the scene").clicked() {
+        asked.extend(take(&small.variant, parameter));
+    }
+}
+
+/// The command that gives the scene's radar, floor or method this value.
+fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
+    Some(match parameter {
+        Parameter::Window => Command::SetWindow(variant.radar.window),
+        Parameter::Snr => Command::SetFloor(variant.floor),
+        Parameter::Method => Command::Method(variant.method.as_ref()?.name()),
+        _ => Command::SetRadar(Box::new(variant.radar.clone())),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::Floor;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Drawn {
+        several: Several,
+        veiled: bool,
+        memory: Memory,
+        asked: Vec<Command>,
+    }
+
+    fn harness(parameter: Parameter, veiled: bool) -> Harness<'static, Drawn> {
+        let draw = |ui: &mut Ui, drawn: &mut Drawn| {
+            let radar = Radar::default();
+            let variants = drawn.several.variants(&radar, Floor::Thesis, None, &[]);
+            let maps: Vec<Small> = variants
+                .into_iter()
+                .map(|variant| Small {
+                    variant,
+                    made: Some(Ok(Arc::new(egui::ColorImage::filled([4, 2], Color32::GRAY)))),
+                    is_current: true,
+                })
+                .collect();
+            let input =
+                Input { several: &drawn.several, radar: &radar, methods: &[], maps: &maps, veiled: drawn.veiled };
+            let asked = show(ui, input, &mut drawn.memory);
+            drawn.asked.extend(asked);
+        };
+        let several = Several::default().with(parameter, &Radar::default());
+        let drawn = Drawn { several, veiled, memory: Memory::default(), asked: Vec::new() };
+        Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, drawn)
+    }
+
+    #[test]
+    fn a_map_that_is_clicked_puts_its_value_before_the_scene() {
+        let mut panel = harness(Parameter::Window, false);
+        panel.get_by_label("window: rectangular").click();
+        panel.step();
+        assert_eq!(panel.state().asked, [Command::SetWindow(crate::radar::WindowFunction::Rectangular)]);
+        let mut panel = harness(Parameter::Bandwidth, false);
+        panel.get_by_label("bandwidth: 4.00 GHz").click();
+        panel.step();
+        let [Command::SetRadar(radar)] = panel.state().asked.as_slice() else { panic!("{:?}", panel.state().asked) };
+        assert!((radar.bandwidth_hz - 4e9).abs() < 1.0);
+    }
+
+    #[test]
+    fn another_parameter_comes_with_its_usual_values_and_map() {
+        let mut panel = harness(Parameter::Window, false);
+        panel.get_by_label("Compare").click();
+        panel.step();
+        panel.step();
+        panel.get_by_label("elements of an end").click();
+        panel.step();
+        let Some(Command::SetSeveral(several)) = panel.state().asked.last() else {
+            panic!("{:?}", panel.state().asked)
+        };
+        assert_eq!((several.parameter, several.map, several.low), (Parameter::EndElements, MapKind::Input0, 3.0));
+    }
+
+    #[test]
+    fn a_prediction_hides_all_of_them() {
+        let panel = harness(Parameter::Window, true);
+        assert!(panel.query_by_label("window: rectangular").is_none());
+        assert!(panel.query_by_label_contains("predicted").is_some());
+    }
+
+    #[test]
+    fn maps_fill_the_panel() {
+        for (count, area) in
+            [(8, vec2(1200.0, 500.0)), (8, vec2(400.0, 900.0)), (4, vec2(800.0, 400.0)), (1, vec2(300.0, 200.0))]
+        {
+            let (columns, size) = grid(count, area);
+            assert!(columns as f32 * size.x <= area.x + 0.1 && count.div_ceil(columns) as f32 * size.y <= area.y + 0.1);
+        }
+        assert_eq!(grid(8, vec2(1600.0, 460.0)).0, 4);
+    }
+}

@@ -1,0 +1,257 @@
+//! One map several times: which constant differs from one to the next, and by what.
+
+use super::panel::MapKind;
+use crate::radar::{Decibels, Radar, WindowFunction};
+use crate::reconstruct::Reconstructor;
+use crate::signal::Floor;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Most maps at once.
+pub const MOST: usize = 8;
+
+/// What differs from map to map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Parameter {
+    /// The window of both transforms.
+    #[default]
+    Window,
+    /// Swept bandwidth, GHz.
+    Bandwidth,
+    /// Elements of each end.
+    EndElements,
+    /// Distance between elements, wavelengths.
+    Spacing,
+    /// Signal-to-noise ratio of a sample, dB.
+    Snr,
+    /// The reconstruction method.
+    Method,
+}
+
+impl Parameter {
+    /// All of them, in the order they are offered.
+    pub const ALL: [Parameter; 6] = [
+        Parameter::Window,
+        Parameter::Bandwidth,
+        Parameter::EndElements,
+        Parameter::Spacing,
+        Parameter::Snr,
+        Parameter::Method,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Parameter::Window => "window",
+            Parameter::Bandwidth => "bandwidth",
+            Parameter::EndElements => "elements of an end",
+            Parameter::Spacing => "element spacing",
+            Parameter::Snr => "SNR",
+            Parameter::Method => "method",
+        }
+    }
+
+    /// Unit of its numbers, where it has numbers.
+    pub fn unit(self) -> Option<&'static str> {
+        match self {
+            Parameter::Window | Parameter::Method => None,
+            Parameter::Bandwidth => Some(" GHz"),
+            Parameter::EndElements => Some(" elements"),
+            Parameter::Spacing => Some(" λ"),
+            Parameter::Snr => Some(" dB"),
+        }
+    }
+
+    /// From where to where it goes unless somebody says otherwise, around what the radar has.
+    pub fn usual(self, radar: &Radar) -> [f64; 2] {
+        let spacing = radar.element_spacing_metres / radar.wavelength_metres();
+        match self {
+            Parameter::Window | Parameter::Method => [0.0, 0.0],
+            Parameter::Bandwidth => [radar.bandwidth_hz / 8e9, radar.bandwidth_hz / 1e9 * 2.0],
+            Parameter::EndElements => [3.0, (radar.elements / 4).clamp(3, 96) as f64],
+            Parameter::Spacing => [spacing / 2.0, spacing * 4.0],
+            Parameter::Snr => [-30.0, 40.0],
+        }
+    }
+
+    /// The map that shows its effect best.
+    pub fn usual_map(self) -> MapKind {
+        match self {
+            Parameter::EndElements => MapKind::Input0,
+            Parameter::Method => MapKind::Output,
+            _ => MapKind::Target,
+        }
+    }
+}
+
+/// What is shown several times.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Several {
+    /// What differs.
+    pub parameter: Parameter,
+    /// Which map.
+    pub map: MapKind,
+    /// The first value, in the parameter's unit.
+    pub low: f64,
+    /// The last value.
+    pub high: f64,
+    /// How many maps, where the parameter is a number.
+    pub count: usize,
+    /// Names of methods, where it is the method; the first eight of the list where empty.
+    pub methods: BTreeSet<String>,
+}
+
+impl Default for Several {
+    fn default() -> Self {
+        let parameter = Parameter::default();
+        Several { parameter, map: parameter.usual_map(), low: 0.0, high: 0.0, count: MOST, methods: BTreeSet::new() }
+    }
+}
+
+/// One of the maps.
+#[derive(Clone)]
+pub struct Variant {
+    /// What is different about it.
+    pub label: String,
+    /// Its radar.
+    pub radar: Radar,
+    /// What lies beneath the reflectors.
+    pub floor: Floor,
+    /// The method, where it has a name of its own here.
+    pub method: Option<Arc<dyn Reconstructor>>,
+}
+
+impl Variant {
+    /// Whether both give the same map.
+    pub fn same(&self, other: &Variant) -> bool {
+        let name = |v: &Variant| v.method.as_ref().map(|m| m.name());
+        self.radar == other.radar && self.floor == other.floor && name(self) == name(other)
+    }
+}
+
+impl Several {
+    /// This with another parameter, its usual values and its usual map.
+    pub fn with(&self, parameter: Parameter, radar: &Radar) -> Several {
+        let [low, high] = parameter.usual(radar);
+        Several { parameter, map: parameter.usual_map(), low, high, ..self.clone() }
+    }
+
+    /// The maps to make of a scene before `radar` over `floor`; at most [`MOST`], and none whose radar is not valid.
+    pub fn variants(
+        &self,
+        radar: &Radar,
+        floor: Floor,
+        method: Option<&Arc<dyn Reconstructor>>,
+        methods: &[Arc<dyn Reconstructor>],
+    ) -> Vec<Variant> {
+        let like = |label: String, radar: Radar, floor: Floor| Variant { label, radar, floor, method: method.cloned() };
+        let mut variants: Vec<Variant> = match self.parameter {
+            Parameter::Window => WindowFunction::ALL
+                .into_iter()
+                .map(|window| like(window.name().to_owned(), Radar { window, ..radar.clone() }, floor))
+                .collect(),
+            Parameter::Method => {
+                let chosen = |m: &&Arc<dyn Reconstructor>| self.methods.is_empty() || self.methods.contains(m.name());
+                let named = |m: &Arc<dyn Reconstructor>| Variant {
+                    method: Some(m.clone()),
+                    ..like(m.name().to_owned(), radar.clone(), floor)
+                };
+                methods.iter().filter(chosen).map(named).collect()
+            }
+            numbered => self
+                .values()
+                .into_iter()
+                .filter_map(|value| {
+                    let (radar, floor) = numbered.set(radar, floor, value)?;
+                    Some(like(numbered.label(value), radar, floor))
+                })
+                .collect(),
+        };
+        variants.retain(|v| v.radar.validate().is_ok());
+        variants.dedup_by(|a, b| a.same(b));
+        variants.truncate(MOST);
+        variants
+    }
+
+    /// The values of a number: decibels in even steps, all others in even ratios.
+    fn values(&self) -> Vec<f64> {
+        let count = self.count.clamp(2, MOST);
+        let part = |i: usize| i as f64 / (count - 1) as f64;
+        let even = |i: usize| self.low + (self.high - self.low) * part(i);
+        let ratio = |i: usize| self.low * (self.high / self.low).powf(part(i));
+        let linear = self.parameter == Parameter::Snr || self.low <= 0.0 || self.high <= 0.0;
+        (0..count).map(|i| if linear { even(i) } else { ratio(i) }).filter(|v| v.is_finite()).collect()
+    }
+}
+
+impl Parameter {
+    /// The radar and the floor with this value; `None` for a value that no radar can have.
+    fn set(self, radar: &Radar, floor: Floor, value: f64) -> Option<(Radar, Floor)> {
+        let mut radar = radar.clone();
+        match self {
+            Parameter::Bandwidth => radar.bandwidth_hz = value * 1e9,
+            Parameter::EndElements if value >= 1.0 => radar.end_elements = value.round() as usize,
+            Parameter::Spacing => radar.element_spacing_metres = value * radar.wavelength_metres(),
+            Parameter::Snr => return Some((radar, Floor::Snr(Decibels(value.clamp(-100.0, 300.0))))),
+            _ => return None,
+        }
+        Some((radar, floor))
+    }
+
+    /// A value with its unit.
+    fn label(self, value: f64) -> String {
+        let unit = self.unit().unwrap_or_default();
+        if self == Parameter::EndElements { format!("{value:.0}{unit}") } else { format!("{}{unit}", number(value)) }
+    }
+}
+
+/// Three digits, as many of them behind the point as that leaves.
+fn number(value: f64) -> String {
+    match value.abs() {
+        v if v >= 100.0 => format!("{value:.0}"),
+        v if v >= 10.0 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reconstruct::Baseline;
+
+    fn variants(several: &Several) -> Vec<Variant> {
+        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
+        several.variants(&Radar::default(), Floor::Thesis, methods.first(), &methods)
+    }
+
+    #[test]
+    fn every_parameter_makes_valid_radars_that_differ() {
+        let radar = Radar::default();
+        for parameter in Parameter::ALL {
+            let several = Several::default().with(parameter, &radar);
+            let variants = variants(&several);
+            let expected = match parameter {
+                Parameter::Window => WindowFunction::ALL.len(),
+                Parameter::Method => 1,
+                _ => MOST,
+            };
+            assert_eq!(variants.len(), expected, "{parameter:?}");
+            assert!(variants.windows(2).all(|v| !v[0].same(&v[1]) && v[0].label != v[1].label), "{parameter:?}");
+        }
+        let bandwidths = variants(&Several::default().with(Parameter::Bandwidth, &radar));
+        assert!((bandwidths[0].radar.bandwidth_hz - 0.25e9).abs() < 1.0 && bandwidths[7].label == "4.00 GHz");
+        let ratios: Vec<f64> =
+            bandwidths.windows(2).map(|v| v[1].radar.bandwidth_hz / v[0].radar.bandwidth_hz).collect();
+        assert!(ratios.iter().all(|r| (r / ratios[0] - 1.0).abs() < 1e-9), "{ratios:?}");
+    }
+
+    #[test]
+    fn values_that_no_radar_can_have_make_no_map() {
+        let several = Several { parameter: Parameter::EndElements, low: -5.0, high: 1e9, ..Several::default() };
+        assert!(variants(&several).iter().all(|v| v.radar.validate().is_ok()));
+        let several = Several { parameter: Parameter::Bandwidth, low: f64::NAN, high: 1.0, ..Several::default() };
+        assert!(variants(&several).is_empty());
+    }
+}

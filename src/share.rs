@@ -1,0 +1,361 @@
+//! What is on screen as one line of text that can be pasted anywhere and opened by another copy of the program.
+//!
+//! `apertura:1:` and then, in the alphabet of URLs (RFC 4648, section 5), a zlib stream of TOML: a scene file with a table `[shared]` after
+//! it. The stream's checksum tells a line that lost a letter. Line breaks within it, as mails put there, don't matter.
+
+use crate::maps::Normalisation;
+use crate::picture::ColourMap;
+use crate::scene::SceneError;
+use crate::scene::file::{SceneFile, SceneTextError, from_toml_beside, to_toml_beside};
+use crate::signal::Floor;
+use base64::Engine;
+use base64::engine::general_purpose::URL_SAFE_NO_PAD;
+use flate2::Compression;
+use flate2::bufread::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+use serde::{Deserialize, Serialize};
+use std::io::{Read, Write};
+
+/// What every such text begins with.
+pub const PREFIX: &str = "apertura:";
+/// The version this program writes and reads.
+pub const VERSION: &str = "1";
+/// Most bytes of TOML within: a scene of some fifty thousand objects.
+pub const MOST_BYTES: usize = 4 << 20;
+/// Most letters that are looked at: TOML that can't be packed at all.
+pub const MOST_LETTERS: usize = 6 << 20;
+/// Name of the table beside the scene.
+const KEY: &str = "shared";
+/// A map is never shown larger than this part of it fills a panel.
+const LEAST_PART: f32 = 0.005;
+
+/// A scene, its radar, and how they are looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shared {
+    /// The scene and the radar.
+    pub file: SceneFile,
+    /// How they are looked at.
+    pub view: View,
+}
+
+/// How a scene is looked at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct View {
+    /// What lies beneath the reflectors.
+    pub floor: Floor,
+    /// Seed of the floor's noise.
+    pub seed: u64,
+    /// How maps are normalised.
+    pub normalisation: Normalisation,
+    /// Colours of the maps.
+    pub colours: ColourMap,
+    /// Whether maps are drawn over x and y, not over cos(theta) and range.
+    pub cartesian: bool,
+    /// The visible part of range-angle maps.
+    pub range_angle_part: Part,
+    /// The visible part of Cartesian maps.
+    pub cartesian_part: Part,
+    /// eta', the threshold of the target.
+    pub target_eta: f32,
+    /// eta of the method, where it isn't the method's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub eta: Option<f32>,
+    /// Name of the reconstruction method.
+    pub method: String,
+    /// Whether true reflectors are marked.
+    pub marks: bool,
+    /// Whether what the formulas say is drawn over the maps.
+    pub theory: bool,
+    /// The step of a lesson that comes with the program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lesson: Option<LessonPlace>,
+}
+
+/// Part of a map, as fractions of its width and height from the lower left.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// Left edge.
+    pub left: f32,
+    /// Lower edge.
+    pub bottom: f32,
+    /// Right edge.
+    pub right: f32,
+    /// Upper edge.
+    pub top: f32,
+}
+
+impl Default for Part {
+    /// All of it.
+    fn default() -> Self {
+        Part { left: 0.0, bottom: 0.0, right: 1.0, top: 1.0 }
+    }
+}
+
+/// A step of a lesson.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LessonPlace {
+    /// Name of the lesson.
+    pub id: String,
+    /// The step, from 1.
+    pub step: usize,
+}
+
+/// Why a text can't be opened, or something not be written as one.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ShareError {
+    /// It doesn't begin as such a text does.
+    #[error("the text begins with \"{0}\"; expected \"{PREFIX}{VERSION}:\"")]
+    Prefix(String),
+    /// It was written by another version.
+    #[error(
+        "the text is of version \"{0}\"; this program reads version {VERSION}: open it with the program that wrote it"
+    )]
+    Version(String),
+    /// There is too much of it.
+    #[error("the text holds more than {} MiB; save the scene as a file instead", MOST_BYTES >> 20)]
+    Large,
+    /// Letters are missing or wrong.
+    #[error("the text is damaged ({0}): copy all of it again, from \"{PREFIX}\" to the last letter")]
+    Damaged(String),
+    /// What it holds is no scene.
+    #[error("the text holds no scene: {0}")]
+    Scene(#[from] SceneTextError),
+    /// The scene can't be simulated.
+    #[error("the text's {0}")]
+    Unusable(#[from] SceneError),
+    /// Something it says of the view can't be.
+    #[error("the text's {field} {problem}")]
+    View {
+        /// Which.
+        field: &'static str,
+        /// What is wrong with it, and what was expected.
+        problem: String,
+    },
+    /// A number of the scene can't be written.
+    #[error("the scene can't be written as text: {0}")]
+    Unwritable(String),
+}
+
+/// Whether a text means to be one of these.
+pub fn is_shared(text: &str) -> bool {
+    text.trim_start().starts_with(PREFIX)
+}
+
+impl Shared {
+    /// The text.
+    ///
+    /// # Errors
+    /// [`ShareError::Large`] and [`ShareError::Unwritable`] for a scene with more than fits, or a number that TOML can't hold.
+    pub fn to_text(&self) -> Result<String, ShareError> {
+        let unwritable = |e: String| ShareError::Unwritable(e);
+        let toml = to_toml_beside(&self.file, KEY, &self.view).map_err(|e| unwritable(e.to_string()))?;
+        if toml.len() > MOST_BYTES {
+            return Err(ShareError::Large);
+        }
+        let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
+        let packed = packed.write_all(toml.as_bytes()).and_then(|()| packed.finish());
+        let packed = packed.map_err(|e| unwritable(e.to_string()))?;
+        Ok(format!("{PREFIX}{VERSION}:{}", URL_SAFE_NO_PAD.encode(packed)))
+    }
+
+    /// Reads a text, in bounded memory.
+    ///
+    /// # Errors
+    /// [`ShareError`] says what is wrong and what was expected.
+    pub fn from_text(text: &str) -> Result<Shared, ShareError> {
+        if text.len() > MOST_LETTERS {
+            return Err(ShareError::Large);
+        }
+        let letters: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+        let begins = || letters.chars().take(PREFIX.len() + 2).collect();
+        let (version, packed) = letters
+            .strip_prefix(PREFIX)
+            .and_then(|rest| rest.split_once(':'))
+            .ok_or_else(|| ShareError::Prefix(begins()))?;
+        if version != VERSION {
+            return Err(ShareError::Version(version.chars().take(20).collect()));
+        }
+        let packed = URL_SAFE_NO_PAD.decode(packed).map_err(|e| ShareError::Damaged(e.to_string()))?;
+        let toml = unpack(&packed)?;
+        let (file, view) = from_toml_beside::<View>(&toml, KEY)?;
+        let view = view.ok_or(ShareError::View { field: "table [shared]", problem: "is missing".to_owned() })?;
+        file.scene.validate(&file.radar)?;
+        view.check()?;
+        Ok(Shared { file, view })
+    }
+}
+
+/// What a zlib stream holds, at most [`MOST_BYTES`] of it.
+fn unpack(packed: &[u8]) -> Result<String, ShareError> {
+    let damaged = |e: std::io::Error| ShareError::Damaged(e.to_string());
+    let mut stream = ZlibDecoder::new(packed);
+    let mut bytes = Vec::new();
+    stream.by_ref().take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(damaged)?;
+    if bytes.len() > MOST_BYTES {
+        return Err(ShareError::Large);
+    }
+    if !stream.into_inner().is_empty() {
+        return Err(ShareError::Damaged("more follows its end".to_owned()));
+    }
+    String::from_utf8(bytes).map_err(|e| ShareError::Damaged(e.to_string()))
+}
+
+impl View {
+    /// Holds what comes from outside to what the app can show.
+    fn check(&self) -> Result<(), ShareError> {
+        let wrong = |field, problem: String| Err(ShareError::View { field, problem });
+        // Both read their own names with the bounds of what they can be.
+        if let Err(error) = self.floor.to_string().parse::<Floor>() {
+            return wrong("floor", format!("can't be: {error}"));
+        }
+        if let Err(error) = self.normalisation.to_string().parse::<Normalisation>() {
+            return wrong("normalisation", format!("can't be: {error}"));
+        }
+        for (field, eta) in [("target_eta", Some(self.target_eta)), ("eta", self.eta)] {
+            if let Some(eta) = eta.filter(|eta| !(0.0..=1.0).contains(eta)) {
+                return wrong(field, format!("is {eta}; expected 0 to 1"));
+            }
+        }
+        for (field, part) in [("range_angle_part", self.range_angle_part), ("cartesian_part", self.cartesian_part)] {
+            let Part { left, bottom, right, top } = part;
+            let inside = |low: f32, high: f32| low >= 0.0 && high <= 1.0 && high - low >= LEAST_PART;
+            if !(inside(left, right) && inside(bottom, top)) {
+                return wrong(
+                    field,
+                    format!("is {part:?}; expected edges from 0 to 1, the right and the top ones larger"),
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{Carrier, Decibels, Radar};
+    use crate::scene::{Object, Point, Scene, presets};
+    use proptest::prelude::*;
+
+    fn view() -> View {
+        View {
+            floor: Floor::Snr(Decibels(12.5)),
+            seed: 7,
+            normalisation: Normalisation::DynamicRange(Decibels(60.0)),
+            colours: ColourMap::Viridis,
+            cartesian: true,
+            range_angle_part: Part { left: 0.25, ..Part::default() },
+            cartesian_part: Part::default(),
+            target_eta: 0.9,
+            eta: Some(0.31),
+            method: "nomp".to_owned(),
+            marks: true,
+            theory: false,
+            lesson: Some(LessonPlace { id: "near-field".to_owned(), step: 3 }),
+        }
+    }
+
+    fn shared() -> Shared {
+        let scene = Scene { name: "Zwei Pfähle".to_owned(), ..Scene::of_points([(0.1 + 0.2, 20.0), (3.0, 4.0)]) };
+        Shared {
+            file: SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, ..Radar::default() } },
+            view: view(),
+        }
+    }
+
+    /// A text around any bytes that claim to be TOML.
+    fn pack(toml: &[u8]) -> String {
+        let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
+        packed.write_all(toml).unwrap();
+        format!("{PREFIX}{VERSION}:{}", URL_SAFE_NO_PAD.encode(packed.finish().unwrap()))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn whatever_is_shared_is_opened_as_it_was(
+            places in prop::collection::vec((-30.0..30.0f64, 0.5..38.0f64, -5.0..5.0f64), 0..20),
+            (seed, snr, range) in (0..1u64 << 62, -100.0..300.0f64, 1.0..400.0f64),
+            (eta, target_eta) in (prop::option::of(0.0..=1.0f32), 0.0..=1.0f32),
+            (cartesian, theory, step) in (any::<bool>(), any::<bool>(), prop::option::of(1..9usize)),
+            (name, samples) in ("\\PC{0,40}", 1..600usize),
+        ) {
+            let point = |(x_metres, y_metres, reflectivity)| Object::Point(Point { x_metres, y_metres, reflectivity });
+            let objects = places.into_iter().map(point).collect();
+            let scene = Scene { name, noise_seed: seed / 2, objects, ..Scene::default() };
+            let lesson = step.map(|step| LessonPlace { id: "a-line".to_owned(), step });
+            let floor = Floor::Snr(Decibels(snr));
+            let normalisation = Normalisation::DynamicRange(Decibels(range));
+            let view = View { seed, floor, normalisation, eta, target_eta, cartesian, theory, lesson, ..view() };
+            let shared = Shared { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
+            let text = shared.to_text().unwrap();
+            prop_assert!(is_shared(&text) && !text.contains(char::is_whitespace));
+            prop_assert_eq!(Shared::from_text(&text), Ok(shared));
+        }
+
+        /// A letter that was changed, lost or doubled is told.
+        #[test]
+        fn a_damaged_letter_is_told(at in 11..10_000usize, letter in "[A-Za-z0-9_-]") {
+            let text = shared().to_text().unwrap();
+            let at = 11 + at % (text.len() - 11);
+            let changed = format!("{}{letter}{}", &text[..at], &text[at + 1..]);
+            prop_assert!(changed == text || Shared::from_text(&changed).is_err());
+            let lost = [&text[..at], &text[at + 1..]].concat();
+            prop_assert!(Shared::from_text(&lost).is_err());
+            prop_assert!(Shared::from_text(&text[..at]).is_err());
+        }
+    }
+
+    #[test]
+    fn line_breaks_of_a_mail_do_no_harm_and_presets_fit_into_one() {
+        let text = shared().to_text().unwrap();
+        let broken: Vec<&str> = text.as_bytes().chunks(60).map(|c| std::str::from_utf8(c).unwrap()).collect();
+        assert_eq!(Shared::from_text(&format!("  {}\r\n", broken.join("\r\n "))), Ok(shared()));
+        for preset in presets::ALL {
+            let shared = Shared { file: preset.load().unwrap(), view: view() };
+            let text = shared.to_text().unwrap();
+            assert!(text.len() < 4000, "{}: {} letters", preset.id, text.len());
+            assert_eq!(Shared::from_text(&text), Ok(shared));
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_told() {
+        let told = |text: &str| Shared::from_text(text).unwrap_err().to_string();
+        assert!(told("hello").contains("expected \"apertura:1:\""));
+        assert!(told("apertura:2:abc").contains("version \"2\""));
+        assert!(told("apertura:1:ab%").contains("damaged"));
+        assert!(told("apertura:1:").contains("damaged"));
+        assert!(told(&pack(b"name = \"x\"\n")).contains("[shared] is missing"));
+        assert!(told(&pack(b"\xff")).contains("damaged"));
+        let valid = to_toml_beside(&shared().file, KEY, &view()).unwrap();
+        for (from, to, part) in [
+            ("x_metres = 3.0", "x_metres = nan", "x_metres"),
+            ("seed = 7", "seed = 7\nsmell = 1", "smell"),
+            ("target_eta = 0.8999999761581421", "target_eta = 1.5", "expected 0 to 1"),
+            ("left = 0.25", "left = 0.9999", "expected edges"),
+            ("snr = 12.5", "snr = nan", "floor"),
+            ("dynamic-range = 60.0", "dynamic-range = 0.0", "normalisation"),
+        ] {
+            assert!(valid.contains(from), "{from} in\n{valid}");
+            let message = told(&pack(valid.replace(from, to).as_bytes()));
+            assert!(message.contains(part), "{part} in: {message}");
+        }
+    }
+
+    #[test]
+    fn a_small_text_that_unpacks_to_much_is_refused_early() {
+        let bomb = pack(&vec![b'#'; 64 << 20]);
+        assert!(bomb.len() < 200_000, "{} letters", bomb.len());
+        assert_eq!(Shared::from_text(&bomb), Err(ShareError::Large));
+        let long = "a".repeat(MOST_LETTERS + 1);
+        assert_eq!(Shared::from_text(&long), Err(ShareError::Large));
+        let many = Scene::of_points((0..200_000).map(|i| (f64::from(i) * 1e-4, 5.0)));
+        let shared = Shared { file: SceneFile { scene: many, ..SceneFile::default() }, view: view() };
+        assert_eq!(shared.to_text(), Err(ShareError::Large));
+    }
+}

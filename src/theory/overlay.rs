@@ -1,0 +1,80 @@
+//! All that the formulas say of one reflector on one map, to be drawn over it.
+
+use super::{Blob, Cell, Streak, blob_cell, centre_metres, comb_teeth, fold_partners, wrap_partners};
+use crate::maps::Aperture;
+use crate::radar::{Decibels, Polar, Radar};
+use crate::scene::Reflector;
+
+/// How far below its peak a streak is followed.
+pub const STREAK: Decibels = Decibels(20.0);
+/// Teeth of the comb on either side.
+const TEETH: usize = 3;
+/// Wrap partners are looked for up to so many maximum ranges.
+const WRAPS: f64 = 3.0;
+
+/// What is to be drawn over the map of one aperture for one reflector. Nothing of it comes from a simulated map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overlay {
+    /// Where the reflector stands as the middle of the aperture sees it; its range is the true one, not wrapped.
+    pub place: Polar,
+    /// Peak, half-power widths and first side lobes.
+    pub blob: Blob,
+    /// How far the near field draws it out, [`STREAK`] down.
+    pub streak: Streak,
+    /// Where the next teeth of the two ends' comb stand.
+    pub teeth: Vec<Cell>,
+    /// cos(theta) of the other directions that share its column.
+    pub fold_partners: Vec<f64>,
+    /// The other ranges that share its bin, metres.
+    pub wrap_partners_metres: Vec<f64>,
+}
+
+impl Overlay {
+    /// The overlay of `reflector` on the map of `aperture`; `None` for one without an echo. The radar must be valid ([`Radar::validate`]).
+    pub fn of(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Option<Overlay> {
+        let place = radar.polar_of(reflector.x_metres - centre_metres(radar, aperture), reflector.y_metres);
+        let farthest = WRAPS * radar.max_range_metres();
+        Some(Overlay {
+            place,
+            blob: Blob::of(radar, reflector, aperture)?,
+            streak: Streak::of(radar, reflector, aperture, STREAK)?,
+            teeth: teeth(radar, reflector),
+            fold_partners: fold_partners(radar, place.cos_theta),
+            wrap_partners_metres: wrap_partners(radar, place, farthest).iter().map(|p| p.range_metres).collect(),
+        })
+    }
+}
+
+/// Where what stands on the next teeth would show on the whole array's map.
+fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<Cell> {
+    let place = radar.polar_of(reflector.x_metres, reflector.y_metres);
+    let cell = |cos: f64| {
+        let (x_metres, y_metres) = (place.range_metres * cos, place.range_metres * (1.0 - cos * cos).max(0.0).sqrt());
+        blob_cell(radar, x_metres, y_metres, Aperture::Full)
+    };
+    comb_teeth(radar, place, TEETH).into_iter().map(cell).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::End;
+
+    #[test]
+    fn an_overlay_gathers_what_each_formula_says() {
+        let radar = Radar { elements: 128, samples: 64, ..Radar::default() };
+        let reflector = Reflector { x_metres: 1.0, y_metres: 6.0, reflectivity: 1.0 };
+        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        assert_eq!(Some(overlay.blob), Blob::of(&radar, &reflector, Aperture::Full));
+        assert_eq!(overlay.teeth.len(), 2 * TEETH);
+        let max = radar.max_range_metres();
+        let range = 37f64.sqrt();
+        let expected: Vec<f64> = [range - max, range + max].into_iter().filter(|r| *r > 0.0).collect();
+        assert!(overlay.place.range_metres > max, "it wraps");
+        assert!((overlay.wrap_partners_metres[0] - expected[0]).abs() < 1e-9, "{:?}", overlay.wrap_partners_metres);
+        let end = Overlay::of(&radar, &reflector, Aperture::End(End::First)).unwrap();
+        assert!(end.place.cos_theta > overlay.place.cos_theta, "the left end sees it further to the right");
+        assert!(end.blob.columns[0] > overlay.blob.columns[0]);
+        assert_eq!(Overlay::of(&radar, &Reflector { reflectivity: 0.0, ..reflector }, Aperture::Full), None);
+    }
+}
