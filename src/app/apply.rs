@@ -82,7 +82,6 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
                 settings.snr = snr;
             }
         }
-        Command::SetNoiseSeed(seed) => settings.seed = seed,
         Command::SetNextRandom { seed, number } => (settings.random_seed, settings.random_number) = (seed, number),
         Command::SetTargetEta(eta) => settings.target_eta = eta,
         Command::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
@@ -122,6 +121,9 @@ fn edit(state: &mut State, command: Command) -> Option<Command> {
         Command::SelectAll => editor.select_all(),
         Command::Nudge { dx_metres, dy_metres } => editor.nudge(dx_metres, dy_metres),
         Command::Add(kind, place) => add(state, kind, place),
+        Command::SetNoiseSeed(seed) => {
+            editor.edit("noise seed", Some("noise seed"), |scene, _| scene.noise_seed = seed);
+        }
         Command::SetCarrier(carrier) => edit_radar(state, "carrier", |r| r.carrier = carrier),
         Command::SetWindow(window) => edit_radar(state, "window", |r| r.window = window),
         Command::SetRadar(radar) => edit_radar(state, "radar", |r| *r = *radar),

@@ -92,6 +92,7 @@ impl<'a> Contents<'a> {
         let input = controls::Input {
             settings: &state.settings,
             radar: state.radar(),
+            noise_seed: state.editor.scene().noise_seed,
             methods: &state.methods.all,
             method: state.method().map(|m| m.as_ref()),
             eta: state.output_eta(),
@@ -348,6 +349,6 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
         cursor: state.pointer.now,
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
-        took: jobs.pipeline.result().map(|r| r.took),
+        took: jobs.pipeline.took(),
     }
 }

@@ -75,6 +75,11 @@ impl App {
         self.jobs.pipeline.scores().map(|s| s.metrics)
     }
 
+    /// Whether the maps on screen are those of a scene at rest, as every command computes them.
+    pub fn is_settled(&self) -> bool {
+        self.jobs.pipeline.is_settled()
+    }
+
     /// Whether the output on screen belongs to something else than the maps.
     pub fn output_is_outdated(&self) -> bool {
         self.jobs.pipeline.output_is_outdated()

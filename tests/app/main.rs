@@ -2,6 +2,7 @@
 #![cfg(feature = "app")]
 
 mod documents;
+mod figures;
 mod lessons;
 mod panels;
 mod pictures;

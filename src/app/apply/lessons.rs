@@ -62,7 +62,6 @@ fn begin(state: &mut State, id: String, lesson: Lesson) {
 fn set_up(state: &mut State) {
     let Some(step) = state.lesson.as_ref().and_then(|run| run.current()).cloned() else { return };
     state.settings.floor = step.view.floor;
-    state.settings.seed = step.view.seed;
     state.settings.normalisation = step.view.normalisation;
     state.settings.method.clone_from(&step.view.method);
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
@@ -90,5 +89,4 @@ fn leave(state: &mut State) {
     let after = state.settings.clone();
     while state.editor.history().depth() > run.before.depth && state.editor.undo() {}
     state.settings.take_back(&run.before.settings, &after);
-    state.settings.seed = run.before.settings.seed;
 }

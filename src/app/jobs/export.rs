@@ -90,9 +90,8 @@ impl Exports {
             colours: state.settings.colours,
             eta: Some(state.output_eta()),
         };
-        let seed = state.settings.seed;
         self.begin(path, move |path| {
-            let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
+            let signal = signal::simulate(&radar, &scene, style.floor, scene.noise_seed).map_err(|e| e.to_string())?;
             let bytes =
                 compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg).map_err(|e| e.to_string())?;
             write_bytes(path, &bytes).map(|()| None).map_err(|e| e.to_string())
@@ -106,10 +105,10 @@ impl Exports {
     pub fn maps(&self, state: &State, mut path: PathBuf) -> Result<String, String> {
         path.set_extension("npz");
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
-        let (floor, normalisation, seed) = (state.settings.floor, state.settings.normalisation, state.settings.seed);
+        let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
         self.begin(path, move |path| {
-            let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
+            let signal = signal::simulate(&radar, &scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
             let request = Request { floor, normalisation, ..Request::default() };
             let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
             let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
@@ -173,7 +172,7 @@ fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
         .scores()
         .zip(pipeline.output())
         .ok_or("There are no figures: show an output panel and place a reflector first.")?;
-    if pipeline.output_is_outdated() {
+    if pipeline.output_is_outdated() || !pipeline.is_settled() {
         return Err("The output is still being made; try again when it is there.".to_owned());
     }
     let m = scores.metrics;
@@ -182,7 +181,7 @@ fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
         "scene,reflectors,method,floor,normalisation,eta,squared_error,detection,false_alarm,target_blobs,output_blobs,milliseconds\n\
          \"{}\",{},{},{},{},{},{},{detection},{},{},{},{:.3}\n",
         state.editor.scene().name.replace('"', "'"),
-        result.scene.reflector_count(),
+        result.request.scene.reflector_count(),
         output.method,
         state.settings.floor,
         state.settings.normalisation,

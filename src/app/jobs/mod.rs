@@ -10,6 +10,7 @@ mod lessons;
 mod painter;
 mod pipeline;
 mod recording;
+mod rest;
 mod rows;
 mod run_time;
 mod scene_maps;
@@ -134,6 +135,9 @@ impl Jobs {
         if shown.contains(&Panel::Training)
             && let Some(later) = self.training.look()
         {
+            self.wake.request_repaint_after(later);
+        }
+        if let Some(later) = self.pipeline.rests_in() {
             self.wake.request_repaint_after(later);
         }
         if self.pipeline.is_busy() {

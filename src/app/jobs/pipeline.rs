@@ -6,9 +6,10 @@
 //!                               └── pair of maps ◄── method worker ◄───────┘
 //! ```
 
+use super::rest::{Motion, Rest};
 use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
 use crate::app::state::{MapKind, Panel, State};
-use crate::engine::Wanted;
+use crate::engine::{Stage, Wanted};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
@@ -28,25 +29,33 @@ const STALE: Duration = Duration::from_millis(400);
 /// What a method works on.
 #[derive(Clone)]
 struct Basis {
+    radar: Radar,
     ends: Arc<TwoEnds>,
-    target: Arc<RangeAngleMap>,
     floor: Floor,
     normalisation: Normalisation,
 }
 
 impl Basis {
+    /// What the method gets of a scene; `None` where nobody wanted its ends.
+    fn of(result: &MapsResult) -> Option<Basis> {
+        let MapsRequest { radar, wanted, .. } = &result.request;
+        let ends = result.frame.ends.clone()?;
+        Some(Basis { radar: radar.clone(), ends, floor: wanted.floor, normalisation: wanted.normalisation })
+    }
+
     fn same(&self, other: &Basis) -> bool {
         Arc::ptr_eq(&self.ends, &other.ends)
-            && Arc::ptr_eq(&self.target, &other.target)
             && (self.floor, self.normalisation) == (other.floor, other.normalisation)
+            && self.radar == other.radar
     }
 }
 
 /// What the method worker is asked for.
 #[derive(Clone)]
 struct MethodRequest {
-    radar: Radar,
     basis: Basis,
+    /// What it aims for.
+    target: Arc<RangeAngleMap>,
     method: Arc<dyn Reconstructor>,
 }
 
@@ -86,12 +95,16 @@ pub struct Pipeline {
     maps: Worker<MapsRequest, Result<MapsResult, SceneError>>,
     method: Worker<MethodRequest, MethodReply>,
     asked: Option<MapsRequest>,
+    rest: Rest,
+    motion: Motion,
     /// When the maps worker was asked for what it hasn't answered yet.
     waiting: Option<Instant>,
     method_asked: Option<MethodRequest>,
     /// Since when the output belongs to something else than the maps.
     outdated: Option<Instant>,
     result: Option<MapsResult>,
+    /// Time of the last maps that followed a change.
+    took: Option<Duration>,
     output: Option<MethodResult>,
     scene_error: Option<String>,
     refusal: Option<Refusal>,
@@ -111,7 +124,7 @@ impl Pipeline {
         let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
             let Basis { floor, normalisation, .. } = q.basis;
             let request = Request { floor, normalisation, task: task.clone(), ..Request::default() };
-            let reconstruct = || q.method.reconstruct(&q.radar, &q.basis.ends, &request);
+            let reconstruct = || q.method.reconstruct(&q.basis.radar, &q.basis.ends, &request);
             let result = match threads {
                 Some(threads) => threads.install(reconstruct),
                 None => reconstruct(),
@@ -123,10 +136,13 @@ impl Pipeline {
             maps,
             method,
             asked: None,
+            rest: Rest::default(),
+            motion: Motion::default(),
             waiting: None,
             method_asked: None,
             outdated: None,
             result: None,
+            took: None,
             output: None,
             scene_error: None,
             refusal: None,
@@ -142,8 +158,7 @@ impl Pipeline {
             match reply {
                 Reply::Done { result: Ok(mut result), elapsed, .. } => {
                     result.took = elapsed;
-                    self.result = Some(result);
-                    self.scene_error = None;
+                    self.take_in_maps(result);
                 }
                 Reply::Done { result: Err(error), .. } => self.scene_error = Some(error.to_string()),
                 Reply::Panicked { message, .. } => messages.push(format!(
@@ -171,9 +186,33 @@ impl Pipeline {
         messages
     }
 
+    /// The samples of a scene's ends are the same bits whether it rests or not: what a method made of them before stays its output, but
+    /// aims for the latest target.
+    fn take_in_maps(&mut self, mut result: MapsResult) {
+        let before = self.result.as_ref().and_then(|r| r.frame.ends.as_ref());
+        if let (Some(ends), Some(before)) = (&mut result.frame.ends, before)
+            && **ends == **before
+        {
+            *ends = before.clone();
+        }
+        if let (Some(target), Some(output)) = (target_of(&result), &mut self.output)
+            && Basis::of(&result).is_some_and(|basis| basis.same(&output.basis))
+        {
+            output.pair.target = target;
+        }
+        let only_settled = result.request.at_rest && result.frame.report.ran(Stage::Signal);
+        if !only_settled || self.took.is_none() {
+            self.took = Some(result.took);
+        }
+        self.result = Some(result);
+        self.scene_error = None;
+    }
+
     fn take_in(&mut self, request: MethodRequest, found: Reconstruction, took: Duration) {
         let found = Arc::new(found);
-        let pair = Pair { target: request.basis.target.clone(), output: Arc::new(found.lambda.clone()) };
+        let latest = self.result.as_ref().filter(|r| Basis::of(r).is_some_and(|basis| basis.same(&request.basis)));
+        let target = latest.and_then(target_of).unwrap_or(request.target);
+        let pair = Pair { target, output: Arc::new(found.lambda.clone()) };
         self.refusal = None;
         self.output = Some(MethodResult { method: request.method.name(), pair, found, took, basis: request.basis });
     }
@@ -193,28 +232,31 @@ impl Pipeline {
         let settings = &state.settings;
         let wanted = Wanted {
             floor: settings.floor,
-            seed: settings.seed,
+            seed: state.editor.scene().noise_seed,
             normalisation: settings.normalisation,
             first: map(MapKind::Input0) || cuts,
             last: map(MapKind::Input1) || cuts,
             full: map(MapKind::Target) || map(MapKind::TargetAbove) || output,
             ends: output,
         };
+        let (scene, held) = (state.editor.scene(), state.editor.dragged().is_some());
+        self.motion = self.rest.look(scene, state.radar(), settings.floor, held, Instant::now());
         self.ask_maps(MapsRequest {
             radar: state.radar().clone(),
-            scene: state.editor.scene().clone(),
+            scene: scene.clone(),
             wanted,
+            at_rest: self.motion == Motion::AtRest,
             pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
             pair: self.output.as_ref().filter(|_| output).map(|o| o.pair.clone()),
             colours: settings.colours,
             projection: settings.projection,
             target_eta: settings.target_eta,
             output_eta: state.output_eta(),
-            scores: output && !state.editor.scene().objects.is_empty(),
+            scores: output && !scene.objects.is_empty(),
             roc,
         });
         if output {
-            self.ask_method(state, wanted);
+            self.ask_method(state);
         }
     }
 
@@ -222,20 +264,19 @@ impl Pipeline {
         if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
             self.requests += 1;
             self.maps.request(request.clone());
+            if !request.at_rest {
+                // Maps that are only computed once more are not old meanwhile.
+                self.waiting.get_or_insert_with(Instant::now);
+            }
             self.asked = Some(request);
-            self.waiting.get_or_insert_with(Instant::now);
         }
     }
 
     /// Asks for an output of the latest maps, unless it was asked for just that.
-    fn ask_method(&mut self, state: &State, wanted: Wanted) {
-        let basis = self.result.as_ref().and_then(|r| {
-            let (ends, full) = r.frame.ends.clone().zip(r.frame.full.as_ref())?;
-            let (floor, normalisation) = (wanted.floor, wanted.normalisation);
-            Some(Basis { ends, target: full.lambda.clone(), floor, normalisation })
-        });
-        let Some((basis, method)) = basis.zip(state.method().cloned()) else { return };
-        let request = MethodRequest { radar: state.radar().clone(), basis, method };
+    fn ask_method(&mut self, state: &State) {
+        let latest = self.result.as_ref().and_then(|r| Basis::of(r).zip(target_of(r)));
+        let Some(((basis, target), method)) = latest.zip(state.method().cloned()) else { return };
+        let request = MethodRequest { basis, target, method };
         let current =
             self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
         self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
@@ -292,9 +333,28 @@ impl Pipeline {
         self.requests
     }
 
-    /// Whether either worker has something to do.
+    /// Whether either worker has something to do, or will as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
-        self.maps.is_busy() || self.method.is_busy()
+        self.maps.is_busy() || self.method.is_busy() || self.rests_in().is_some()
+    }
+
+    /// How long until the scene on screen rests; `None` where it does, or is held.
+    pub fn rests_in(&self) -> Option<Duration> {
+        match self.motion {
+            Motion::RestsIn(left) => Some(left),
+            Motion::Held | Motion::AtRest => None,
+        }
+    }
+
+    /// Whether the maps are those of the scene on screen at rest, as every command computes them.
+    pub fn is_settled(&self) -> bool {
+        let latest = self.asked.as_ref().zip(self.result.as_ref());
+        latest.is_some_and(|(asked, result)| result.frame.settled && asked.same(&result.request))
+    }
+
+    /// Time of the last maps and pictures that followed a change.
+    pub fn took(&self) -> Option<Duration> {
+        self.took
     }
 
     /// Whether the shown output belongs to something else than the shown maps.
@@ -307,4 +367,9 @@ impl Pipeline {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
         old(self.waiting) || (kind.needs_output() && old(self.outdated))
     }
+}
+
+/// The map that a method aims for.
+fn target_of(result: &MapsResult) -> Option<Arc<RangeAngleMap>> {
+    result.frame.full.as_ref().map(|full| full.lambda.clone())
 }

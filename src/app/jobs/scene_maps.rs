@@ -36,6 +36,8 @@ pub struct MapsRequest {
     pub scene: Arc<Scene>,
     /// Which maps, and how.
     pub wanted: Wanted,
+    /// Whether the scene rests: its maps are then those of the command line, bit for bit.
+    pub at_rest: bool,
     /// Maps that somebody looks at.
     pub pictures: BTreeSet<MapKind>,
     /// The latest output, if there is one, with its target.
@@ -64,7 +66,7 @@ impl MapsRequest {
         };
         pair && Arc::ptr_eq(&self.scene, &other.scene)
             && self.radar == other.radar
-            && self.wanted == other.wanted
+            && (self.wanted, self.at_rest) == (other.wanted, other.at_rest)
             && self.pictures == other.pictures
             && (self.colours, self.projection) == (other.colours, other.projection)
             && (self.target_eta, self.output_eta) == (other.target_eta, other.output_eta)
@@ -86,8 +88,8 @@ pub struct Scores {
 /// What the maps worker made.
 #[derive(Clone)]
 pub struct MapsResult {
-    /// What stood before the radar.
-    pub scene: Arc<Scene>,
+    /// What was asked for.
+    pub request: MapsRequest,
     /// The maps.
     pub frame: Frame,
     /// Their pictures.
@@ -134,7 +136,10 @@ impl MapsState {
             Some(engine) if *engine.radar() == request.radar => engine,
             slot => slot.insert(Engine::new(request.radar.clone())),
         };
-        let frame = engine.update(&request.scene, &request.wanted)?;
+        let frame = match request.at_rest {
+            true => engine.settle(&request.scene, &request.wanted)?,
+            false => engine.update(&request.scene, &request.wanted)?,
+        };
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(subject) = subject(&frame, &request, kind) {
@@ -146,7 +151,7 @@ impl MapsState {
         let scores = scored.map(|pair| self.scores(pair, [request.target_eta, request.output_eta]));
         let roc = request.pair.as_ref().filter(|_| request.roc).map(|pair| self.roc(pair));
         let painted = self.painter.painted;
-        Ok(MapsResult { scene: request.scene, frame, pictures, scores, roc, painted, took: Duration::ZERO })
+        Ok(MapsResult { request, frame, pictures, scores, roc, painted, took: Duration::ZERO })
     }
 
     fn scores(&mut self, pair: &Pair, etas: [f32; 2]) -> Scores {

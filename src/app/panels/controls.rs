@@ -14,12 +14,17 @@ use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, SliderClamping
 use std::sync::Arc;
 use std::time::Duration;
 
+/// Largest seed that a scene file holds: TOML knows no larger whole number.
+const MAX_NOISE_SEED: u64 = i64::MAX as u64;
+
 /// What is chosen, and what came of it.
 pub struct Input<'a> {
     /// What the user chose.
     pub settings: &'a Settings,
     /// The radar, which has the carrier and the window.
     pub radar: &'a Radar,
+    /// The scene's own seed of the noise beneath it.
+    pub noise_seed: u64,
     /// The methods to choose from.
     pub methods: &'a [Arc<dyn Reconstructor>],
     /// The method in use.
@@ -57,7 +62,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             heading(ui, "Maps");
             Grid::new("maps").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
                 normalisation(ui, settings, &mut asked);
-                floor(ui, settings, &mut asked);
+                floor(ui, settings, input.noise_seed, &mut asked);
                 carrier(ui, input.radar.carrier, &mut asked);
                 window(ui, input.radar.window, &mut asked);
             });
@@ -216,7 +221,7 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
-fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<Command>) {
     row(ui, "Floor", "What lies beneath the reflectors", |ui| {
         ui.horizontal(|ui| {
             let of = [
@@ -236,11 +241,13 @@ fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         .inner
     });
     if settings.floor != Floor::Exact {
-        row(ui, "Noise seed", "The same seed gives the same noise", |ui| {
-            let mut seed = settings.seed;
-            let drag = ui.add(DragValue::new(&mut seed).speed(0.05));
+        row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
+            let drag = ui.add(DragValue::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
             if drag.changed() {
-                asked.push(Command::SetNoiseSeed(seed));
+                asked.push(Command::SetNoiseSeed(noise_seed));
+            }
+            if drag.drag_stopped() || drag.lost_focus() {
+                asked.push(Command::Seal);
             }
             drag
         });
@@ -319,6 +326,7 @@ mod tests {
             let input = Input {
                 settings: &settings,
                 radar: &radar,
+                noise_seed: 0,
                 methods: &methods,
                 method: Some(&Baseline),
                 eta: Baseline.eta(),
@@ -355,7 +363,8 @@ mod tests {
         let (radar, capon) = (Radar::default(), CAPON);
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
             let (eta, run) = (0.123, Run::default());
-            let input = Input { settings: &settings, radar: &radar, methods: &[], method: Some(&capon), eta, run };
+            let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
+            let input = Input { settings: &settings, radar: &radar, noise_seed, methods: &[], method, eta, run };
             asked.extend(show(ui, input));
         };
         let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());

@@ -155,7 +155,7 @@ pub enum Command {
     Normalise(Normalisation),
     /// What lies beneath the reflectors.
     SetFloor(Floor),
-    /// Seed of the floor's noise.
+    /// Seed of the noise beneath the scene, which is part of it.
     SetNoiseSeed(u64),
     /// How the carrier's phase is read.
     SetCarrier(Carrier),

@@ -38,8 +38,6 @@ pub enum Brightness {
 pub struct Settings {
     /// What lies beneath the reflectors.
     pub floor: Floor,
-    /// Seed of the floor's noise.
-    pub seed: u64,
     /// How the maps are normalised.
     pub normalisation: Normalisation,
     /// The range last used with [`Normalisation::DynamicRange`].
@@ -107,7 +105,6 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             floor: Floor::Thesis,
-            seed: 0,
             normalisation: Normalisation::MinMax,
             dynamic_range: Decibels(100.0),
             snr: Decibels(20.0),

@@ -1,0 +1,121 @@
+//! Figures on screen are those of the command line, bit for bit, whatever the window showed before.
+
+use crate::session::{Session, harness, step_until};
+use apertura::app::{Command, NewObject};
+use apertura::evaluate::rows::read_rows;
+use apertura::interact::Document;
+use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::scene::generate::Kind;
+use apertura::signal::TwoEnds;
+use eframe::egui::vec2;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+const SCENE: &str = "noise_seed = 12\n\n[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
+                     [[object]]\nkind = \"point\"\nx_metres = 3.0\ny_metres = 12.0\n\n\
+                     [[object]]\nkind = \"point\"\nx_metres = -4.0\ny_metres = 20.0\n\n\
+                     [[object]]\nkind = \"line\"\nx_metres = 8.0\ny_start_metres = 8.0\nspacing_metres = 0.5\ncount = 30\n";
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Figures {
+    squared_error: f64,
+    detection: Option<f64>,
+    false_alarm: f64,
+}
+
+fn on_screen(s: &Session) -> Figures {
+    let m = s.state().metrics().expect("figures");
+    Figures { squared_error: m.squared_error, detection: m.detection, false_alarm: m.false_alarm }
+}
+
+/// What `apertura evaluate --scenes` finds for one scene file.
+fn on_the_command_line(scene: &Path) -> Figures {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("scenes")).unwrap();
+    std::fs::copy(scene, folder.path().join("scenes/scene.toml")).unwrap();
+    let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_apertura"));
+    let arguments = ["evaluate", "--scenes", "scenes", "--method", "baseline", "--rows", "rows.csv"];
+    program.current_dir(&folder).args(arguments).assert().success();
+    let rows = read_rows(std::fs::File::open(folder.path().join("rows.csv")).unwrap()).unwrap();
+    let row = &rows[0];
+    Figures { squared_error: row.squared_error, detection: row.detection, false_alarm: row.false_alarm }
+}
+
+#[test]
+fn one_scene_has_one_set_of_figures() {
+    let mut s = Session::start();
+    let file = s.folder.path().join("figures.toml");
+    std::fs::write(&file, SCENE).unwrap();
+    let expected = on_the_command_line(&file);
+
+    let app = harness(s.folder.path(), Some("figures.toml"), vec![Arc::new(Baseline)]);
+    let mut fresh = Session { app, folder: tempfile::tempdir().unwrap() };
+    fresh.settle();
+    assert_eq!(on_screen(&fresh), expected, "after a fresh start");
+    drop(fresh);
+
+    let at = s.handle("point 1: move");
+    s.drag(at, vec2(30.0, 12.0), 20);
+    s.ask(Command::RandomScene(Kind::Set2));
+    s.ask(Command::OpenPath(file));
+    assert_eq!(on_screen(&s), expected, "after other scenes");
+
+    let at = s.handle("point 2: move");
+    s.drag(at, vec2(25.0, -9.0), 20);
+    let moved = s.folder.path().join("moved.toml");
+    Document::read(&s.folder.path().join("figures.toml")).expect("it is still there");
+    let scene = s.state().editor().document().to_file();
+    apertura::scene::file::save(&moved, &scene).unwrap();
+    let expected = on_the_command_line(&moved);
+    assert_eq!(on_screen(&s), expected, "after a drag");
+
+    let copy = s.folder.path().join("data/autosave.toml");
+    step_until(&mut s, "no autosave", |_| copy.exists());
+    let Session { app, folder } = s;
+    drop(app);
+    let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
+    let mut s = Session { app, folder };
+    s.settle();
+    assert_eq!(**s.state().editor().scene(), scene.scene);
+    assert_eq!(on_screen(&s), expected, "after a restore");
+}
+
+#[test]
+fn the_noise_belongs_to_the_scene() {
+    let mut s = Session::start();
+    let before = on_screen(&s);
+    s.ask(Command::SetNoiseSeed(7));
+    assert_ne!(on_screen(&s), before);
+    s.ask(Command::Save);
+    let path = s.folder.path().join("scene.toml");
+    assert_eq!(Document::read(&path).unwrap().scene().noise_seed, 7);
+    assert_eq!(on_screen(&s), on_the_command_line(&path));
+    s.ask(Command::Undo);
+    assert_eq!((s.state().editor().scene().noise_seed, on_screen(&s)), (0, before));
+}
+
+/// Counts how often it is asked.
+struct Counted(Arc<AtomicU32>);
+
+impl Reconstructor for Counted {
+    fn about(&self) -> About {
+        About { name: "counted", description: "counts", told: "", eta: 0.5 }
+    }
+    fn estimate(&self, radar: &apertura::radar::Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        self.0.fetch_add(1, Ordering::SeqCst);
+        Baseline.reconstruct(radar, ends, request)
+    }
+}
+
+#[test]
+fn a_scene_that_comes_to_rest_is_not_reconstructed_again() {
+    let asked = Arc::new(AtomicU32::new(0));
+    let mut s = Session::with_methods(vec![Arc::new(Counted(asked.clone()))]);
+    assert_eq!(asked.load(Ordering::SeqCst), 1);
+    let before = on_screen(&s);
+    s.ask(Command::Add(NewObject::Point, None));
+    assert_eq!(asked.load(Ordering::SeqCst), 2);
+    assert_ne!(on_screen(&s), before);
+    assert!(s.state().is_settled() && !s.state().output_is_outdated());
+}
