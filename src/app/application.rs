@@ -1,7 +1,7 @@
 //! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
 
 use super::apply::{self, Effect};
-use super::chrome::{file_dialog, menu, messages, palette, status_bar, tiles};
+use super::chrome::{file_dialog, losses, menu, messages, palette, status_bar, tiles};
 use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
@@ -98,6 +98,7 @@ impl App {
             map_views: Default::default(),
             pointer: Pointer::default(),
             guided: Default::default(),
+            lossy_save: None,
             lesson: None,
             before_presenting: None,
             progress: kept.progress,
@@ -146,7 +147,9 @@ impl App {
     fn read_input(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.asked);
         let input = input::Input {
-            keys_taken: self.memory.palette.is_open() || self.memory.file_dialog.is_open(),
+            keys_taken: self.memory.palette.is_open()
+                || self.memory.file_dialog.is_open()
+                || self.state.lossy_save.is_some(),
             selected: !self.state.editor.selection().is_empty(),
             bin_metres: self.state.radar().range_resolution_metres(),
         };
@@ -171,6 +174,8 @@ impl App {
         let input = palette::Input { methods: &state.methods.all };
         commands.extend(palette::show(ui.ctx(), input, &mut memory.palette));
         commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
+        let input = losses::Input { question: state.lossy_save.as_ref() };
+        commands.extend(losses::show(ui.ctx(), input));
         commands
     }
 
@@ -216,6 +221,9 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
             state.notices.info("The last session left an unsaved scene: undo (Ctrl+Z) brings it back.");
         }
         (None, _) => {}
+    }
+    if !restored.left.is_empty() {
+        state.notices.info("Unsaved scenes of earlier sessions are in File > Unsaved scenes.");
     }
     let otherwise = state.editor.document().clone();
     state.editor = Editor::start(restored, asked, otherwise);

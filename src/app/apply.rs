@@ -1,6 +1,7 @@
 //! What each command does: the only place that changes settings, and the only one that starts work.
 
 mod lessons;
+mod saving;
 mod shared;
 
 pub use shared::of as shared_text;
@@ -10,7 +11,7 @@ use super::state::{
     Arrangement, Brightness, Command, EvaluationChoice, MapViews, NewObject, Projection, Settings, State,
 };
 use crate::evaluate::campaign::Campaign;
-use crate::interact::{Document, Place, Saved, SelectionMode};
+use crate::interact::{Document, Place, SelectionMode};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::scene::file::SceneFile;
@@ -141,11 +142,14 @@ fn scenes(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Comman
         Command::Open => jobs.choose_file(state, Purpose::Open),
         Command::OpenPath(path) => open(state, path),
         Command::Save => match state.editor.document().path().map(Path::to_owned) {
-            Some(path) => save(state, path),
+            Some(path) => saving::save(state, path),
             None => jobs.choose_file(state, Purpose::SaveScene),
         },
         Command::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
-        Command::SaveTo(path) => save(state, path),
+        Command::SaveTo(path) => saving::save(state, path),
+        Command::AnswerLosses(answer) => saving::answer(state, jobs, answer),
+        Command::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
+        Command::Discard(id) => state.editor.discard(id),
         Command::Preset(index) => preset(state, index),
         Command::RandomScene(kind) => random_scene(state, kind),
         other => return Some(other),
@@ -284,26 +288,6 @@ pub fn read(state: &mut State, path: &Path) -> Option<Document> {
 fn edit_radar(state: &mut State, label: &str, change: impl FnOnce(&mut Radar)) {
     if let Err(error) = state.editor.edit_radar(label, None, change) {
         state.notices.error(error.to_string());
-    }
-}
-
-fn save(state: &mut State, mut path: PathBuf) {
-    if path.extension().is_none() {
-        path.set_extension("toml");
-    }
-    match state.editor.save(&path) {
-        Ok(Saved::Whole) => {
-            state.remember(&path);
-            state.notices.info(format!("Saved {}", path.display()));
-        }
-        Ok(Saved::Copy(losses)) => {
-            let lost = losses.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-            let advice = "The scene itself is still unsaved: save it as .toml to keep everything.";
-            state.notices.info(format!("{} holds a copy without {lost}. {advice}", path.display()));
-        }
-        Err(error) => {
-            state.notices.error(format!("{error}\nNothing was written; choose another place with Save as…"));
-        }
     }
 }
 

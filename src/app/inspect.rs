@@ -40,6 +40,11 @@ impl App {
         self.jobs.is_busy()
     }
 
+    /// Whether everything that is unsaved is on disk as it is.
+    pub fn is_kept(&self) -> bool {
+        self.jobs.autosave.as_ref().is_some_and(|autosave| autosave.holds(&self.state.editor))
+    }
+
     /// Report of the last update, if there was one.
     pub fn report(&self) -> Option<&Report> {
         self.jobs.pipeline.result().map(|r| &r.frame.report)

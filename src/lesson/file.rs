@@ -3,11 +3,12 @@
 use super::challenge::Challenge;
 use super::question::Question;
 use super::stage::View;
+use crate::files::read_bounded;
 use crate::radar::Radar;
 use crate::scene::presets::Preset;
 use crate::scene::{Object, Scene, SceneError};
 use serde::Deserialize;
-use std::io::Read;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The version of the format this program reads.
@@ -126,11 +127,11 @@ impl Lesson {
     /// [`LessonError`] names the file, the line and what was expected.
     pub fn load(path: &Path) -> Result<Lesson, LessonError> {
         let io = |source| LessonError::Io { path: path.to_owned(), source };
-        let mut text = String::new();
-        std::fs::File::open(path).and_then(|f| f.take(MOST_BYTES + 1).read_to_string(&mut text)).map_err(io)?;
-        if text.len() as u64 > MOST_BYTES {
-            return Err(LessonError::Large { path: path.to_owned() });
-        }
+        let bytes = read_bounded(path, MOST_BYTES).map_err(|error| match error.kind() {
+            ErrorKind::FileTooLarge => LessonError::Large { path: path.to_owned() },
+            _ => io(error),
+        })?;
+        let text = String::from_utf8(bytes).map_err(|e| io(std::io::Error::other(e)))?;
         Lesson::from_toml(&text).map_err(|source| LessonError::Text { path: path.to_owned(), source })
     }
 }

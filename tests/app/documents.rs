@@ -8,6 +8,7 @@ use apertura::reconstruct::Baseline;
 use apertura::scene::file::{self, SceneFile};
 use apertura::scene::{Object, Scene};
 use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -71,16 +72,29 @@ fn carrier_and_window_are_edits() {
 }
 
 #[test]
-fn what_a_format_cannot_hold_is_told_and_stays_unsaved() {
+fn what_a_format_cannot_hold_is_asked_before_anything_is_written() {
     let mut s = Session::start();
     let path = write(&s, "points.npz", 2);
     s.ask(Command::OpenPath(path.clone()));
     s.ask(Command::Add(NewObject::Line, None));
-    let before = s.state().messages();
-    s.ask(Command::Save);
-    assert_eq!(title(&s), "points.npz •");
-    assert_eq!(s.state().messages(), before + 1);
+    let before = std::fs::read(&path).unwrap();
+    let answer = |s: &mut Session, button: &str| {
+        s.ask(Command::Save);
+        let told = s.app.query_all_by_label_contains("one line or cluster").next().is_some();
+        assert!(told, "it says what would be lost");
+        assert_eq!(std::fs::read(&path).unwrap(), before, "and has written nothing");
+        s.app.get_by_label(button).click();
+        s.settle();
+    };
+    answer(&mut s, "Cancel");
+    assert_eq!((title(&s).as_str(), points(&path)), ("points.npz •", 2));
+    answer(&mut s, "Save anyway");
+    assert_eq!((title(&s).as_str(), points(&path)), ("points.npz •", 77), "a copy in points; the line is unsaved");
     assert!(matches!(s.state().editor().scene().objects.last(), Some(Object::Line(_))));
+    std::fs::write(&path, &before).unwrap();
+    answer(&mut s, "Save as TOML");
+    let whole = path.with_extension("toml");
+    assert_eq!((title(&s).as_str(), points(&path), points(&whole)), ("points.toml", 2, 3));
 }
 
 #[test]
@@ -106,6 +120,12 @@ fn a_start_with_a_file_loses_neither_the_file_nor_what_was_unsaved() {
     let mut s = Session { app, folder };
     s.settle();
     assert_eq!((s.state().editor().left()[0].title().as_str(), points(&b)), ("scene.toml •", 5));
+    for label in ["File", "Unsaved scenes", "scene.toml (3 objects)", "Bring back"] {
+        s.app.get_by_label(label).click();
+        s.settle();
+    }
+    assert_eq!((title(&s).as_str(), s.state().editor().scene().objects.len()), ("scene.toml •", 3));
+    assert!(s.state().editor().left().is_empty(), "b.toml was not touched");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod documents;
 mod figures;
 mod lessons;
+mod monkey;
 mod panels;
 mod pictures;
 mod scene;

@@ -1,7 +1,9 @@
 //! The menu bar and the buttons beside it.
 
+use super::unsaved;
 use crate::app::state::{Command, NewObject, Panel, Projection};
 use crate::app::widgets::entry::{button, entry, tooltip};
+use crate::interact::Document;
 use crate::picture::ColourMap;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
@@ -27,6 +29,8 @@ pub struct Input<'a> {
     pub recent: &'a [PathBuf],
     /// Whether something is recorded that can be stopped.
     pub is_recording: bool,
+    /// Unsaved scenes that another took the place of, the latest last.
+    pub left: &'a [Document],
     /// Whether a panel has a visible tile.
     pub is_open: &'a dyn Fn(Panel) -> bool,
 }
@@ -119,6 +123,7 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         });
     });
+    unsaved::show(ui, input.left, asked);
     ui.separator();
     entries(ui, [Command::Save, Command::SaveAs, Command::CopyShared], asked);
     ui.separator();
@@ -233,6 +238,7 @@ mod tests {
                 random: (0, 0),
                 recent: &[],
                 is_recording: false,
+                left: &[],
                 is_open: &|panel| panel == Panel::Scene,
             };
             let commands = show(ui, input, &mut asked.0);

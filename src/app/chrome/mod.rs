@@ -1,8 +1,10 @@
-//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar, file dialog.
+//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar, file dialog, questions.
 
 pub mod file_dialog;
+pub mod losses;
 pub mod menu;
 pub mod messages;
 pub mod palette;
 pub mod status_bar;
 pub mod tiles;
+pub mod unsaved;

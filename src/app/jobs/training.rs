@@ -1,5 +1,6 @@
 //! A training that is watched: the log of one that runs elsewhere, or of one started from here as a process of its own.
 
+use crate::files::read_bounded;
 use crate::task::{Reply, Task, Worker};
 use std::path::{Path, PathBuf};
 use std::process::Child;
@@ -67,6 +68,13 @@ impl Log {
     }
 }
 
+/// Longer than the log of any training that ends in a lifetime.
+const MAX_LOG_BYTES: u64 = 256 << 20;
+
+fn read_log(path: &Path) -> std::io::Result<String> {
+    String::from_utf8(read_bounded(path, MAX_LOG_BYTES)?).map_err(std::io::Error::other)
+}
+
 /// A training started from here.
 struct Started {
     child: Child,
@@ -87,7 +95,7 @@ impl Training {
     /// Starts the thread that reads logs, which waits; `wake` is called from it.
     pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Training> {
         let read = |_: &mut (), path: PathBuf, _: &Task| {
-            let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+            let text = read_log(&path).map_err(|e| format!("{}: {e}", path.display()))?;
             Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))
         };
         let worker = Worker::spawn("training log", || (), read, wake)?;

@@ -1,6 +1,7 @@
 //! Everything a button, a menu entry, a shortcut, the palette or a panel can ask for.
 
 use super::bounds_settings::BoundsSettings;
+use super::lossy_save::LossyAnswer;
 use super::panel::Panel;
 use super::settings::Projection;
 use super::several::Several;
@@ -53,6 +54,12 @@ pub enum Command {
     SaveAs,
     /// Save the scene in this file.
     SaveTo(PathBuf),
+    /// Whether the scene is saved in a file that can't hold all of it.
+    AnswerLosses(LossyAnswer),
+    /// Put this unsaved document, which another took the place of, on screen again.
+    Recover(u64),
+    /// Give this unsaved document up.
+    Discard(u64),
     /// Open a scene that comes with the program.
     Preset(usize),
     /// Make a random test scene.

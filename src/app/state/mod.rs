@@ -7,6 +7,7 @@ mod command;
 mod command_table;
 mod guided;
 mod lesson_run;
+mod lossy_save;
 mod methods;
 mod notices;
 mod panel;
@@ -20,6 +21,7 @@ pub use command::{Command, EvaluationChoice, NewObject};
 pub use command_table::{listed, shortcuts};
 pub use guided::{Guided, Setup};
 pub use lesson_run::LessonRun;
+pub use lossy_save::{LossyAnswer, LossySave};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, Panel};
@@ -57,6 +59,8 @@ pub struct State {
     pub pointer: Pointer,
     /// What the guide did.
     pub guided: Guided,
+    /// A file that can't hold all of the scene, if it is to be written.
+    pub lossy_save: Option<LossySave>,
     /// The lesson being taken.
     pub lesson: Option<LessonRun>,
     /// Where the panels were before a lesson took the whole screen.

@@ -110,6 +110,11 @@ impl Autosave {
         result
     }
 
+    /// Whether `editor` is on disk as it is, as far as it is unsaved.
+    pub fn holds(&self, editor: &Editor) -> bool {
+        !self.is_busy() && self.last.as_ref().is_some_and(|(last, _)| last.is_same(&Plan::of(editor)))
+    }
+
     /// What went wrong since the last call.
     pub fn poll(&mut self) -> Vec<String> {
         let mut problems = Vec::new();

@@ -63,17 +63,18 @@ impl Editor {
         let losses = self.losses(path)?;
         file::save(path, &self.document.to_file())?;
         if !losses.is_empty() {
+            // Documents of that path must learn that it holds something else now.
+            self.note_kept(&Document::read(path)?, &document::whole_path(path));
             return Ok(Saved::Copy(losses));
         }
-        self.note_kept(&document::whole_path(path));
+        self.note_kept(&self.document.clone(), &document::whole_path(path));
         Ok(Saved::Whole)
     }
 
-    /// Tells every document that may come back that `path` now holds the current one.
-    fn note_kept(&mut self, path: &Path) {
-        let kept = self.document.clone();
+    /// Tells every document that may come back that `path` now holds what `kept` does.
+    fn note_kept(&mut self, kept: &Document, path: &Path) {
         let behind = self.history.documents_mut().chain(&mut self.left);
-        behind.chain([&mut self.document]).for_each(|d| d.note_kept(&kept, path));
+        behind.chain([&mut self.document]).for_each(|d| d.note_kept(kept, path));
         self.left.retain(Document::is_modified);
     }
 
@@ -87,7 +88,7 @@ impl Editor {
         self.history.seal();
         if let Some(path) = self.document.path().filter(|_| !self.is_modified()).map(Path::to_owned) {
             // It was read just now: documents of that path learn what their file holds.
-            self.note_kept(&path);
+            self.note_kept(&self.document.clone(), &path);
         }
     }
 

@@ -189,7 +189,7 @@ fn one_file_opened_twice_is_known_by_what_it_holds() {
 
 #[test]
 fn a_copy_that_loses_something_saves_nothing() {
-    let (folder, ..) = two_files();
+    let (folder, a, _) = two_files();
     let mut e = editor();
     let line = Line { reflectivity: 0.05, ..Line::vertical(0.0, 9.0, 0.1, 40) };
     e.add(Object::Line(line));
@@ -201,6 +201,12 @@ fn a_copy_that_loses_something_saves_nothing() {
     e.undo();
     assert_eq!(e.save(&npz).unwrap(), Saved::Whole);
     assert_eq!(e.document().title(), "s.npz");
+    e.open("open", Document::read(&a).unwrap());
+    e.add(Object::Line(Line::vertical(0.0, 9.0, 0.1, 40)));
+    e.save(&npz).unwrap();
+    e.undo();
+    e.undo();
+    assert_eq!(e.document().title(), "s.npz •", "its file holds a copy of another scene now");
     assert!(e.losses(&folder.path().join("s.yaml")).is_err());
 }
 

@@ -1,6 +1,8 @@
 //! Everything that reads a file from outside, with valid files to start from.
 
+use apertura::evaluate::rows::{Row, read_rows, write_rows};
 use apertura::files::npz::{Npz, write_npz};
+use apertura::lesson::{Lesson, shipped};
 use apertura::radar::{Carrier, Radar};
 use apertura::recording::{self, RadarProfile};
 use apertura::scene::file::{self, SceneFile};
@@ -22,6 +24,7 @@ pub struct Reader {
 
 pub fn all() -> Vec<Reader> {
     let mut all = vec![scenes(), autosaves(), archives(), recordings(), recorded_data(), profiles(), shared()];
+    all.extend([tables_of_rows(), lessons()]);
     #[cfg(feature = "network")]
     all.extend(networks::all());
     all
@@ -228,6 +231,60 @@ fn profiles() -> Reader {
         },
         bound: |length| (1 << 20) + 1024 * length,
         slow: 1,
+    }
+}
+
+fn tables_of_rows() -> Reader {
+    let row = |index: u32, figure: Option<f64>| Row {
+        set: "a \"set\", quoted".to_owned(),
+        index,
+        seed: u64::from(index) << 60,
+        method: "baseline".to_owned(),
+        eta: 0.5,
+        squared_error: 321.25,
+        detection: figure,
+        false_alarm: 0.01,
+        detection_at_printed: figure,
+        milliseconds: 1.5,
+        objects: 3,
+        reflectors: 77,
+        missed: 1,
+        ghosts: 0,
+        nearest_pair_columns: figure,
+        nearest_pair_bins: figure,
+        min_range_metres: figure,
+        strongest_over_weakest_db: figure,
+    };
+    let mut file = Vec::new();
+    write_rows(&mut file, &[row(0, None), row(1, Some(1e-3)), row(2, Some(0.75))]).unwrap();
+    Reader {
+        name: "rows",
+        files: vec![file],
+        read: |_, bytes| {
+            let rows = read_rows(bytes).map_err(|e| e.to_string())?;
+            let mut again = Vec::new();
+            write_rows(&mut again, &rows).map_err(|e| e.to_string())?;
+            assert_eq!(read_rows(again.as_slice()).unwrap(), rows);
+            Ok(())
+        },
+        bound: |length| (1 << 20) + 256 * length,
+        slow: 1,
+    }
+}
+
+fn lessons() -> Reader {
+    Reader {
+        name: "lesson",
+        files: shipped::ALL.iter().map(|l| l.toml.as_bytes().to_vec()).collect(),
+        read: |_, bytes| {
+            let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
+            let lesson = Lesson::from_toml(text).map_err(|e| e.to_string())?;
+            lesson.steps.iter().for_each(|step| drop(step.scene()));
+            Ok(())
+        },
+        // The reflectors of the largest scene, and the tables of the text.
+        bound: |length| (16 << 20) + 1024 * length,
+        slow: 4,
     }
 }
 

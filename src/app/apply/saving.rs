@@ -1,0 +1,52 @@
+//! Writing the scene to a file, and the question before a file that can't hold all of it.
+
+use crate::app::jobs::{Jobs, Purpose};
+use crate::app::state::{LossyAnswer, LossySave, State};
+use crate::interact::Saved;
+use std::path::PathBuf;
+
+/// Writes the scene to `path`, or asks first where that would lose something.
+pub fn save(state: &mut State, mut path: PathBuf) {
+    if path.extension().is_none() {
+        path.set_extension("toml");
+    }
+    match state.editor.losses(&path) {
+        Ok(losses) if !losses.is_empty() => state.lossy_save = Some(LossySave { path, losses }),
+        // An error comes again when writing, which tells it.
+        _ => write(state, path),
+    }
+}
+
+/// Does what was answered.
+pub fn answer(state: &mut State, jobs: &mut Jobs, answer: LossyAnswer) {
+    let Some(LossySave { path, .. }) = state.lossy_save.take() else { return };
+    match answer {
+        LossyAnswer::Cancel => {}
+        LossyAnswer::Anyway => write(state, path),
+        LossyAnswer::AsToml => {
+            let toml = path.with_extension("toml");
+            // Another file of that name is not replaced without a question.
+            match toml.exists() {
+                true => jobs.choose_file(state, Purpose::SaveScene),
+                false => write(state, toml),
+            }
+        }
+    }
+}
+
+fn write(state: &mut State, path: PathBuf) {
+    match state.editor.save(&path) {
+        Ok(Saved::Whole) => {
+            state.remember(&path);
+            state.notices.info(format!("Saved {}", path.display()));
+        }
+        Ok(Saved::Copy(losses)) => {
+            let lost = losses.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            let advice = "The scene itself is still unsaved: save it as .toml to keep everything.";
+            state.notices.info(format!("{} holds a copy without {lost}. {advice}", path.display()));
+        }
+        Err(error) => {
+            state.notices.error(format!("{error}\nNothing was written; choose another place with Save as…"));
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Asks before a scene is written to a kind of file that can't hold all of it.
+
+use crate::app::state::{Command, LossyAnswer, LossySave};
+use eframe::egui::{Context, Id, Modal, Ui};
+
+/// What is asked.
+pub struct Input<'a> {
+    /// The file and what it would lose, if anything is asked.
+    pub question: Option<&'a LossySave>,
+}
+
+/// Draws the question, if there is one.
+pub fn show(ctx: &Context, input: Input<'_>) -> Vec<Command> {
+    let Some(question) = input.question else { return Vec::new() };
+    let modal = Modal::new(Id::unique("losses")).show(ctx, |ui| draw(ui, question));
+    let answer = modal.inner.or(modal.should_close().then_some(LossyAnswer::Cancel));
+    answer.map(Command::AnswerLosses).into_iter().collect()
+}
+
+fn draw(ui: &mut Ui, question: &LossySave) -> Option<LossyAnswer> {
+    ui.set_width(360.0);
+    let name = question.path.file_name().unwrap_or(question.path.as_os_str()).to_string_lossy();
+    ui.strong(format!("{name} can't hold all of this scene"));
+    ui.label("What would be lost in it:");
+    for loss in &question.losses {
+        ui.label(format!("•  {loss}"));
+    }
+    ui.label("The scene on screen keeps everything and stays unsaved.");
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let toml = ui.button("Save as TOML").on_hover_text("A file beside it that holds everything");
+        if ui.memory(|m| m.focused().is_none()) {
+            toml.request_focus();
+        }
+        let anyway = ui.button("Save anyway");
+        let cancel = ui.button("Cancel");
+        let answers = [(toml, LossyAnswer::AsToml), (anyway, LossyAnswer::Anyway), (cancel, LossyAnswer::Cancel)];
+        answers.into_iter().find(|(button, _)| button.clicked()).map(|(_, answer)| answer)
+    })
+    .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file::Loss;
+    use eframe::egui::Key;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn asked() -> Harness<'static, Vec<Command>> {
+        let losses = vec![Loss::Radar, Loss::Structure { objects: 1, points: 40 }];
+        let question = LossySave { path: "/there/walls.npz".into(), losses };
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            asked.extend(show(ui.ctx(), Input { question: Some(&question) }));
+        };
+        let mut question = Harness::new_ui_state(draw, Vec::new());
+        question.run();
+        question
+    }
+
+    #[test]
+    fn every_loss_is_listed_and_every_button_answers() {
+        for (button, answer) in [
+            ("Save anyway", LossyAnswer::Anyway),
+            ("Save as TOML", LossyAnswer::AsToml),
+            ("Cancel", LossyAnswer::Cancel),
+        ] {
+            let mut question = asked();
+            for said in ["walls.npz", "its radar", "which becomes 40 points"] {
+                assert!(question.query_by_label_contains(said).is_some(), "{said}");
+            }
+            assert!(question.state().is_empty(), "nothing happens by itself");
+            question.get_by_label(button).click();
+            question.step();
+            assert_eq!(question.state(), &[Command::AnswerLosses(answer)]);
+        }
+    }
+
+    #[test]
+    fn escape_cancels_and_enter_loses_nothing() {
+        for (key, answer) in [(Key::Escape, LossyAnswer::Cancel), (Key::Enter, LossyAnswer::AsToml)] {
+            let mut question = asked();
+            question.key_press(key);
+            question.step();
+            assert_eq!(question.state().first(), Some(&Command::AnswerLosses(answer)), "{key:?}");
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The menu of unsaved scenes that another took the place of: to be brought back, or given up.
+
+use crate::app::state::Command;
+use crate::interact::Document;
+use eframe::egui::Ui;
+
+/// Draws the menu's entry; grey where nothing is unsaved.
+pub fn show(ui: &mut Ui, left: &[Document], asked: &mut Vec<Command>) {
+    ui.add_enabled_ui(!left.is_empty(), |ui| {
+        ui.menu_button("Unsaved scenes", |ui| {
+            // The latest first, as among recent files.
+            for document in left.iter().rev() {
+                one(ui, document, asked);
+            }
+        });
+    });
+}
+
+fn one(ui: &mut Ui, document: &Document, asked: &mut Vec<Command>) {
+    let scene = document.scene();
+    let name = if scene.name.is_empty() { document.name() } else { format!("{}: {}", document.name(), scene.name) };
+    let objects = scene.objects.len();
+    let text = format!("{name} ({objects} object{})", if objects == 1 { "" } else { "s" });
+    ui.push_id(document.id(), |ui| {
+        ui.menu_button(text, |ui| {
+            let entries = [
+                ("Bring back", "Put it on screen; undo takes that back", Command::Recover(document.id())),
+                ("Discard", "Give it up: no copy of it is kept", Command::Discard(document.id())),
+            ];
+            for (name, tooltip, command) in entries {
+                if ui.button(name).on_hover_text(tooltip).clicked() {
+                    asked.push(command);
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::scene::file::SceneFile;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn the_latest_comes_first_and_each_can_be_brought_back_or_given_up() {
+        let document = |points: usize| {
+            let scene = Scene::of_points((0..points).map(|i| (i as f64, 9.0)));
+            Document::made(SceneFile { scene, ..SceneFile::default() })
+        };
+        let left = [document(1), document(2)];
+        let ids = [left[0].id(), left[1].id()];
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| show(ui, &left, asked);
+        let mut menu = Harness::builder().with_size([700.0, 400.0]).build_ui_state(draw, Vec::new());
+        for (scene, entry) in [("untitled (2 objects)", "Bring back"), ("untitled (1 object)", "Discard")] {
+            for label in ["Unsaved scenes", scene, entry] {
+                menu.get_by_label_contains(label).click();
+                menu.run();
+            }
+        }
+        assert_eq!(menu.state(), &[Command::Recover(ids[1]), Command::Discard(ids[0])]);
+    }
+}

@@ -1,0 +1,138 @@
+//! What a hand may do to the window, at random.
+
+use super::{FILES, Monkey};
+use apertura::app::{Command, MapKind, NewObject, Panel};
+use apertura::maps::Normalisation;
+use apertura::radar::{Carrier, Decibels, WindowFunction};
+use apertura::signal::Floor;
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2};
+use rand::RngExt;
+use rand::seq::IndexedRandom;
+
+const POINT: &str = "[[object]]\nkind = \"point\"\nx_metres = 1.0\ny_metres = 9.0\n";
+
+impl Monkey {
+    fn pick<T: Copy>(&mut self, of: &[T]) -> T {
+        *of.choose(&mut self.rng).expect("something to choose from")
+    }
+
+    fn place(&mut self) -> Pos2 {
+        pos2(self.rng.random_range(0.0..1440.0), self.rng.random_range(0.0..900.0))
+    }
+
+    fn offset(&mut self) -> Vec2 {
+        vec2(self.rng.random_range(-120.0..120.0), self.rng.random_range(-120.0..120.0))
+    }
+
+    /// One thing that a hand may do.
+    pub fn act(&mut self) {
+        match self.rng.random_range(0..14) {
+            0 | 1 => self.drag(),
+            2 => {
+                let at = self.place();
+                self.s.app.hover_at(at);
+            }
+            3 | 4 => self.click(),
+            5 => {
+                let keys = [
+                    Key::ArrowUp, Key::ArrowLeft, Key::Delete, Key::Tab, Key::Enter, Key::Escape, Key::Backspace, Key::Space,
+                    Key::R, Key::V, Key::F1, Key::F7,
+                ];
+                let key = self.pick(&keys);
+                self.s.app.key_press(key);
+            }
+            6 => {
+                let key = self.pick(&[Key::Z, Key::Y, Key::A, Key::D, Key::S, Key::K, Key::Num1, Key::Num3]);
+                self.s.app.key_press_modifiers(Modifiers::COMMAND, key);
+            }
+            7 => {
+                let text = self.pick(&["1", "2.5", "-", "1e400", "nan", "add", "line", "ü", "preset"]);
+                self.s.app.event(Event::Text(text.to_owned()));
+            }
+            8 => {
+                let text = self.pick(&[POINT, "not a scene", "", "[[object]]\nkind = \"point\"\nx_metres = nan\ny_metres = 1.0\n"]);
+                self.s.app.event(Event::Paste(text.to_owned()));
+            }
+            9 => self.scroll(),
+            _ => {
+                let command = self.command();
+                self.s.app.state_mut().ask(command);
+            }
+        }
+        self.s.app.step();
+    }
+
+    fn drag(&mut self) {
+        let (from, by) = (self.place(), self.offset());
+        self.s.app.hover_at(from);
+        self.s.app.step();
+        self.s.app.drag_at(from);
+        self.s.app.step();
+        for part in [0.3, 0.7, 1.0] {
+            self.s.app.hover_at(from + by * part);
+            self.s.app.step();
+        }
+        if self.rng.random_bool(0.1) {
+            self.s.app.key_press(Key::Escape);
+        }
+        self.s.app.drop_at(from + by);
+    }
+
+    fn click(&mut self) {
+        let at = self.place();
+        let button = self.pick(&[PointerButton::Primary, PointerButton::Primary, PointerButton::Secondary]);
+        for _ in 0..self.rng.random_range(1..3) {
+            for pressed in [true, false] {
+                let modifiers = self.pick(&[Modifiers::NONE, Modifiers::NONE, Modifiers::SHIFT]);
+                self.s.app.event(Event::PointerMoved(at));
+                self.s.app.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+                self.s.app.step();
+            }
+        }
+    }
+
+    fn scroll(&mut self) {
+        let (at, delta) = (self.place(), vec2(0.0, self.rng.random_range(-60.0..60.0)));
+        self.s.app.hover_at(at);
+        let (unit, phase, modifiers) = (MouseWheelUnit::Point, TouchPhase::Move, Modifiers::NONE);
+        let source = MouseWheelSource::Unknown;
+        self.s.app.event(Event::MouseWheel { unit, delta, phase, source, modifiers });
+    }
+
+    fn command(&mut self) -> Command {
+        let document = self.s.state().editor().document();
+        let named = document.path().is_some();
+        let left: Vec<u64> = self.s.state().editor().left().iter().map(|d| d.id()).collect();
+        let files = ["bad.toml", "missing.toml"].into_iter().chain(FILES).collect::<Vec<_>>();
+        match self.rng.random_range(0..22) {
+            0 => Command::New,
+            1..=3 => {
+                let name = self.pick(&files);
+                Command::OpenPath(self.s.folder.path().join(name))
+            }
+            4..=6 if named => Command::Save,
+            7 => {
+                let name = self.pick(&FILES);
+                Command::SaveTo(self.s.folder.path().join(name))
+            }
+            8 => Command::Undo,
+            9 => Command::Redo,
+            10 => Command::SelectAll,
+            11 => Command::Duplicate,
+            12 => Command::SetCarrier(self.pick(&[Carrier::OneWay, Carrier::TwoWay])),
+            13 => Command::SetWindow(self.pick(&[WindowFunction::Hann, WindowFunction::Hamming])),
+            14 => Command::SetNoiseSeed(self.rng.random_range(0..9)),
+            15 => Command::SetFloor(self.pick(&[Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0))])),
+            16 => Command::Normalise(self.pick(&[Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))])),
+            17 => {
+                let panels = Panel::all();
+                Command::TogglePanel(self.pick(&panels))
+            }
+            18 => Command::Maximise(self.pick(&[Panel::Scene, Panel::Map(MapKind::Target), Panel::Cuts, Panel::Guide])),
+            19 => Command::Recover(if left.is_empty() { 0 } else { self.pick(&left) }),
+            20 if self.rng.random_bool(0.5) => Command::BeginLesson(0),
+            20 => Command::LeaveLesson,
+            _ => Command::Add(self.pick(&[NewObject::Point, NewObject::Line, NewObject::Cluster]), None),
+        }
+    }
+}
