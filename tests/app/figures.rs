@@ -102,7 +102,12 @@ impl Reconstructor for Counted {
     fn about(&self) -> About {
         About { name: "counted", description: "counts", told: "", eta: 0.5 }
     }
-    fn estimate(&self, radar: &apertura::radar::Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(
+        &self,
+        radar: &apertura::radar::Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Reconstruction, ReconstructError> {
         self.0.fetch_add(1, Ordering::SeqCst);
         Baseline.reconstruct(radar, ends, request)
     }

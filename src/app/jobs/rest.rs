@@ -64,9 +64,8 @@ mod tests {
     fn a_scene_rests_a_moment_after_the_last_change_and_never_while_it_is_held() {
         let (radar, scenes) = (Radar::default(), [Arc::new(Scene::default()), Arc::new(Scene::default())]);
         let (mut rest, start) = (Rest::default(), Instant::now());
-        let mut look = |scene: usize, floor, held, after: Duration| {
-            rest.look(&scenes[scene], &radar, floor, held, start + after)
-        };
+        let mut look =
+            |scene: usize, floor, held, after: Duration| rest.look(&scenes[scene], &radar, floor, held, start + after);
         let at = Duration::from_millis;
         assert_eq!(look(0, Floor::Thesis, false, at(0)), Motion::RestsIn(QUIET));
         assert_eq!(look(0, Floor::Thesis, false, at(40)), Motion::RestsIn(at(60)));

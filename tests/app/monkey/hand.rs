@@ -5,7 +5,9 @@ use apertura::app::{Command, MapKind, NewObject, Panel};
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
 use apertura::signal::Floor;
-use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2};
+use eframe::egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2,
+};
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 
@@ -35,8 +37,18 @@ impl Monkey {
             3 | 4 => self.click(),
             5 => {
                 let keys = [
-                    Key::ArrowUp, Key::ArrowLeft, Key::Delete, Key::Tab, Key::Enter, Key::Escape, Key::Backspace, Key::Space,
-                    Key::R, Key::V, Key::F1, Key::F7,
+                    Key::ArrowUp,
+                    Key::ArrowLeft,
+                    Key::Delete,
+                    Key::Tab,
+                    Key::Enter,
+                    Key::Escape,
+                    Key::Backspace,
+                    Key::Space,
+                    Key::R,
+                    Key::V,
+                    Key::F1,
+                    Key::F7,
                 ];
                 let key = self.pick(&keys);
                 self.s.app.key_press(key);
@@ -50,7 +62,12 @@ impl Monkey {
                 self.s.app.event(Event::Text(text.to_owned()));
             }
             8 => {
-                let text = self.pick(&[POINT, "not a scene", "", "[[object]]\nkind = \"point\"\nx_metres = nan\ny_metres = 1.0\n"]);
+                let text = self.pick(&[
+                    POINT,
+                    "not a scene",
+                    "",
+                    "[[object]]\nkind = \"point\"\nx_metres = nan\ny_metres = 1.0\n",
+                ]);
                 self.s.app.event(Event::Paste(text.to_owned()));
             }
             9 => self.scroll(),
