@@ -88,6 +88,7 @@ impl<'a> Contents<'a> {
             output: pipeline.output().map(|o| (o.method, o.took)),
             scores: pipeline.scores(),
             outdated: pipeline.output_is_outdated(),
+            wanted: pipeline.wants_output(),
         };
         let input = controls::Input {
             settings: &state.settings,

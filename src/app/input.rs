@@ -5,8 +5,8 @@ use eframe::egui::{Context, Event, Key, Modifiers, RawInput};
 
 /// Events of one frame that must wait for the next.
 ///
-/// A field takes what was typed when it is drawn, but Tab and Enter move the focus before anything is drawn: letters that come in one
-/// frame with them would land in another field, or nowhere.
+/// A field takes what was typed when it is drawn, but Tab, Enter and a press of the mouse move the focus before anything is drawn: letters
+/// that come in one frame with them would land in another field, or nowhere.
 #[derive(Default)]
 pub struct Later(Vec<Event>);
 
@@ -15,7 +15,11 @@ impl Later {
     pub fn sort(&mut self, input: &mut RawInput) -> bool {
         let mut events = std::mem::take(&mut self.0);
         events.append(&mut input.events);
-        let moves = |e: &Event| matches!(e, Event::Key { key: Key::Tab | Key::Enter, pressed: true, .. });
+        let moves = |e: &Event| match e {
+            Event::Key { key, pressed, .. } => *pressed && matches!(key, Key::Tab | Key::Enter),
+            Event::PointerButton { pressed, .. } => *pressed,
+            _ => false,
+        };
         let typed = |e: &Event| matches!(e, Event::Text(_) | Event::Paste(_));
         let from_first =
             |is: &dyn Fn(&Event) -> bool, from: usize| events[from..].iter().position(is).map(|i| i + from);
@@ -155,6 +159,16 @@ mod tests {
             vec![text("p")],
         ];
         assert_eq!(frames(fast), slow);
+        let at = eframe::egui::pos2(1.0, 1.0);
+        let button = |pressed| Event::PointerButton {
+            pos: at,
+            button: eframe::egui::PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let click = vec![text("b"), Event::PointerMoved(at), button(true), button(false), text("c")];
+        let apart = [vec![text("b"), Event::PointerMoved(at)], vec![button(true), button(false)], vec![text("c")]];
+        assert_eq!(frames(click), apart, "what was typed before a click stays");
         let harmless = vec![text("1"), press(Key::ArrowUp), text("2")];
         assert_eq!(frames(harmless.clone()), [harmless]);
     }

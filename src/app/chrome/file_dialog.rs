@@ -22,7 +22,7 @@ impl Memory {
 
     /// Asks for a file.
     pub fn ask(&mut self, question: Question) {
-        let Question { purpose, folder } = question;
+        let Question { purpose, folder, name } = question;
         let dialog = if purpose.reads() { FileDialog::open_file() } else { FileDialog::save_file() };
         let (_, endings) = purpose.kind();
         let fits = move |path: &Path| {
@@ -32,7 +32,7 @@ impl Memory {
         let dialog = dialog
             .title(purpose.title())
             .id(Id::unique("file dialog"))
-            .default_filename(purpose.name())
+            .default_filename(name)
             .default_size([480.0, 360.0])
             .show_rename(false)
             .show_files_filter(Box::new(fits));
@@ -116,7 +116,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, "").unwrap();
-        let question = Question { purpose: Purpose::SaveScene, folder: Some(folder.path().to_path_buf()) };
+        let question = Question::beside(Purpose::SaveScene, Some(&folder.path().join("scene.toml")));
         for (answer, asked) in [("Keep it", vec![]), ("Replace", vec![Command::SaveTo(path.clone())])] {
             let mut dialog = panel(question.clone());
             dialog.get_by_label("Save").click();
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn a_new_file_is_written_at_once() {
         let folder = tempfile::tempdir().unwrap();
-        let question = Question { purpose: Purpose::ExportMaps, folder: Some(folder.path().to_path_buf()) };
+        let question = Question::beside(Purpose::ExportMaps, Some(&folder.path().join("scene.toml")));
         let mut dialog = panel(question);
         dialog.get_by_label("Save").click();
         dialog.run_steps(3);

@@ -25,7 +25,7 @@ fn draw(ui: &mut Ui, question: &LossySave) -> Option<LossyAnswer> {
     for loss in &question.losses {
         ui.label(format!("•  {loss}"));
     }
-    ui.label("The scene on screen keeps everything and stays unsaved.");
+    ui.label("The scene on screen keeps everything; what of it is unsaved stays unsaved.");
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         let toml = ui.button("Save as TOML").on_hover_text("A file beside it that holds everything");

@@ -103,10 +103,24 @@ pub struct Question {
     pub purpose: Purpose,
     /// Where to look first.
     pub folder: Option<PathBuf>,
+    /// Name of the file where nobody chooses another.
+    pub name: String,
+}
+
+impl Question {
+    /// Asks with the usual name, beside `document` where it has a file.
+    pub fn beside(purpose: Purpose, document: Option<&Path>) -> Question {
+        let stem = document.and_then(Path::file_stem).filter(|_| purpose == Purpose::SaveScene);
+        let name = match stem {
+            Some(stem) => format!("{}.toml", stem.to_string_lossy()),
+            None => purpose.name().to_owned(),
+        };
+        Question { purpose, folder: document.and_then(Path::parent).map(Path::to_path_buf), name }
+    }
 }
 
 /// Asks by a dialog of the system; `None` where it was closed without a file, or could not be shown.
-type System = Arc<dyn Fn(Purpose, Option<&Path>) -> Option<PathBuf> + Send + Sync>;
+type System = Arc<dyn Fn(&Question) -> Option<PathBuf> + Send + Sync>;
 
 enum Answer {
     Chosen(Command),
@@ -148,7 +162,7 @@ impl Dialogs {
         let answers = self.answers.0.clone();
         std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
             let began = Instant::now();
-            let answer = match system(question.purpose, question.folder.as_deref()) {
+            let answer = match system(&question) {
                 Some(path) => Answer::Chosen(question.purpose.command(path)),
                 None if began.elapsed() < NEVER_SHOWN => Answer::NotShown(question),
                 None => return,
@@ -185,11 +199,12 @@ impl Dialogs {
     }
 }
 
-fn system_dialog(purpose: Purpose, folder: Option<&Path>) -> Option<PathBuf> {
+fn system_dialog(question: &Question) -> Option<PathBuf> {
+    let Question { purpose, folder, name: file_name } = question;
     let (name, endings) = purpose.kind();
     let dialog = rfd::FileDialog::new().set_title(purpose.title()).add_filter(name, endings);
     let dialog = if let Some(folder) = folder { dialog.set_directory(folder) } else { dialog };
-    if purpose.reads() { dialog.pick_file() } else { dialog.set_file_name(purpose.name()).save_file() }
+    if purpose.reads() { dialog.pick_file() } else { dialog.set_file_name(file_name).save_file() }
 }
 
 #[cfg(test)]
@@ -205,9 +220,19 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_is_saved_beside_its_file_and_under_its_name() {
+        let path = Path::new("/scenes/a.npz");
+        let named = |purpose, path| Question::beside(purpose, path).name;
+        assert_eq!(named(Purpose::SaveScene, Some(path)), "a.toml");
+        assert_eq!(named(Purpose::ExportMaps, Some(path)), "maps.npz");
+        assert_eq!(named(Purpose::SaveScene, None), "scene.toml");
+        assert_eq!(Question::beside(Purpose::Open, Some(path)).folder.as_deref(), Some(Path::new("/scenes")));
+    }
+
+    #[test]
     fn where_the_system_shows_nothing_the_window_asks_and_says_so_once() {
-        let mut dialogs = Dialogs::by(Some(Arc::new(|_, _| None)));
-        let question = |purpose| Question { purpose, folder: Some(PathBuf::from("/scenes")) };
+        let mut dialogs = Dialogs::by(Some(Arc::new(|_| None)));
+        let question = |purpose| Question::beside(purpose, Some(Path::new("/scenes/a.npz")));
         let (chosen, told) = answer(&mut dialogs, question(Purpose::Open));
         assert!(chosen.is_empty() && told.is_some());
         assert_eq!(dialogs.take_unanswered(), Some(question(Purpose::Open)));
@@ -219,12 +244,12 @@ mod tests {
 
     #[test]
     fn a_dialog_that_somebody_closed_is_no_failure_and_a_file_is_a_command() {
-        let slow: System = Arc::new(|purpose, _| {
+        let slow: System = Arc::new(|question| {
             std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));
-            (purpose == Purpose::Open).then(|| PathBuf::from("a.toml"))
+            (question.purpose == Purpose::Open).then(|| PathBuf::from("a.toml"))
         });
         let mut dialogs = Dialogs::by(Some(slow));
-        let question = |purpose| Question { purpose, folder: None };
+        let question = |purpose| Question::beside(purpose, None);
         assert_eq!(answer(&mut dialogs, question(Purpose::ExportMaps)), (Vec::new(), None));
         assert_eq!(dialogs.take_unanswered(), None);
         let (chosen, _) = answer(&mut dialogs, question(Purpose::Open));

@@ -163,8 +163,8 @@ impl Jobs {
     /// Opens a file dialog; what is chosen comes back as a command.
     pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
         let ctx = self.wake.clone();
-        let folder = state.editor.document().path().and_then(Path::parent).map(Path::to_path_buf);
-        if let Err(error) = self.dialogs.ask(Question { purpose, folder }, move || ctx.request_repaint()) {
+        let question = Question::beside(purpose, state.editor.document().path());
+        if let Err(error) = self.dialogs.ask(question, move || ctx.request_repaint()) {
             let advice = "Drop a file on the window instead.";
             state.notices.error(format!("The file dialog could not be opened: {error}. {advice}"));
         }

@@ -357,6 +357,11 @@ impl Pipeline {
         self.took
     }
 
+    /// Whether somebody looks at an output, or would if there were one.
+    pub fn wants_output(&self) -> bool {
+        self.asked.as_ref().is_some_and(|asked| asked.wanted.ends)
+    }
+
     /// Whether the shown output belongs to something else than the shown maps.
     pub fn output_is_outdated(&self) -> bool {
         self.outdated.is_some()

@@ -89,6 +89,8 @@ pub struct Training {
     log: Option<Log>,
     note: Option<String>,
     started: Option<Started>,
+    /// Whether the log is that of a training started from here, which may end before it has one.
+    own: bool,
 }
 
 impl Training {
@@ -99,7 +101,7 @@ impl Training {
             Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))
         };
         let worker = Worker::spawn("training log", || (), read, wake)?;
-        Ok(Training { worker, path: None, looked: None, log: None, note: None, started: None })
+        Ok(Training { worker, path: None, looked: None, log: None, note: None, started: None, own: false })
     }
 
     /// The log that is followed.
@@ -119,6 +121,7 @@ impl Training {
 
     /// Follows a log.
     pub fn follow(&mut self, path: PathBuf) {
+        self.own = false;
         (self.path, self.log, self.note, self.looked) = (Some(path), None, None, None);
     }
 
@@ -139,6 +142,7 @@ impl Training {
             .stderr(Stdio::null())
             .spawn()?;
         self.follow(folder.join("log.csv"));
+        self.own = true;
         self.started = Some(Started { child, steps });
         Ok(())
     }
@@ -170,8 +174,8 @@ impl Training {
         let due = self.looked.is_none_or(|t| t.elapsed() >= EVERY);
         if let Some(path) = self.path.clone().filter(|_| due && !self.worker.is_busy()) {
             self.looked = Some(Instant::now());
-            // A training that has just begun has no log yet.
-            if !self.is_running() || path.exists() {
+            // A training that has just begun has no log yet, and one that was stopped at once never has.
+            if !self.own || path.exists() {
                 self.worker.request(path);
             }
         }
@@ -236,5 +240,21 @@ mod tests {
         let log = Log::parse(&text).unwrap();
         assert!(log.loss.len() <= POINTS + 1);
         assert_eq!(log.step, (3 * POINTS - 1) as f64);
+    }
+
+    #[test]
+    fn a_training_that_was_stopped_before_its_first_line_is_not_looked_for() {
+        let (wake, woken) = std::sync::mpsc::channel();
+        let mut training = Training::start(move || wake.send(()).unwrap()).unwrap();
+        let missing = PathBuf::from("/there/is/no/log.csv");
+        training.follow(missing.clone());
+        training.own = true;
+        training.look();
+        assert!(!training.worker.is_busy(), "nobody asks for what was never begun");
+        training.follow(missing);
+        training.look();
+        woken.recv_timeout(Duration::from_secs(20)).unwrap();
+        training.poll();
+        assert!(training.note().unwrap().contains("log.csv"), "but a log that somebody chose is missed");
     }
 }

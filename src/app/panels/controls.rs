@@ -48,6 +48,8 @@ pub struct Run<'a> {
     pub scores: Option<Scores>,
     /// Whether that scene is an earlier one.
     pub outdated: bool,
+    /// Whether a panel shows an output, or would if there were one.
+    pub wanted: bool,
 }
 
 /// Draws the panel.
@@ -170,6 +172,8 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
         ui.colored_label(ui.visuals().error_fg_color, &refusal.reason);
     } else if let Some((name, took)) = run.output {
         ui.weak(format!("{name} took {:.1} ms", took.as_secs_f64() * 1e3));
+    } else if run.wanted {
+        ui.weak("Waiting for the maps…");
     } else {
         ui.weak("Show an output panel to reconstruct.");
     }

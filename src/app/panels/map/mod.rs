@@ -114,7 +114,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
     if let Some(cursor) = &input.cursor {
         overlay::cursor(&inner, frame, cursor, input.cells.as_ref().filter(|_| input.veil.is_none()));
     }
-    if input.stale {
+    if input.stale && texture.is_some() {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
         axes::text_on_patch(&inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
     }
