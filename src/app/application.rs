@@ -25,6 +25,8 @@ pub const APP_ID: &str = "apertura";
 pub struct Options {
     /// Scene to open.
     pub scene: Option<PathBuf>,
+    /// Name of the reconstruction to begin with; the one used last where `None`.
+    pub method: Option<String>,
     /// CSV file for the time of every frame.
     pub frame_log: Option<PathBuf>,
     /// When the program was started, for that file; now where `None`.
@@ -108,6 +110,7 @@ impl App {
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
+        state.settings.method = options.method.unwrap_or(state.settings.method);
         start(&mut state, &jobs, options.scene);
         let asked = options.lesson.map(Command::OpenLessonFile).into_iter();
         let asked = asked.chain(options.shared.map(Command::OpenShared)).collect();

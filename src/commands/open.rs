@@ -18,6 +18,10 @@ pub struct Args {
     /// Scene (.toml or .npz), recording (.toml with [recording]) or text that was copied in the app (apertura:...) to open
     pub scene: Option<PathBuf>,
 
+    /// Reconstruction to begin with in the app
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<String>,
+
     /// Write the app's time for every frame to this CSV file
     #[arg(long, value_name = "FILE")]
     pub frame_log: Option<PathBuf>,
@@ -34,6 +38,7 @@ impl Args {
             Some(path) => Input::load(path)?,
             None => Input::Scene(presets::default_scene()),
         };
+        self.method.as_deref().map(methods::by_name).transpose().map_err(CommandError::failed)?;
         let reason = match self.open_window(started) {
             Ok(()) => return Ok(()),
             Err(WindowError::NoWindow(reason)) => reason,
@@ -53,6 +58,7 @@ impl Args {
         let options = app::Options {
             scene: self.scene.filter(|_| shared.is_none()),
             shared,
+            method: self.method,
             frame_log: self.frame_log,
             started: Some(started),
             ..app::Options::default()
