@@ -250,9 +250,6 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
             if drag.changed() {
                 asked.push(Command::SetNoiseSeed(noise_seed));
             }
-            if drag.drag_stopped() || drag.lost_focus() {
-                asked.push(Command::Seal);
-            }
             drag
         });
     }
