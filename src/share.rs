@@ -44,8 +44,6 @@ pub struct Shared {
 pub struct View {
     /// What lies beneath the reflectors.
     pub floor: Floor,
-    /// Seed of the floor's noise.
-    pub seed: u64,
     /// How maps are normalised.
     pub normalisation: Normalisation,
     /// Colours of the maps.
@@ -243,7 +241,6 @@ mod tests {
     fn view() -> View {
         View {
             floor: Floor::Snr(Decibels(12.5)),
-            seed: 7,
             normalisation: Normalisation::DynamicRange(Decibels(60.0)),
             colours: ColourMap::Viridis,
             cartesian: true,
@@ -286,11 +283,11 @@ mod tests {
         ) {
             let point = |(x_metres, y_metres, reflectivity)| Object::Point(Point { x_metres, y_metres, reflectivity });
             let objects = places.into_iter().map(point).collect();
-            let scene = Scene { name, noise_seed: seed / 2, objects, ..Scene::default() };
+            let scene = Scene { name, noise_seed: seed, objects, ..Scene::default() };
             let lesson = step.map(|step| LessonPlace { id: "a-line".to_owned(), step });
             let floor = Floor::Snr(Decibels(snr));
             let normalisation = Normalisation::DynamicRange(Decibels(range));
-            let view = View { seed, floor, normalisation, eta, target_eta, cartesian, theory, lesson, ..view() };
+            let view = View { floor, normalisation, eta, target_eta, cartesian, theory, lesson, ..view() };
             let shared = Shared { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
             let text = shared.to_text().unwrap();
             prop_assert!(is_shared(&text) && !text.contains(char::is_whitespace));
@@ -335,7 +332,7 @@ mod tests {
         let valid = to_toml_beside(&shared().file, KEY, &view()).unwrap();
         for (from, to, part) in [
             ("x_metres = 3.0", "x_metres = nan", "x_metres"),
-            ("seed = 7", "seed = 7\nsmell = 1", "smell"),
+            ("marks = true", "marks = true\nsmell = 1", "smell"),
             ("target_eta = 0.8999999761581421", "target_eta = 1.5", "expected 0 to 1"),
             ("left = 0.25", "left = 0.9999", "expected edges"),
             ("snr = 12.5", "snr = nan", "floor"),

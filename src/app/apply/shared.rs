@@ -48,7 +48,6 @@ fn share(state: &State) -> Shared {
     let lesson = state.lesson.as_ref().filter(|run| is_shipped(&run.id));
     let view = View {
         floor: settings.floor,
-        seed: settings.seed,
         normalisation: settings.normalisation,
         colours: settings.colours,
         cartesian: settings.projection == Projection::Cartesian,
@@ -107,7 +106,6 @@ fn look(state: &mut State, view: View) {
     state.map_views.cartesian = seen(view.cartesian_part);
     let settings = &mut state.settings;
     settings.floor = view.floor;
-    settings.seed = view.seed;
     settings.normalisation = view.normalisation;
     settings.colours = view.colours;
     settings.projection = if view.cartesian { Projection::Cartesian } else { Projection::RangeAngle };

@@ -24,7 +24,6 @@ struct Request {
     scene: Arc<Scene>,
     variants: Vec<Variant>,
     map: MapKind,
-    seed: u64,
     normalisation: Normalisation,
     colours: ColourMap,
     projection: Projection,
@@ -35,8 +34,7 @@ impl Request {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.variants.len() == other.variants.len()
             && self.variants.iter().zip(&other.variants).all(|(a, b)| a.same(b))
-            && (self.map, self.seed, self.colours, self.projection)
-                == (other.map, other.seed, other.colours, other.projection)
+            && (self.map, self.colours, self.projection) == (other.map, other.colours, other.projection)
             && self.normalisation == other.normalisation
     }
 }
@@ -96,7 +94,6 @@ impl SeveralMaps {
             scene: state.editor.scene().clone(),
             variants,
             map: settings.several.map,
-            seed: settings.seed,
             normalisation: settings.normalisation,
             colours: settings.colours,
             projection: settings.projection,
@@ -170,7 +167,8 @@ fn make(request: &Request, task: &Task, done: &Sender<Arrival>, wake: &impl Fn()
 
 fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMap, String> {
     let Variant { radar, floor, method, .. } = variant;
-    let signal = signal::simulate(radar, &request.scene, *floor, request.seed).map_err(|e| e.to_string())?;
+    let signal =
+        signal::simulate(radar, &request.scene, *floor, request.scene.noise_seed).map_err(|e| e.to_string())?;
     let normalisation = request.normalisation;
     let aperture = match request.map {
         MapKind::Input0 => Aperture::End(End::First),
@@ -208,7 +206,6 @@ mod tests {
             scene: Arc::new(Scene::of_points([(0.3, 1.2)])),
             variants: several.variants(&radar, Floor::Exact, None, &[]),
             map: several.map,
-            seed: 0,
             normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
             colours: ColourMap::Grey,
             projection: Projection::RangeAngle,

@@ -85,7 +85,6 @@ fn shared() -> Reader {
     use apertura::share::{Part, Shared, View};
     let view = View {
         floor: apertura::signal::Floor::Thesis,
-        seed: 3,
         normalisation: apertura::maps::Normalisation::MinMax,
         colours: apertura::picture::ColourMap::Grey,
         cartesian: false,
