@@ -88,7 +88,6 @@ impl Settings {
         }
         take_back!(
             floor,
-            seed,
             target_eta,
             method_eta,
             normalisation,
