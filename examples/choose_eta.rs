@@ -1,16 +1,16 @@
 //! How the methods' thresholds and settings were chosen, on validation scenes: prints the figures, and fails where a method's own setting is
 //! not the best of those tried.
 //!
-//! `cargo run --release --example choose_eta -- thresholds|penalty|unexplained`; minutes each.
+//! `cargo run --release --example choose_eta -- thresholds|penalty|weights`; minutes each.
 
 use apertura::evaluate::trial::Trial;
 use apertura::evaluate::{Roc, squared_error};
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::nomp::{Settings, find};
-use apertura::reconstruct::{Fista, Hybrid, Reconstructor, Request};
+use apertura::reconstruct::{Fista, Reconstructor, Request};
+use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::scene::{GaussianCluster, Object, Scene};
 use apertura::signal::Floor;
 use clap::Parser;
 use std::error::Error;
@@ -37,9 +37,8 @@ enum Choice {
     },
     /// Squared error of FISTA over its penalty
     Penalty,
-    /// Squared error of the hybrid over the part of the energy that may be unexplained before its fallback is asked: on validation scenes, and
-    /// on clouds of reflectors that are neither a few points nor lines
-    Unexplained,
+    /// Weight of the hybrid's fallback over the part of a cell's power that is unexplained, on validation scenes of every kind
+    Weights,
 }
 
 type Outcome<T = ()> = Result<T, Box<dyn Error>>;
@@ -48,7 +47,7 @@ fn main() -> Outcome {
     match Choice::parse() {
         Choice::Thresholds { methods } => thresholds(&methods),
         Choice::Penalty => penalty(),
-        Choice::Unexplained => unexplained(),
+        Choice::Weights => weights(),
     }
 }
 
@@ -133,66 +132,61 @@ fn penalty() -> Outcome {
     if Fista::default().penalty == best.1 { Ok(()) } else { Err(format!("{} would be better", best.1).into()) }
 }
 
-/// A cloud of 10 to 150 reflectors, from 5 cm to 4 m wide.
-fn cloud(i: u32) -> Scene {
-    let spread = 0.05 * 3f64.powf(f64::from(i % 5));
-    let cluster = GaussianCluster {
-        x_metres: f64::from(i % 7) * 3.0 - 9.0,
-        y_metres: 8.0 + f64::from(i % 3) * 5.0,
-        x_std_metres: spread,
-        y_std_metres: spread,
-        count: 10 + 10 * i as usize,
-        seed: u64::from(i),
-        reflectivity: 1.0,
-    };
-    Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() }
-}
+/// Decades of the unexplained part of a cell's power that share one weight.
+const DECADES: f64 = 0.25;
 
-/// What the hybrid would do to one scene.
-struct Choosing {
-    /// Part of the energy unexplained, 0 where explained to the floor.
-    unexplained: f64,
-    /// SE without the fallback.
-    alone: f64,
-    /// SE with it.
+/// Weights that are told apart, from everything unexplained downwards.
+const BINS: usize = 16;
+
+/// What is known of all cells in which about the same part of the power is unexplained.
+#[derive(Default, Clone, Copy)]
+struct Cells {
+    count: f64,
+    /// Squared error of the drawn map and of the fallback's.
+    drawn: f64,
     filled: f64,
+    /// Products of (target - drawn) and of (filled - drawn) with (filled - drawn).
+    wanted: f64,
+    square: f64,
 }
 
-impl Choosing {
-    fn of(radar: &Radar, trial: &Trial, fallback: &dyn Reconstructor) -> Outcome<Choosing> {
-        let request = Request::default();
-        let found = find(radar, &trial.ends, &request, &Settings::default())?;
-        let drawn = found.reconstruction(radar, &request).lambda;
-        let alone = squared_error(&trial.target, &drawn);
-        if found.complete {
-            return Ok(Choosing { unexplained: 0.0, alone, filled: alone });
-        }
-        let mut filled = fallback.reconstruct(radar, &trial.ends, &request)?.lambda;
-        filled.lambda.zip_mut_with(&drawn.lambda, |f, d| *f = f.max(*d));
-        let filled = squared_error(&trial.target, &filled);
-        println!("unexplained {:.2e}: SE {alone:.0} alone, {filled:.0} filled in", found.unexplained);
-        Ok(Choosing { unexplained: found.unexplained, alone, filled })
-    }
-}
-
-fn unexplained() -> Outcome {
+/// For cells in which about the same part of the power is unexplained, the part of the way from the drawn map to the fallback's that leaves
+/// the least squared error.
+fn weights() -> Outcome {
     let radar = Radar::default();
+    let request = Request::default();
     let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
-    let sets = Kind::TEST_SETS.into_iter().flat_map(|kind| validation(&radar, kind, 6));
-    let clouds = (0..15).map(|i| trial(&radar, &Scene { noise_seed: u64::from(i), ..cloud(i) }));
-    let rows: Vec<Choosing> =
-        sets.chain(clouds).map(|trial| Choosing::of(&radar, &trial?, &*fallback)).collect::<Outcome<_>>()?;
-    let error = |limit: f64| {
-        let of = |row: &Choosing| if row.unexplained > limit { row.filled } else { row.alone };
-        rows.iter().map(of).sum::<f64>() / rows.len() as f64
-    };
-    let mut best = (f64::INFINITY, 0.0);
-    for limit in [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3] {
-        println!("limit {limit}: SE {:.0}", error(limit));
-        if error(limit) < best.0 {
-            best = (error(limit), limit);
+    let mut all = [[Cells::default(); 2]; BINS];
+    for kind in Kind::all() {
+        for trial in validation(&radar, kind, SCENES) {
+            let trial = trial?;
+            let found = find(&radar, &trial.ends, &request, &Settings::default())?;
+            if found.complete {
+                continue;
+            }
+            let drawn = found.reconstruction(&radar, &request).lambda.lambda;
+            let filled = fallback.reconstruct(&radar, &trial.ends, &request)?.lambda.lambda;
+            let unexplained = found.unexplained_cells(&radar, &trial.ends);
+            let cells = unexplained.iter().zip(&trial.target.lambda).zip(drawn.iter().zip(&filled));
+            for ((part, target), (drawn, filled)) in cells {
+                let bin = (-f64::from(part.max(1e-9)).log10() / DECADES) as usize;
+                let [target, drawn, filled] = [target, drawn, filled].map(|v| f64::from(*v));
+                let cell = &mut all[bin.min(BINS - 1)][usize::from(filled > drawn)];
+                cell.count += 1.0;
+                cell.drawn += (target - drawn).powi(2);
+                cell.filled += (target - filled).powi(2);
+                cell.wanted += (target - drawn) * (filled - drawn);
+                cell.square += (filled - drawn).powi(2);
+            }
         }
     }
-    let own = error(Hybrid::MOST_UNEXPLAINED);
-    if own <= 1.01 * best.0 { Ok(()) } else { Err(format!("{} would be better", best.1).into()) }
+    for (darker, what) in ["where the fallback is darker", "where it is brighter"].into_iter().enumerate() {
+        println!("{what}\n{:>8}{:>12}{:>10}{:>10}{:>8}", "decades", "cells", "SE drawn", "SE filled", "weight");
+        for (i, c) in all.iter().map(|both| both[darker]).enumerate() {
+            let weight = c.wanted / c.square.max(f64::MIN_POSITIVE);
+            let decades = -DECADES * (i as f64 + 0.5);
+            println!("{decades:>8.2}{:>12.0}{:>10.0}{:>10.0}{weight:>8.2}", c.count, c.drawn, c.filled);
+        }
+    }
+    Ok(())
 }

@@ -62,7 +62,7 @@ pub fn placement(
         }
         let found = find(radar, &noisy, &request, &Settings::default())?;
         if let [atom] = found.atoms[..] {
-            let [x, y] = atom.position(0);
+            let [x, y] = atom.position_metres(0.0);
             squares.push((x - reflector.x_metres).powi(2) + (y - reflector.y_metres.abs()).powi(2));
         }
     }

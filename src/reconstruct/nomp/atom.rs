@@ -1,6 +1,6 @@
 //! The dictionary: what a scene is taken apart into.
 
-use crate::scene::{Line, Object, Point};
+use crate::scene::Reflector;
 
 /// One object without its gain. Distances in metres; y and -y look alike to a line array, y is kept at 0 or above.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -8,80 +8,91 @@ pub enum Atom {
     /// One reflector.
     Point {
         /// Position along the array.
-        x: f64,
+        x_metres: f64,
         /// Position ahead of the array.
-        y: f64,
+        y_metres: f64,
     },
-    /// Reflectors of equal strength at equal spacing along y.
-    Line {
-        /// Position along the array.
-        x: f64,
-        /// y of the first reflector.
-        start: f64,
-        /// Distance between neighbours.
-        spacing: f64,
+    /// Reflectors of equal strength at equal steps along a straight line of any slant.
+    Segment {
+        /// Position of the first reflector along the array.
+        x_metres: f64,
+        /// Position of the first reflector ahead of the array.
+        y_metres: f64,
+        /// From one reflector to the next, along the array.
+        dx_metres: f64,
+        /// From one reflector to the next, ahead of the array.
+        dy_metres: f64,
         /// Number of reflectors.
         count: usize,
     },
 }
 
 impl Atom {
-    /// Number of continuous parameters: (x, y^2) or (x, start, spacing).
+    /// Number of continuous parameters: (x, y^2) or (x, y, dx, dy).
     ///
     /// A point's distance from the array follows the square of its y: near the array's axis y itself hardly changes anything, its
     /// square does.
     pub fn parameters(&self) -> usize {
         match self {
             Atom::Point { .. } => 2,
-            Atom::Line { .. } => 3,
+            Atom::Segment { .. } => 4,
         }
     }
 
     /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameters`].
     pub fn moved(&self, step: &[f64]) -> Atom {
         match *self {
-            Atom::Point { x, y } => Atom::Point { x: x + step[0], y: (y * y + step[1]).max(0.0).sqrt() },
-            Atom::Line { x, start, spacing, count } => {
-                Atom::Line { x: x + step[0], start: start + step[1], spacing: spacing + step[2], count }
+            Atom::Point { x_metres, y_metres } => {
+                Atom::Point { x_metres: x_metres + step[0], y_metres: (y_metres * y_metres + step[1]).max(0.0).sqrt() }
             }
+            Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count } => Atom::Segment {
+                x_metres: x_metres + step[0],
+                y_metres: y_metres + step[1],
+                dx_metres: dx_metres + step[2],
+                dy_metres: dy_metres + step[3],
+                count,
+            },
         }
     }
 
     /// Number of reflectors.
-    pub fn reflectors(&self) -> usize {
+    pub fn reflector_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 1,
-            Atom::Line { count, .. } => *count,
+            Atom::Segment { count, .. } => *count,
         }
     }
 
-    /// Position (x, y) of reflector `i`.
-    pub fn position(&self, i: usize) -> [f64; 2] {
+    /// Position (x, y) of reflector `i`, metres; beyond the segment's ends where `i` is.
+    pub fn position_metres(&self, i: f64) -> [f64; 2] {
         match *self {
-            Atom::Point { x, y } => [x, y],
-            Atom::Line { x, start, spacing, .. } => [x, start + i as f64 * spacing],
+            Atom::Point { x_metres, y_metres } => [x_metres, y_metres],
+            Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, .. } => {
+                [x_metres + i * dx_metres, y_metres + i * dy_metres]
+            }
         }
     }
 
     /// How reflector `i`'s x and half the square of its y follow the parameter.
     pub fn share(&self, i: usize, parameter: usize) -> [f64; 2] {
-        let [_, y] = self.position(i);
+        let i = i as f64;
+        let [_, y] = self.position_metres(i);
         match (self, parameter) {
             (_, 0) => [1.0, 0.0],
             (Atom::Point { .. }, _) => [0.0, 0.5],
             (_, 1) => [0.0, y],
-            _ => [0.0, i as f64 * y],
+            (_, 2) => [i, 0.0],
+            _ => [0.0, i * y],
         }
     }
 
-    /// The object of a scene that this atom stands for.
-    pub fn object(&self, reflectivity: f64) -> Object {
-        match *self {
-            Atom::Point { x, y } => Object::Point(Point { x_metres: x, y_metres: y, reflectivity }),
-            Atom::Line { x, start, spacing, count } => {
-                Object::Line(Line { reflectivity, ..Line::vertical(x, start, spacing, count) })
-            }
-        }
+    /// The reflectors of a scene that this atom stands for.
+    pub fn reflectors(&self, reflectivity: f64) -> impl Iterator<Item = Reflector> + use<> {
+        let atom = *self;
+        (0..self.reflector_count()).map(move |i| {
+            let [x_metres, y_metres] = atom.position_metres(i as f64);
+            Reflector { x_metres, y_metres, reflectivity }
+        })
     }
 }
 
@@ -91,8 +102,16 @@ mod tests {
 
     #[test]
     fn a_point_steps_in_the_square_of_its_y_and_stays_ahead_of_the_array() {
-        let point = Atom::Point { x: 3.0, y: 4.0 };
-        assert_eq!(point.moved(&[1.0, 9.0]), Atom::Point { x: 4.0, y: 5.0 });
-        assert_eq!(point.moved(&[0.0, -20.0]), Atom::Point { x: 3.0, y: 0.0 });
+        let at = |x_metres, y_metres| Atom::Point { x_metres, y_metres };
+        assert_eq!(at(3.0, 4.0).moved(&[1.0, 9.0]), at(4.0, 5.0));
+        assert_eq!(at(3.0, 4.0).moved(&[0.0, -20.0]), at(3.0, 0.0));
+    }
+
+    #[test]
+    fn a_segment_walks_in_equal_steps() {
+        let wall = Atom::Segment { x_metres: 1.0, y_metres: 5.0, dx_metres: 0.5, dy_metres: -0.25, count: 3 };
+        let places: Vec<[f64; 2]> = wall.reflectors(2.0).map(|r| [r.x_metres, r.y_metres]).collect();
+        assert_eq!(places, [[1.0, 5.0], [1.5, 4.75], [2.0, 4.5]]);
+        assert_eq!(wall.position_metres(-1.0), [0.5, 5.25]);
     }
 }

@@ -6,7 +6,7 @@
 use super::atom::Atom;
 use crate::maps::tolerance::tolerance_for;
 use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
-use crate::radar::Radar;
+use crate::radar::{End, Radar};
 use crate::reconstruct::Request;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::thesis_noise_variance;
@@ -25,6 +25,8 @@ const EULER: f64 = 0.577_215_664_901_532_9;
 pub enum Noise {
     /// Rounding as the thesis' program leaves it, from the objects themselves.
     Rounding,
+    /// The same over the elements, scaled to this variance a sample in the mean of both ends: as it was measured.
+    RoundingHeard(f64),
     /// Variance a sample.
     Variance(f64),
 }
@@ -42,7 +44,7 @@ pub struct Weighted {
 pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, request: &Request) -> RangeAngleMap {
     let reflectors: Vec<Reflector> = objects
         .iter()
-        .flat_map(|o| o.atom.object(o.reflectivity).reflectors())
+        .flat_map(|o| o.atom.reflectors(o.reflectivity))
         // The simulator takes reflectors that touch no element.
         .map(|r| Reflector { y_metres: r.y_metres.max(MIN_ELEMENT_DISTANCE_METRES), ..r })
         .collect();
@@ -52,6 +54,7 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
     let variance = match noise {
         Noise::Variance(v) => vec![v; radar.elements],
         Noise::Rounding => thesis_noise_variance(radar, &reflectors),
+        Noise::RoundingHeard(v) => scaled_to(radar, v, thesis_noise_variance(radar, &reflectors)),
     };
     let cell_noise = cell_noise(radar, &variance).max(f64::MIN_POSITIVE);
     let profiles = range_transform(radar, &signal);
@@ -91,6 +94,13 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
         .and(&decades)
         .par_for_each(|out, l| *out = (1.0 - (peak - l) / range).clamp(0.0, 1.0) as f32);
     RangeAngleMap { lambda }
+}
+
+/// Variances of all elements, scaled so that both ends have this one in the mean.
+fn scaled_to(radar: &Radar, ends_variance: f64, variance: Vec<f64>) -> Vec<f64> {
+    let ends = End::BOTH.into_iter().flat_map(|end| radar.end_range(end));
+    let (sum, count) = ends.fold((0.0, 0.0), |(sum, count), n| (sum + variance[n], count + 1.0));
+    if sum > 0.0 { variance.iter().map(|v| v * ends_variance * count / sum).collect() } else { variance }
 }
 
 /// Variance of each map cell's noise, from that of a sample of each element: the window's mean power in range and in angle.

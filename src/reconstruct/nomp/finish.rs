@@ -1,10 +1,15 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
 use super::atom::Atom;
-use super::fit::{Fit, Limits, Problem, Tie, energy};
-use super::sensor::Sensor;
+use super::echoes::Samples;
+use super::refine::{Fit, Gains, Limits, Tie, Workbench};
+use crate::radar::Radar;
+use crate::reconstruct::noise::noise_variance;
+use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::Floor;
+use ndarray::ArrayView1;
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// Teeth tried to each side: the phase between the ends repeats every column of the full map.
 const TEETH: i32 = 6;
@@ -12,8 +17,17 @@ const TEETH: i32 = 6;
 /// Most atoms whose teeth are tried one by one.
 const MOST_COMBED: usize = 12;
 
+/// Most reflectors of atoms whose gains are tied: beyond, all against all takes too long.
+const MOST_TIED: usize = 64;
+
+/// Most reflectors that are fitted without a window, where all of them know of each other.
+const MOST_UNWINDOWED: usize = 40;
+
+/// Work granted to the refinement without a window.
+const MOST_WORK: usize = 50_000;
+
 /// Of the refinement with tied gains.
-const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6 };
+const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
 
 /// What was found in the samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +44,13 @@ pub struct Found {
     pub sample_power: f64,
     /// Mean power of the residual of the scaled samples.
     pub residual_variance: f64,
-    /// Whether the residual is down to the floor that was asked for.
+    /// Variance of the white noise that is heard in that residual.
+    pub noise_variance: f64,
+    /// Gains of the objects at the first and at the last end, for samples times `scale`.
+    pub gains: Vec<[Complex64; 2]>,
+    /// Samples times `scale` less the objects that both ends agree on, channel by channel, first end first.
+    pub not_agreed: Vec<Complex64>,
+    /// Whether nothing stands out of the residual any more.
     pub complete: bool,
 }
 
@@ -44,76 +64,110 @@ impl Found {
             unexplained: 0.0,
             sample_power: 0.0,
             residual_variance: 0.0,
+            noise_variance: 0.0,
+            gains: Vec::new(),
+            not_agreed: Vec::new(),
             complete: true,
         }
     }
 }
 
 /// Ties the gains of both ends and reads the objects off.
-#[allow(clippy::too_many_arguments)]
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`].
 pub(super) fn finish(
-    sensor: &Sensor,
-    samples: &[Complex64],
-    windowed: &[Complex64],
-    window: &[f64],
+    radar: &Radar,
+    bench: &Workbench,
+    samples: &Samples,
     fit: Fit,
     complete: bool,
-    floor: Floor,
+    request: &Request,
     scale: f64,
-) -> Found {
-    let ones = vec![1.0; sensor.samples];
+) -> Result<Found, ReconstructError> {
+    let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
-    let problem = if complete {
-        Problem { sensor, samples, window: &ones }
-    } else {
-        Problem { sensor, samples: windowed, window }
-    };
-    let apart = problem.solve(&fit.atoms, Tie::PerEnd);
-    let moving = vec![true; fit.atoms.len()];
-    let mut tied = problem.refine(fit.atoms, Tie::Both, &moving, TIED);
-    if matches!(floor, Floor::Snr(_)) && tied.atoms.len() <= MOST_COMBED {
-        tied = combed(&problem, tied);
+    let flat_bench = (complete && reflectors <= MOST_UNWINDOWED)
+        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, MOST_WORK));
+    let bench = flat_bench.as_ref().unwrap_or(bench);
+    let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
+    let mut best = apart.clone();
+    if complete && reflectors <= MOST_TIED {
+        let mut tied = bench.refine(samples, apart.atoms.clone(), apart.gains.clone(), Tie::Both, TIED);
+        if matches!(request.floor, Floor::Snr(_)) && tied.atoms.len() <= MOST_COMBED {
+            tied = combed(bench, samples, tied);
+        }
+        // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
+        if tied.cost() <= 4.0 * apart.cost() {
+            best = tied;
+        }
     }
-    // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
-    let best = if tied.cost <= 4.0 * apart.cost { tied } else { apart };
-    let all = energy(problem.samples);
-    let weight = problem.window.iter().map(|w| w * w).sum::<f64>() * sensor.element_x.len() as f64;
-    Found {
+    request.task.check()?;
+    let residual = best.residual.flat(&bench.sensor);
+    let noise_variance = noise_variance(radar, residual.chunks_exact(radar.samples).map(ArrayView1::from));
+    let silence = bench.without(samples, &[], &[]);
+    let all = silence.energy[0] + silence.energy[1];
+    let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;
+    Ok(Found {
         reflectivities: reflectivities(&best.gains),
-        unexplained: best.cost / all,
+        unexplained: best.cost() / all,
         sample_power: all / weight,
-        residual_variance: best.cost / weight,
+        residual_variance: best.cost() / weight,
+        noise_variance,
+        not_agreed: if complete { residual } else { not_agreed(bench, &best, request.floor) },
         atoms: best.atoms,
+        gains: best.gains,
         scale,
         complete,
-    }
+    })
+}
+
+/// Gains of one object at both ends differ by this part at most where no noise is heard.
+const MOST_DISAGREED: f64 = 0.05;
+
+/// And under noise.
+const MOST_DISAGREED_IN_NOISE: f64 = 0.3;
+
+/// What `fit` leaves, with the echoes of those atoms that the ends don't agree on: a reflector sounds alike at both, what merely makes up
+/// for others that were not told apart seldom does.
+fn not_agreed(bench: &Workbench, fit: &Fit, floor: Floor) -> Vec<Complex64> {
+    let most = if matches!(floor, Floor::Snr(_)) { MOST_DISAGREED_IN_NOISE } else { MOST_DISAGREED };
+    let disagrees = |i: &usize| {
+        let [a, b] = fit.gains[*i].map(|g| g.norm());
+        (a - b).abs() > most * a.max(b)
+    };
+    let doubtful: Vec<usize> = (0..fit.atoms.len()).filter(disagrees).collect();
+    bench.less(fit.clone(), &doubtful).residual.flat(&bench.sensor)
 }
 
 /// Each point tried on the neighbouring teeth of the comb, the others staying where they are.
-fn combed(problem: &Problem, fit: Fit) -> Fit {
-    let sensor = problem.sensor;
+fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
+    let sensor = &bench.sensor;
     let between_ends = sensor.element_x[sensor.end_elements] - sensor.element_x[0];
     let tooth = sensor.wavelength_metres() / between_ends;
     let mut best = fit;
     for i in 0..best.atoms.len() {
-        let Atom::Point { x, y } = best.atoms[i] else { continue };
+        let Atom::Point { x_metres: x, y_metres: y } = best.atoms[i] else { continue };
         let range = x.hypot(y);
-        for k in (-TEETH..=TEETH).filter(|k| *k != 0) {
-            let cos = x / range + f64::from(k) * tooth;
-            if cos.abs() >= 1.0 {
-                continue;
-            }
-            let mut atoms = best.atoms.clone();
-            atoms[i] = Atom::Point { x: range * cos, y: range * (1.0 - cos * cos).sqrt() };
-            let moving: Vec<bool> = (0..atoms.len()).map(|j| j == i).collect();
-            let trial = problem.refine(atoms, Tie::Both, &moving, TIED);
-            if trial.cost < best.cost {
-                best = trial;
-            }
+        let own = best.gains[i];
+        let base = bench.without(&best.residual, &best.atoms[i..=i], &[[-own[0], -own[1]]]).residual;
+        let trials: Vec<Fit> = (-TEETH..=TEETH)
+            .into_par_iter()
+            .filter(|k| *k != 0)
+            .filter_map(|k| {
+                let cos = x / range + f64::from(k) * tooth;
+                let y_metres = range * (1.0 - cos * cos).max(0.0).sqrt();
+                let atom = Atom::Point { x_metres: range * cos, y_metres };
+                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
+            })
+            .collect();
+        let trial = trials.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        if let Some(trial) = trial.filter(|t| t.cost() < best.cost()) {
+            (best.atoms[i], best.gains[i]) = (trial.atoms[0], trial.gains[0]);
+            (best.residual, best.energy) = (trial.residual, trial.energy);
         }
     }
-    let moving = vec![true; best.atoms.len()];
-    problem.refine(best.atoms, Tie::Both, &moving, TIED)
+    bench.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
 }
 
 /// Real reflectivities from complex gains: the phase all share belongs to the receiver, what is left of each gain is its sign.

@@ -6,33 +6,63 @@
 //!
 //! | file | what it is |
 //! |---|---|
-//! | `atom` | the dictionary: one reflector, or a line of them |
-//! | `sensor` | what an atom leaves in the samples, and its derivatives |
-//! | `beams` | each end's plain beams |
-//! | `detect` | strongest cell of a residual, both ends registered |
-//! | `lines` | lines that a residual may hold |
-//! | `place` | one more atom at its best place |
-//! | `fit` | Levenberg-Marquardt on positions, gains projected out |
-//! | `search` | the greedy loop and its second thoughts |
+//! | `atom` | the dictionary: one reflector, or a segment of them |
+//! | `sensor` | geometry of both ends |
+//! | `echoes` | what reflectors leave in the samples, and their products with a residual |
+//! | `moments` | inner products of two echoes: moments of the window |
+//! | `gram` | the banded Gram matrix of atoms and their derivatives |
+//! | `solver` | small systems that may be nearly singular |
+//! | `refine` | Levenberg-Marquardt on positions, gains projected out |
+//! | `tones` | ranges from one element's chirp |
+//! | `pairs` | both ends' tones paired: points to start from |
+//! | `chains` | points that stand in a row at equal steps |
+//! | `walls` | rows of points followed to where they end |
+//! | `end_beams` | each end's plain beams |
+//! | `peaks` | where a residual stands out, both ends registered |
+//! | `groups` | atoms that are neighbours in range |
+//! | `profile` | what is unexplained over range |
+//! | `grow` | the greedy loop over points |
+//! | `prune` | atoms that the rest can do without |
+//! | `few` | long vertical lines, every sample of every atom written out |
+//! | `search` | the search as a whole |
+//! | `settings`, `work` | bounds on time and memory |
 //! | `finish` | one gain for both ends, reflectivities |
+//! | `explained` | which cells of the picture are explained |
 //! | `draw` | expected map of the objects found |
 
 mod atom;
-mod beams;
-mod detect;
+mod chains;
 mod draw;
+mod echoes;
+mod end_beams;
+mod explained;
+mod few;
 mod finish;
-mod fit;
-mod lines;
-mod place;
+mod gram;
+mod groups;
+mod grow;
+mod moments;
+mod pairs;
+mod peaks;
+mod profile;
+mod prune;
+mod refine;
 mod search;
 mod sensor;
+mod settings;
+mod solver;
 #[cfg(test)]
 mod tests;
+mod tones;
+#[cfg(test)]
+mod tracking_tests;
+mod walls;
+mod work;
 
 pub use atom::Atom;
 pub use finish::Found;
-pub use search::{Settings, find};
+pub use search::{find, find_from};
+pub use settings::Settings;
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
@@ -45,8 +75,8 @@ use draw::{Noise, Weighted, expected_lambda};
 pub(super) const ETA: f32 = 0.885;
 
 /// What the search knows beside the samples.
-pub(super) const TOLD: &str = "that a scene holds single reflectors or lines of them along y, the spacings and counts of the lines \
-    that the tables' scenes are made of, the kind of floor beneath the samples, and how the thesis' program rounds";
+pub(super) const TOLD: &str = "that a scene holds single reflectors or straight rows of equal ones; for long rows along y also the \
+    spacings that the lines of the tables' scenes have; the kind of floor beneath the samples, and how the thesis' program rounds";
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]
@@ -100,12 +130,15 @@ impl Found {
             .map(|(&atom, &reflectivity)| Weighted { atom, reflectivity })
             .collect();
         let noise = match request.floor {
-            Floor::Thesis => Noise::Rounding,
+            Floor::Thesis if self.complete => Noise::Rounding,
+            // What was found may be far from what rounds there.
+            Floor::Thesis => Noise::RoundingHeard(self.noise_variance),
             Floor::Exact => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
-            Floor::Snr(_) => Noise::Variance(self.residual_variance),
+            Floor::Snr(_) if self.complete => Noise::Variance(self.residual_variance),
+            Floor::Snr(_) => Noise::Variance(self.noise_variance),
         };
         let lambda = expected_lambda(radar, &objects, noise, request);
-        let reflectors = objects.iter().flat_map(|o| o.atom.object(o.reflectivity / self.scale).reflectors()).collect();
+        let reflectors = objects.iter().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
         Reconstruction { lambda, reflectors }
     }
 }

@@ -1,326 +1,209 @@
-//! The greedy loop and its second thoughts: detect, refine alone, refine together, until the residual is the floor.
+//! The search as a whole: both ends' tones paired, walls through them, long lines, then points until nothing stands out.
 
 use super::atom::Atom;
-use super::detect::Detector;
+use super::echoes::Samples;
+use super::few;
 use super::finish::{Found, finish};
-use super::fit::{Fit, Limits, Problem, Tie, energy};
-use super::place::{LINE_SHAPES, LineShape, Placer, wrapped};
-use super::sensor::Sensor;
+use super::grow::Grower;
+use super::pairs::paired_points;
+use super::peaks::Detector;
+use super::refine::{Fit, Gains, Tie, Workbench};
+use super::settings::Settings;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar, hann};
-use crate::reconstruct::answer::Request;
-use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::reconstructor::unit_gain;
-use crate::scene::Reflector;
-use crate::signal::floor::thesis_noise_variance;
-use crate::signal::{Floor, TwoEnds};
+use crate::reconstruct::{ReconstructError, Request};
+use crate::signal::TwoEnds;
+use ndarray::ArrayView1;
 use num_complex::Complex64;
-use rayon::prelude::*;
-
-/// Of a refinement of all atoms: many small steps are worth it, close pairs share a long narrow valley.
-const TOGETHER: Limits = Limits { iterations: 100, least_gain: 1e-5 };
-
-/// Of a refinement of all atoms while more are to come.
-const GROWING: Limits = Limits { iterations: 100, least_gain: 1e-2 };
-
-/// A residual counts as the floor up to this many times the floor's expected energy: the rounding model is good to a factor of a few.
-const FLOOR_MARGIN: f64 = 16.0;
 
 /// Range bins in a row that only something longer than a few reflectors fills.
 const LONG_RUN_BINS: usize = 48;
-
-/// Bounds on time and memory, and what counts as found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Most atoms of one scene.
-    pub most_atoms: usize,
-    /// A cell must stand this far above the median cell of the residual, as a ratio of powers. Noise alone reaches about 20.
-    pub least_prominence: f64,
-    /// Most rounds of second thoughts when the first attempt does not explain the samples.
-    pub rounds: usize,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Settings { most_atoms: 12, least_prominence: 60.0, rounds: 2 }
-    }
-}
 
 /// Takes the samples apart into atoms.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`] when the request was cancelled.
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
-    let sensor = Sensor::new(radar);
+    find_with(None, radar, ends, request, settings)
+}
+
+/// Takes samples apart that differ little from those of `previous`: starts from its atoms, and falls back to [`find`] where they
+/// don't do.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`] when the request was cancelled.
+pub fn find_from(
+    previous: &Found,
+    radar: &Radar,
+    ends: &TwoEnds,
+    request: &Request,
+    settings: &Settings,
+) -> Result<Found, ReconstructError> {
+    find_with(Some(previous).filter(|p| !p.atoms.is_empty()), radar, ends, request, settings)
+}
+
+fn find_with(
+    previous: Option<&Found>,
+    radar: &Radar,
+    ends: &TwoEnds,
+    request: &Request,
+    settings: &Settings,
+) -> Result<Found, ReconstructError> {
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
-    let samples = ends.flat();
+    let flat = ends.flat();
     let window = hann(radar.samples);
-    let windowed: Vec<Complex64> = samples.iter().enumerate().map(|(i, v)| v * window[i % radar.samples]).collect();
-    let search = Search {
-        radar,
-        sensor: &sensor,
-        detector: Detector::new(radar),
-        window: &window,
-        samples: &samples,
-        windowed: &windowed,
-        request,
-        settings,
-    };
-    let fit = search.run()?;
+    let bench = Workbench::new(radar, &window, &request.task, settings.most_work);
+    let samples = Samples::new(&bench.sensor, &flat);
+    let detector = Detector::of(radar);
+    let search =
+        Search { radar, bench: &bench, detector: &detector, flat: &flat, samples: &samples, request, settings };
+    let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
+    let answer = followed.map_or_else(|| search.run(), Ok)?;
+    request.task.check()?;
     request.task.set_progress(1.0);
-    let complete = search.is_explained(&fit);
-    Ok(finish(&sensor, &samples, &windowed, &window, fit, complete, request.floor, scale))
+    finish(radar, &bench, &samples, answer.fit, answer.is_sure, request, scale)
+}
+
+/// What a search found, and whether nothing else stands out of the samples.
+struct Answer {
+    fit: Fit,
+    is_sure: bool,
 }
 
 struct Search<'a> {
     radar: &'a Radar,
-    sensor: &'a Sensor,
-    detector: Detector,
-    window: &'a [f64],
-    samples: &'a [Complex64],
-    windowed: &'a [Complex64],
+    bench: &'a Workbench<'a>,
+    detector: &'a Detector,
+    flat: &'a [Complex64],
+    samples: &'a Samples,
     request: &'a Request,
     settings: &'a Settings,
 }
 
 impl Search<'_> {
-    fn problem(&self) -> Problem<'_> {
-        Problem { sensor: self.sensor, samples: self.windowed, window: self.window }
+    fn grower(&self) -> Grower<'_> {
+        Grower {
+            radar: self.radar,
+            bench: self.bench,
+            detector: self.detector,
+            settings: self.settings,
+            task: &self.request.task,
+        }
     }
 
-    /// Points alone, then lines at the spacings of the thesis' scenes; lines first where the echo is long.
-    fn run(&self) -> Result<Fit, ReconstructError> {
-        let start = energy(self.windowed);
-        let mut best = self.problem().solve(&[], Tie::PerEnd);
-        let long = self.longest_run() >= LONG_RUN_BINS;
-        let points = (!long).then_some(None);
-        for shape in points.into_iter().chain(LINE_SHAPES.map(Some)) {
-            let trial = self.attempt(shape)?;
-            if trial.cost < best.cost {
-                best = trial;
+    /// Points that both ends' tones lead to and walls through them, then lines where the echo is long, then whatever still stands out.
+    fn run(&self) -> Result<Answer, ReconstructError> {
+        let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
+        let mut answer = Answer { fit: nothing, is_sure: false };
+        for _ in 0..MOST_ROUNDS {
+            let before = answer.fit.cost();
+            answer.fit = self.grower().with_walls(self.samples, self.paired(answer.fit)?)?;
+            tracing::debug!(atoms = answer.fit.atoms.len(), before, cost = answer.fit.cost(), "paired");
+            answer.is_sure = self.is_explained(&answer.fit);
+            if answer.is_sure {
+                return Ok(answer);
             }
-            // Points that explain nearly everything, and noise, are no matter for lines.
-            if self.is_explained(&best) || best.cost < 1e-2 * start || !self.stands_out(&best) {
+            if answer.fit.cost() > WORTH_ANOTHER * before {
                 break;
             }
         }
-        Ok(best)
-    }
-
-    /// Greedy search and second thoughts, with points and lines of one shape or with points alone.
-    fn attempt(&self, shape: Option<LineShape>) -> Result<Fit, ReconstructError> {
-        let start = energy(self.windowed);
-        let mut best = self.greedy(self.problem().solve(&[], Tie::PerEnd), shape)?;
-        let rounds = if shape.is_some() { 1 } else { self.settings.rounds };
-        for _ in 0..rounds {
-            if self.is_explained(&best) || best.cost > 1e-2 * start || best.atoms.is_empty() {
-                break;
+        if self.longest_run() >= LONG_RUN_BINS {
+            let lines = self.with_long_lines()?;
+            if lines.is_sure {
+                return Ok(lines);
             }
-            let mut trial = self.straightened(self.pruned(best.clone())?)?;
-            for again in [Self::tied, Self::unwrapped, Self::split] {
-                if !self.is_explained(&trial) {
-                    self.request.task.check()?;
-                    trial = again(self, trial);
-                }
+            if lines.fit.cost() < answer.fit.cost() {
+                answer = lines;
             }
-            if !self.is_explained(&trial) {
-                trial = self.greedy(self.pruned(trial)?, shape)?;
-            }
-            if trial.cost >= 0.1 * best.cost {
-                break;
-            }
-            best = trial;
         }
-        let best = self.pruned(best)?;
-        self.straightened(best)
+        let fit = self.completed(answer.fit)?;
+        Ok(Answer { is_sure: self.is_explained(&fit), fit })
     }
 
-    /// Adds atoms until the residual is the floor, nothing stands out, or there are too many.
-    fn greedy(&self, mut fit: Fit, shape: Option<LineShape>) -> Result<Fit, ReconstructError> {
-        let start = energy(self.windowed);
-        let mut lines_missed = 0;
-        while !self.is_explained(&fit) && fit.atoms.len() < self.settings.most_atoms {
-            self.request.task.check()?;
-            let residual = self.unwindowed(&fit);
-            let strongest = self.detector.strongest(self.radar, &residual);
-            let Some(candidate) = strongest.filter(|c| c.prominence >= self.settings.least_prominence) else { break };
-            let placer = Placer { radar: self.radar, problem: Problem { samples: &fit.residual, ..self.problem() } };
-            let mut placed = placer.point(&candidate);
-            // A point that leaves next to nothing needs no line beside it.
-            if let Some(shape) = shape.filter(|_| lines_missed < 2 && placed.cost > 0.1 * fit.cost) {
-                let line = placer.line(&residual, shape);
-                match line.filter(|line| line.cost < placed.cost) {
-                    Some(line) => (placed, lines_missed) = (line, 0),
-                    None => lines_missed += 1,
-                }
-            }
-            let mut atoms = fit.atoms.clone();
-            atoms.extend(placed.atoms);
-            let grown = self.together(atoms, GROWING);
-            if grown.cost >= 0.999 * fit.cost {
+    /// What a search for a few long vertical lines finds, and the points beside them.
+    fn with_long_lines(&self) -> Result<Answer, ReconstructError> {
+        let found = few::find(self.radar, self.flat, self.request, self.settings.most_line_work)?;
+        let atoms: Vec<Atom> = found.atoms.iter().map(few::atom::Atom::outside).collect();
+        let left = self.bench.without(self.samples, &atoms, &found.gains);
+        let fit = Fit { atoms, gains: found.gains, residual: left.residual, energy: left.energy };
+        Ok(Answer { fit, is_sure: found.complete })
+    }
+
+    /// `known` and the points whose tones both ends hear in what it leaves, less those whose gains the ends don't agree on.
+    fn paired(&self, known: Fit) -> Result<Fit, ReconstructError> {
+        let flat = known.residual.flat(&self.bench.sensor);
+        let noise = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
+        let mut atoms = known.atoms.clone();
+        atoms.extend(paired_points(self.radar, &flat, noise));
+        if atoms.len() == known.atoms.len() {
+            return Ok(known);
+        }
+        atoms.truncate(self.settings.most_atoms);
+        let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
+        for _ in 0..MOST_DOUBTS {
+            let alike = |gains: &Gains| {
+                let [a, b] = gains.map(|g| g.norm());
+                a.max(b) < MOST_UNLIKE * a.min(b)
+            };
+            let kept: Vec<Atom> = fit.atoms.iter().zip(&fit.gains).filter(|(_, g)| alike(g)).map(|(a, _)| *a).collect();
+            if kept.len() == fit.atoms.len() {
                 break;
             }
-            fit = grown;
-            self.request.task.set_progress(((fit.cost / start).max(1e-30).log10() / -24.0) as f32);
-            tracing::debug!(atoms = fit.atoms.len(), unexplained = fit.cost / start, last = ?fit.atoms.last(), "grown");
+            fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
+        }
+        if fit.cost() > known.cost() {
+            return Ok(known);
+        }
+        let grower = self.grower();
+        if self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
+    }
+
+    /// `fit` with the points it lacks and without those it doesn't need.
+    fn completed(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        let grower = self.grower();
+        let mut fit = grower.polished(grower.grown(fit)?, self.settings.rounds)?;
+        fit = grower.pruned(fit)?;
+        // What was pruned may uncover what it hid.
+        if !self.is_explained(&fit) && fit.atoms.len() < MOST_AGAIN {
+            fit = grower.pruned(grower.polished(grower.grown(fit)?, self.settings.rounds)?)?;
         }
         Ok(fit)
     }
 
-    fn together(&self, atoms: Vec<Atom>, limits: Limits) -> Fit {
-        let moving = vec![true; atoms.len()];
-        self.problem().refine(atoms, Tie::PerEnd, &moving, limits)
-    }
-
-    /// All atoms moved with one gain for both ends: reflectors too close for one end's beam are told apart by both ends together.
-    fn tied(&self, fit: Fit) -> Fit {
-        let moving = vec![true; fit.atoms.len()];
-        let tied = self.problem().refine(fit.atoms.clone(), Tie::Both, &moving, TOGETHER);
-        // Gains that need not agree leave no more than gains that must.
-        let loosened = self.problem().solve(&tied.atoms, Tie::PerEnd);
-        if self.is_explained(&loosened) { loosened } else { self.together(loosened.atoms, TOGETHER).or_better(fit) }
-    }
-
-    /// Without the atoms that explain nothing the others could not, or that ran away.
-    fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let before = fit.atoms.len();
-        let enough = if self.is_explained(&fit) { FLOOR_MARGIN * self.floor_energy(&fit) } else { 2.0 * fit.cost };
-        let mut i = 0;
-        while i < fit.atoms.len() {
-            self.request.task.check()?;
-            let mut rest = fit.atoms.clone();
-            rest.remove(i);
-            let [x, y] = fit.atoms[i].position(0);
-            let without = self.problem().solve(&rest, Tie::PerEnd);
-            if x.hypot(y) > 2.5 * self.radar.max_range_metres() || without.cost < enough {
-                fit = without;
-            } else {
-                i += 1;
-            }
+    /// The answer to samples a little different from those of `previous`: its atoms refined where the residual asks for it, and more
+    /// or fewer of them where that is not enough. `None` where they don't explain the samples as well as they did.
+    fn followed(&self, previous: &Found, scale: f64) -> Result<Option<Answer>, ReconstructError> {
+        let grower = self.grower();
+        let ratio = scale / previous.scale;
+        let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
+        let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
+        let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
+        (fit.residual, fit.energy) = (left.residual, left.energy);
+        let all = self.bench.without(self.samples, &[], &[]).energy;
+        if fit.cost() > MOST_CHANGED * (all[0] + all[1]) {
+            return Ok(None);
         }
-        Ok(if fit.atoms.len() < before { self.together(fit.atoms, TOGETHER) } else { fit })
-    }
-
-    /// The best of replacing one atom by two beside each other: two reflectors closer than a beam are first found as one.
-    fn split(&self, fit: Fit) -> Fit {
-        let pairs = |i: usize| {
-            let Atom::Point { x, y } = fit.atoms[i] else { return Vec::new() };
-            let turned = |radians: f64| {
-                let (sin, cos) = radians.sin_cos();
-                Atom::Point { x: x * cos - y * sin, y: (x * sin + y * cos).abs() }
-            };
-            let halves = [0.01, 0.04, 0.12].map(|radians| [turned(radians), turned(-radians)]);
-            let start = |halves: [Atom; 2]| {
-                let mut atoms = fit.atoms.clone();
-                atoms[i] = halves[0];
-                atoms.push(halves[1]);
-                Start { atoms, range_metres: x.hypot(y) }
-            };
-            halves.into_iter().map(start).collect()
-        };
-        self.best_of((0..fit.atoms.len()).flat_map(pairs).collect(), fit)
-    }
-
-    /// The fit to the best of other starts, or `fit` if none is better.
-    fn best_of(&self, starts: Vec<Start>, fit: Fit) -> Fit {
-        let glance = |start: Start| {
-            let moving = self.beside(&start.atoms, start.range_metres);
-            self.problem().refine(start.atoms, Tie::PerEnd, &moving, Limits::GLANCE)
-        };
-        let best = starts.into_par_iter().map(glance).min_by(|a, b| a.cost.total_cmp(&b.cost));
-        match best.filter(|best| best.cost < fit.cost) {
-            Some(best) => self.together(best.atoms, TOGETHER),
-            None => fit,
+        fit = grower.refined_where_needed(fit)?;
+        if !self.is_explained(&fit) {
+            fit = self.completed(grower.pruned(fit)?)?;
         }
+        let unexplained = fit.cost() / (all[0] + all[1]);
+        let is_sure = self.is_explained(&fit);
+        let is_as_good = is_sure || !previous.complete && unexplained < 2.0 * previous.unexplained;
+        Ok(is_as_good.then_some(Answer { fit, is_sure }))
     }
 
-    /// Every line slid once more, now that the other objects are known, and without the points that patch its ends: a line found
-    /// one point too far along leaves a missing and a surplus point, which then are found as points of opposite sign.
-    fn straightened(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut i = 0;
-        while i < fit.atoms.len() {
-            self.request.task.check()?;
-            let on_line: Vec<bool> = fit.atoms.iter().map(|atom| patches(&fit.atoms[i], atom)).collect();
-            if matches!(fit.atoms[i], Atom::Line { .. }) && (on_line.contains(&true) || !self.is_explained(&fit)) {
-                let others = |j: usize| j != i && !on_line[j];
-                let residual = self.residual(&fit, others, self.windowed, self.window);
-                let placer = Placer { radar: self.radar, problem: Problem { samples: &residual, ..self.problem() } };
-                let slid = placer.slid(placer.stretched(fit.atoms[i])).atoms;
-                let kept = |range: std::ops::Range<usize>| range.filter(|j| others(*j)).map(|j| fit.atoms[j]);
-                let atoms: Vec<Atom> = kept(0..i).chain(slid).chain(kept(i + 1..fit.atoms.len())).collect();
-                let place = kept(0..i).count();
-                let trial = self.together(atoms, TOGETHER);
-                if self.is_explained(&trial) || trial.cost < fit.cost {
-                    (fit, i) = (trial, place);
-                }
-            }
-            i += 1;
-        }
-        Ok(fit)
-    }
-
-    /// The best of trying a point one wrap of the range further out or nearer, without the points beside it: near the array's axis the
-    /// ends hardly tell the two apart, and several points in the wrong place make up for one in the right.
-    fn unwrapped(&self, fit: Fit) -> Fit {
-        let without = |atom: &Atom| {
-            let Atom::Point { x, y } = *atom else { return None };
-            let beside = self.beside(&fit.atoms, x.hypot(y));
-            let mut atoms: Vec<Atom> = fit.atoms.iter().zip(beside).filter(|(_, b)| !b).map(|(a, _)| *a).collect();
-            atoms.push(wrapped(x, y, self.radar.max_range_metres()));
-            Some(Start { atoms, range_metres: x.hypot(y) })
-        };
-        self.best_of(fit.atoms.iter().filter_map(without).collect(), fit)
-    }
-
-    /// Which of `atoms` are points as far away as `range`, wraps of the range aside.
-    fn beside(&self, atoms: &[Atom], range: f64) -> Vec<bool> {
-        let wrap = self.radar.max_range_metres();
-        let is_beside = |atom: &Atom| match *atom {
-            Atom::Point { x, y } => {
-                let apart = (x.hypot(y) - range).rem_euclid(wrap);
-                apart.min(wrap - apart) < BESIDE_METRES
-            }
-            Atom::Line { .. } => false,
-        };
-        atoms.iter().map(is_beside).collect()
-    }
-
-    /// Whether the residual is what the floor alone would leave.
+    /// Whether nothing stands out of what `fit` leaves.
     fn is_explained(&self, fit: &Fit) -> bool {
-        match self.request.floor {
-            Floor::Snr(_) => !self.stands_out(fit),
-            Floor::Thesis | Floor::Exact => fit.cost <= FLOOR_MARGIN * self.floor_energy(fit),
-        }
-    }
-
-    /// Whether a cell of the residual stands out of it.
-    fn stands_out(&self, fit: &Fit) -> bool {
-        let residual = self.unwindowed(fit);
-        let strongest = self.detector.strongest(self.radar, &residual);
-        strongest.is_some_and(|c| c.prominence >= self.settings.least_prominence)
-    }
-
-    /// Energy that rounding leaves in the windowed samples, if the atoms of `fit` are what is there.
-    fn floor_energy(&self, fit: &Fit) -> f64 {
-        let window: f64 = self.window.iter().map(|w| w * w).sum();
-        // Even an exact simulation is rounded to f64, and so is the fit.
-        let rounding = energy(self.windowed) * 1e-29;
-        if self.request.floor != Floor::Thesis {
-            return rounding;
-        }
-        let reflectivity = |g: &[Complex64; 2]| ((g[0].norm_sqr() + g[1].norm_sqr()) / 2.0).sqrt();
-        let objects = fit.atoms.iter().zip(&fit.gains).map(|(a, g)| a.object(reflectivity(g)));
-        let reflectors: Vec<Reflector> = objects.flat_map(|o| o.reflectors()).collect();
-        let variance = thesis_noise_variance(self.radar, &reflectors);
-        let of_end = |end| variance[self.radar.end_range(end)].iter().sum::<f64>();
-        rounding + window * End::BOTH.map(of_end).iter().sum::<f64>()
+        self.grower().candidates(&fit.residual.flat(&self.bench.sensor), 1, |_| false).is_empty()
     }
 
     /// Most neighbouring range bins with an echo at either end: above the noise, and no more than 60 dB below the strongest when
     /// ranges are evened out by the 1/R^2 law.
     fn longest_run(&self) -> usize {
-        let ends = TwoEnds::of_flat(self.radar, self.samples);
+        let ends = TwoEnds::of_flat(self.radar, self.flat);
         let weights = self.radar.window.weights(self.radar.samples);
         let window = weights.iter().map(|w| w * w).sum::<f64>() / self.radar.samples as f64;
         let channels = End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter());
@@ -337,46 +220,22 @@ impl Search<'_> {
         };
         End::BOTH.map(run_of).into_iter().max().unwrap_or(0)
     }
-
-    /// The residual without the window, of the atoms and gains of `fit`.
-    fn unwindowed(&self, fit: &Fit) -> Vec<Complex64> {
-        self.residual(fit, |_| true, self.samples, &vec![1.0; self.radar.samples])
-    }
-
-    /// `samples` less those atoms of `fit` that are `taken`, each with its gains and times `window`.
-    fn residual(
-        &self,
-        fit: &Fit,
-        taken: impl Fn(usize) -> bool,
-        samples: &[Complex64],
-        window: &[f64],
-    ) -> Vec<Complex64> {
-        let mut residual = samples.to_vec();
-        let mut column = vec![Complex64::default(); self.sensor.sample_count()];
-        for (_, (atom, gains)) in fit.atoms.iter().zip(&fit.gains).enumerate().filter(|(i, _)| taken(*i)) {
-            self.sensor.fill_atom(atom, window, &mut [&mut column]);
-            for (i, (r, v)) in residual.iter_mut().zip(&column).enumerate() {
-                *r -= v * gains[i / self.sensor.end_len()];
-            }
-        }
-        residual
-    }
 }
 
-/// Atoms to try instead of those of a fit.
-struct Start {
-    atoms: Vec<Atom>,
-    /// Only the points this far away move at first.
-    range_metres: f64,
-}
+/// Most rounds of pairing what is left.
+const MOST_ROUNDS: usize = 3;
 
-/// Points this much nearer or further than another, metres, are beside it.
-const BESIDE_METRES: f64 = 1.0;
+/// Another round of pairing needs that this part of the energy at most is left by the last.
+const WORTH_ANOTHER: f64 = 0.5;
 
-/// Whether `atom` is a point on `line` or just beyond its ends.
-fn patches(line: &Atom, atom: &Atom) -> bool {
-    let (Atom::Line { x, start, spacing, count }, Atom::Point { x: point_x, y }) = (*line, *atom) else { return false };
-    let beyond = 10.0 * spacing.abs();
-    let end = start + count as f64 * spacing;
-    (point_x - x).abs() < 0.05 && (start.min(end) - beyond..=start.max(end) + beyond).contains(&y)
-}
+/// Rounds in which pairs that the ends don't agree on are dropped.
+const MOST_DOUBTS: usize = 3;
+
+/// Gains of one pair at both ends agree within this factor.
+const MOST_UNLIKE: f64 = 1.5;
+
+/// Most atoms of a fit that is worth a second search for what it lacks.
+const MOST_AGAIN: usize = 60;
+
+/// Part of the samples' energy that a last answer may leave and still be a start.
+const MOST_CHANGED: f64 = 0.7;

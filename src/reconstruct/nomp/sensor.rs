@@ -1,6 +1,6 @@
 //! The two ends as a measuring device: their samples, and what an atom of the dictionary would leave in them.
 
-use super::atom::Atom;
+use super::few::atom::Atom;
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::signal::phase::EchoModel;
@@ -11,10 +11,10 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Nearest a reflector may come to an element in a fit, metres: keeps a wandering step finite.
-const NEAREST_METRES: f64 = 1e-3;
+pub const NEAREST_METRES: f64 = 1e-3;
 
 /// Channels evaluated together, one lane each.
-const W: usize = LANES_F64;
+pub const W: usize = LANES_F64;
 
 /// Reflectors from which on an atom is worth more than one thread.
 const MANY_REFLECTORS: usize = 16;
@@ -22,7 +22,8 @@ const MANY_REFLECTORS: usize = 16;
 /// Geometry and constants of both ends. A vector over all samples of both ends is laid out channel by channel, first end first.
 #[derive(Debug, Clone)]
 pub struct Sensor {
-    model: EchoModel,
+    /// Phases of echoes.
+    pub model: EchoModel,
     /// x of every channel's element, metres, first end first.
     pub element_x: Vec<f64>,
     /// Samples a channel.
@@ -61,6 +62,12 @@ impl Sensor {
     #[inline(always)]
     fn radians_per_metre(&self, n: f64) -> f64 {
         self.carrier_radians_per_metre + self.beat_radians_per_metre * n
+    }
+
+    /// Phase for each metre of distance at the middle of the chirp, and how much it grows over the whole chirp.
+    pub fn radians_per_metre_over_chirp(&self) -> [f64; 2] {
+        let middle = (self.samples as f64 - 1.0) / 2.0;
+        [self.radians_per_metre(middle), self.beat_radians_per_metre * self.samples as f64]
     }
 
     /// Samples of one end.

@@ -128,3 +128,34 @@ fn a_shorter_line_is_found() {
     assert_eq!(found.reflectors.len(), 41);
     assert!(worst_error_metres(&scene, &found) < 1e-6, "{:e}", worst_error_metres(&scene, &found));
 }
+
+#[test]
+fn a_crowd_is_found_to_rounding() {
+    let radar = Radar::default();
+    let scene = Generator::new(&radar, Reading::Program, Purpose::Validation, 7).scene(Kind::Crowd, 1);
+    let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
+    assert_eq!(found.reflectors.len(), scene.reflector_count());
+    assert!(worst_error_metres(&scene, &found) < 1e-7, "{:e}", worst_error_metres(&scene, &found));
+}
+
+#[test]
+fn a_slanted_wall_is_found_with_both_its_ends() {
+    let radar = Radar::default();
+    let wall = Line { direction_degrees: 70.0, ..Line::vertical(-2.0, 6.0, 0.14, 45) };
+    let scene = Scene { objects: vec![Object::Line(wall), Object::Point(Point::new(7.0, 22.0))], ..Scene::default() };
+    let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
+    assert_eq!(found.reflectors.len(), 46);
+    assert!(worst_error_metres(&scene, &found) < 1e-5, "{:e}", worst_error_metres(&scene, &found));
+}
+
+#[test]
+fn what_takes_too_long_ends_where_its_work_is_spent() {
+    let radar = Radar::default();
+    let scene = Generator::new(&radar, Reading::Program, Purpose::Validation, 7).scene(Kind::Clusters, 0);
+    let ends = ends_of(&radar, &scene);
+    let little = Settings { most_work: 2_000, most_line_work: 0, ..Settings::default() };
+    let first = find(&radar, &ends, &Request::default(), &little).unwrap();
+    assert!(!first.complete);
+    // Counted, not timed: the same every time.
+    assert_eq!(first, find(&radar, &ends, &Request::default(), &little).unwrap());
+}

@@ -28,6 +28,12 @@ pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<
     })
 }
 
+/// Mean power that white noise of `variance` a sample leaves in a cell of [`end_beams`].
+pub fn beam_noise_power(radar: &Radar, variance: f64) -> f64 {
+    let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();
+    variance * window / radar.samples as f64 * radar.end_elements as f64
+}
+
 /// cos(theta) of the middle of a beam.
 fn cos_of_beam(beam: usize, count: usize) -> f64 {
     (beam as f64 + 0.5) / count as f64 * 2.0 - 1.0

@@ -3,8 +3,8 @@
 //! The ends see a reflector up to 27 range bins apart and at different angles, so each cell looks up its own range and angle at
 //! each end. Magnitudes are added, not amplitudes: the phase between the ends changes with every column of the full map.
 
-use super::beams::{beam_of_cos, end_beams};
 use crate::radar::{End, Radar};
+use crate::reconstruct::nomp::end_beams::{beam_of_cos, end_beams};
 use num_complex::Complex64;
 
 /// Beams formed by each end; twelve elements resolve about twelve.

@@ -5,7 +5,8 @@
 //! formed from samples, so accuracy is that of f64 and not of its square root.
 
 use super::atom::Atom;
-use super::sensor::Sensor;
+use crate::reconstruct::nomp::sensor::Sensor;
+use crate::reconstruct::nomp::work::Work;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve;
 use faer::{Accum, Mat, MatRef, Par, Side};
@@ -30,6 +31,8 @@ pub struct Problem<'a> {
     pub samples: &'a [Complex64],
     /// Weight of each sample of a chirp.
     pub window: &'a [f64],
+    /// What counts the work.
+    pub work: &'a Work,
 }
 
 /// Atoms with their gains, and what they leave unexplained.
@@ -51,6 +54,9 @@ impl Fit {
         if other.cost < self.cost { other } else { self }
     }
 }
+
+/// Most atoms of a fit that may run beside others.
+const MOST_IN_PARALLEL: usize = 1;
 
 /// Everything known about one set of atoms.
 struct State {
@@ -78,6 +84,8 @@ impl Problem<'_> {
             first_column.push(columns);
             columns += 1 + if *moving { atom.parameters() } else { 0 };
         }
+        let reflectors: usize = atoms.iter().map(Atom::reflectors).sum();
+        self.work.spend(reflectors + columns * columns / 2);
         let mut flat = vec![Complex64::default(); rows * columns];
         let mut rest = flat.chunks_exact_mut(rows);
         let own: Vec<Vec<&mut [Complex64]>> = atoms
@@ -133,7 +141,9 @@ impl Problem<'_> {
         let mut state = self.state(atoms, tie, moving);
         let mut damping = 1e-3;
         for _ in 0..limits.iterations {
-            if state.fit.cost == 0.0 || !moving.contains(&true) {
+            // Large fits run one at a time, small ones in parallel.
+            let is_spent = state.fit.atoms.len() > MOST_IN_PARALLEL && self.work.is_spent();
+            if state.fit.cost == 0.0 || !moving.contains(&true) || is_spent {
                 break;
             }
             let (hessian, gradient) = self.normal_equations(&state, moving);

@@ -6,8 +6,8 @@
 //! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
 
 use super::atom::Atom;
-use super::beams::{beam_of_cos, end_beams};
 use crate::radar::{End, Radar};
+use crate::reconstruct::nomp::end_beams::{beam_of_cos, end_beams};
 use crate::signal::simd::{Kernel, LANES_F64, Lanes, Simd, phasor};
 use num_complex::Complex64;
 use rayon::prelude::*;

@@ -1,0 +1,100 @@
+//! How far each cell of the picture is explained: what the ends' maps hold against what is left of them.
+//!
+//! A log map shows every reflector at full brightness, however little energy it has: so explained or not is decided cell by cell, in
+//! the cells of both ends' maps that a cell of the whole array's map is made from.
+
+use super::end_beams::{beam_noise_power, beam_of_cos, end_beams};
+use super::finish::Found;
+use crate::radar::{End, Radar};
+use crate::reconstruct::noise::noise_variance;
+use crate::reconstruct::seen::seen_from;
+use crate::signal::TwoEnds;
+use ndarray::{Array2, ArrayView1, Axis};
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Beams formed by each end for each of its elements.
+const BEAMS_PER_ELEMENT: usize = 4;
+
+/// Rows and beams to each side over which powers are averaged.
+const AROUND: usize = 2;
+
+/// Power of a residual, over that of the noise, which noise itself may have.
+const NOISE_MARGIN: f64 = 3.0;
+
+/// Columns of the map that share one look at the ends.
+const COLUMNS_TOGETHER: usize = 4;
+
+impl Found {
+    /// Part of the power of each cell of the whole array's map that no object explains on which the ends agree: 0 where all is, or where
+    /// there is nothing but noise. `[range bins, columns]`; `ends` are the samples that were searched.
+    pub fn unexplained_cells(&self, radar: &Radar, ends: &TwoEnds) -> Array2<f32> {
+        let mut parts = Array2::zeros((radar.samples, radar.elements));
+        if self.not_agreed.is_empty() {
+            return parts;
+        }
+        let beams = BEAMS_PER_ELEMENT * radar.end_elements;
+        let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
+        let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| smoothed(&b.mapv(|v| v.norm_sqr())));
+        let (all, left) = rayon::join(|| powers(&samples), || powers(&self.not_agreed));
+        let channels = self.not_agreed.chunks_exact(radar.samples).map(ArrayView1::from);
+        let noise = NOISE_MARGIN * beam_noise_power(radar, noise_variance(radar, channels));
+        parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
+            let range = radar.range_of_bin_metres(bin as f64);
+            for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {
+                let cos = radar.cos_of_column((first + COLUMNS_TOGETHER / 2) as f64);
+                let part = End::BOTH.iter().zip(all.iter().zip(&left)).map(|(&end, (all, left))| {
+                    let seen = seen_from(radar.end_centre_metres(end), range, cos);
+                    let bin = radar.bin_of_range(seen.range_metres).round() as usize % radar.samples;
+                    let at = [beam_of_cos(seen.cos_theta, beams), bin];
+                    (left[at] - noise).max(0.0) / all[at].max(f64::MIN_POSITIVE)
+                });
+                let part = part.fold(0.0, f64::max).min(1.0) as f32;
+                row.iter_mut().skip(first).take(COLUMNS_TOGETHER).for_each(|cell| *cell = part);
+            }
+        });
+        parts
+    }
+}
+
+/// Means over neighbouring beams and rows, `[beam, range bin]`; the rows wrap.
+fn smoothed(powers: &Array2<f64>) -> Array2<f64> {
+    let (beams, bins) = powers.dim();
+    let width = (2 * AROUND + 1) as f64;
+    let over_rows = Array2::from_shape_fn((beams, bins), |(beam, bin)| {
+        (0..=2 * AROUND).map(|i| powers[[beam, (bin + bins + i - AROUND) % bins]]).sum::<f64>() / width
+    });
+    Array2::from_shape_fn((beams, bins), |(beam, bin)| {
+        let near = beam.saturating_sub(AROUND)..=(beam + AROUND).min(beams - 1);
+        let count = near.clone().count() as f64;
+        near.map(|b| over_rows[[b, bin]]).sum::<f64>() / count
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reconstruct::Request;
+    use crate::reconstruct::nomp::{Settings, find};
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn what_was_found_is_explained_and_what_was_not_is_not() {
+        let radar = Radar::default();
+        let scene = Scene::of_points([(3.0, 11.0), (-9.0, 20.0)]);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let mut found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
+        assert!(found.unexplained_cells(&radar, &ends).iter().all(|p| *p < 1e-3));
+        // Without the far reflector in the answer, its own surroundings are unexplained and the near one's are not.
+        let far = Scene::of_points([(-9.0, 20.0)]);
+        let missing = simulate(&radar, &far, Floor::Exact, 0).unwrap().two_ends(&radar).flat();
+        found.not_agreed.iter_mut().zip(&missing).for_each(|(r, m)| *r += m * found.scale);
+        let parts = found.unexplained_cells(&radar, &ends);
+        let cell = |x: f64, y: f64| {
+            let at = radar.polar_of(x, y);
+            [radar.bin_of_range(at.range_metres) as usize, radar.column_of_cos(at.cos_theta) as usize]
+        };
+        assert!(parts[cell(-9.0, 20.0)] > 0.5 && parts[cell(3.0, 11.0)] < 1e-3);
+    }
+}

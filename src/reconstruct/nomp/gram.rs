@@ -1,0 +1,296 @@
+//! The banded Gram matrix of atoms and of their derivatives, in closed form.
+//!
+//! No sample is touched: an inner product of two echoes is one entry of the window's [`Moments`] a channel, and echoes far apart in
+//! range are orthogonal.
+
+use super::atom::Atom;
+use super::echoes::{Echo, Products};
+use super::moments::Moments;
+use super::sensor::Sensor;
+use crate::scene::Reflector;
+use crate::signal::simd::{Kernel, Simd};
+use faer::Mat;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Atoms with the echoes of all their reflectors.
+pub struct Dictionary<'a> {
+    sensor: &'a Sensor,
+    moments: &'a Moments,
+    /// The atoms.
+    pub atoms: &'a [Atom],
+    echoes: Vec<Vec<Echo>>,
+    /// Column of each atom's value; its derivatives follow, where there are any.
+    pub first_column: Vec<usize>,
+    /// Number of columns.
+    pub columns: usize,
+    derivatives: bool,
+}
+
+/// Parameters an atom may have, and its value.
+const MOST_COLUMNS: usize = 5;
+
+/// Value, derivative by x and derivative by half the square of y of one echo against those of another.
+type Block = [[Complex64; 3]; 3];
+
+impl<'a> Dictionary<'a> {
+    /// Of `atoms`, with a column for every parameter of each if `derivatives` are wanted.
+    pub fn new(sensor: &'a Sensor, moments: &'a Moments, atoms: &'a [Atom], derivatives: bool) -> Self {
+        let echo = |r: Reflector| Echo::new(sensor, &r);
+        let echoes = atoms.par_iter().map(|a| a.reflectors(1.0).map(echo).collect()).collect();
+        let mut first_column = Vec::with_capacity(atoms.len());
+        let mut columns = 0;
+        for atom in atoms {
+            first_column.push(columns);
+            columns += 1 + if derivatives { atom.parameters() } else { 0 };
+        }
+        Dictionary { sensor, moments, atoms, echoes, first_column, columns, derivatives }
+    }
+
+    /// Inner products of all columns at the first and at the last end.
+    pub fn grams(&self) -> [Mat<Complex64>; 2] {
+        let rows: Vec<Vec<(usize, [[[Complex64; MOST_COLUMNS]; MOST_COLUMNS]; 2])>> =
+            (0..self.atoms.len()).into_par_iter().map(|i| Simd::chosen().run(Row { dictionary: self, i })).collect();
+        let mut grams = [Mat::zeros(self.columns, self.columns), Mat::zeros(self.columns, self.columns)];
+        for (i, row) in rows.into_iter().enumerate() {
+            for (j, ends) in row {
+                for (gram, block) in grams.iter_mut().zip(ends) {
+                    for (p, line) in block.iter().enumerate().take(self.width(i)) {
+                        for (q, v) in line.iter().enumerate().take(self.width(j)) {
+                            let (r, c) = (self.first_column[i] + p, self.first_column[j] + q);
+                            gram[(r, c)] = *v;
+                            gram[(c, r)] = v.conj();
+                        }
+                    }
+                }
+            }
+        }
+        grams
+    }
+
+    /// Inner products of all columns with a residual at the first and at the last end, from those of the reflectors' echoes.
+    pub fn slopes(&self, products: &[Products]) -> [Vec<Complex64>; 2] {
+        let mut slopes = [vec![Complex64::default(); self.columns], vec![Complex64::default(); self.columns]];
+        let [rate, drift] = self.sensor.radians_per_metre_over_chirp();
+        let mut products = products.iter();
+        for (i, (atom, echoes)) in self.atoms.iter().zip(&self.echoes).enumerate() {
+            for (member, (echo, product)) in echoes.iter().zip(&mut products).enumerate() {
+                for channel in 0..self.sensor.element_x.len() {
+                    let slopes = &mut slopes[channel / self.sensor.end_elements][self.first_column[i]..];
+                    let (zeroth, first) = (product.zeroth[channel], product.first[channel]);
+                    slopes[0] += zeroth;
+                    if self.derivatives {
+                        let along = Complex64::new(-echo.decay[channel], -rate) * zeroth - Complex64::I * drift * first;
+                        for p in 0..atom.parameters() {
+                            let [x, half_square] = atom.share(member, p);
+                            slopes[1 + p] +=
+                                along * (x * echo.by_x[channel] + half_square * echo.by_half_square[channel]);
+                        }
+                    }
+                }
+            }
+        }
+        slopes
+    }
+
+    fn width(&self, atom: usize) -> usize {
+        1 + if self.derivatives { self.atoms[atom].parameters() } else { 0 }
+    }
+
+    /// Whether two echoes at one end are too far apart in range to know of each other.
+    #[inline(always)]
+    fn are_apart(&self, a: &Echo, b: &Echo, end: usize) -> bool {
+        let middle = end * self.sensor.end_elements + self.sensor.end_elements / 2;
+        let bins = (a.bins[middle] - b.bins[middle]).abs();
+        bins.min((self.sensor.samples as f64 - bins).abs()) > self.moments.reach_bins
+    }
+
+    /// Inner products of two echoes and their derivatives at one end.
+    #[inline(always)]
+    fn block(&self, a: &Echo, b: &Echo, end: usize) -> Block {
+        let [rate, drift] = self.sensor.radians_per_metre_over_chirp();
+        let mut out = Block::default();
+        let channels = end * self.sensor.end_elements..(end + 1) * self.sensor.end_elements;
+        for n in channels {
+            let m = self.moments.at(b.bins[n] - a.bins[n]);
+            let phase = a.middle[n].conj() * b.middle[n];
+            out[0][0] += phase * m.zeroth;
+            if self.derivatives {
+                let (da, db) = (a.decay[n], b.decay[n]);
+                let right = phase * Complex64::new(-db * m.zeroth - drift * m.first, rate * m.zeroth);
+                let left = phase * Complex64::new(-da * m.zeroth + drift * m.first, -rate * m.zeroth);
+                let re = (rate * rate + da * db) * m.zeroth - drift * (db - da) * m.first + drift * drift * m.second;
+                let im = rate * (db - da) * m.zeroth + 2.0 * rate * drift * m.first;
+                let both = phase * Complex64::new(re, im);
+                let (ax, ah, bx, bh) = (a.by_x[n], a.by_half_square[n], b.by_x[n], b.by_half_square[n]);
+                out[0][1] += right * bx;
+                out[0][2] += right * bh;
+                out[1][0] += left * ax;
+                out[2][0] += left * ah;
+                out[1][1] += both * (ax * bx);
+                out[1][2] += both * (ax * bh);
+                out[2][1] += both * (ah * bx);
+                out[2][2] += both * (ah * bh);
+            }
+        }
+        out
+    }
+}
+
+/// One atom against all before it and itself.
+struct Row<'a, 'b> {
+    dictionary: &'a Dictionary<'b>,
+    i: usize,
+}
+
+impl Kernel for Row<'_, '_> {
+    type Output = Vec<(usize, [[[Complex64; MOST_COLUMNS]; MOST_COLUMNS]; 2])>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let d = self.dictionary;
+        let mut row = Vec::new();
+        for j in 0..=self.i {
+            let mut sums = [[[Complex64::default(); MOST_COLUMNS]; MOST_COLUMNS]; 2];
+            let mut touched = false;
+            for (k, a) in d.echoes[self.i].iter().enumerate() {
+                for (l, b) in d.echoes[j].iter().enumerate() {
+                    for (end, sums) in sums.iter_mut().enumerate() {
+                        if d.are_apart(a, b, end) {
+                            continue;
+                        }
+                        touched = true;
+                        let block = d.block(a, b, end);
+                        add_shared(sums, &block, (&d.atoms[self.i], k), (&d.atoms[j], l), d.derivatives);
+                    }
+                }
+            }
+            if touched {
+                row.push((j, sums));
+            }
+        }
+        row
+    }
+}
+
+/// Adds a block of two reflectors to that of their atoms' parameters.
+#[inline(always)]
+fn add_shared(
+    sums: &mut [[Complex64; MOST_COLUMNS]; MOST_COLUMNS],
+    block: &Block,
+    (left, k): (&Atom, usize),
+    (right, l): (&Atom, usize),
+    derivatives: bool,
+) {
+    sums[0][0] += block[0][0];
+    if !derivatives {
+        return;
+    }
+    for q in 0..right.parameters() {
+        let [x, h] = right.share(l, q);
+        sums[0][1 + q] += block[0][1] * x + block[0][2] * h;
+    }
+    for p in 0..left.parameters() {
+        let [x, h] = left.share(k, p);
+        let line: [Complex64; 3] = std::array::from_fn(|c| block[1][c] * x + block[2][c] * h);
+        sums[1 + p][0] += line[0];
+        for q in 0..right.parameters() {
+            let [x, h] = right.share(l, q);
+            sums[1 + p][1 + q] += line[1] * x + line[2] * h;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{Radar, hann};
+    use crate::reconstruct::nomp::echoes::{Samples, remainder};
+
+    const WALL: Atom = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
+
+    /// What `atom` leaves in the samples of both ends.
+    fn value(sensor: &Sensor, atom: &Atom) -> Vec<Complex64> {
+        let silence = Samples::new(sensor, &vec![Complex64::default(); sensor.sample_count()]);
+        let echoes: Vec<_> = atom.reflectors(1.0).map(|r| (r, [Complex64::from(-1.0); 2])).collect();
+        remainder(sensor, &vec![1.0; sensor.samples], &silence, &echoes, false).residual.flat(sensor)
+    }
+
+    /// Columns of all atoms by differences, windowed.
+    fn columns(sensor: &Sensor, window: &[f64], atoms: &[Atom]) -> Vec<Vec<Complex64>> {
+        let mut out = Vec::new();
+        for atom in atoms {
+            out.push(value(sensor, atom));
+            for k in 0..atom.parameters() {
+                let moved = |h: f64| {
+                    let mut step = vec![0.0; atom.parameters()];
+                    step[k] = h;
+                    value(sensor, &atom.moved(&step))
+                };
+                let h = 1e-7;
+                out.push(moved(h).iter().zip(moved(-h)).map(|(a, b)| (a - b) / (2.0 * h)).collect());
+            }
+        }
+        for column in &mut out {
+            column.iter_mut().enumerate().for_each(|(i, v)| *v *= window[i % sensor.samples]);
+        }
+        out
+    }
+
+    #[test]
+    fn the_closed_form_is_the_product_of_columns_formed_by_differences() {
+        let radar = Radar::default();
+        let sensor = Sensor::new(&radar);
+        let atoms = [
+            Atom::Point { x_metres: 3.0, y_metres: 9.0 },
+            Atom::Point { x_metres: 2.9, y_metres: 9.1 },
+            WALL,
+            Atom::Point { x_metres: 3.0, y_metres: 30.0 },
+        ];
+        for window in [hann(radar.samples), vec![1.0; radar.samples]] {
+            let moments = Moments::new(&window);
+            let dictionary = Dictionary::new(&sensor, &moments, &atoms, true);
+            let slow = columns(&sensor, &window, &atoms);
+            let end_len = sensor.sample_count() / 2;
+            for (end, gram) in dictionary.grams().iter().enumerate() {
+                let part = |c: usize| &slow[c][end * end_len..(end + 1) * end_len];
+                let dot =
+                    |a: usize, b: usize| -> Complex64 { part(a).iter().zip(part(b)).map(|(a, b)| a.conj() * b).sum() };
+                for a in 0..slow.len() {
+                    for b in 0..slow.len() {
+                        let scale = (dot(a, a).re * dot(b, b).re).sqrt();
+                        let difference = (gram[(a, b)] - dot(a, b)).norm();
+                        assert!(difference < 1e-6 * scale, "columns {a} and {b}: {} {}", gram[(a, b)], dot(a, b));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_are_products_with_the_columns() {
+        let radar = Radar::default();
+        let sensor = Sensor::new(&radar);
+        let window = hann(radar.samples);
+        let squared: Vec<f64> = window.iter().map(|w| w * w).collect();
+        let atoms = [WALL, Atom::Point { x_metres: 3.0, y_metres: 9.0 }];
+        let target = value(&sensor, &Atom::Point { x_metres: -3.9, y_metres: 9.3 });
+        let moments = Moments::new(&window);
+        let dictionary = Dictionary::new(&sensor, &moments, &atoms, true);
+        let echoes: Vec<_> =
+            atoms.iter().flat_map(|a| a.reflectors(1.0)).map(|r| (r, [Complex64::default(); 2])).collect();
+        let left = remainder(&sensor, &squared, &Samples::new(&sensor, &target), &echoes, true);
+        let slopes = dictionary.slopes(&left.products);
+        let end_len = sensor.sample_count() / 2;
+        for (c, column) in columns(&sensor, &window, &atoms).iter().enumerate() {
+            for (end, slopes) in slopes.iter().enumerate() {
+                let range = end * end_len..(end + 1) * end_len;
+                let windowed = |i: usize| target[i] * window[i % radar.samples];
+                let expected: Complex64 = range.clone().map(|i| column[i].conj() * windowed(i)).sum();
+                let size = range.clone().map(|i| column[i].norm_sqr()).sum::<f64>()
+                    * range.map(|i| windowed(i).norm_sqr()).sum::<f64>();
+                assert!((slopes[c] - expected).norm() < 1e-6 * size.sqrt(), "column {c}: {} {expected}", slopes[c]);
+            }
+        }
+    }
+}

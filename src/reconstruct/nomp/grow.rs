@@ -1,0 +1,274 @@
+//! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
+
+use super::atom::Atom;
+use super::echoes::Samples;
+use super::end_beams::beam_noise_power;
+use super::groups::{Rows, groups, rows_of};
+use super::peaks::{Candidate, Detector};
+use super::profile::{Profile, union_of};
+use super::refine::{Fit, Gains, Limits, Tie, Workbench};
+use super::settings::Settings;
+use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
+use crate::reconstruct::noise::noise_variance;
+use crate::task::Task;
+use ndarray::ArrayView1;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Of one new atom by itself.
+const ALONE: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
+
+/// Of a group while more atoms are to come.
+const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
+
+/// Of a group once all atoms are there.
+const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
+
+/// Atoms this many bins apart at either end are refined together.
+const LINK_BINS: f64 = 6.0;
+
+/// Most rounds of cyclic refinement between one look at the residual and the next.
+const MOST_SWEEPS: usize = 5;
+
+/// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
+const MOST_UNLIKE: f64 = 3.0;
+
+/// Power in a range bin, over that of the noise, from which on the atoms there are not yet right.
+const NEEDED: f64 = 4.0;
+
+/// Echoes that a look at the residual takes as long as.
+const LOOK: usize = 200;
+
+/// Most atoms refined together.
+const MOST_TOGETHER: usize = 48;
+
+/// Candidates taken from one look at the residual.
+const MOST_A_ROUND: usize = 16;
+
+/// Range bins that are closed together where more atoms don't help.
+const SECTOR_BINS: usize = 6;
+
+/// Where atoms were tried, and what was unexplained there then.
+struct Trials {
+    sectors: Vec<Vec<f64>>,
+}
+
+impl Trials {
+    fn new(radar: &Radar) -> Self {
+        Trials { sectors: vec![Vec::new(); 2 * radar.samples / SECTOR_BINS + 2] }
+    }
+
+    fn add(&mut self, radar: &Radar, candidate: &Candidate, profile: &Profile) {
+        let range = candidate.x_metres.hypot(candidate.y_metres);
+        let sector = (radar.bin_of_range(range) as usize / SECTOR_BINS).min(self.sectors.len() - 1);
+        let atom = Atom::Point { x_metres: candidate.x_metres, y_metres: candidate.y_metres };
+        self.sectors[sector].push(profile.at(&rows_of(radar, &atom)));
+    }
+
+    /// Whether the last trials at this range of the array's centre have not halved what was there.
+    fn is_closed(&self, bin: usize, most: usize) -> bool {
+        let tried = &self.sectors[(bin / SECTOR_BINS).min(self.sectors.len() - 1)];
+        tried.len() > most && tried[tried.len() - 1] > 0.5 * tried[tried.len() - 1 - most]
+    }
+}
+
+/// Greedy search in the samples of one radar.
+pub struct Grower<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Refinement under the search's window.
+    pub bench: &'a Workbench<'a>,
+    /// Looks for places.
+    pub detector: &'a Detector,
+    /// Limits.
+    pub settings: &'a Settings,
+    /// To be cancelled by.
+    pub task: &'a Task,
+}
+
+impl Grower<'_> {
+    /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
+    pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool) -> Vec<Candidate> {
+        let samples = self.radar.samples;
+        let channels = flat.chunks_exact(samples).map(ArrayView1::from);
+        let noise = beam_noise_power(self.radar, noise_variance(self.radar, channels));
+        self.detector.peaks(self.radar, flat, noise * self.settings.least_prominence, most, closed)
+    }
+
+    /// Adds points to `fit` until nothing stands out, nothing helps or there are too many.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        let mut trials = Trials::new(self.radar);
+        while fit.atoms.len() < self.settings.most_atoms && !self.bench.is_spent() {
+            self.task.check()?;
+            self.bench.spend(LOOK);
+            let flat = fit.residual.flat(&self.bench.sensor);
+            let profile = Profile::new(self.radar, &flat);
+            let room = self.settings.most_atoms - fit.atoms.len();
+            let candidates =
+                self.candidates(&flat, MOST_A_ROUND.min(room), |bin| trials.is_closed(bin, self.settings.trials));
+            if candidates.is_empty() {
+                break;
+            }
+            for c in &candidates {
+                trials.add(self.radar, c, &profile);
+            }
+            fit = self.with_candidates(fit, &candidates)?;
+            fit = self.settled(fit)?;
+            tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
+        }
+        Ok(fit)
+    }
+
+    /// Cyclic refinement: all atoms with their neighbours, as long as the energy falls fast. What one group leaves blinds the others.
+    fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_SWEEPS {
+            let before = fit.cost();
+            let all = vec![true; fit.atoms.len()];
+            fit = self.refined(fit, &all, LINK_BINS, GROWING)?;
+            if fit.cost() > 0.3 * before {
+                break;
+            }
+        }
+        Ok(fit)
+    }
+
+    /// Energy that noise gives to one gain under the search's window.
+    pub fn gain_noise(&self, fit: &Fit) -> f64 {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        let variance = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
+        let [square, fourth] = self.bench.squared.iter().fold([0.0; 2], |[s, f], w| [s + w, f + w * w]);
+        variance * fourth / square
+    }
+
+    /// `fit` with one more point for every candidate, each refined alone, then with its neighbours.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn with_candidates(&self, mut fit: Fit, candidates: &[Candidate]) -> Result<Fit, ReconstructError> {
+        let mut placed: Vec<(Atom, Gains)> = candidates.par_iter().map(|c| self.placed(&fit, c)).collect();
+        // The strongest is taken as it is; of the others those that both ends believe in.
+        let mut strongest = true;
+        placed.retain(|(_, gains)| {
+            let [a, b] = gains.map(|g| g.norm());
+            std::mem::take(&mut strongest) || a.max(b) < MOST_UNLIKE * a.min(b)
+        });
+        let known = fit.atoms.len();
+        for (atom, gains) in placed {
+            fit.atoms.push(atom);
+            fit.gains.push(gains);
+        }
+        let new = &fit.atoms[known..];
+        let left = self.bench.without(&fit.residual, new, &fit.gains[known..]);
+        (fit.residual, fit.energy) = (left.residual, left.energy);
+        let marked: Vec<bool> = (0..fit.atoms.len()).map(|i| i >= known).collect();
+        self.refined(fit, &marked, LINK_BINS, GROWING)
+    }
+
+    /// The candidate moved to its best place, at its own range or one wrap nearer or further out: ranges repeat, curvature does not.
+    fn placed(&self, fit: &Fit, candidate: &Candidate) -> (Atom, Gains) {
+        let own = Atom::Point { x_metres: candidate.x_metres, y_metres: candidate.y_metres };
+        let wrap = self.radar.max_range_metres();
+        let is_near = candidate.x_metres.hypot(candidate.y_metres) <= wrap;
+        let alone =
+            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ALONE);
+        let (own, other) = rayon::join(|| alone(own), || alone(wrapped(candidate, wrap)));
+        // The nearer one unless the other is clearly better.
+        let (near, far) = if is_near { (own, other) } else { (other, own) };
+        let better = if far.cost() < 0.5 * near.cost() { far } else { near };
+        (better.atoms[0], better.gains[0])
+    }
+
+    /// Every group of neighbours that holds a marked atom refined together, one group after another.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn refined(
+        &self,
+        mut fit: Fit,
+        marked: &[bool],
+        link_bins: f64,
+        limits: Limits,
+    ) -> Result<Fit, ReconstructError> {
+        let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
+        for group in groups(self.radar.samples, &rows, marked, link_bins, MOST_TOGETHER) {
+            self.task.check()?;
+            if self.bench.is_spent() {
+                break;
+            }
+            self.bench.spend(LOOK / 2);
+            let atoms: Vec<Atom> = group.iter().map(|&i| fit.atoms[i]).collect();
+            let gains: Vec<Gains> = group.iter().map(|&i| fit.gains[i]).collect();
+            let back: Vec<Gains> = gains.iter().map(|g| [-g[0], -g[1]]).collect();
+            let base = self.bench.without(&fit.residual, &atoms, &back).residual;
+            let own = union_of(group.iter().map(|&i| rows[i]));
+            let ridge = own.map_or(0.0, |own| self.ridge(&fit, &base, &own) / group.len() as f64);
+            let refined = self.bench.refine(&base, atoms, gains, Tie::PerEnd, limits.with_ridge(ridge));
+            for (k, &i) in group.iter().enumerate() {
+                (fit.atoms[i], fit.gains[i]) = (refined.atoms[k], refined.gains[k]);
+            }
+            (fit.residual, fit.energy) = (refined.residual, refined.energy);
+        }
+        Ok(fit)
+    }
+
+    /// Part of the energy of `base` in these rows that is left unexplained: what the gains of atoms there may cost.
+    fn ridge(&self, fit: &Fit, base: &Samples, rows: &Rows) -> f64 {
+        let of = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor)).at(rows);
+        let (left, all) = rayon::join(|| of(&fit.residual), || of(base));
+        if all > 0.0 { self.settings.gain_price * (left / all).min(1.0) } else { 0.0 }
+    }
+
+    /// The atoms refined in whose rows more is left than noise, with their neighbours.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn refined_where_needed(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_SWEEPS {
+            let before = fit.cost();
+            let flat = fit.residual.flat(&self.bench.sensor);
+            let profile = Profile::new(self.radar, &flat);
+            let noise = beam_noise_power(
+                self.radar,
+                noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from)),
+            );
+            let stands_out = |atom: &Atom| profile.strongest(&rows_of(self.radar, atom)) > NEEDED * noise;
+            let marked: Vec<bool> = fit.atoms.iter().map(stands_out).collect();
+            if !marked.contains(&true) {
+                break;
+            }
+            fit = self.refined(fit, &marked, LINK_BINS, POLISH)?;
+            if fit.cost() > 0.3 * before {
+                break;
+            }
+        }
+        Ok(fit)
+    }
+
+    /// All atoms refined with their neighbours, time and again, until a round gains little.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn polished(&self, mut fit: Fit, rounds: usize) -> Result<Fit, ReconstructError> {
+        for _ in 0..rounds {
+            let before = fit.cost();
+            let all = vec![true; fit.atoms.len()];
+            fit = self.refined(fit, &all, 2.0 * LINK_BINS, POLISH)?;
+            if fit.cost() > 0.9 * before {
+                break;
+            }
+        }
+        Ok(fit)
+    }
+}
+
+/// The place one wrap of the range further out, or nearer if it lies beyond the maximum range.
+fn wrapped(place: &Candidate, max_range_metres: f64) -> Atom {
+    let range = place.x_metres.hypot(place.y_metres).max(1e-3);
+    let other = if range > max_range_metres { -1.0 } else { 1.0 };
+    let far = 1.0 + other * max_range_metres / range;
+    Atom::Point { x_metres: place.x_metres * far, y_metres: place.y_metres * far }
+}

@@ -1,0 +1,178 @@
+//! Where to start: each end's tones, paired. A reflector is one tone at the first end and one at the last; their two ranges say where
+//! it is, and each end's phases say in which direction, so that true pairs agree and others don't.
+
+use super::atom::Atom;
+use super::tones::{gains_of_tones, tones_bins};
+use crate::radar::{End, Radar};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Cosines of a pair's directions, as measured and as they follow from its place, agree this well without noise.
+const COS: f64 = 0.01;
+
+/// Echoes of a pair, made equal by the 1/R^2 law, agree this well, as a logarithm.
+const LOG_GAIN: f64 = 0.1;
+
+/// A disagreement of this many times all that is allowed makes no pair.
+const MOST_APART: f64 = 3.0;
+
+/// Range bins within which the last end is searched for what the first end's direction predicts.
+const SEARCH_BINS: f64 = 1.5;
+
+/// Standard deviations of noise that are allowed.
+const DEVIATIONS: f64 = 4.0;
+
+/// Rounds in which directions and the tones of the neighbouring element are brought together.
+const ROUNDS: usize = 4;
+
+/// A tone of one end.
+#[derive(Debug, Clone, Copy)]
+struct Heard {
+    bins: f64,
+    cos: f64,
+    amplitude: f64,
+    /// How far noise may have turned the direction.
+    cos_tolerance: f64,
+}
+
+/// A tone at each end that may be one reflector.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    first: usize,
+    last: usize,
+    atom: Atom,
+    apart: f64,
+}
+
+/// An end's element nearest to its middle, and the tones heard there.
+struct Listener {
+    x_metres: f64,
+    heard: Vec<Heard>,
+}
+
+/// Points whose tones both ends hear, from samples laid out channel by channel over white noise of `noise_variance`. None where an end
+/// hears more tones than it can tell apart, or where neighbouring elements are too far apart to tell directions.
+pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> Vec<Atom> {
+    let listen = |end: End| {
+        let at = if end == End::First { 0 } else { radar.end_elements };
+        let channels: Vec<&[Complex64]> = flat.chunks_exact(radar.samples).skip(at).take(radar.end_elements).collect();
+        listener(radar, end, &channels, noise_variance)
+    };
+    let (first, last) = rayon::join(|| listen(End::First), || listen(End::Last));
+    let (Some(first), Some(last)) = (first, last) else { return Vec::new() };
+    let mut pairs: Vec<Pair> = Vec::new();
+    for i in 0..first.heard.len() {
+        for wraps in 0..2 {
+            pairs.extend(candidates(radar, &first, &last, i, wraps));
+        }
+    }
+    pairs.sort_by(|a, b| a.apart.total_cmp(&b.apart));
+    let (mut first_taken, mut last_taken) = (vec![false; first.heard.len()], vec![false; last.heard.len()]);
+    pairs.retain(|p| {
+        let free = !first_taken[p.first] && !last_taken[p.last];
+        if free {
+            (first_taken[p.first], last_taken[p.last]) = (true, true);
+        }
+        free
+    });
+    pairs.into_iter().map(|p| p.atom).collect()
+}
+
+/// Tones of an end's middle element, with directions from the element beside it.
+fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64) -> Option<Listener> {
+    let middle = (radar.end_elements.max(1) - 1) / 2;
+    let (own, beside) = (channels.get(middle)?, channels.get(middle + 1)?);
+    let number = radar.end_range(end).start + middle;
+    let x_metres = radar.element_x_metres(number);
+    let step_metres = radar.element_x_metres(number + 1) - x_metres;
+    let chirp_middle = (radar.samples as f64 - 1.0) / 2.0;
+    let radians_per_metre = TAU
+        * (radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
+            + chirp_middle / radar.samples as f64 / radar.range_resolution_metres());
+    // Half a turn from one element to the next is what a direction may amount to.
+    if (radians_per_metre * step_metres).abs() > 1.05 * TAU / 2.0 {
+        return None;
+    }
+    let bins = tones_bins(own, noise_variance)?;
+    let gains = gains_of_tones(own, &bins);
+    let mut cosines = vec![0.0f64; bins.len()];
+    for _ in 0..ROUNDS {
+        let moved: Vec<f64> =
+            bins.iter().zip(&cosines).map(|(b, c)| b - step_metres * c / radar.range_resolution_metres()).collect();
+        for ((cos, own), beside) in cosines.iter_mut().zip(&gains).zip(gains_of_tones(beside, &moved)) {
+            let nearer_metres = -(beside * own.conj()).arg() / radians_per_metre;
+            *cos = (nearer_metres / step_metres).clamp(-1.0, 1.0);
+        }
+    }
+    let deviation = (noise_variance / radar.samples as f64).sqrt() / (radians_per_metre * step_metres).abs();
+    let heard = bins.iter().zip(&gains).zip(&cosines).map(|((bins, gain), cos)| Heard {
+        bins: *bins,
+        cos: *cos,
+        amplitude: gain.norm(),
+        cos_tolerance: COS + DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
+    });
+    Some(Listener { x_metres, heard: heard.collect() })
+}
+
+/// What tone `i` of the first end may be paired with if its range has wrapped this often.
+fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps: usize) -> Vec<Pair> {
+    let (bins, bin_metres) = (radar.samples as f64, radar.range_resolution_metres());
+    let between = last.x_metres - first.x_metres;
+    let own = first.heard[i];
+    let range = (own.bins + wraps as f64 * bins) * bin_metres;
+    let predicted = (range * range + between * between - 2.0 * range * own.cos * between).max(0.0).sqrt() / bin_metres;
+    let mut pairs = Vec::new();
+    for (j, other) in last.heard.iter().enumerate() {
+        let off = (predicted - other.bins + bins / 2.0).rem_euclid(bins) - bins / 2.0;
+        let search = SEARCH_BINS.max((own.cos_tolerance * between / bin_metres).min(6.0));
+        if off.abs() > search {
+            continue;
+        }
+        let other_range = (predicted - off) * bin_metres;
+        let along = (range * range - other_range * other_range + between * between) / (2.0 * between);
+        let square = range * range - along * along;
+        if range <= 0.0 || other_range <= 0.0 || square < 0.0 {
+            continue;
+        }
+        let cosines = [
+            (along / range - own.cos) / own.cos_tolerance,
+            ((along - between) / other_range - other.cos) / other.cos_tolerance,
+        ];
+        let gain = (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / LOG_GAIN;
+        let apart = cosines[0].abs() + cosines[1].abs() + gain.abs();
+        if apart < MOST_APART {
+            let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
+            pairs.push(Pair { first: i, last: j, atom, apart });
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reconstruct::noise::ends_noise_variance;
+    use crate::scene::Scene;
+    use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn a_crowd_is_paired_to_rounding() {
+        let radar = Radar::default();
+        let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 3);
+        let scene: Scene = generator.scene(Kind::Crowd, 0);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let found = paired_points(&radar, &ends.flat(), ends_noise_variance(&radar, &ends));
+        let near = |x: f64, y: f64| {
+            let distance = |a: &Atom| {
+                let [fx, fy] = a.position_metres(0.0);
+                (fx - x).hypot(fy - y)
+            };
+            found.iter().map(distance).fold(f64::INFINITY, f64::min)
+        };
+        let reflectors = scene.reflectors();
+        let right = reflectors.iter().filter(|r| near(r.x_metres, r.y_metres) < 1e-3).count();
+        assert!(right * 10 >= reflectors.len() * 9, "{right} of {}", reflectors.len());
+        assert!(found.len() <= reflectors.len() + 1, "{} for {}", found.len(), reflectors.len());
+    }
+}

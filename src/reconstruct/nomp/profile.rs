@@ -1,0 +1,57 @@
+//! Energy of a residual over range at each end: how well each part of the scene is explained.
+
+use super::groups::Rows;
+use crate::maps::channels_range_transform;
+use crate::radar::{End, Radar};
+use crate::signal::TwoEnds;
+use num_complex::Complex64;
+
+/// Energy in every range bin at each end.
+#[derive(Debug, Clone)]
+pub struct Profile {
+    energy: [Vec<f64>; 2],
+}
+
+/// Bins beside an atom's own that are taken to be its own too.
+const MARGIN_BINS: f64 = 2.0;
+
+impl Profile {
+    /// Of samples laid out channel by channel, not windowed.
+    pub fn new(radar: &Radar, flat: &[Complex64]) -> Self {
+        let ends = TwoEnds::of_flat(radar, flat);
+        let energy = End::BOTH.map(|end| {
+            let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
+            (0..radar.samples).map(|bin| profiles.column(bin).iter().map(Complex64::norm_sqr).sum()).collect()
+        });
+        Profile { energy }
+    }
+
+    /// The most that any bin at or beside these rows holds.
+    pub fn strongest(&self, rows: &Rows) -> f64 {
+        let bins = |low: f64, high: f64| ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);
+        let of_end = |((low, high), energy): (&(f64, f64), &Vec<f64>)| {
+            let (low, high) = bins(*low, *high);
+            let len = energy.len() as i64;
+            (low..=high.min(low + len - 1)).map(|bin| energy[bin.rem_euclid(len) as usize]).fold(0.0, f64::max)
+        };
+        rows.iter().zip(&self.energy).map(of_end).fold(0.0, f64::max)
+    }
+
+    /// Energy at and beside these rows.
+    pub fn at(&self, rows: &Rows) -> f64 {
+        rows.iter()
+            .zip(&self.energy)
+            .map(|((low, high), energy)| {
+                let (low, high) = ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);
+                let len = energy.len() as i64;
+                let high = high.min(low + len - 1);
+                (low..=high).map(|bin| energy[bin.rem_euclid(len) as usize]).sum::<f64>()
+            })
+            .sum()
+    }
+}
+
+/// Rows that hold all of several atoms' rows.
+pub fn union_of(rows: impl Iterator<Item = Rows>) -> Option<Rows> {
+    rows.reduce(|a, b| [0, 1].map(|end| (a[end].0.min(b[end].0), a[end].1.max(b[end].1))))
+}

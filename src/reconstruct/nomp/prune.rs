@@ -1,0 +1,63 @@
+//! Atoms that the rest can do without.
+
+use super::atom::Atom;
+use super::groups::{Rows, distance_bins, rows_of};
+use super::grow::Grower;
+use super::refine::{Fit, Limits};
+use crate::reconstruct::ReconstructError;
+
+/// An atom must explain this many times the energy that noise gives to one more gain at each end.
+const LEAST_WORTH: f64 = 16.0;
+
+/// Most rounds of taking away.
+const MOST_ROUNDS: usize = 12;
+
+/// Atoms nearer than this in range are not taken away in one round: either may do for the other.
+const APART_BINS: f64 = 4.0;
+
+/// Of the atoms that stay.
+const AFTER: Limits = Limits { iterations: 20, least_gain: 1e-2, ridge: 0.0 };
+
+impl Grower<'_> {
+    /// `fit` without the atoms whose absence noise could hide, those whose place ran away, and those that only one end believes in.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_ROUNDS {
+            self.task.check()?;
+            if self.bench.is_spent() {
+                break;
+            }
+            let least = LEAST_WORTH * self.gain_noise(&fit);
+            let worth = self.bench.worths(&fit);
+            let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
+            let mut order: Vec<usize> =
+                (0..fit.atoms.len()).filter(|&i| worth[i] < least || self.ran_away(&fit.atoms[i])).collect();
+            order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
+            let mut gone: Vec<usize> = Vec::new();
+            for i in order {
+                let is_apart = |j: &usize| distance_bins(self.radar.samples, &rows[i], &rows[*j]) > APART_BINS;
+                if gone.iter().all(is_apart) {
+                    gone.push(i);
+                }
+            }
+            if gone.is_empty() {
+                break;
+            }
+            fit = self.bench.less(fit, &gone);
+            let kept = (0..rows.len()).filter(|i| !gone.contains(i));
+            let beside = |i: usize| {
+                gone.iter().any(|&j| distance_bins(self.radar.samples, &rows[i], &rows[j]) < 2.0 * APART_BINS)
+            };
+            let marked: Vec<bool> = kept.map(beside).collect();
+            fit = self.refined(fit, &marked, APART_BINS, AFTER)?;
+        }
+        Ok(fit)
+    }
+
+    fn ran_away(&self, atom: &Atom) -> bool {
+        let [x, y] = atom.position_metres(0.0);
+        x.hypot(y) > 2.5 * self.radar.max_range_metres()
+    }
+}

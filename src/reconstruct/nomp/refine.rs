@@ -1,0 +1,344 @@
+//! Least-squares refinement of a set of atoms: Levenberg-Marquardt on positions, gains solved exactly at every step.
+//!
+//! The samples are linear in the gains, so the gains are projected out (variable projection, Golub and Pereyra 1973, in Kaufman's
+//! approximation): only positions are searched. Normal equations in closed form are good enough for the *step*; the residual itself is
+//! always formed from samples, so accuracy is that of f64 and not of its square root.
+
+use super::atom::Atom;
+use super::echoes::{Remainder, Samples, remainder};
+use super::gram::Dictionary;
+use super::moments::Moments;
+use super::sensor::Sensor;
+use super::solver::{Ridge, damped_step};
+use super::work::Work;
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use crate::task::Task;
+use faer::Mat;
+use num_complex::Complex64;
+
+/// Which samples share one gain for each atom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tie {
+    /// Each end has its own gain: the position follows from ranges and from the phases inside each end. No ambiguity.
+    PerEnd,
+    /// Both ends share the gain: the carrier's phase between the ends counts. Twenty times finer, and ambiguous by whole columns.
+    Both,
+}
+
+/// When a refinement ends.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Most steps.
+    pub iterations: usize,
+    /// A step that lowers the energy by a smaller part than this is the last.
+    pub least_gain: f64,
+    /// What a gain costs, against the energy of its atom: keeps atoms that are not quite right from large gains that cancel.
+    pub ridge: f64,
+}
+
+impl Limits {
+    /// The same with another price of gains.
+    pub fn with_ridge(self, ridge: f64) -> Self {
+        Limits { ridge, ..self }
+    }
+}
+
+/// Gains at the first and at the last end.
+pub type Gains = [Complex64; 2];
+
+/// What every refinement of one search shares.
+pub struct Workbench<'a> {
+    /// Geometry of the samples.
+    pub sensor: Sensor,
+    /// Squares of the weights of the samples of a chirp.
+    pub squared: Vec<f64>,
+    moments: Moments,
+    task: &'a Task,
+    work: Work,
+}
+
+/// Most reflectors of a refinement that may run beside others.
+const MOST_IN_PARALLEL: usize = 16;
+
+/// Inner products of two echoes that take as long as one echo at all channels.
+const PRODUCTS_AN_ECHO: usize = 16;
+
+/// Atoms with their gains, and what they leave of the samples.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The atoms.
+    pub atoms: Vec<Atom>,
+    /// Their gains.
+    pub gains: Vec<Gains>,
+    /// Samples minus atoms, not windowed.
+    pub residual: Samples,
+    /// Energy of the windowed residual at each end.
+    pub energy: [f64; 2],
+}
+
+impl Fit {
+    /// Energy of the windowed residual.
+    pub fn cost(&self) -> f64 {
+        self.energy[0] + self.energy[1]
+    }
+}
+
+/// How a state is asked for.
+#[derive(Debug, Clone, Copy)]
+struct Terms {
+    tie: Tie,
+    ridge: f64,
+    derivatives: bool,
+}
+
+/// Everything known about one set of atoms at one place.
+struct State {
+    fit: Fit,
+    cost: f64,
+    /// Inner products of all columns for each block of samples that shares gains.
+    grams: Vec<Mat<Complex64>>,
+    /// Products of all columns with the residual, for each block.
+    slopes: Vec<Vec<Complex64>>,
+    first_column: Vec<usize>,
+}
+
+impl<'a> Workbench<'a> {
+    /// For the ends of `radar` under `window`.
+    pub fn new(radar: &Radar, window: &[f64], task: &'a Task, most_work: usize) -> Self {
+        Workbench {
+            sensor: Sensor::new(radar),
+            squared: window.iter().map(|w| w * w).collect(),
+            moments: Moments::new(window),
+            task,
+            work: Work::granted(most_work),
+        }
+    }
+
+    /// Counts what took as long as this many echoes.
+    pub fn spend(&self, echoes: usize) {
+        self.work.spend(echoes);
+    }
+
+    /// Whether the work that the search was granted is done; to be asked where nothing runs in parallel.
+    pub fn is_spent(&self) -> bool {
+        self.work.is_spent()
+    }
+
+    /// `samples` less `atoms` times `gains`; not windowed.
+    pub fn without(&self, samples: &Samples, atoms: &[Atom], gains: &[Gains]) -> Remainder {
+        let reflectors = reflectors(atoms, gains);
+        self.spend(reflectors.len() + 1);
+        remainder(&self.sensor, &self.squared, samples, &reflectors, false)
+    }
+
+    /// Gains for `atoms` where they are.
+    pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
+        let gains = vec![Gains::default(); atoms.len()];
+        self.settled(self.state(samples, atoms, gains, Terms { tie, ridge, derivatives: false }), samples)
+    }
+
+    /// Moves `atoms` to a local minimum of the energy that they leave of `samples`. `gains` are where gains start: zeros, or near the truth.
+    pub fn refine(&self, samples: &Samples, atoms: Vec<Atom>, gains: Vec<Gains>, tie: Tie, limits: Limits) -> Fit {
+        let terms = Terms { tie, ridge: limits.ridge, derivatives: true };
+        let mut state = self.state(samples, atoms, gains, terms);
+        let mut damping = 1e-3;
+        let is_large = state.fit.atoms.iter().map(Atom::reflector_count).sum::<usize>() > MOST_IN_PARALLEL;
+        for _ in 0..limits.iterations {
+            if is_large && self.is_spent() {
+                break;
+            }
+            if state.cost <= 0.0 || state.fit.atoms.is_empty() || self.task.is_cancelled() {
+                break;
+            }
+            let Some(trial) = self.step(samples, &state, terms, &mut damping, 0.1 * limits.least_gain) else { break };
+            let gained = 1.0 - trial.cost / state.cost;
+            state = trial;
+            if gained < limits.least_gain {
+                break;
+            }
+        }
+        self.settled(state, samples)
+    }
+
+    /// One accepted step, with whatever damping it takes; `None` at a minimum, where no step gains `least_gain` of the energy.
+    fn step(
+        &self,
+        samples: &Samples,
+        state: &State,
+        terms: Terms,
+        damping: &mut f64,
+        least_gain: f64,
+    ) -> Option<State> {
+        let equations = normal_equations(state, terms.ridge);
+        for _ in 0..6 {
+            let step = damped_step(&equations.hessian, &equations.gradient, *damping);
+            let Some(step) = step.filter(|s| s.iter().all(|v| v.abs() < FARTHEST_METRES)) else {
+                *damping *= 10.0;
+                continue;
+            };
+            // The most that the step can gain; at a minimum nothing, and no shorter step gains more.
+            let most = 2.0 * step.iter().zip(&equations.gradient).map(|(s, g)| s * g).sum::<f64>();
+            if most < least_gain * state.cost {
+                return None;
+            }
+            let mut at = 0;
+            let atoms = state.fit.atoms.iter().map(|atom| {
+                at += atom.parameters();
+                atom.moved(&step[at - atom.parameters()..at])
+            });
+            let gains = equations.gains_after(&state.fit.gains, &step);
+            let trial = self.state(samples, atoms.collect(), gains, terms);
+            if trial.cost < state.cost {
+                *damping = (*damping * 0.1).max(1e-12);
+                return Some(trial);
+            }
+            *damping *= 10.0;
+        }
+        None
+    }
+
+    /// For every atom, by how much the energy would grow without it, the other gains having made the best of it.
+    pub fn worths(&self, fit: &Fit) -> Vec<f64> {
+        let dictionary = Dictionary::new(&self.sensor, &self.moments, &fit.atoms, false);
+        let n = fit.atoms.len();
+        let mut worths = vec![0.0; n];
+        for (end, gram) in dictionary.grams().iter().enumerate() {
+            let inverse = Ridge::new(gram, 0.0).solve(&Mat::identity(n, n));
+            for (i, worth) in worths.iter_mut().enumerate() {
+                *worth += fit.gains[i][end].norm_sqr() / inverse[(i, i)].re.max(f64::MIN_POSITIVE);
+            }
+        }
+        worths
+    }
+
+    /// `fit` without the atoms numbered `gone`, which go back into its residual.
+    pub fn less(&self, fit: Fit, gone: &[usize]) -> Fit {
+        let atoms: Vec<Atom> = gone.iter().map(|&i| fit.atoms[i]).collect();
+        let back: Vec<Gains> = gone.iter().map(|&i| fit.gains[i].map(|g| -g)).collect();
+        let left = self.without(&fit.residual, &atoms, &back);
+        let kept: Vec<usize> = (0..fit.atoms.len()).filter(|i| !gone.contains(i)).collect();
+        Fit {
+            atoms: kept.iter().map(|&i| fit.atoms[i]).collect(),
+            gains: kept.iter().map(|&i| fit.gains[i]).collect(),
+            residual: left.residual,
+            energy: left.energy,
+        }
+    }
+
+    /// All about `atoms`; gains start at `gains` and end at their best.
+    fn state(&self, samples: &Samples, atoms: Vec<Atom>, mut gains: Vec<Gains>, terms: Terms) -> State {
+        let Terms { tie, ridge, derivatives } = terms;
+        let dictionary = Dictionary::new(&self.sensor, &self.moments, &atoms, derivatives);
+        let [first, last] = dictionary.grams();
+        let grams = match tie {
+            Tie::PerEnd => vec![first, last],
+            Tie::Both => vec![first + last],
+        };
+        let n = atoms.len();
+        let echoes: usize = atoms.iter().map(Atom::reflector_count).sum();
+        self.spend(echoes * echoes / PRODUCTS_AN_ECHO);
+        let columns = &dictionary.first_column;
+        let values = |gram: &Mat<Complex64>| Mat::from_fn(n, n, |i, j| gram[(columns[i], columns[j])]);
+        let solvers: Vec<Ridge> = grams.iter().map(|gram| Ridge::new(&values(gram), ridge)).collect();
+        // The second pass removes what the squared condition number of the normal equations, or a far start, left.
+        for pass in 0..3 {
+            self.spend(2 * echoes + 1);
+            let left = remainder(&self.sensor, &self.squared, samples, &reflectors(&atoms, &gains), true);
+            let [first, last] = dictionary.slopes(&left.products);
+            let mut slopes = match tie {
+                Tie::PerEnd => vec![first, last],
+                Tie::Both => vec![first.iter().zip(&last).map(|(a, b)| a + b).collect()],
+            };
+            let mut cost = left.energy[0] + left.energy[1];
+            let mut gained = 0.0;
+            for (block, ((slopes, gram), solver)) in slopes.iter_mut().zip(&grams).zip(&solvers).enumerate() {
+                let price = |i: usize| gains[i][block] * (ridge * gram[(columns[i], columns[i])].re);
+                cost += (0..n).map(|i| (price(i).conj() * gains[i][block]).re).sum::<f64>();
+                let pull: Vec<Complex64> = (0..n).map(|i| slopes[columns[i]] - price(i)).collect();
+                let step = solver.solve(&Mat::from_fn(n, 1, |i, _| pull[i]));
+                gained += (0..n).map(|i| (step[(i, 0)].conj() * pull[i]).re).sum::<f64>();
+                for (i, gains) in gains.iter_mut().enumerate() {
+                    match tie {
+                        Tie::PerEnd => gains[block] += step[(i, 0)],
+                        Tie::Both => gains.iter_mut().for_each(|g| *g += step[(i, 0)]),
+                    }
+                }
+                for (c, slope) in slopes.iter_mut().enumerate() {
+                    *slope -= (0..n).map(|i| gram[(c, columns[i])] * step[(i, 0)]).sum::<Complex64>();
+                }
+            }
+            if pass == 2 || gained < 0.9 * cost {
+                let cost = (cost - gained).max(0.0);
+                let first_column = dictionary.first_column.clone();
+                drop(dictionary);
+                let fit = Fit { atoms, gains, residual: left.residual, energy: left.energy };
+                return State { fit, cost, grams, slopes, first_column };
+            }
+        }
+        unreachable!("the last pass returns")
+    }
+
+    /// The fit of a state, its residual formed anew from samples.
+    fn settled(&self, state: State, samples: &Samples) -> Fit {
+        let left = self.without(samples, &state.fit.atoms, &state.fit.gains);
+        Fit { residual: left.residual, energy: left.energy, ..state.fit }
+    }
+}
+
+/// A step longer than this is none.
+const FARTHEST_METRES: f64 = 1e3;
+
+/// The reflectors of `atoms` with their gains.
+fn reflectors(atoms: &[Atom], gains: &[Gains]) -> Vec<(Reflector, Gains)> {
+    atoms.iter().zip(gains).flat_map(|(atom, gains)| atom.reflectors(1.0).map(move |r| (r, *gains))).collect()
+}
+
+/// Gauss-Newton equations for the parameters of all atoms, gains projected out.
+struct Equations {
+    hessian: Mat<f64>,
+    gradient: Vec<f64>,
+    /// For each block of samples that shares gains, how gains follow the parameters.
+    follow: Vec<Mat<Complex64>>,
+}
+
+fn normal_equations(state: &State, ridge: f64) -> Equations {
+    let atoms = &state.fit.atoms;
+    // (atom, column) of every parameter.
+    let parameters: Vec<(usize, usize)> = (0..atoms.len())
+        .flat_map(|i| (0..atoms[i].parameters()).map(move |k| (i, k)))
+        .map(|(i, k)| (i, state.first_column[i] + 1 + k))
+        .collect();
+    let (n, size) = (atoms.len(), parameters.len());
+    let mut equations =
+        Equations { hessian: Mat::zeros(size, size), gradient: vec![0.0; size], follow: Vec::with_capacity(2) };
+    for (b, gram) in state.grams.iter().enumerate() {
+        let gain = |atom: usize| state.fit.gains[atom][b];
+        let values = Mat::from_fn(n, n, |i, j| gram[(state.first_column[i], state.first_column[j])]);
+        let cross =
+            Mat::from_fn(n, size, |i, j| gram[(state.first_column[i], parameters[j].1)] * gain(parameters[j].0));
+        let projected = Ridge::new(&values, ridge).solve(&cross);
+        let explained = cross.adjoint() * &projected;
+        for (j, &(aj, cj)) in parameters.iter().enumerate() {
+            equations.gradient[j] += (gain(aj).conj() * state.slopes[b][cj]).re;
+            for (k, &(ak, ck)) in parameters.iter().enumerate() {
+                let product = gain(aj).conj() * gain(ak) * gram[(cj, ck)];
+                equations.hessian[(j, k)] += product.re - explained[(j, k)].re;
+            }
+        }
+        equations.follow.push(projected);
+    }
+    equations
+}
+
+impl Equations {
+    /// Where the gains go, to first order, when the parameters take `step`.
+    fn gains_after(&self, gains: &[Gains], step: &[f64]) -> Vec<Gains> {
+        let change = |follow: &Mat<Complex64>, i: usize| {
+            step.iter().enumerate().map(|(j, s)| follow[(i, j)] * *s).sum::<Complex64>()
+        };
+        let last = self.follow.len() - 1;
+        let moved = gains.iter().enumerate();
+        moved.map(|(i, g)| [g[0] - change(&self.follow[0], i), g[1] - change(&self.follow[last], i)]).collect()
+    }
+}

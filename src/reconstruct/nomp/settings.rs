@@ -1,0 +1,35 @@
+//! What bounds a search.
+
+/// Bounds on time and memory, and what counts as found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Most atoms of one scene.
+    pub most_atoms: usize,
+    /// A place must stand this far above the noise of the residual, as a ratio of powers. Noise alone reaches about 7.
+    pub least_prominence: f64,
+    /// Rounds of refinement once all atoms are there.
+    pub rounds: usize,
+    /// Price of a gain's energy, over the part of its neighbourhood that is unexplained: what keeps atoms that are not quite right from
+    /// large gains that cancel.
+    pub gain_price: f64,
+    /// Points tried at one range before what is unexplained there must have halved.
+    pub trials: usize,
+    /// Work granted to the search: about ten microseconds a unit, counted and not timed.
+    pub most_work: usize,
+    /// Work granted to the search for long lines.
+    pub most_line_work: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            most_atoms: 150,
+            least_prominence: 14.0,
+            rounds: 6,
+            gain_price: 0.3,
+            trials: 4,
+            most_work: 30_000,
+            most_line_work: 100_000,
+        }
+    }
+}

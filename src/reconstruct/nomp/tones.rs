@@ -1,0 +1,129 @@
+//! Ranges from a single chirp of a single element.
+//!
+//! One element hears every reflector at one distance: its chirp is a sum of as many pure tones, whatever the near field does across
+//! the array. ESPRIT (R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", 1989) on
+//! the Hankel matrix of the chirp tells them apart without a grid and without a search, as finely as the noise lets it. The signal
+//! subspace comes from a random projection (N. Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which
+//! costs little where the tones are few.
+
+use crate::signal::floor::unit_noise;
+use faer::Mat;
+use faer::linalg::solvers::SolveLstsq;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Part of the chirp's samples that are rows of the Hankel matrix.
+const ROWS: f64 = 0.55;
+
+/// Fewest samples that this is tried on.
+const LEAST_SAMPLES: usize = 32;
+
+/// Columns of the first random projection; twice as many where those were not enough.
+const FIRST_COLUMNS: usize = 24;
+
+/// Singular values that must lie in the noise before the projection counts as wide enough.
+const SPARE: usize = 4;
+
+/// A singular value above this many times the largest that noise has in the mean belongs to a tone.
+const ABOVE_NOISE: f64 = 1.6;
+
+/// A tone neither grows nor decays over a chirp by more than this part a sample.
+const STEADY: f64 = 2e-3;
+
+/// Seed of the projection: the same samples have the same tones.
+const SEED: u64 = 0x70_6e_65_73;
+
+/// Frequencies of the tones of a chirp over white noise of `noise_variance` a sample, range bins from 0 to the number of samples; `None`
+/// where there are more than the chirp can tell apart.
+pub fn tones_bins(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<f64>> {
+    let samples = chirp.len();
+    if samples < LEAST_SAMPLES {
+        return None;
+    }
+    let basis = signal_subspace(chirp, noise_variance)?;
+    let (rows, count) = (basis.nrows(), basis.ncols());
+    if count == 0 {
+        return Some(Vec::new());
+    }
+    let shifted = basis.subrows(1, rows - 1).to_owned();
+    let rotation = basis.subrows(0, rows - 1).qr().solve_lstsq(shifted);
+    let rotation = Mat::from_fn(count, count, |i, j| rotation[(i, j)]);
+    let phasors = rotation.eigenvalues().ok()?;
+    let steady = phasors.iter().filter(|z| (z.norm() - 1.0).abs() < STEADY);
+    Some(steady.map(|z| (z.arg() / TAU).rem_euclid(1.0) * samples as f64).collect())
+}
+
+/// An orthonormal basis of what of the chirp's Hankel matrix stands out of the noise, a column for each tone.
+fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Complex64>> {
+    let rows = (ROWS * chirp.len() as f64) as usize;
+    let columns = chirp.len() - rows + 1;
+    let hankel = Mat::from_fn(rows, columns, |i, j| chirp[i + j]);
+    let largest_of_noise = noise_variance.sqrt() * ((rows as f64).sqrt() + (columns as f64).sqrt());
+    let least = ABOVE_NOISE * largest_of_noise;
+    let most_width = columns - SPARE;
+    let mut width = FIRST_COLUMNS.min(most_width);
+    loop {
+        let random: Vec<Complex64> = (0..width).flat_map(|j| unit_noise(SEED, j).take(columns)).collect();
+        let projected = &hankel * Mat::from_fn(columns, width, |i, j| random[j * columns + i]);
+        let range = projected.qr().compute_thin_Q();
+        let svd = (range.adjoint() * &hankel).thin_svd().ok()?;
+        let count = svd.S().column_vector().iter().take_while(|value| value.re > least).count();
+        if count + SPARE <= width {
+            return Some(&range * svd.U().subcols(0, count));
+        }
+        if width == most_width {
+            return None;
+        }
+        width = (2 * width).min(most_width);
+    }
+}
+
+/// Gains of tones at these frequencies in a chirp, their phases taken at its middle.
+pub fn gains_of_tones(chirp: &[Complex64], bins: &[f64]) -> Vec<Complex64> {
+    if bins.is_empty() {
+        return Vec::new();
+    }
+    let samples = chirp.len() as f64;
+    let middle = (samples - 1.0) / 2.0;
+    let tones = Mat::from_fn(chirp.len(), bins.len(), |n, l| {
+        Complex64::cis(TAU * (bins[l] * (n as f64 - middle) / samples).fract())
+    });
+    let gains = tones.qr().solve_lstsq(Mat::from_fn(chirp.len(), 1, |n, _| chirp[n]));
+    (0..bins.len()).map(|l| gains[(l, 0)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chirp(tones: &[[f64; 2]], noise: f64) -> Vec<Complex64> {
+        let wave = |n: usize| -> Complex64 {
+            tones.iter().map(|[bins, size]| Complex64::cis(TAU * bins * n as f64 / 512.0) * *size).sum()
+        };
+        unit_noise(7, 3).take(512).enumerate().map(|(n, v)| v * noise + wave(n)).collect()
+    }
+
+    #[test]
+    fn tones_far_below_a_bin_apart_and_ten_decades_below_the_strongest_are_told_apart() {
+        let tones = [[10.0, 1.0], [10.2, 0.5], [10.45, -0.7], [300.25, 1e-6], [511.9, 0.1]];
+        let found = tones_bins(&chirp(&tones, 1e-13), 1e-26).unwrap();
+        assert_eq!(found.len(), tones.len(), "{found:?}");
+        for [bins, _] in tones {
+            assert!(found.iter().any(|f| (f - bins).abs() < 1e-5), "{bins} in {found:?}");
+        }
+        let sorted: Vec<f64> = tones.iter().map(|t| t[0]).collect();
+        let middle = 511.0 / 2.0 / 512.0;
+        for ([bins, size], gain) in tones.iter().zip(gains_of_tones(&chirp(&tones, 0.0), &sorted)) {
+            assert!((gain - Complex64::cis(TAU * bins * middle) * size).norm() < 1e-9, "{bins}: {gain}");
+        }
+    }
+
+    #[test]
+    fn more_tones_widen_the_projection_and_too_many_are_refused() {
+        let comb =
+            |count: usize| -> Vec<[f64; 2]> { (0..count).map(|i| [i as f64 * 512.0 / count as f64, 1.0]).collect() };
+        assert_eq!(tones_bins(&chirp(&comb(100), 1e-12), 1e-24).unwrap().len(), 100);
+        assert_eq!(tones_bins(&chirp(&comb(300), 1e-12), 1e-24), None);
+        assert_eq!(tones_bins(&chirp(&[], 1e-3), 1e-6), Some(Vec::new()));
+    }
+}

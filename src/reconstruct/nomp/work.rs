@@ -1,0 +1,41 @@
+//! How much a search may compute: counted and not timed, so that it ends at the same place on every machine.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Work done and granted. The unit is about what one reflector's echo in all samples of both ends takes: ten microseconds.
+#[derive(Debug)]
+pub struct Work {
+    done: AtomicUsize,
+    most: usize,
+}
+
+impl Work {
+    /// With this much granted.
+    pub fn granted(most: usize) -> Self {
+        Work { done: AtomicUsize::new(0), most }
+    }
+
+    /// Counts what was done; any thread may.
+    pub fn spend(&self, units: usize) {
+        self.done.fetch_add(units, Ordering::Relaxed);
+    }
+
+    /// Whether what was granted is done. To be asked where nothing runs in parallel: only there is the answer the same every time.
+    pub fn is_spent(&self) -> bool {
+        self.done.load(Ordering::Relaxed) >= self.most
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_granted_is_spent() {
+        let work = Work::granted(10);
+        work.spend(9);
+        assert!(!work.is_spent());
+        work.spend(1);
+        assert!(work.is_spent());
+    }
+}
