@@ -85,7 +85,7 @@ impl Problem<'_> {
             columns += 1 + if *moving { atom.parameters() } else { 0 };
         }
         let reflectors: usize = atoms.iter().map(Atom::reflectors).sum();
-        self.work.spend(reflectors + columns * columns / 2);
+        self.work.spend(3 * reflectors + columns * columns / 2);
         let mut flat = vec![Complex64::default(); rows * columns];
         let mut rest = flat.chunks_exact_mut(rows);
         let own: Vec<Vec<&mut [Complex64]>> = atoms
