@@ -30,6 +30,9 @@ pub struct Dictionary<'a> {
 /// Parameters an atom may have, and its value.
 const MOST_COLUMNS: usize = 5;
 
+/// Inner products of the columns of two atoms, at the first and at the last end.
+type BlockOfAtoms = [[[Complex64; MOST_COLUMNS]; MOST_COLUMNS]; 2];
+
 /// Value, derivative by x and derivative by half the square of y of one echo against those of another.
 type Block = [[Complex64; 3]; 3];
 
@@ -49,7 +52,7 @@ impl<'a> Dictionary<'a> {
 
     /// Inner products of all columns at the first and at the last end.
     pub fn grams(&self) -> [Mat<Complex64>; 2] {
-        let rows: Vec<Vec<(usize, [[[Complex64; MOST_COLUMNS]; MOST_COLUMNS]; 2])>> =
+        let rows: Vec<Vec<(usize, BlockOfAtoms)>> =
             (0..self.atoms.len()).into_par_iter().map(|i| Simd::chosen().run(Row { dictionary: self, i })).collect();
         let mut grams = [Mat::zeros(self.columns, self.columns), Mat::zeros(self.columns, self.columns)];
         for (i, row) in rows.into_iter().enumerate() {
@@ -144,7 +147,7 @@ struct Row<'a, 'b> {
 }
 
 impl Kernel for Row<'_, '_> {
-    type Output = Vec<(usize, [[[Complex64; MOST_COLUMNS]; MOST_COLUMNS]; 2])>;
+    type Output = Vec<(usize, BlockOfAtoms)>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {

@@ -42,6 +42,7 @@ pub struct MomentsAt {
 
 impl Moments {
     /// Of a symmetric window of any length.
+    #[allow(clippy::needless_range_loop)] // a term is a column of the table
     pub fn new(window: &[f64]) -> Self {
         let samples = window.len();
         let nodes = samples * NODES_PER_BIN;
