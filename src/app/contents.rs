@@ -74,7 +74,7 @@ impl<'a> Contents<'a> {
             snap: state.settings.snap,
             fields_of_view: state.settings.show_fields_of_view,
             found: found.map_or(&[], |o| &o.found.reflectors),
-            cursor: state.pointer.now,
+            cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
@@ -128,7 +128,7 @@ impl<'a> Contents<'a> {
                 .result()
                 .filter(|r| r.request.radar == *self.state.radar())
                 .and_then(|r| theory(r, kind)),
-            cursor: self.state.pointer.now,
+            cursor: self.state.shown_cursor(),
             error: error(self.state, self.jobs, kind),
             veil: veil(self.state, kind),
         };
@@ -348,7 +348,7 @@ pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) 
 pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
     let scene = state.editor.scene();
     status_bar::Input {
-        cursor: state.pointer.now,
+        cursor: state.shown_cursor(),
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
         took: jobs.pipeline.took(),

@@ -178,7 +178,8 @@ impl Question {
                 let columns = columns.min(width - columns);
                 let bins = (at.bin - peak.bin).abs();
                 let metres = bins * stage.radar.range_resolution_metres();
-                let off = format!("{metres:.2} m and {columns:.0} columns off");
+                let s = if columns.round() == 1.0 { "" } else { "s" };
+                let off = format!("{metres:.2} m and {columns:.0} column{s} off");
                 (columns <= *within_columns && bins <= *within_bins, off)
             }
             (Answer::Number { within_percent, unit, .. }, Guess::Number(value), Truth::Number(exact)) => {

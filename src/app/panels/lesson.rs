@@ -36,7 +36,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            ui.set_max_width(ui.available_width().min(620.0));
+            if input.presenting {
+                // Read from the last row of a lecture hall.
+                ui.style_mut().text_styles.values_mut().for_each(|font| font.size *= 1.4);
+            }
+            ui.set_max_width(ui.available_width().min(if input.presenting { 900.0 } else { 620.0 }));
             match input.run {
                 None => {
                     whole_screen(ui, input.presenting, &mut asked);
@@ -116,10 +120,10 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
     ui.heading(&run.lesson.title);
     ui.weak(format!("Step {} of {}", run.step + 1, run.lesson.steps.len()));
     ui.add_space(4.0);
-    ui.label(RichText::new(&step.text).size(15.0));
+    ui.label(large(ui, &step.text));
     ui.add_space(8.0);
     if let Some(question) = &step.predict {
-        ui.label(RichText::new(&question.ask).size(15.0).strong());
+        ui.label(large(ui, &question.ask).strong());
         match run.guess {
             None => answer(ui, question, memory, asked),
             Some(_) => judgement(ui, run),
@@ -145,6 +149,11 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
         }
         whole_screen(ui, input.presenting, asked);
     });
+}
+
+/// Text that is to be read first, somewhat larger than the rest.
+fn large(ui: &Ui, text: impl Into<String>) -> RichText {
+    RichText::new(text).size(1.15 * egui::TextStyle::Body.resolve(ui.style()).size)
 }
 
 /// For a projector.
@@ -196,8 +205,8 @@ fn judgement(ui: &mut Ui, run: &LessonRun) {
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
             let verdict = if judged.is_right { "Right" } else { "Not quite" };
-            ui.label(RichText::new(format!("{verdict}: {}", judged.distance)).size(15.0).strong());
-            ui.label(RichText::new(&judged.sentence).size(15.0));
+            ui.label(large(ui, format!("{verdict}: {}", judged.distance)).strong());
+            ui.label(large(ui, &judged.sentence));
         }
     }
 }
@@ -209,7 +218,7 @@ fn requirements(
     hidden: Option<TextureId>,
     asked: &mut Vec<Command>,
 ) {
-    ui.label(RichText::new(&challenge.ask).size(15.0).strong());
+    ui.label(large(ui, &challenge.ask).strong());
     if let Some(texture) = hidden {
         ui.label("The map to be explained:");
         let width = ui.available_width().min(420.0);
@@ -226,7 +235,7 @@ fn requirements(
         }
     }
     if run.is_met() {
-        ui.label(RichText::new("Done. Change more, or go on.").size(15.0).strong());
+        ui.label(large(ui, "Done. Change more, or go on.").strong());
     } else if ui.button("Show a way").on_hover_text("Puts a scene and a radar on screen that meet it").clicked() {
         asked.push(Command::ShowSolution);
     }

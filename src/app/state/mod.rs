@@ -85,6 +85,12 @@ impl State {
         self.lesson.as_ref().is_some_and(LessonRun::is_predicting)
     }
 
+    /// Where the pointer is, as every panel shows it: none does while a prediction is asked for, since what is under it in one is the
+    /// answer in another.
+    pub fn shown_cursor(&self) -> Option<Cursor> {
+        self.pointer.now.filter(|_| !self.is_predicting())
+    }
+
     /// Whether a lesson has the whole screen.
     pub fn is_presenting(&self) -> bool {
         self.before_presenting.is_some()

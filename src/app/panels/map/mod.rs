@@ -94,7 +94,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
             inner.image(texture, rect, uv, tint);
         }
         None if input.veil.is_some() => {
-            veil(&inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals().weak_text_color());
+            veil(&inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
         }
         None => empty(ui, &inner, rect, input.error.as_ref(), &mut asked),
     }
@@ -252,10 +252,17 @@ fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<'_>>
     });
 }
 
-/// What a hidden map says.
-fn veil(painter: &Painter, rect: Rect, is_clicked: bool, ink: Color32) {
-    let text = if is_clicked { "Click where you expect it" } else { "Hidden until you have predicted" };
-    painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(14.0), ink);
+/// What a hidden map says, at its top: the middle is where many a peak will be. The one that waits for a click stands out.
+fn veil(painter: &Painter, rect: Rect, is_clicked: bool, visuals: &egui::Visuals) {
+    let (text, ink, size) = match is_clicked {
+        true => ("Click where you expect it", Inks::of(visuals).selected, 16.0),
+        false => ("Hidden until you have predicted", visuals.weak_text_color(), 13.0),
+    };
+    let at = rect.center_top() + vec2(0.0, 10.0);
+    painter.text(at, Align2::CENTER_TOP, text, egui::FontId::proportional(size), ink);
+    if is_clicked {
+        painter.rect_stroke(rect.shrink(1.0), 0.0, egui::Stroke::new(2.0, ink), egui::StrokeKind::Inside);
+    }
 }
 
 fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
