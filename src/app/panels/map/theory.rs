@@ -38,6 +38,8 @@ const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
 const TICK: f32 = 7.0;
 /// The ellipse is drawn larger than this, points.
 const ELLIPSE: f32 = 9.0;
+/// Points around a blob's peak that no number covers.
+const CLEAR: f32 = 18.0;
 /// Least size of a map that has room for the numbers.
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
@@ -160,11 +162,14 @@ impl Theory<'_> {
             .into_iter()
             .map(|(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0))
             .collect();
-        let size = galleys.iter().fold(Vec2::ZERO, |s, g| vec2(s.x.max(g.size().x), s.y + g.size().y));
-        let patch = free_corner(rect, frame.cell(self.overlay.blob.peak), size + vec2(10.0, 6.0));
+        let peak = frame.cell(self.overlay.blob.peak);
+        let Some((patch, count)) = clear_patch(rect, peak, &galleys.iter().map(|g| g.size()).collect::<Vec<_>>())
+        else {
+            return;
+        };
         painter.rect_filled(patch, 3.0, Color32::from_black_alpha(190));
         let mut at = patch.min + vec2(5.0, 3.0);
-        for galley in galleys {
+        for galley in galleys.into_iter().take(count) {
             let height = galley.size().y;
             painter.galley(at, galley, Color32::WHITE);
             at.y += height;
@@ -176,6 +181,15 @@ impl Theory<'_> {
 fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
     let signed = [-1.0, 1.0].into_iter().zip(overlay.blob.side_lobes);
     signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
+}
+
+/// Where as many of the lines fit as leave the blob at `peak` in sight, and how many; the larger the map, the more.
+fn clear_patch(rect: Rect, peak: Pos2, lines: &[Vec2]) -> Option<(Rect, usize)> {
+    let patch = |count: usize| {
+        let size = lines[..count].iter().fold(Vec2::ZERO, |s, g| vec2(s.x.max(g.x), s.y + g.y));
+        (free_corner(rect, peak, size + vec2(10.0, 6.0)), count)
+    };
+    (1..=lines.len()).rev().map(patch).find(|(patch, _)| !patch.expand(CLEAR).contains(peak))
 }
 
 /// A box of `size` in the corner of `rect` that is farthest from `from`, clear of the value under the pointer at the top.
@@ -298,6 +312,11 @@ mod tests {
         let size = Rect::from_points(&outline).size();
         assert!(size.max_elem() > ELLIPSE && size.max_elem() < 400.0, "{size:?}");
         assert!(times >= 10.0 && times.log10().fract() == 0.0, "{times}");
+        let small = Rect::from_min_size(Pos2::ZERO, vec2(300.0, 180.0));
+        let lines = [vec2(290.0, 14.0); 7];
+        let (patch, count) = clear_patch(small, small.center(), &lines).unwrap();
+        assert!(count < 7 && count > 2 && !patch.expand(CLEAR).contains(small.center()), "{count} lines at {patch:?}");
+        assert_eq!(clear_patch(RECT, RECT.center(), &lines).unwrap().1, 7);
         let corner = free_corner(RECT, outline[0], vec2(300.0, 90.0));
         assert!(RECT.contains_rect(corner) && !corner.contains(outline[0]));
     }
