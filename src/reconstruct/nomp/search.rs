@@ -97,9 +97,10 @@ impl Search<'_> {
     fn run(&self) -> Result<Answer, ReconstructError> {
         let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
         let mut answer = Answer { fit: nothing, is_sure: false };
+        let is_long = self.longest_run() >= LONG_RUN_BINS;
         for _ in 0..MOST_ROUNDS {
             let before = answer.fit.cost();
-            answer.fit = self.grower().with_walls(self.samples, self.paired(answer.fit)?)?;
+            answer.fit = self.grower().with_walls(self.samples, self.paired(answer.fit, !is_long)?)?;
             tracing::debug!(atoms = answer.fit.atoms.len(), before, cost = answer.fit.cost(), "paired");
             answer.is_sure = self.is_explained(&answer.fit);
             if answer.is_sure {
@@ -109,7 +110,7 @@ impl Search<'_> {
                 break;
             }
         }
-        if self.longest_run() >= LONG_RUN_BINS {
+        if is_long {
             let lines = self.with_long_lines()?;
             if lines.is_sure {
                 return Ok(lines);
@@ -132,7 +133,8 @@ impl Search<'_> {
     }
 
     /// `known` and the points whose tones both ends hear in what it leaves, less those whose gains the ends don't agree on.
-    fn paired(&self, known: Fit) -> Result<Fit, ReconstructError> {
+    /// They are moved to their best places only if that is asked for: long lines are better found before.
+    fn paired(&self, known: Fit, polished: bool) -> Result<Fit, ReconstructError> {
         let flat = known.residual.flat(&self.bench.sensor);
         let noise = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
         let mut atoms = known.atoms.clone();
@@ -157,7 +159,7 @@ impl Search<'_> {
             return Ok(known);
         }
         let grower = self.grower();
-        if self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
+        if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
     }
 
     /// `fit` with the points it lacks and without those it doesn't need.

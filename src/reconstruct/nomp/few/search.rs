@@ -32,7 +32,7 @@ const MOST_ATOMS: usize = 12;
 const LEAST_PROMINENCE: f64 = 60.0;
 
 /// Work that a look for lines amounts to.
-const LINE_LOOK: usize = 6000;
+const LINE_LOOK: usize = 3000;
 
 /// Takes the samples apart into atoms.
 ///
