@@ -99,6 +99,7 @@ impl App {
             scene_view: Default::default(),
             map_views: Default::default(),
             pointer: Pointer::default(),
+            pins: Default::default(),
             guided: Default::default(),
             lossy_save: None,
             lesson: None,

@@ -8,11 +8,11 @@ pub use shared::of as shared_text;
 
 use super::jobs::{EvaluationPlan, Jobs, Purpose, tell};
 use super::state::{
-    Arrangement, Brightness, Command, EvaluationChoice, MapViews, NewObject, Projection, Settings, State,
+    Arrangement, Brightness, Command, EvaluationChoice, MapViews, NewObject, PinnedCut, Projection, Settings, State,
+    Units,
 };
 use crate::evaluate::campaign::Campaign;
 use crate::interact::{Document, Place, SelectionMode};
-use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
@@ -70,13 +70,17 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
             }
         }
         Command::SetProjection(projection) => settings.projection = projection,
-        Command::Colours(colours) => settings.colours = colours,
-        Command::Normalise(normalisation) => {
-            settings.normalisation = normalisation;
-            if let Normalisation::DynamicRange(range) = normalisation {
-                settings.dynamic_range = range;
+        Command::ToggleUnits => {
+            settings.units = match settings.units {
+                Units::Lambda => Units::Decibels,
+                Units::Decibels => Units::Lambda,
             }
         }
+        Command::SetUnits(units) => settings.units = units,
+        Command::ToggleAbsoluteDifference => settings.difference.absolute ^= true,
+        Command::ToggleWholeDifference => settings.difference.whole ^= true,
+        Command::Colours(colours) => settings.colours = colours,
+        Command::Normalise(normalisation) => settings.normalisation = normalisation,
         Command::SetFloor(floor) => {
             settings.floor = floor;
             if let Floor::Snr(snr) = floor {
@@ -210,6 +214,12 @@ fn work(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command>
             let next = state.method().and_then(|now| state.methods.after(now.name()));
             next.into_iter().for_each(|name| state.settings.method = name.to_owned());
         }
+        Command::PinCuts => {
+            let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
+            state.pins.push(PinnedCut { radar, cursor, maps: jobs.pipeline.cut_maps() });
+        }
+        Command::Unpin(index) => state.pins.remove(index),
+        Command::UnpinAll => state.pins.clear(),
         Command::CancelMethod => jobs.pipeline.cancel_method(),
         Command::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
         Command::CancelEvaluation => jobs.evaluation.cancel(),
@@ -371,7 +381,7 @@ fn train(state: &mut State, jobs: &mut Jobs, name: &str) {
     let Some(recipe) = shipped.and_then(|(name, text)| Recipe::parse(name, text).ok()) else { return };
     let steps = recipe.training_scenes().len() / recipe.batch.max(1) * recipe.epochs as usize;
     let Some(folder) = jobs.new_run(name) else {
-        return state.notices.error("There is no folder to train in; start it with `apertura train` instead.");
+        return state.notices.error("There is no folder to train in; start it with apertura train instead.");
     };
     tell(
         state,

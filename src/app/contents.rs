@@ -9,7 +9,7 @@ use super::panels::{
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
 use crate::engine::ReadyMap;
-use crate::scene::{Reflector, Scene};
+use crate::scene::{Object, Scene};
 use eframe::egui::{TextureFilter, TextureOptions, Ui};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,6 +20,7 @@ pub struct Memory {
     textures: BTreeMap<MapKind, Texture>,
     reflectors: Reflectors,
     bounds: bounds::Memory,
+    cuts: cuts::Memory,
     evaluation: evaluation::Memory,
     run_time: run_time::Memory,
     training: training::Memory,
@@ -33,13 +34,17 @@ pub struct Memory {
 #[derive(Default)]
 struct Reflectors {
     of: Option<Arc<Scene>>,
-    list: Vec<Reflector>,
+    list: Vec<map::Marked>,
 }
 
 impl Reflectors {
-    fn of(&mut self, scene: &Arc<Scene>) -> &[Reflector] {
+    fn of(&mut self, scene: &Arc<Scene>) -> &[map::Marked] {
         if !self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, scene)) {
-            self.list = scene.reflectors();
+            let marked = |object: &Object| map::Marked {
+                reflectors: object.reflectors(),
+                is_line: matches!(object, Object::Line(_)),
+            };
+            self.list = scene.objects.iter().map(marked).collect();
             self.of = Some(scene.clone());
         }
         &self.list
@@ -105,23 +110,27 @@ impl<'a> Contents<'a> {
     fn map(&mut self, ui: &mut Ui, kind: MapKind) -> Vec<Command> {
         let pipeline = &self.jobs.pipeline;
         let options = TextureOptions { minification: TextureFilter::Linear, ..TextureOptions::NEAREST };
-        let texture = pipeline.result().and_then(|r| r.pictures.get(&kind)).map(|picture| {
+        let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
+        let texture = picture.map(|picture| {
             let texture = self.memory.textures.entry(kind).or_default();
             texture.of(ui.ctx(), kind.title(), &picture.image, options)
         });
         let settings = &self.state.settings;
         let scene = self.state.editor.scene();
-        let reflectors = if settings.show_reflectors { self.memory.reflectors.of(scene) } else { &[] };
+        let objects = if settings.show_reflectors { self.memory.reflectors.of(scene) } else { &[] };
         let found = pipeline.output().filter(|_| settings.show_found && kind.needs_output());
         let input = map::Input {
             kind,
             radar: self.state.editor.radar(),
             projection: settings.projection,
             colours: settings.colours,
+            units: settings.units,
+            difference: settings.difference,
             texture,
+            end: picture.map_or(1.0, |p| p.end),
             stale: pipeline.is_stale(kind),
             cells: cells(self.jobs, kind),
-            marks: map::Marks { reflectors, found: found.map_or(&[], |o| &o.found.reflectors) },
+            marks: map::Marks { objects, found: found.map_or(&[], |o| &o.found.reflectors) },
             theory: self
                 .jobs
                 .theory
@@ -136,17 +145,18 @@ impl<'a> Contents<'a> {
     }
 
     fn cuts(&mut self, ui: &mut Ui) -> Vec<Command> {
-        let pipeline = &self.jobs.pipeline;
-        let frame = pipeline.result().map(|r| &r.frame);
-        let maps = [
-            (MapKind::Input0, frame.and_then(|f| f.first.as_ref()).map(|m| &*m.lambda)),
-            (MapKind::Input1, frame.and_then(|f| f.last.as_ref()).map(|m| &*m.lambda)),
-            (MapKind::Target, frame.and_then(|f| f.full.as_ref()).map(|m| &*m.lambda)),
-            (MapKind::Output, pipeline.output().map(|o| &*o.pair.output)),
-        ];
-        let hidden = self.state.is_predicting();
-        let maps = maps.into_iter().filter_map(|(kind, map)| Some((kind, map?))).filter(|_| !hidden).collect();
-        cuts::show(ui, cuts::Input { radar: self.state.radar(), cursor: self.state.cut_cursor(), maps })
+        let state = &*self.state;
+        // What is to be predicted is not to be read off a cut.
+        let hidden = state.is_predicting();
+        let maps = if hidden { Vec::new() } else { self.jobs.pipeline.cut_maps() };
+        let input = cuts::Input {
+            radar: state.radar(),
+            cursor: state.cut_cursor(),
+            maps: &maps,
+            pins: if hidden { &[] } else { state.pins.all() },
+            units: state.settings.units,
+        };
+        cuts::show(ui, input, &mut self.memory.cuts)
     }
 
     fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
@@ -286,7 +296,7 @@ fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
         MapKind::Input1 => frame.last.as_ref().map(cells_of),
         MapKind::Target | MapKind::TargetAbove => frame.full.as_ref().map(cells_of),
         MapKind::Output | MapKind::OutputAbove => pair.map(|p| map::Cells { map: &p.output, minus: None, scale }),
-        MapKind::Difference => pair.map(|p| map::Cells { map: &p.output, minus: Some(&p.target), scale: None }),
+        MapKind::Difference => pair.map(|p| map::Cells { map: &p.output, minus: Some(&p.target), scale }),
     }
 }
 

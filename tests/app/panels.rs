@@ -1,7 +1,7 @@
 //! What is shown, what is computed for it and what is not.
 
 use crate::session::Session;
-use apertura::app::{Command, MapKind, Panel};
+use apertura::app::{Command, MapKind, Panel, Units};
 use apertura::engine::Stage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, Decibels, WindowFunction};
@@ -142,6 +142,30 @@ fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
     let at = s.handle("point 2: move");
     s.drag(at, vec2(0.0, 20.0), 4);
     assert_eq!(s.state().bounds_asked(), asked);
+}
+
+#[test]
+fn cuts_are_pinned_by_a_key_and_stay_when_the_scene_goes() {
+    let mut s = Session::start();
+    s.ask(Command::OpenPanel(Panel::Cuts));
+    s.press(Modifiers::NONE, Key::K);
+    s.ask(Command::RandomScene(Kind::Set1));
+    let _pinned = s.app.get_by_label_contains("Unpin 1: ");
+    s.press(Modifiers::NONE, Key::D);
+    assert_eq!(s.state().settings().units, Units::Decibels);
+    s.ask(Command::UnpinAll);
+    assert!(s.app.query_by_label_contains("Unpin 1: ").is_none());
+}
+
+#[test]
+fn a_difference_is_painted_again_when_its_scale_changes() {
+    let mut s = Session::start();
+    s.ask(Command::OpenPanel(Panel::Map(MapKind::Difference)));
+    for command in [Command::ToggleAbsoluteDifference, Command::ToggleWholeDifference] {
+        let (_, painted) = s.state().work_done();
+        s.ask(command);
+        assert_eq!(s.state().work_done().1, painted + 1, "the difference alone");
+    }
 }
 
 #[test]

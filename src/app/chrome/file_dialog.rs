@@ -1,15 +1,15 @@
 //! A file dialog in the window, for systems that have none of their own.
 
+use super::file_browser::{Answer, Browser};
 use crate::app::jobs::{Purpose, Question};
 use crate::app::state::Command;
 use eframe::egui::{Context, Id, Modal, Ui};
-use egui_file::FileDialog;
 use std::path::{Path, PathBuf};
 
 /// What is asked for, if anything is.
 #[derive(Default)]
 pub struct Memory {
-    dialog: Option<(Purpose, FileDialog)>,
+    dialog: Option<(Purpose, Browser)>,
     /// A file that is there already, and would be replaced.
     replace: Option<(Purpose, PathBuf)>,
 }
@@ -22,23 +22,7 @@ impl Memory {
 
     /// Asks for a file.
     pub fn ask(&mut self, question: Question) {
-        let Question { purpose, folder, name } = question;
-        let dialog = if purpose.reads() { FileDialog::open_file() } else { FileDialog::save_file() };
-        let (_, endings) = purpose.kind();
-        let fits = move |path: &Path| {
-            path.is_dir()
-                || path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
-        };
-        let dialog = dialog
-            .title(purpose.title())
-            .id(Id::unique("file dialog"))
-            .default_filename(name)
-            .default_size([480.0, 360.0])
-            .show_rename(false)
-            .show_files_filter(Box::new(fits));
-        let dialog = if let Some(folder) = folder { dialog.initial_path(folder) } else { dialog };
-        let (_, dialog) = self.dialog.insert((purpose, dialog));
-        dialog.open();
+        self.dialog = Some((question.purpose, Browser::new(&question)));
     }
 
     /// A file was chosen: done, unless it would replace another.
@@ -54,13 +38,14 @@ impl Memory {
 /// Draws the dialog, if it is open.
 pub fn show(ctx: &Context, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
-    if let Some((purpose, dialog)) = &mut memory.dialog {
-        dialog.show(ctx);
-        let (purpose, chosen) = (*purpose, dialog.path().filter(|_| dialog.selected()).map(Path::to_path_buf));
-        if !dialog.visible() {
-            memory.dialog = None;
+    if let Some((purpose, browser)) = &mut memory.dialog
+        && let Some(answer) = browser.show(ctx)
+    {
+        let purpose = *purpose;
+        memory.dialog = None;
+        if let Answer::Chosen(path) = answer {
+            asked.extend(memory.choose(purpose, path));
         }
-        asked.extend(chosen.and_then(|path| memory.choose(purpose, path)));
     }
     if let Some((purpose, path)) = memory.replace.clone() {
         let answer = Modal::new(Id::unique("replace")).show(ctx, |ui| replace(ui, &path));
@@ -95,18 +80,12 @@ mod tests {
 
     fn panel(question: Question) -> Harness<'static, (Memory, Vec<Command>)> {
         let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
-            // The crate's own title begins with a picture that no font here has.
-            ui.ctx().set_missing_glyph_policy(eframe::egui::MissingGlyphPolicy::Tofu);
             let commands = show(ui.ctx(), &mut state.0);
             state.1.extend(commands);
         };
         let mut memory = Memory::default();
         memory.ask(question);
-        let mut dialog = Harness::builder()
-            .with_size([700.0, 500.0])
-            // The crate's own text fields have no names.
-            .with_accessibility_check(false)
-            .build_ui_state(draw, (memory, Vec::new()));
+        let mut dialog = Harness::builder().with_size([700.0, 500.0]).build_ui_state(draw, (memory, Vec::new()));
         dialog.run_steps(3);
         dialog
     }

@@ -2,7 +2,6 @@
 
 use crate::app::state::{Notice, NoticeKind, Notices};
 use crate::app::widgets::icons::{Icon, icon};
-use crate::app::widgets::theme;
 use eframe::egui;
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
 
@@ -58,8 +57,8 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
 /// Draws one message; whether it was closed.
 fn draw(ui: &mut egui::Ui, message: &Notice, width: f32) -> bool {
     let (sign, colour) = match message.kind {
-        NoticeKind::Info => ("i", theme::INFO),
-        NoticeKind::Error => ("!", theme::ERROR),
+        NoticeKind::Info => ("i", ui.visuals().hyperlink_color),
+        NoticeKind::Error => ("!", ui.visuals().error_fg_color),
     };
     ui.horizontal_top(|ui| {
         ui.set_width(width - 24.0);

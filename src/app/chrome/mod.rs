@@ -1,5 +1,6 @@
 //! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar, file dialog, questions.
 
+mod file_browser;
 pub mod file_dialog;
 pub mod losses;
 pub mod menu;

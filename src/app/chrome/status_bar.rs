@@ -2,7 +2,7 @@
 
 use crate::app::state::Cursor;
 use eframe::egui;
-use eframe::egui::{Align, Layout, Ui};
+use eframe::egui::{Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
 
 /// What the line says.
@@ -17,39 +17,91 @@ pub struct Input {
     pub took: Option<Duration>,
 }
 
-/// Draws the line.
+/// Between two texts.
+const GAP: f32 = 18.0;
+
+/// Draws the line: as much as there is room for, what matters most first.
 pub fn show(ui: &mut Ui, input: Input) {
     egui::Panel::bottom("status").show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 14.0;
-            match input.cursor {
-                Some(c) => {
-                    let text = format!(
-                        "x {:+7.2} m   y {:+7.2} m   range {:6.2} m   cos θ {:+.3}   bin {:5.1}   column {:6.1}",
-                        c.place.x_metres, c.place.y_metres, c.range_metres, c.cos_theta, c.bin, c.column
-                    );
-                    ui.monospace(text);
-                }
-                None => {
-                    ui.weak("Drag a reflector · double-click to add one · scroll to zoom · right-click for more");
-                }
+            ui.spacing_mut().item_spacing.x = GAP;
+            let (room, font) = (ui.available_width(), TextStyle::Monospace.resolve(ui.style()));
+            let painter = ui.painter().clone();
+            let width = |text: &str| painter.layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
+            let left = texts_of(input.cursor).into_iter().rfind(|text| width(text) <= room);
+            let left = left.unwrap_or_default();
+            let mut rest = room - width(&left) - GAP;
+            if input.cursor.is_some() {
+                ui.monospace(left);
+            } else {
+                ui.weak(left);
             }
+            let Input { objects, reflectors, took, .. } = input;
+            let count = format!("{objects} object{} · {reflectors} reflector{}", plural(objects), plural(reflectors));
+            let took = took.map(|took| format!("maps {:.1} ms", took.as_secs_f64() * 1e3));
+            // The monospaced width is the larger one.
+            let mut fits = |text: &String| {
+                let wanted = width(text) + GAP;
+                let fits = wanted <= rest;
+                rest -= if fits { wanted } else { 0.0 };
+                fits
+            };
+            let (count, took) = (Some(count).filter(&mut fits), took.filter(&mut fits));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.available_width() < 150.0 {
-                    return;
+                if let Some(took) = took {
+                    let tip = "Time of the last update of maps and pictures; the Timing panel (F7) has the stages";
+                    ui.weak(took).on_hover_text(tip);
                 }
-                if let Some(took) = input.took {
-                    ui.weak(format!("maps {:.1} ms", took.as_secs_f64() * 1e3)).on_hover_text(
-                        "Time of the last update of maps and pictures; the Timing panel (F7) has the stages",
-                    );
+                if let Some(count) = count {
+                    ui.weak(count);
                 }
-                let Input { objects, reflectors, .. } = input;
-                ui.weak(format!("{objects} object{} · {reflectors} reflector{}", plural(objects), plural(reflectors)));
             });
         });
     });
 }
 
+/// What may stand on the left, the shortest first.
+fn texts_of(cursor: Option<Cursor>) -> Vec<String> {
+    let Some(c) = cursor else {
+        let hints = ["Drag a reflector", "double-click to add one", "scroll to zoom", "right-click for more"];
+        return (1..=hints.len()).map(|count| hints[..count].join(" · ")).collect();
+    };
+    let polar = format!("range {:6.2} m   cos θ {:+.3}", c.range_metres, c.cos_theta);
+    let place = format!("x {:+7.2} m   y {:+7.2} m", c.place.x_metres, c.place.y_metres);
+    let cell = format!("bin {:5.1}   column {:6.1}", c.bin, c.column);
+    let texts = [polar.clone(), format!("{place}   {polar}"), format!("{place}   {polar}   {cell}")];
+    texts.map(|text| text.replace('-', "−")).to_vec()
+}
+
 fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use crate::radar::Radar;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn nothing_is_overprinted_at_any_width_and_the_cursor_comes_first() {
+        for (width, wanted) in [
+            (300.0, "range"),
+            (533.0, "x "),
+            (853.0, "column"),
+            (1440.0, "maps 12345.6 ms"),
+            (2560.0, "maps 12345.6 ms"),
+        ] {
+            for cursor in [Some(Cursor::at_cell(&Radar::default(), 258.7, 448.7)), None] {
+                let bar = Harness::builder().with_size([width, 60.0]).build_ui(move |ui| {
+                    let took = Some(Duration::from_secs_f64(12.3456));
+                    show(ui, Input { cursor, objects: 5, reflectors: 12_345, took });
+                });
+                seen::assert_readable(bar.output());
+                let texts = seen::texts(bar.output());
+                assert!(cursor.is_none() || texts.iter().any(|t| t.text.contains(wanted)), "{width}: {texts:?}");
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use crate::app::state::{Arrangement, Command, Panel};
 use crate::app::widgets::icons::{Icon, icon};
 use eframe::egui;
-use eframe::egui::{Ui, WidgetText};
+use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::BTreeSet;
 
@@ -40,12 +40,22 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
                 if ui.button("Restore").on_hover_text("Show all panels again (Esc)").clicked() {
                     behavior.asked.push(Command::Maximise(panel));
                 }
-                behavior.caption(ui, panel);
+                let room = ui.available_width();
+                behavior.caption(ui, panel, room);
             });
         });
     });
     behavior.draw(ui, panel);
 }
+
+/// Between a tab's title and its sides, points.
+const TAB_MARGIN: f32 = 8.0;
+
+/// The least that a caption is worth drawing in, points.
+const LEAST_CAPTION: f32 = 60.0;
+
+/// What the two arrows take that scroll tabs, points.
+const ARROWS: f32 = 64.0;
 
 struct Behavior<'a> {
     panels: &'a mut dyn Draw,
@@ -59,11 +69,46 @@ impl Behavior<'_> {
         self.panels.draw(ui, panel);
     }
 
-    fn caption(&self, ui: &mut Ui, panel: Panel) {
-        if let Some(text) = self.panels.caption(panel) {
-            let text = egui::RichText::new(text).size(11.0).weak();
+    /// Draws a panel's caption into `room` points, unless that is too little to say anything.
+    fn caption(&self, ui: &mut Ui, panel: Panel, room: f32) {
+        let Some(text) = self.panels.caption(panel).filter(|_| room >= LEAST_CAPTION) else { return };
+        let text = egui::RichText::new(text).size(12.0).weak();
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        ui.allocate_ui_with_layout(vec2(room, ui.available_height()), layout, |ui| {
             ui.add(egui::Label::new(text).selectable(false).truncate());
-        }
+        });
+    }
+}
+
+/// A tab, and where it is in the row of tabs.
+struct Tab {
+    tile: TileId,
+    left: f32,
+    right: f32,
+}
+
+/// The tabs of a container that are not hidden, from left to right.
+fn tabs_of(ui: &Ui, tiles: &Tiles<Panel>, tabs: &egui_tiles::Tabs) -> Vec<Tab> {
+    let font = TextStyle::Button.resolve(ui.style());
+    let mut right = 0.0;
+    let visible = tabs.children.iter().filter(|tile| tiles.is_visible(**tile));
+    let placed = visible.filter_map(|tile| {
+        let title = tiles.get_pane(tile)?.title().to_owned();
+        let left = right;
+        right += ui.painter().layout_no_wrap(title, font.clone(), egui::Color32::WHITE).size().x + 2.0 * TAB_MARGIN;
+        Some(Tab { tile: *tile, left, right })
+    });
+    placed.collect()
+}
+
+/// Scrolls the row of tabs so that the one in front is in sight, whenever another has come to the front.
+fn show_front(ui: &Ui, container: TileId, front: &Tab, room: f32, offset: &mut f32) {
+    let id = egui::Id::unique(("front tab", container));
+    let before = ui.data(|d| d.get_temp::<(TileId, bool)>(id));
+    let now = (front.tile, front.right <= room);
+    if before != Some(now) {
+        *offset = offset.clamp((front.right - room).max(0.0), front.left.max((front.right - room).max(0.0)));
+        ui.data_mut(|d| d.insert_temp(id, now));
     }
 }
 
@@ -92,9 +137,9 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
         &mut self,
         tiles: &Tiles<Panel>,
         ui: &mut Ui,
-        _tile: TileId,
+        tile: TileId,
         tabs: &egui_tiles::Tabs,
-        _: &mut f32,
+        offset: &mut f32,
     ) {
         let Some(panel) = tabs.active.and_then(|id| tiles.get_pane(&id).copied()) else { return };
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -106,7 +151,20 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
         if icon(ui, Icon::Maximise, &format!("Maximise {name}")).clicked() {
             self.asked.push(Command::Maximise(panel));
         }
-        self.caption(ui, panel);
+        // The tabs come first: what they leave is the caption's.
+        let row = tabs_of(ui, tiles, tabs);
+        let needed = row.last().map_or(0.0, |tab| tab.right);
+        let room = ui.available_width();
+        if needed <= room {
+            self.caption(ui, panel, room - needed - TAB_MARGIN);
+        }
+        if let Some(front) = row.iter().find(|tab| Some(tab.tile) == tabs.active) {
+            show_front(ui, tile, front, if needed <= room { room } else { room - ARROWS }, offset);
+        }
+    }
+
+    fn tab_title_spacing(&self, _: &egui::Visuals) -> f32 {
+        TAB_MARGIN
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
@@ -123,5 +181,62 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
 
     fn min_size(&self) -> f32 {
         90.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Panels that say nothing but a long caption.
+    struct Silent;
+
+    impl Draw for Silent {
+        fn draw(&mut self, _: &mut Ui, _: Panel) {}
+
+        fn caption(&self, panel: Panel) -> Option<String> {
+            matches!(panel, Panel::Map(_)).then(|| "P_D 99.35 % · P_FA 1.63 % · η = 0.80 (updating)".to_owned())
+        }
+    }
+
+    /// A window of 1280 by 720 pixels, drawn half as large again.
+    fn window() -> Harness<'static, Arrangement> {
+        let draw = |ui: &mut Ui, arrangement: &mut Arrangement| _ = show(ui, arrangement, &mut Silent);
+        Harness::builder().with_size([853.0, 430.0]).build_ui_state(draw, Arrangement::default())
+    }
+
+    fn whole(window: &Harness<'_, Arrangement>, title: &str) -> bool {
+        seen::texts(window.output()).iter().any(|t| t.text == title && t.clip.expand(0.5).contains_rect(t.rect))
+    }
+
+    #[test]
+    fn every_tab_is_in_sight_in_a_small_window_however_long_the_caption() {
+        let mut window = window();
+        window.run_steps(3);
+        for title in ["Output > η", "ROC", "Target > η'", "Cuts", "Output", "Difference"] {
+            assert!(whole(&window, title), "{title}");
+        }
+        seen::assert_readable(window.output());
+        window.get_by_label("ROC").click();
+        window.run_steps(3);
+        assert!(window.state().shown().contains(&Panel::Roc));
+    }
+
+    #[test]
+    fn a_tab_that_comes_to_the_front_is_scrolled_into_sight() {
+        let mut window = window();
+        for panel in Panel::TOOLS {
+            window.state_mut().set_open(panel, true);
+        }
+        window.run_steps(3);
+        for (panel, title) in [(Panel::Training, "Training"), (Panel::Roc, "ROC"), (Panel::Evaluation, "Evaluation")] {
+            window.state_mut().set_open(panel, true);
+            window.run_steps(4);
+            assert!(whole(&window, title), "{title}: {:?}", seen::texts(window.output()));
+        }
+        let _scrolls = window.get_by_label("Scroll tabs left");
     }
 }

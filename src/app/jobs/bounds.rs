@@ -75,7 +75,11 @@ pub struct BoundsResult {
 /// Echoes compared for one picture: what takes a few tenths of a second.
 const BUDGET: f64 = 2.0e6;
 
-fn work(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
+/// Computes what was asked.
+///
+/// # Errors
+/// [`LayoutError`] where the elements that listen can't be placed.
+pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
     let BoundsRequest { radar, elements, seed, reflector, snr, columns, bins, .. } = &request;
     let layout = elements.layout(radar, *seed)?;
     let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
@@ -123,7 +127,7 @@ pub struct Bounds {
 impl Bounds {
     /// Starts the worker, which waits; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Bounds> {
-        let work = |_: &mut (), request: BoundsRequest, _: &Task| work(request);
+        let work = |_: &mut (), request: BoundsRequest, _: &Task| bounds_of(request);
         let worker = Worker::spawn("bounds", || (), work, wake)?;
         Ok(Bounds { worker, asked: None, subject: false, result: None, error: None, requests: 0 })
     }
@@ -198,7 +202,7 @@ mod tests {
             bins: 3.0,
             radar,
         };
-        let found = work(request).unwrap();
+        let found = bounds_of(request).unwrap();
         let (rows, columns) = found.ambiguity.likeness.dim();
         assert!((found.ambiguity.likeness[[rows / 2, columns / 2]] - 1.0).abs() < 1e-9);
         assert!(found.ambiguity.likeness[[0, columns - 1]].is_nan());

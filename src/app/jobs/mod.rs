@@ -18,6 +18,8 @@ mod several;
 mod theory;
 mod training;
 
+#[cfg(test)]
+pub use bounds::bounds_of;
 pub use bounds::{Bounds, BoundsRequest, BoundsResult};
 pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};

@@ -1,6 +1,6 @@
 //! From maps to pictures, off the UI thread and only where something changed.
 
-use crate::app::state::{MapKind, Projection};
+use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::app::widgets::textures::colour_table;
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian;
@@ -16,9 +16,19 @@ pub enum Paint {
     /// Lambda in colours.
     Lambda(ColourMap),
     /// Cells above a threshold, in two colours.
-    Above(f32),
+    Above {
+        /// The threshold.
+        eta: f32,
+        /// Whether the window is dark.
+        dark: bool,
+    },
     /// Differences from another map.
-    Difference,
+    Difference {
+        /// On which scale, with a sign or without.
+        view: DifferenceView,
+        /// Colours of differences without a sign.
+        colours: ColourMap,
+    },
 }
 
 /// What one picture shows.
@@ -51,6 +61,8 @@ impl Subject {
 pub struct Picture {
     /// Its cells.
     pub image: Arc<ColorImage>,
+    /// Where its scale ends: 1, but for differences.
+    pub end: f32,
 }
 
 /// Paints pictures and keeps the last of each kind.
@@ -65,8 +77,9 @@ pub struct Painter {
 /// Colour beyond the maximum range of a Cartesian map.
 const OUTSIDE: Color32 = Color32::TRANSPARENT;
 
-/// Cells above a threshold and below it.
-pub const MASK: [Color32; 2] = [Color32::from_rgb(18, 22, 30), Color32::from_rgb(255, 214, 90)];
+/// Cells below a threshold and above it, in a dark window and in a light one.
+const DARK_MASK: [Color32; 2] = [Color32::from_rgb(18, 22, 30), Color32::from_rgb(255, 214, 90)];
+const LIGHT_MASK: [Color32; 2] = [Color32::from_rgb(252, 253, 255), Color32::from_rgb(176, 84, 0)];
 
 impl Painter {
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
@@ -77,8 +90,9 @@ impl Painter {
             return picture.clone();
         }
         let (rows, columns) = subject.map.lambda.dim();
+        let end = end_of(subject);
         let pixels = match subject.projection {
-            Projection::RangeAngle => colour(subject, &subject.map, subject.minus.as_deref()),
+            Projection::RangeAngle => colour(subject, &subject.map, subject.minus.as_deref(), end),
             Projection::Cartesian => {
                 let projector = match &mut self.projector {
                     Some(projector) if projector.fits(radar, rows) => projector,
@@ -86,7 +100,7 @@ impl Painter {
                 };
                 let flat = |map: &RangeAngleMap| RangeAngleMap { lambda: projector.project(map).lambda };
                 let (map, minus) = (flat(&subject.map), subject.minus.as_deref().map(flat));
-                colour(subject, &map, minus.as_ref())
+                colour(subject, &map, minus.as_ref(), end)
             }
         };
         let size = match subject.projection {
@@ -94,7 +108,7 @@ impl Painter {
             Projection::Cartesian => [2 * rows, rows],
         };
         self.painted += 1;
-        let picture = Picture { image: Arc::new(ColorImage::new(size, pixels)) };
+        let picture = Picture { image: Arc::new(ColorImage::new(size, pixels)), end };
         self.cache.insert(kind, (subject.clone(), picture.clone()));
         picture
     }
@@ -105,8 +119,20 @@ impl Painter {
     }
 }
 
+/// Where the scale of a picture ends: that of a difference at the next of 1, 2, 5, 10 ... that holds all of it, so that its labels are
+/// round and it rests while a reflector is dragged.
+fn end_of(subject: &Subject) -> f32 {
+    let (Paint::Difference { view, .. }, Some(minus)) = (subject.paint, &subject.minus) else { return 1.0 };
+    if view.whole || minus.lambda.dim() != subject.map.lambda.dim() {
+        return 1.0;
+    }
+    let most = subject.map.lambda.iter().zip(&minus.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let ends = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+    ends.into_iter().find(|end| *end >= most).unwrap_or(1.0)
+}
+
 /// The colour of every cell.
-fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>) -> Vec<Color32> {
+fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>, end: f32) -> Vec<Color32> {
     let cells = map.lambda.iter();
     // NaN marks cells beyond the maximum range of a Cartesian map.
     let shown = |v: f32, colour: Color32| if v.is_nan() { OUTSIDE } else { colour };
@@ -115,15 +141,23 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>)
             let table = colour_table(colours);
             cells.map(|&v| shown(v, table[(v * 255.0 + 0.5) as u8 as usize])).collect()
         }
-        (Paint::Above(eta), _) => cells.map(|&v| shown(v, MASK[usize::from(v > eta)])).collect(),
-        (Paint::Difference, Some(minus)) => {
+        (Paint::Above { eta, dark }, _) => {
+            let mask = if dark { DARK_MASK } else { LIGHT_MASK };
+            cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
+        }
+        (Paint::Difference { view, colours }, Some(minus)) if view.absolute => {
+            let table = colour_table(colours);
+            let part = |v: f32, m: f32| 255.0 * (v - m).abs() / end + 0.5;
+            cells.zip(&minus.lambda).map(|(&v, &m)| shown(v, table[part(v, m) as u8 as usize])).collect()
+        }
+        (Paint::Difference { .. }, Some(minus)) => {
             let table = colour_table(ColourMap::Diverging);
             cells
                 .zip(&minus.lambda)
-                .map(|(&v, &m)| shown(v, table[(127.5 * (1.0 + v - m) + 0.5) as u8 as usize]))
+                .map(|(&v, &m)| shown(v, table[(127.5 * (1.0 + (v - m) / end) + 0.5) as u8 as usize]))
                 .collect()
         }
-        (Paint::Difference, None) => vec![OUTSIDE; map.lambda.len()],
+        (Paint::Difference { .. }, None) => vec![OUTSIDE; map.lambda.len()],
     }
 }
 
@@ -144,16 +178,39 @@ mod tests {
         let a = painter.paint(&radar, MapKind::Target, &s);
         let b = painter.paint(&radar, MapKind::Target, &s);
         assert!(Arc::ptr_eq(&a.image, &b.image) && painter.painted == 1);
-        painter.paint(&radar, MapKind::Target, &Subject { paint: Paint::Above(0.9), ..s });
+        painter.paint(&radar, MapKind::Target, &Subject { paint: Paint::Above { eta: 0.9, dark: true }, ..s });
         assert_eq!(painter.painted, 2);
     }
 
     #[test]
-    fn masks_and_differences_have_their_colours() {
+    fn masks_are_light_in_a_light_window() {
         let (mut painter, radar) = (Painter::default(), Radar::default());
-        let mask = painter.paint(&radar, MapKind::TargetAbove, &subject(Paint::Above(0.9)));
-        assert_eq!(mask.image.pixels, [MASK[0], MASK[1], MASK[0], MASK[1]]);
-        let difference = painter.paint(&radar, MapKind::Difference, &subject(Paint::Difference));
-        assert!(difference.image.pixels.iter().all(|p| *p == difference.image.pixels[0]), "equal maps differ nowhere");
+        for (dark, [below, above]) in [(true, DARK_MASK), (false, LIGHT_MASK)] {
+            let subject = subject(Paint::Above { eta: 0.9, dark });
+            let mask = painter.paint(&radar, MapKind::TargetAbove, &subject);
+            assert_eq!(mask.image.pixels, [below, above, below, above]);
+            assert_eq!(below.intensity() < 0.5, dark);
+        }
+    }
+
+    #[test]
+    fn a_difference_fills_its_scale_and_zero_is_its_middle() {
+        let (mut painter, radar) = (Painter::default(), Radar::default());
+        let lambda = |cells| Arc::new(RangeAngleMap { lambda: cells });
+        let paint = |absolute, whole| {
+            let view = DifferenceView { absolute, whole };
+            let paint = Paint::Difference { view, colours: ColourMap::Grey };
+            let (map, minus) = (lambda(array![[0.5f32, 0.5, 0.5, 0.5]]), lambda(array![[0.5f32, 0.53, 0.47, 0.48]]));
+            Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle }
+        };
+        let mut picture = |absolute, whole| painter.paint(&radar, MapKind::Difference, &paint(absolute, whole));
+        let (signed, absolute, whole) = (picture(false, false), picture(true, false), picture(false, true));
+        assert_eq!((signed.end, absolute.end, whole.end), (0.05, 0.05, 1.0));
+        let table = colour_table(ColourMap::Diverging);
+        assert_eq!(signed.image.pixels[0], table[128]);
+        assert_eq!(signed.image.pixels[1], table[51], "three fifths of the way down");
+        assert_eq!(whole.image.pixels[2], table[131], "hardly to be seen on the whole scale");
+        assert_eq!(absolute.image.pixels[1], absolute.image.pixels[2]);
+        assert_eq!(absolute.image.pixels[0], colour_table(ColourMap::Grey)[0]);
     }
 }

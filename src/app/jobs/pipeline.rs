@@ -8,7 +8,7 @@
 
 use super::rest::{Motion, Rest};
 use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
-use crate::app::state::{MapKind, Panel, State};
+use crate::app::state::{CutMap, MapKind, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
@@ -250,6 +250,8 @@ impl Pipeline {
             pair: self.output.as_ref().filter(|_| output).map(|o| o.pair.clone()),
             colours: settings.colours,
             projection: settings.projection,
+            difference: settings.difference,
+            dark: state.dark,
             target_eta: settings.target_eta,
             output_eta: state.output_eta(),
             scores: output && !scene.objects.is_empty(),
@@ -305,6 +307,24 @@ impl Pipeline {
     /// The latest output.
     pub fn output(&self) -> Option<&MethodResult> {
         self.output.as_ref()
+    }
+
+    /// The maps that can be cut.
+    pub fn cut_maps(&self) -> Vec<CutMap> {
+        let frame = self.result.as_ref().map(|r| &r.frame);
+        let scale = frame.and_then(|f| f.full.as_ref()).map(|m| m.scale);
+        let ready = [
+            (MapKind::Input0, frame.and_then(|f| f.first.as_ref())),
+            (MapKind::Input1, frame.and_then(|f| f.last.as_ref())),
+            (MapKind::Target, frame.and_then(|f| f.full.as_ref())),
+        ];
+        let ready = ready.into_iter().filter_map(|(kind, map)| {
+            let map = map?;
+            Some(CutMap { kind, map: map.lambda.clone(), scale: Some(map.scale) })
+        });
+        // A method aims for the target's Lambda, so its decibels are the target's.
+        let output = self.output.as_ref().map(|o| CutMap { kind: MapKind::Output, map: o.pair.output.clone(), scale });
+        ready.chain(output).collect()
     }
 
     /// Figures of that output, against the target of the same scene.

@@ -1,7 +1,7 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
 use super::painter::{Paint, Painter, Picture, Subject};
-use crate::app::state::{MapKind, Projection};
+use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, Frame, ReadyMap, Wanted};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs};
 use crate::maps::RangeAngleMap;
@@ -46,6 +46,10 @@ pub struct MapsRequest {
     pub colours: ColourMap,
     /// Coordinates.
     pub projection: Projection,
+    /// How the difference is drawn.
+    pub difference: DifferenceView,
+    /// Whether the window is dark.
+    pub dark: bool,
     /// eta'.
     pub target_eta: f32,
     /// eta.
@@ -69,6 +73,7 @@ impl MapsRequest {
             && (self.wanted, self.at_rest) == (other.wanted, other.at_rest)
             && self.pictures == other.pictures
             && (self.colours, self.projection) == (other.colours, other.projection)
+            && (self.difference, self.dark) == (other.difference, other.dark)
             && (self.target_eta, self.output_eta) == (other.target_eta, other.output_eta)
             && (self.scores, self.roc) == (other.scores, other.roc)
     }
@@ -184,14 +189,19 @@ fn subject(frame: &Frame, request: &MapsRequest, kind: MapKind) -> Option<Subjec
     let pair = request.pair.as_ref();
     let output = pair.map(|p| p.output.clone());
     let colours = Paint::Lambda(request.colours);
+    let above = |eta| Paint::Above { eta, dark: request.dark };
     let (map, minus, paint) = match kind {
         MapKind::Input0 => (lambda(&frame.first), None, colours),
         MapKind::Input1 => (lambda(&frame.last), None, colours),
         MapKind::Target => (lambda(&frame.full), None, colours),
         MapKind::Output => (output, None, colours),
-        MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above(request.target_eta)),
-        MapKind::OutputAbove => (output, None, Paint::Above(request.output_eta)),
-        MapKind::Difference => (output, pair.map(|p| p.target.clone()), Paint::Difference),
+        MapKind::TargetAbove => (lambda(&frame.full), None, above(request.target_eta)),
+        MapKind::OutputAbove => (output, None, above(request.output_eta)),
+        MapKind::Difference => (
+            output,
+            pair.map(|p| p.target.clone()),
+            Paint::Difference { view: request.difference, colours: request.colours },
+        ),
     };
     Some(Subject { map: map?, minus, paint, projection: request.projection })
 }

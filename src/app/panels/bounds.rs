@@ -2,13 +2,17 @@
 
 use crate::app::jobs::{BoundsRequest, BoundsResult};
 use crate::app::state::{BoundsSettings, Command, Elements};
-use crate::app::widgets::textures::Texture;
+use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::chart::{self, Chart};
+use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::numbers::significant;
+use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::bounds::PositionBound;
+use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, DragValue, Grid, TextureOptions, Ui, vec2};
-use egui_plot::{HoverPosition, Line, Plot, PlotImage, PlotPoint, PlotPoints, Points};
+use eframe::egui::{Color32, ComboBox, DragValue, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
 use std::f64::consts::TAU;
 
 /// What is chosen, and what came of it.
@@ -108,46 +112,45 @@ fn strip(ui: &mut Ui, radar: &Radar, layout: &Layout) {
     response.on_hover_text(format!("{} elements of an aperture of {:.2} m", layout.len(), radar.aperture_metres()));
 }
 
-/// The ambiguity function over columns and metres from the reflector.
+/// The ambiguity function over columns and metres from the reflector, and what its colours stand for.
 fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     let BoundsRequest { radar, columns, bins, .. } = &result.request;
-    let centre = result.centre;
-    let column = 2.0 / radar.elements as f64;
     let half = [*columns, bins * radar.range_resolution_metres()];
-    let likeness = &result.ambiguity.likeness;
-    let value = move |p: &PlotPoint| {
-        let cell = |v: f64, half: f64, count: usize| {
-            let part = (v + half) / (2.0 * half) * (count - 1) as f64;
-            (part > -0.5 && part < count as f64 - 0.5).then(|| part.round() as usize)
-        };
-        let (rows, columns) = likeness.dim();
-        likeness.get((cell(p.y, half[1], rows)?, cell(p.x, half[0], columns)?)).copied()
+    let area = ui.available_rect_before_wrap();
+    ui.advance_cursor_after_rect(area);
+    let bar = Bar { table: colour_table(ColourMap::Viridis), low: 0.0, high: 1.0, title: "likeness" };
+    let right = bar.width(ui.painter(), area.height() - axes::BOTTOM - 8.0);
+    let x = Axis::new(-half[0], half[0], "cos θ off the reflector's, columns");
+    let chart = Chart { name: "Ambiguity function", x, y: Axis::new(-half[1], half[1], "range off, m") };
+    let map = area.with_max_x(area.right() - right + 12.0);
+    let drawn = chart.show(ui, map, Sense::hover());
+    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+    drawn.painter().image(texture, drawn.rect, whole, Color32::WHITE);
+    let cross = drawn.at([0.0, 0.0]);
+    for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {
+        for corner in [vec2(5.0, 5.0), vec2(5.0, -5.0)] {
+            drawn.painter().line_segment([cross - corner, cross + corner], Stroke::new(width, colour));
+        }
+    }
+    bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
+    let Some(pos) = drawn.response.hover_pos() else { return };
+    let said = likeness_at(result, half, drawn.x_at(pos), drawn.y_at(pos));
+    drawn.response.on_hover_text_at_pointer(said);
+}
+
+/// What is told of a place, columns and metres from the reflector.
+fn likeness_at(result: &BoundsResult, half: [f64; 2], columns: f64, metres: f64) -> String {
+    let cell = |v: f64, half: f64, count: usize| {
+        let part = (v + half) / (2.0 * half) * (count - 1) as f64;
+        (part > -0.5 && part < count as f64 - 0.5).then(|| part.round() as usize)
     };
-    Plot::new("ambiguity")
-        .x_axis_label("cos θ off the reflector's, columns")
-        .y_axis_label("range off, m")
-        .default_x_bounds(-half[0], half[0])
-        .default_y_bounds(-half[1], half[1])
-        .reset()
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_drag(false)
-        .y_axis_min_width(36.0)
-        .show_grid(false)
-        .label_formatter(|hover| {
-            let p = match hover {
-                HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position } => position,
-            };
-            let likeness = value(p).map_or_else(String::new, |v| format!("\nlikeness {v:.3}"));
-            let (cos, range) = (centre.cos_theta + p.x * column, centre.range_metres + p.y);
-            Some(format!("cos θ {cos:.4}\nrange {range:.3} m{likeness}"))
-        })
-        .show(ui, |plot| {
-            let size = vec2(2.0 * half[0] as f32, 2.0 * half[1] as f32);
-            plot.image(PlotImage::new("likeness", texture, PlotPoint::new(0.0, 0.0), size).allow_hover(false));
-            let cross = Points::new("the reflector", vec![[0.0, 0.0]]).shape(egui_plot::MarkerShape::Cross);
-            plot.points(cross.radius(5.0).color(Color32::WHITE));
-        });
+    let likeness = &result.ambiguity.likeness;
+    let (rows, across) = likeness.dim();
+    let value = cell(metres, half[1], rows).zip(cell(columns, half[0], across)).and_then(|at| likeness.get(at));
+    let column = 2.0 / result.request.radar.elements as f64;
+    let (cos, range) = (result.centre.cos_theta + columns * column, result.centre.range_metres + metres);
+    let value = value.filter(|v| v.is_finite()).map_or_else(String::new, |v| format!("\nlikeness {v:.3}"));
+    format!("cos θ {cos:.4}\nrange {range:.3} m{value}")
 }
 
 /// Numbers and ellipse of the Cramer-Rao bound.
@@ -168,7 +171,7 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
             ("x", millimetres(bound.x_metres)),
             ("y", millimetres(bound.y_metres)),
             ("range", millimetres(bound.range_metres)),
-            ("cos θ", format!("{:.4} columns", bound.cos_theta / column)),
+            ("cos θ", format!("{} columns", significant(bound.cos_theta / column))),
         ]
         .into_iter()
         .enumerate()
@@ -184,34 +187,29 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
 }
 
 fn millimetres(metres: f64) -> String {
-    if metres.is_finite() { format!("{:.3} mm", metres * 1e3) } else { "∞".to_owned() }
+    if metres.is_finite() { format!("{} mm", significant(metres * 1e3)) } else { "∞".to_owned() }
 }
 
 /// Where 39 % of the estimates of the best unbiased estimator would lie: one standard deviation.
 fn ellipse(ui: &mut Ui, bound: &PositionBound) {
     let Some(outline) = outline(bound) else { return };
-    let colour = theme::Inks::of(ui.visuals()).selected;
-    let size = outline.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
-    let id = ("ellipse", size.log10().round() as i32);
-    let area = ui.available_size();
-    if area.y < 110.0 {
+    let area = ui.available_rect_before_wrap();
+    if area.height() < 110.0 {
         return;
     }
-    Plot::new(id)
-        .x_axis_label("error of x, mm")
-        .y_axis_label("error of y, mm")
-        .data_aspect(1.0)
-        .height(area.y - 4.0)
-        .include_x(-1.2 * size)
-        .include_x(1.2 * size)
-        .include_y(-1.2 * size)
-        .include_y(1.2 * size)
-        .allow_scroll(false)
-        .y_axis_min_width(36.0)
-        .show(ui, |plot| {
-            plot.line(Line::new("one standard deviation", PlotPoints::from(outline)).color(colour).width(1.6));
-            plot.points(Points::new("the reflector", vec![[0.0, 0.0]]).radius(2.5).color(colour));
-        });
+    let colour = theme::Inks::of(ui.visuals()).selected;
+    let most = |i: usize| outline.iter().map(|p| 1.2 * p[i].abs()).fold(0.0, f64::max);
+    // A millimetre is as long upwards as it is across.
+    let axis = |high: f64| Axis::new(-high, high, "error of y, mm");
+    let size = chart::inner(ui.painter(), area, axis(most(1))).size();
+    let aspect = f64::from(size.x / size.y);
+    let high = most(1).max(most(0) / aspect);
+    let x = Axis::new(-high * aspect, high * aspect, "error of x, mm");
+    let chart = Chart { name: "Ellipse of one standard deviation", x, y: axis(high) };
+    let drawn = chart.show(ui, area, Sense::hover());
+    drawn.line(outline, Stroke::new(1.8, colour), None);
+    drawn.dot([0.0, 0.0], 2.5, colour);
+    drawn.response.on_hover_text("39 % of the estimates of the best unbiased estimator lie within");
 }
 
 /// Points of the ellipse in millimetres: a circle through the Cholesky factor of the covariance.
@@ -232,6 +230,8 @@ fn outline(bound: &PositionBound) -> Option<Vec<[f64; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
+    use crate::scene::Reflector;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -250,6 +250,40 @@ mod tests {
         bounds.run();
         let all = BoundsSettings { elements: Elements::All, ..BoundsSettings::default() };
         assert_eq!(bounds.state().1, [Command::SetBounds(all)]);
+    }
+
+    #[test]
+    fn the_ellipse_has_a_scale_and_likeness_a_colour_bar() {
+        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let reflector = Reflector { x_metres: 1.5, y_metres: 9.0, reflectivity: 1.0 };
+        let request = BoundsRequest {
+            radar,
+            elements: Elements::TwoEnds,
+            seed: 0,
+            name: "point 1".to_owned(),
+            reflector,
+            snr: crate::radar::Decibels(20.0),
+            columns: 12.0,
+            bins: 4.0,
+        };
+        for size in [[460.0, 640.0], [1400.0, 800.0]] {
+            let result = crate::app::jobs::bounds_of(request.clone());
+            let bounds = Harness::builder().with_size(size).build_ui_state(
+                move |ui, memory: &mut Memory| {
+                    let (settings, result) = (BoundsSettings::default(), result.as_ref().ok());
+                    let input = Input { settings, elements: 64, has_subject: true, result, error: None };
+                    _ = show(ui, input, memory);
+                },
+                Memory::default(),
+            );
+            seen::assert_readable(bounds.output());
+            let texts = seen::texts(bounds.output());
+            let has = |text: &str| texts.iter().any(|t| t.text == text);
+            assert!(["likeness", "1.0", "error of x, mm", "error of y, mm"].into_iter().all(has), "{texts:?}");
+            let ellipse = bounds.get_by_label("Ellipse of one standard deviation").rect();
+            let below = texts.iter().filter(|t| t.rect.top() > ellipse.bottom() && t.text.parse::<f64>().is_ok());
+            assert!(below.count() >= 2, "numbers along the ellipse: {texts:?}");
+        }
     }
 
     #[test]

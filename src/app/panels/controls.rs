@@ -1,7 +1,8 @@
 //! Settings: radar and floor, display, reconstruction with its live figures.
 
 use crate::app::jobs::{Refusal, Scores};
-use crate::app::state::{Command, Projection, Settings};
+use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
+use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
@@ -87,15 +88,21 @@ fn row(ui: &mut Ui, name: &str, tooltip: &str, widget: impl FnOnce(&mut Ui) -> e
     ui.end_row();
 }
 
-/// Choices beside each other. The first of them stands for all where a name labels them.
+/// A row of choices, each of which is called what it says; more rows where there is no room.
+fn row_of(ui: &mut Ui, name: &str, tooltip: &str, widgets: impl FnOnce(&mut Ui)) {
+    ui.label(name).on_hover_text(tooltip);
+    ui.horizontal_wrapped(widgets);
+    ui.end_row();
+}
+
+/// Choices beside each other.
 fn choices<T: PartialEq + Copy>(
     ui: &mut Ui,
     chosen: T,
     of: impl IntoIterator<Item = (T, &'static str, &'static str)>,
     command: impl Fn(T) -> Command,
     asked: &mut Vec<Command>,
-) -> egui::Response {
-    let mut first = None;
+) {
     for (choice, name, tooltip) in of {
         let mut response = ui.selectable_label(choice == chosen, name);
         if !tooltip.is_empty() {
@@ -104,9 +111,7 @@ fn choices<T: PartialEq + Copy>(
         if response.clicked() && choice != chosen {
             asked.push(command(choice));
         }
-        first.get_or_insert(response);
     }
-    first.unwrap_or_else(|| ui.label(""))
 }
 
 fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
@@ -164,19 +169,24 @@ fn threshold(eta: &mut f32) -> Slider<'_> {
 
 /// P_D, P_FA and SE, or why there are none.
 fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut Vec<Command>) {
-    if let Some(part) = run.progress {
-        if progress(ui, part, 150.0, "Stop this reconstruction; the last output stays") {
-            asked.push(Command::CancelMethod);
+    // As high with the bar as without: what stands below must not jump when a reconstruction begins.
+    ui.horizontal(|ui| {
+        ui.set_min_height(ui.spacing().interact_size.y);
+        if let Some(part) = run.progress {
+            if progress(ui, part, 150.0, "Stop this reconstruction; the last output stays") {
+                asked.push(Command::CancelMethod);
+            }
+        } else if let Some(refusal) = run.refusal {
+            let reason = egui::RichText::new(&refusal.reason).color(ui.visuals().error_fg_color);
+            ui.add(egui::Label::new(reason).wrap());
+        } else if let Some((name, took)) = run.output {
+            ui.weak(format!("{name} took {:.1} ms", took.as_secs_f64() * 1e3));
+        } else if run.wanted {
+            ui.weak("Waiting for the maps…");
+        } else {
+            ui.weak("Show an output panel to reconstruct.");
         }
-    } else if let Some(refusal) = run.refusal {
-        ui.colored_label(ui.visuals().error_fg_color, &refusal.reason);
-    } else if let Some((name, took)) = run.output {
-        ui.weak(format!("{name} took {:.1} ms", took.as_secs_f64() * 1e3));
-    } else if run.wanted {
-        ui.weak("Waiting for the maps…");
-    } else {
-        ui.weak("Show an output panel to reconstruct.");
-    }
+    });
     let Some(scores) = run.scores else { return };
     if scores.output_blobs == 0 {
         ui.weak(format!("Nothing exceeds η. {}: {}.", method.name(), method.description()));
@@ -201,48 +211,41 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
         .on_hover_text("Regions of touching cells above η' and η");
 }
 
-fn percent(part: f64) -> String {
-    format!("{:.2} %", part * 100.0)
-}
-
 fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     let tooltip =
         "How magnitudes become Λ in [0, 1]. Min-max is the thesis'; a dynamic range doesn't depend on the floor";
-    row(ui, "Normalise", tooltip, |ui| {
-        ui.horizontal(|ui| {
-            let range = Normalisation::DynamicRange(settings.dynamic_range);
-            let of = [(Normalisation::MinMax, "Min–max", ""), (range, "Range", "")];
-            let response = choices(ui, settings.normalisation, of, Command::Normalise, asked);
-            if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
-                let drag = ui.add(DragValue::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
-                if drag.changed() {
-                    asked.push(Command::Normalise(Normalisation::DynamicRange(Decibels(range))));
-                }
+    row_of(ui, "Normalise", tooltip, |ui| {
+        let range = |db| Normalisation::DynamicRange(Decibels(db));
+        let of = [
+            (Normalisation::MinMax, "Min–max", "Λ is 0 at the smallest cell"),
+            (range(40.0), "40 dB", "Λ is 0 at 40 dB below the peak"),
+            (range(60.0), "60 dB", "Λ is 0 at 60 dB below the peak"),
+            (range(100.0), "100 dB", "Λ is 0 at 100 dB below the peak"),
+        ];
+        choices(ui, settings.normalisation, of, Command::Normalise, asked);
+        if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
+            let drag = ui.add(DragValue::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
+            if drag.on_hover_text("Any other dynamic range").changed() {
+                asked.push(Command::Normalise(Normalisation::DynamicRange(Decibels(range))));
             }
-            response
-        })
-        .inner
+        }
     });
 }
 
 fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<Command>) {
-    row(ui, "Floor", "What lies beneath the reflectors", |ui| {
-        ui.horizontal(|ui| {
-            let of = [
-                (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
-                (Floor::Exact, "Exact", "No noise at all"),
-                (Floor::Snr(settings.snr), "SNR", "Thermal noise at a signal-to-noise ratio"),
-            ];
-            let response = choices(ui, settings.floor, of, Command::SetFloor, asked);
-            if let Floor::Snr(Decibels(mut snr)) = settings.floor {
-                let drag = ui.add(DragValue::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
-                if drag.changed() {
-                    asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
-                }
+    row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
+        let of = [
+            (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
+            (Floor::Exact, "Exact", "No noise at all"),
+            (Floor::Snr(settings.snr), "SNR", "Thermal noise at a signal-to-noise ratio"),
+        ];
+        choices(ui, settings.floor, of, Command::SetFloor, asked);
+        if let Floor::Snr(Decibels(mut snr)) = settings.floor {
+            let drag = ui.add(DragValue::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
+            if drag.changed() {
+                asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
             }
-            response
-        })
-        .inner
+        }
     });
     if settings.floor != Floor::Exact {
         row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
@@ -256,65 +259,76 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
 }
 
 fn carrier(ui: &mut Ui, carrier: Carrier, asked: &mut Vec<Command>) {
-    row(ui, "Carrier", "One-way is unambiguous; two-way (as equation 3.1 is printed) folds cos θ twice", |ui| {
+    row_of(ui, "Carrier", "One-way is unambiguous; two-way (as equation 3.1 is printed) folds cos θ twice", |ui| {
         let of = [(Carrier::OneWay, "One-way", ""), (Carrier::TwoWay, "Two-way", "")];
-        ui.horizontal(|ui| choices(ui, carrier, of, Command::SetCarrier, asked)).inner
+        choices(ui, carrier, of, Command::SetCarrier, asked);
     });
 }
 
 fn window(ui: &mut Ui, window: WindowFunction, asked: &mut Vec<Command>) {
     let tooltip = "Weights of samples and elements in both transforms: low side lobes cost a wide main lobe";
-    row(ui, "Window", tooltip, |ui| {
+    row_of(ui, "Window", tooltip, |ui| {
         let of = WindowFunction::ALL.map(|choice| {
             let entry = Command::SetWindow(choice).entry();
             (choice, choice.name(), entry.map_or("", |e| e.tooltip))
         });
-        ui.horizontal(|ui| choices(ui, window, of, Command::SetWindow, asked)).inner
+        choices(ui, window, of, Command::SetWindow, asked);
     });
 }
 
 fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
-    row(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
+    row_of(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
         let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
-        ui.horizontal(|ui| choices(ui, settings.projection, of, Command::SetProjection, asked)).inner
+        choices(ui, settings.projection, of, Command::SetProjection, asked);
     });
-    row(ui, "Colours", "Colours of Λ", |ui| {
+    row_of(ui, "Scale", "What colour bars and cuts count", |ui| {
+        let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels below the peak")];
+        choices(ui, settings.units, of, Command::SetUnits, asked);
+    });
+    row_of(ui, "Difference", "How the panel Difference is drawn", |ui| {
+        let DifferenceView { mut absolute, whole } = settings.difference;
+        let tip = "Its absolute value, or output minus target";
+        if ui.checkbox(&mut absolute, "absolute").on_hover_text(tip).changed() {
+            asked.push(Command::ToggleAbsoluteDifference);
+        }
+        let mut fits = !whole;
+        let tip = "On a scale that just holds it, or on one up to 1";
+        if ui.checkbox(&mut fits, "automatic scale").on_hover_text(tip).changed() {
+            asked.push(Command::ToggleWholeDifference);
+        }
+    });
+    row_of(ui, "Colours", "Colours of Λ", |ui| {
         let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
-        ui.horizontal(|ui| choices(ui, settings.colours, of, Command::Colours, asked)).inner
+        choices(ui, settings.colours, of, Command::Colours, asked);
     });
-    row(ui, "Mark", "What is drawn over maps and scene", |ui| {
-        ui.horizontal_wrapped(|ui| {
-            let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: Command| {
-                let response = ui.checkbox(&mut on, name).on_hover_text(tooltip);
-                if response.changed() {
-                    asked.push(command);
-                }
-                response
-            };
-            let tooltip = "The scene's own reflectors, over every map (R)";
-            let first = mark(ui, settings.show_reflectors, "reflectors", tooltip, Command::ToggleReflectors);
-            mark(ui, settings.show_found, "found", "Reflectors that the method believes in", Command::ToggleFound);
-            let tooltip = "What each end can see, in the scene (V)";
-            mark(ui, settings.show_fields_of_view, "views", tooltip, Command::ToggleFieldsOfView);
-            let tooltip = "What the formulas say of the selected reflector, over every map (T)";
-            mark(ui, settings.show_theory, "theory", tooltip, Command::ToggleTheory);
-            first
-        })
-        .inner
+    row_of(ui, "Mark", "What is drawn over maps and scene", |ui| {
+        let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: Command| {
+            if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
+                asked.push(command);
+            }
+        };
+        let tooltip = "The scene's own reflectors, over every map (R)";
+        mark(ui, settings.show_reflectors, "reflectors", tooltip, Command::ToggleReflectors);
+        mark(ui, settings.show_found, "found", "Reflectors that the method believes in", Command::ToggleFound);
+        let tooltip = "What each end can see, in the scene (V)";
+        mark(ui, settings.show_fields_of_view, "views", tooltip, Command::ToggleFieldsOfView);
+        let tooltip = "What the formulas say of the selected reflector, over every map (T)";
+        mark(ui, settings.show_theory, "theory", tooltip, Command::ToggleTheory);
     });
-    row(ui, "Snap", "Where dragged objects come to rest", |ui| {
+    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
         let of = [
             (Snap::Off, "Off", ""),
             (Snap::Metres(0.5), "0.5 m", ""),
             (Snap::Cells, "Cells", "Whole range bins and columns"),
         ];
-        ui.horizontal(|ui| choices(ui, settings.snap, of, Command::SetSnap, asked)).inner
+        choices(ui, settings.snap, of, Command::SetSnap, asked);
     });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
     use crate::evaluate::Metrics;
     use crate::reconstruct::{Baseline, CAPON};
     use egui_kittest::Harness;
@@ -335,7 +349,7 @@ mod tests {
             };
             asked.extend(show(ui, input));
         };
-        Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new())
+        Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new())
     }
 
     #[test]
@@ -343,7 +357,7 @@ mod tests {
         let mut controls = panel(Run::default);
         controls.run();
         assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
-        for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Normalise"] {
+        for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Min–max", "60 dB", "dB", "absolute"] {
             controls.get_by_label(label).click();
             controls.run();
         }
@@ -353,6 +367,9 @@ mod tests {
             Command::SetFloor(Floor::Exact),
             Command::ToggleFound,
             Command::SetSnap(Snap::Metres(0.5)),
+            Command::Normalise(Normalisation::DynamicRange(Decibels(60.0))),
+            Command::SetUnits(Units::Decibels),
+            Command::ToggleAbsoluteDifference,
         ];
         assert_eq!(controls.state(), &asked, "and what is chosen already is not asked for");
     }
@@ -374,6 +391,49 @@ mod tests {
             controls.run();
         }
         assert!(controls.state().is_empty(), "{:?}", controls.state());
+    }
+
+    #[test]
+    fn every_choice_is_called_what_it_says() {
+        let controls = panel(Run::default);
+        for label in ["Min–max", "Thesis", "One-way", "hann", "Range–angle", "Λ", "grey", "reflectors", "Off"] {
+            let _one = controls.get_by_label(label);
+        }
+    }
+
+    #[test]
+    fn figures_stand_still_when_the_bar_comes() {
+        let metrics = Metrics { squared_error: 321.4, detection: Some(0.5), false_alarm: 0.01 };
+        let scores = Scores { metrics, target_blobs: 1, output_blobs: 2 };
+        let output = Some(("capon", Duration::from_millis(20)));
+        let height = |progress| {
+            let run = move || Run { progress, output, scores: Some(scores), ..Run::default() };
+            panel(run).get_by_label("P_D").rect().top()
+        };
+        assert_eq!(height(None), height(Some(0.25)));
+    }
+
+    #[test]
+    fn no_choice_leaves_a_narrow_panel() {
+        let (radar, settings) = (Radar::default(), Settings::default());
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let (method, run) = (&Baseline, Run::default());
+            let input = Input {
+                settings: &settings,
+                radar: &radar,
+                noise_seed: 0,
+                methods: &[],
+                method: Some(method),
+                eta: 0.5,
+                run,
+            };
+            asked.extend(show(ui, input));
+        };
+        let controls = Harness::builder().with_size([284.0, 900.0]).build_ui_state(draw, Vec::new());
+        for label in ["100 dB", "SNR", "Two-way", "rectangular", "inferno", "views", "Cells"] {
+            assert!(controls.get_by_label(label).rect().right() <= 284.0, "{label}");
+        }
+        seen::assert_readable(controls.output());
     }
 
     #[test]

@@ -13,9 +13,9 @@ use std::sync::Arc;
 
 /// The printed columns with their names.
 const PRINTED: [(&str, [Printed; 3]); 3] = [
-    ("printed: baseline", PRINTED_BASELINE),
-    ("printed: experiment 1", PRINTED_EXPERIMENT_1),
-    ("printed: experiment 2", PRINTED_EXPERIMENT_2),
+    ("thesis: baseline", PRINTED_BASELINE),
+    ("thesis: experiment 1", PRINTED_EXPERIMENT_1),
+    ("thesis: experiment 2", PRINTED_EXPERIMENT_2),
 ];
 
 /// What the test sets hold.
@@ -149,8 +149,8 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
             continue;
         }
         ui.strong(format!("Table 4.{set}: {}", SETS[set - 1]));
-        Grid::new(("table", set)).num_columns(6).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
-            let at = format!("P_D % at P_FA {:.2} %", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
+        Grid::new(("table", set)).num_columns(6).striped(true).spacing([10.0, 3.0]).show(ui, |ui| {
+            let at = format!("P_D % at\nP_FA {:.2} %", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
             for title in ["", "SE", "P_D %", "P_FA %", &at, "ms a map"] {
                 ui.weak(title);
             }
@@ -158,13 +158,13 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
             for (name, columns) in PRINTED {
                 let printed = columns[set - 1];
                 ui.weak(name);
-                ui.monospace(format!("{:.2}", printed.squared_error));
+                ui.monospace(format!("{:.0}", printed.squared_error));
                 ui.monospace(format!("{:.2}", 100.0 * printed.detection));
                 ui.monospace(format!("{:.2}", 100.0 * printed.false_alarm));
                 ui.end_row();
             }
             for row in rows.iter().filter(|r| r.set == set) {
-                ui.strong(format!("{} (η {:.2})", row.method, row.eta))
+                ui.strong(format!("{}\nη = {:.2}", row.method, row.eta))
                     .on_hover_text(format!("{} scenes; mean ± standard error", row.scenes));
                 ui.monospace(with_error(row.squared_error, 1.0, 0));
                 ui.monospace(with_error(row.detection, 100.0, 2));
@@ -178,13 +178,15 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
     }
 }
 
+/// A mean, and beneath it its standard error: beside it there would be no room for the other columns.
 fn with_error(estimate: Estimate, scale: f64, digits: usize) -> String {
-    format!("{:.digits$} ± {:.digits$}", scale * estimate.mean, scale * estimate.standard_error)
+    format!("{:.digits$}\n± {:.digits$}", scale * estimate.mean, scale * estimate.standard_error)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
     use crate::radar::{Carrier, WindowFunction};
     use crate::reconstruct::{Baseline, CAPON};
     use egui_kittest::Harness;
@@ -208,6 +210,31 @@ mod tests {
         let choice = EvaluationChoice { methods: vec!["capon"], sets: vec![1, 3], count: 10, seed: 0 };
         assert_eq!(evaluation.state().1, [Command::Evaluate(choice)]);
         let _told = evaluation.get_by_label_contains("With a two-way carrier");
+    }
+
+    #[test]
+    fn a_panel_of_the_window_has_room_for_every_column() {
+        let estimate = |mean, standard_error| Estimate { mean, standard_error };
+        let row = EvaluationRow {
+            set: 3,
+            method: "linear-prediction",
+            eta: 0.851,
+            scenes: 100,
+            squared_error: estimate(12_345.6, 1234.5),
+            detection: estimate(0.99351, 0.10123),
+            false_alarm: estimate(0.10163, 0.10012),
+            detection_at_printed: Some(1.0),
+            median_milliseconds: 1234.5,
+        };
+        let radar = Radar::default();
+        let evaluation = Harness::builder().with_size([460.0, 400.0]).build_ui(move |ui| {
+            let rows = std::slice::from_ref(&row);
+            let input = Input { methods: &[], method: None, radar: &radar, progress: None, rows, note: None };
+            _ = show(ui, input, &mut Memory::default());
+        });
+        seen::assert_readable(evaluation.output());
+        let texts = seen::texts(evaluation.output());
+        assert!(texts.iter().any(|t| t.text == "1234.5"), "the last column: {texts:?}");
     }
 
     #[test]

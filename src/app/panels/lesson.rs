@@ -2,6 +2,7 @@
 
 use crate::app::state::{Command, LessonRun};
 use crate::app::widgets::entry::button;
+use crate::app::widgets::inline::inline;
 use crate::lesson::question::Answer;
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Challenge, Guess, Lesson, Progress, Question};
@@ -120,7 +121,7 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
     ui.heading(&run.lesson.title);
     ui.weak(format!("Step {} of {}", run.step + 1, run.lesson.steps.len()));
     ui.add_space(4.0);
-    ui.label(large(ui, &step.text));
+    ui.label(inline(ui, &step.text, LARGE));
     ui.add_space(8.0);
     if let Some(question) = &step.predict {
         ui.label(large(ui, &question.ask).strong());
@@ -151,9 +152,12 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
     });
 }
 
-/// Text that is to be read first, somewhat larger than the rest.
+/// Text that is to be read first is this much larger than the rest.
+const LARGE: f32 = 1.15;
+
+/// Such a text.
 fn large(ui: &Ui, text: impl Into<String>) -> RichText {
-    RichText::new(text).size(1.15 * egui::TextStyle::Body.resolve(ui.style()).size)
+    RichText::new(text).size(LARGE * egui::TextStyle::Body.resolve(ui.style()).size)
 }
 
 /// For a projector.
@@ -206,7 +210,7 @@ fn judgement(ui: &mut Ui, run: &LessonRun) {
         Some(Ok(judged)) => {
             let verdict = if judged.is_right { "Right" } else { "Not quite" };
             ui.label(large(ui, format!("{verdict}: {}", judged.distance)).strong());
-            ui.label(large(ui, &judged.sentence));
+            ui.label(inline(ui, &judged.sentence, LARGE));
         }
     }
 }

@@ -1,12 +1,21 @@
 //! Detection against false alarm of the scene on screen, over every threshold.
 
 use crate::app::state::Command;
+use crate::app::widgets::axes::{Axis, Tick};
+use crate::app::widgets::chart::Chart;
+use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::numbers::percent;
+use crate::app::widgets::theme::Inks;
 use crate::evaluate::RocPoint;
-use eframe::egui::{Color32, Ui};
-use egui_plot::{Line, Plot, PlotPoints, Points};
+use eframe::egui;
+use eframe::egui::{Sense, Stroke, Ui};
 
 /// P_FA below this is drawn at this: a logarithmic axis has no zero.
 const SMALLEST: f64 = 1e-5;
+
+/// Marks of P_FA: powers of ten.
+const POWERS: [(f64, &str); 6] =
+    [(-5.0, "≤0.001"), (-4.0, "0.01"), (-3.0, "0.1"), (-2.0, "1"), (-1.0, "10"), (0.0, "100")];
 
 /// What is drawn.
 pub struct Input<'a> {
@@ -26,47 +35,41 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         ui.centered_and_justified(|ui| ui.weak(input.refusal.unwrap_or("No ROC: the target has no cell above 0.9.")));
         return Vec::new();
     };
-    let log = |false_alarm: f64| false_alarm.max(SMALLEST).log10();
-    let curve: PlotPoints<'_> = roc.iter().map(|p| [log(p.false_alarm), p.detection]).collect();
-    let eta = input.eta;
-    let now = roc.iter().min_by(|a, b| (a.eta - eta).abs().total_cmp(&(b.eta - eta).abs())).copied();
-    Plot::new("roc")
-        .x_axis_label("P_FA")
-        .y_axis_label("P_D")
-        .x_axis_formatter(|mark, _| power_of_ten(mark.value))
-        .default_x_bounds(SMALLEST.log10(), 0.0)
-        .default_y_bounds(0.0, 1.02)
-        .y_axis_min_width(28.0)
-        .allow_scroll(false)
-        .show(ui, |plot| {
-            plot.line(Line::new(input.method, curve).color(Color32::from_rgb(255, 170, 40)).width(1.8));
-            if let Some(p) = now {
-                let at = vec![[log(p.false_alarm), p.detection]];
-                plot.points(
-                    Points::new(format!("η = {eta:.2}"), at).radius(5.0).color(Color32::from_rgb(64, 156, 255)),
-                );
-            }
-        });
+    let place = |p: &RocPoint| [p.false_alarm.max(SMALLEST).log10(), 100.0 * p.detection];
+    let nearest = |eta: f32| roc.iter().min_by(|a, b| (a.eta - eta).abs().total_cmp(&(b.eta - eta).abs()));
+    let (line, mark) = (Inks::of(ui.visuals()).selected, Inks::of(ui.visuals()).ends[0]);
+    egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 }).show(ui, |ui| {
+        let mut entries = vec![Entry { sign: Sign::Line, colour: line, name: input.method.to_owned() }];
+        if let Some(now) = nearest(input.eta) {
+            let rates = format!("P_D {}, P_FA {}", percent(now.detection), percent(now.false_alarm));
+            let name = format!("η = {:.2}: {rates}", input.eta);
+            entries.push(Entry { sign: Sign::Circle { filled: true }, colour: mark, name });
+        }
+        legend::row(ui, &entries);
+    });
+    let ticks = POWERS.map(|(value, text)| Tick { value, text: text.to_owned() });
+    let x = Axis { ticks: Some(&ticks), ..Axis::new(SMALLEST.log10(), 0.0, "P_FA, %") };
+    let chart = Chart { name: "Receiver operating characteristic", x, y: Axis::new(0.0, 102.0, "P_D, %") };
+    let area = ui.available_rect_before_wrap();
+    let drawn = chart.show(ui, area, Sense::hover());
+    drawn.line(roc.iter().map(place), Stroke::new(1.8, line), None);
+    if let Some(now) = nearest(input.eta) {
+        drawn.dot(place(now), 5.0, mark);
+    }
+    if let Some(pos) = drawn.response.hover_pos() {
+        let at = drawn.x_at(pos);
+        let under = roc.iter().min_by(|a, b| (place(a)[0] - at).abs().total_cmp(&(place(b)[0] - at).abs()));
+        let say =
+            |p: &RocPoint| format!("η = {:.2}\nP_D {}\nP_FA {}", p.eta, percent(p.detection), percent(p.false_alarm));
+        drawn.response.on_hover_text_at_pointer(under.map_or_else(String::new, say));
+    }
     Vec::new()
-}
-
-fn power_of_ten(exponent: f64) -> String {
-    if (exponent - exponent.round()).abs() > 1e-6 {
-        return String::new();
-    }
-    match exponent as i32 {
-        0 => "100 %".to_owned(),
-        -1 => "10 %".to_owned(),
-        -2 => "1 %".to_owned(),
-        -3 => "0.1 %".to_owned(),
-        -4 => "0.01 %".to_owned(),
-        _ => "≤0.001 %".to_owned(),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -78,6 +81,24 @@ mod tests {
         let roc = Harness::new_ui_state(draw, Vec::new());
         let _told = roc.get_by_label_contains("No ROC");
         assert!(roc.state().is_empty());
-        assert_eq!((power_of_ten(-2.0), power_of_ten(-2.5)), ("1 %".to_owned(), String::new()));
+    }
+
+    #[test]
+    fn both_axes_are_in_percent_to_a_hundred_and_every_label_is_whole() {
+        for size in [[270.0, 150.0], [450.0, 270.0], [1200.0, 700.0]] {
+            let roc = Harness::builder().with_size(size).build_ui(|ui| {
+                let point = |i: u16| {
+                    let part = f64::from(i) / 100.0;
+                    RocPoint { eta: 1.0 - part as f32, detection: part.sqrt(), false_alarm: part * part }
+                };
+                let points: Vec<RocPoint> = (0..=100).map(point).collect();
+                _ = show(ui, Input { points: Some(&points), method: "live", eta: 0.8, refusal: None });
+            });
+            seen::assert_readable(roc.output());
+            let texts = seen::texts(roc.output());
+            let count = |text: &str| texts.iter().filter(|t| t.text == text).count();
+            assert_eq!((count("100"), count("P_FA, %"), count("≤0.001")), (2, 1, 1), "{size:?}: {texts:?}");
+            assert_eq!(count("η = 0.80: P_D 44.72 %, P_FA 4.00 %"), 1, "{texts:?}");
+        }
     }
 }

@@ -1,13 +1,14 @@
 //! Run time against error on this machine, measured while one watches.
 
 use crate::app::state::Command;
+use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::progress::progress;
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
 use eframe::egui;
 use eframe::egui::{Color32, ComboBox, Ui};
-use egui_plot::{GridMark, HLine, Legend, MarkerShape, Plot, PlotPoints, Points};
+use egui_plot::{GridMark, HLine, MarkerShape, Plot, PlotPoints, Points};
 use std::collections::BTreeSet;
 
 /// Errors below this are drawn at this: a logarithmic axis has no zero.
@@ -114,16 +115,40 @@ fn colour(entrant: Entrant, dark: bool) -> Color32 {
     }
 }
 
-fn plot(ui: &mut Ui, input: &Input<'_>, memory: &Memory) {
-    let dark = ui.visuals().dark_mode;
+/// The measurements of one algorithm in one precision.
+struct Series {
+    entry: Entry,
+    /// Powers of ten: error, milliseconds.
+    places: Vec<[f64; 2]>,
+    is_planned: bool,
+}
+
+/// What is drawn, algorithm by algorithm.
+fn series(rows: &[FrontRow], memory: &Memory, dark: bool) -> Vec<Series> {
     let drawn = |r: &&FrontRow| r.task == memory.task && memory.reflectors.is_none_or(|count| count == r.reflectors);
-    let shown: Vec<&FrontRow> = input.rows.iter().filter(drawn).collect();
+    let shown: Vec<&FrontRow> = rows.iter().filter(drawn).collect();
+    let place = |r: &&&FrontRow| [r.signal_error.max(SMALLEST_ERROR).log10(), r.median_ms.log10()];
+    let entrants = std::iter::once(Entrant::Planned).chain(Algorithm::ALL.map(Entrant::Forced));
+    let each = entrants.flat_map(|entrant| [Precision::F32, Precision::F64].map(|precision| (entrant, precision)));
+    let of = |(entrant, precision): (Entrant, Precision)| {
+        let is_planned = entrant == Entrant::Planned;
+        let sign = match precision {
+            Precision::F32 => Sign::Circle { filled: !is_planned },
+            Precision::F64 => Sign::Square { filled: !is_planned },
+        };
+        let own = shown.iter().filter(|r| r.algorithm == entrant && r.precision == precision);
+        let entry = Entry { sign, colour: colour(entrant, dark), name: format!("{entrant}, {precision}") };
+        Series { entry, places: own.map(|r| place(&r)).collect(), is_planned }
+    };
+    each.map(of).filter(|series| !series.places.is_empty()).collect()
+}
+
+fn plot(ui: &mut Ui, input: &Input<'_>, memory: &Memory) {
+    let drawn = series(input.rows, memory, ui.visuals().dark_mode);
+    legend::row(ui, &drawn.iter().map(|series| series.entry.clone()).collect::<Vec<_>>());
     let powers = |mark: GridMark| match (mark.value - mark.value.round()).abs() < 1e-6 {
         true => power_of_ten(mark.value.round() as i32),
         false => String::new(),
-    };
-    let places = |shown: &[&FrontRow]| -> Vec<[f64; 2]> {
-        shown.iter().map(|r| [r.signal_error.max(SMALLEST_ERROR).log10(), r.median_ms.log10()]).collect()
     };
     Plot::new("run time")
         .x_axis_label("largest error of a sample")
@@ -132,7 +157,6 @@ fn plot(ui: &mut Ui, input: &Input<'_>, memory: &Memory) {
         .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [10.0, 1.0, 0.5]))
         .x_axis_formatter(move |mark, _| powers(mark))
         .y_axis_formatter(move |mark, _| powers(mark))
-        .legend(Legend::default().background_alpha(0.7))
         .include_x(SMALLEST_ERROR.log10())
         .include_x(-2.0)
         .include_y(0.0)
@@ -144,24 +168,11 @@ fn plot(ui: &mut Ui, input: &Input<'_>, memory: &Memory) {
                 let line = HLine::new("one bare transform, one thread", bare.log10());
                 plot.hline(line.color(Color32::GRAY).width(1.0).style(egui_plot::LineStyle::dashed_loose()));
             }
-            let entrants = std::iter::once(Entrant::Planned).chain(Algorithm::ALL.map(Entrant::Forced));
-            for entrant in entrants {
-                for (precision, shape) in [(Precision::F32, MarkerShape::Circle), (Precision::F64, MarkerShape::Square)]
-                {
-                    let rows: Vec<&FrontRow> =
-                        shown.iter().copied().filter(|r| r.algorithm == entrant && r.precision == precision).collect();
-                    if rows.is_empty() {
-                        continue;
-                    }
-                    let planned = entrant == Entrant::Planned;
-                    plot.points(
-                        Points::new(format!("{entrant}, {precision}"), PlotPoints::from(places(&rows)))
-                            .shape(shape)
-                            .filled(!planned)
-                            .radius(if planned { 6.5 } else { 3.5 })
-                            .color(colour(entrant, dark)),
-                    );
-                }
+            for Series { entry, places, is_planned } in drawn {
+                let shape =
+                    if matches!(entry.sign, Sign::Circle { .. }) { MarkerShape::Circle } else { MarkerShape::Square };
+                let points = Points::new(entry.name, PlotPoints::from(places)).shape(shape).filled(!is_planned);
+                plot.points(points.radius(if is_planned { 6.5 } else { 3.5 }).color(entry.colour));
             }
         });
 }

@@ -3,7 +3,7 @@
 use crate::app::state::Command;
 use crate::engine::{Outcome, Report};
 use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, Label, RichText, ScrollArea, Ui};
 use std::time::Duration;
 
 /// What is shown.
@@ -34,6 +34,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     };
     egui::Frame::NONE.inner_margin(8).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            // What a stage says may take several lines.
             Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| table(ui, &update));
         });
     });
@@ -54,11 +55,11 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
         match &stage.outcome {
             Outcome::Computed(what) => {
                 ui.monospace(milliseconds(stage.took));
-                ui.label(what);
+                ui.add(Label::new(what).wrap());
             }
             Outcome::Skipped(why) => {
                 ui.weak("–");
-                ui.weak(format!("skipped: {why}"));
+                ui.add(Label::new(RichText::new(format!("skipped: {why}")).weak()).wrap());
             }
         }
         ui.end_row();
@@ -68,12 +69,12 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
     ui.end_row();
     ui.label("with pictures");
     ui.monospace(milliseconds(update.took));
-    ui.label(format!("{} pictures painted since the start", update.painted));
+    ui.add(Label::new(format!("{} pictures painted since the start", update.painted)).wrap());
     ui.end_row();
     if let Some((method, took)) = update.output {
         ui.label(method);
         ui.monospace(milliseconds(took));
-        ui.label(if update.outdated { "of an earlier scene" } else { "on a thread of its own" });
+        ui.add(Label::new(if update.outdated { "of an earlier scene" } else { "on a thread of its own" }).wrap());
         ui.end_row();
     }
 }
@@ -81,6 +82,7 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
     use crate::engine::{Engine, Wanted};
     use crate::radar::Radar;
     use crate::scene::Scene;
@@ -97,7 +99,9 @@ mod tests {
                 Update { report: &frame.report, took, painted: 7, output: Some(("capon", took)), outdated: true };
             asked.extend(show(ui, Input { update: Some(update) }));
         };
-        let timing = Harness::new_ui_state(draw, Vec::new());
+        let mut timing = Harness::builder().with_size([280.0, 700.0]).build_ui_state(draw, Vec::new());
+        timing.run_steps(3);
+        seen::assert_readable(timing.output());
         let _told = timing.get_by_label("of an earlier scene");
         let _counted = timing.get_by_label("7 pictures painted since the start");
         assert!(timing.state().is_empty());

@@ -3,10 +3,12 @@
 use crate::app::jobs::Log;
 use crate::app::state::Command;
 use crate::app::widgets::entry::button;
+use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::progress::progress;
+use crate::app::widgets::theme;
 use eframe::egui;
 use eframe::egui::{Color32, Grid, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints};
+use egui_plot::{Line, Plot, PlotPoints};
 use std::path::Path;
 
 /// What is watched.
@@ -80,7 +82,7 @@ fn waiting(input: &Input<'_>) -> String {
         // Who was told how it ended waits for nothing.
         Some(path) if input.note.is_none() => format!("Waiting for the first line of {}…", path.display()),
         Some(path) => format!("{} has no line.", path.display()),
-        None => "Open the log.csv of a run of `apertura train`, and watch its loss while it learns.".to_owned(),
+        None => "Open the log.csv of a training (apertura train), and watch its loss while it learns.".to_owned(),
     }
 }
 
@@ -97,15 +99,17 @@ fn curves(ui: &mut Ui, log: &Log) {
     let log10 = |points: &[[f64; 2]]| -> PlotPoints<'static> {
         points.iter().filter(|p| p[1] > 0.0).map(|p| [p[0], p[1].log10()]).collect()
     };
+    let lines = [("loss", Color32::GRAY), ("smoothed", theme::Inks::of(ui.visuals()).selected)];
+    let entry = |(name, colour): (&str, Color32)| Entry { sign: Sign::Line, colour, name: name.to_owned() };
+    legend::row(ui, &lines.map(entry));
     Plot::new("loss")
         .x_axis_label("step")
         .y_axis_label("loss, powers of ten")
-        .legend(Legend::default().background_alpha(0.7))
         .allow_scroll(false)
         .y_axis_min_width(36.0)
         .show(ui, |plot| {
             plot.line(Line::new("loss", log10(&log.loss)).color(Color32::GRAY).width(1.0));
-            plot.line(Line::new("smoothed", log10(&log.smoothed)).color(Color32::from_rgb(255, 170, 40)).width(1.8));
+            plot.line(Line::new("smoothed", log10(&log.smoothed)).color(lines[1].1).width(1.8));
         });
 }
 

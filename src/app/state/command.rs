@@ -3,7 +3,7 @@
 use super::bounds_settings::BoundsSettings;
 use super::lossy_save::LossyAnswer;
 use super::panel::Panel;
-use super::settings::Projection;
+use super::settings::{Projection, Units};
 use super::several::Several;
 use super::view::Cursor;
 use crate::interact::{Place, Snap};
@@ -156,6 +156,20 @@ pub enum Command {
     ToggleProjection,
     /// Range-angle or Cartesian maps.
     SetProjection(Projection),
+    /// Lambda or decibels, the other way round.
+    ToggleUnits,
+    /// Lambda or decibels on colour bars and cuts.
+    SetUnits(Units),
+    /// The difference with its sign or without, the other way round.
+    ToggleAbsoluteDifference,
+    /// The difference on a scale that just holds it or on one up to 1, the other way round.
+    ToggleWholeDifference,
+    /// Keep the cuts that are shown, whatever the cursor does.
+    PinCuts,
+    /// Let the pinned cuts of this number go.
+    Unpin(usize),
+    /// Let all pinned cuts go.
+    UnpinAll,
     /// Colours of the maps.
     Colours(ColourMap),
     /// How maps are normalised.

@@ -2,7 +2,7 @@
 
 use super::command::{Command, NewObject};
 use super::panel::Panel;
-use super::settings::Projection;
+use super::settings::{Projection, Units};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, Decibels, WindowFunction};
@@ -94,6 +94,24 @@ const TABLE: &[Entry] = {
             "Normalise: min-max",
             "Λ is 0 at the smallest cell and 1 at the largest (the thesis)",
             key(Key::M),
+        ),
+        entry(ToggleUnits, "Λ / dB", "Count Λ or decibels below the peak on colour bars and cuts", key(Key::D)),
+        entry(SetUnits(Units::Lambda), "Scale: Λ", "Count Λ, 0 to 1, on colour bars and cuts", None),
+        entry(SetUnits(Units::Decibels), "Scale: dB", "Count decibels below the peak on colour bars and cuts", None),
+        entry(ToggleAbsoluteDifference, "|Difference|", "Draw the difference with its sign or without", None),
+        entry(
+            ToggleWholeDifference,
+            "Difference: automatic scale",
+            "Draw the difference on a scale that just holds it, or on one up to 1",
+            None,
+        ),
+        entry(PinCuts, "Pin cuts", "Keep the cuts that are shown while the cursor moves on", key(Key::K)),
+        entry(UnpinAll, "Unpin cuts", "Let all pinned cuts go", None),
+        entry(
+            Normalise(Normalisation::DynamicRange(Decibels(40.0))),
+            "Normalise: 40 dB",
+            "Λ is 0 at 40 dB below the peak",
+            None,
         ),
         entry(
             Normalise(Normalisation::DynamicRange(Decibels(60.0))),

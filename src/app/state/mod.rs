@@ -5,6 +5,7 @@ mod arrangement;
 mod bounds_settings;
 mod command;
 mod command_table;
+mod cuts;
 mod guided;
 mod lesson_run;
 mod lossy_save;
@@ -19,13 +20,14 @@ pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
 pub use command::{Command, EvaluationChoice, NewObject};
 pub use command_table::{listed, shortcuts};
+pub use cuts::{CutMap, PinnedCut, Pins};
 pub use guided::{Guided, Setup};
 pub use lesson_run::LessonRun;
 pub use lossy_save::{LossyAnswer, LossySave};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, Panel};
-pub use settings::{Brightness, Projection, Settings};
+pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
@@ -57,6 +59,8 @@ pub struct State {
     pub map_views: MapViews,
     /// Where the pointer is.
     pub pointer: Pointer,
+    /// Cuts that stay.
+    pub pins: Pins,
     /// What the guide did.
     pub guided: Guided,
     /// A file that can't hold all of the scene, if it is to be written.

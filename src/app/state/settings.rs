@@ -20,6 +20,26 @@ pub enum Projection {
     Cartesian,
 }
 
+/// What the scale of a map or a cut counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Units {
+    /// Lambda, 0 to 1.
+    #[default]
+    Lambda,
+    /// Decibels below the peak.
+    Decibels,
+}
+
+/// How the difference of output and target is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DifferenceView {
+    /// Its absolute value; output minus target where not.
+    pub absolute: bool,
+    /// On a scale that reaches 1 whatever the difference; one that just holds it where not.
+    pub whole: bool,
+}
+
 /// Light or dark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Brightness {
@@ -40,14 +60,16 @@ pub struct Settings {
     pub floor: Floor,
     /// How the maps are normalised.
     pub normalisation: Normalisation,
-    /// The range last used with [`Normalisation::DynamicRange`].
-    pub dynamic_range: Decibels,
     /// The ratio last used with [`Floor::Snr`].
     pub snr: Decibels,
     /// Colours of the maps.
     pub colours: ColourMap,
     /// Coordinates of the maps.
     pub projection: Projection,
+    /// What colour bars and cuts count.
+    pub units: Units,
+    /// How the difference is drawn.
+    pub difference: DifferenceView,
     /// eta', the threshold of the target.
     pub target_eta: f32,
     /// eta for each method, where it differs from the method's own.
@@ -86,17 +108,7 @@ impl Settings {
                 })*
             };
         }
-        take_back!(
-            floor,
-            target_eta,
-            method_eta,
-            normalisation,
-            dynamic_range,
-            snr,
-            projection,
-            method,
-            show_reflectors
-        );
+        take_back!(floor, target_eta, method_eta, normalisation, snr, projection, method, show_reflectors);
     }
 }
 
@@ -105,10 +117,11 @@ impl Default for Settings {
         Settings {
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
-            dynamic_range: Decibels(100.0),
             snr: Decibels(20.0),
             colours: ColourMap::default(),
             projection: Projection::default(),
+            units: Units::default(),
+            difference: DifferenceView::default(),
             target_eta: crate::evaluate::TARGET_ETA,
             method_eta: BTreeMap::new(),
             method: String::new(),

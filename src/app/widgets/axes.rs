@@ -1,15 +1,18 @@
-//! Axes of maps and of the scene: ticks at round numbers, labels that don't collide.
+//! Axes of maps, charts and of the scene: ticks at round numbers, labels that neither collide nor leave the panel.
 
 use eframe::egui;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
 /// Space for tick labels and an axis title.
-pub const LEFT: f32 = 34.0;
-pub const BOTTOM: f32 = 30.0;
+pub const LEFT: f32 = 46.0;
+pub const BOTTOM: f32 = 36.0;
+
+/// Between a side of the plot and its labels.
+const GAP: f32 = 5.0;
 
 /// Font of tick labels.
 pub fn tick_font() -> FontId {
-    FontId::proportional(10.5)
+    FontId::proportional(12.0)
 }
 
 /// Round numbers between `low` and `high`, about `count` of them; the order of the ends doesn't matter.
@@ -26,61 +29,142 @@ pub fn ticks(low: f64, high: f64, count: f32) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A number with as many digits as neighbouring ticks need.
+/// A number with as many digits as neighbouring ticks need; all of an axis have the same.
 pub fn tick_text(value: f64, step: f64) -> String {
-    let digits = (-step.abs().log10()).ceil().clamp(0.0, 6.0) as usize;
+    let digits = (-step.abs().log10() - 1e-9).ceil().clamp(0.0, 6.0) as usize;
     let text = format!("{value:.digits$}");
-    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
-        "0".to_owned()
-    } else {
-        text.replace('-', "−")
+    match text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
+        true => text.trim_start_matches('-').to_owned(),
+        false => text.replace('-', "−"),
     }
+}
+
+/// A mark of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tick {
+    /// Where.
+    pub value: f64,
+    /// What stands there.
+    pub text: String,
+}
+
+/// [`ticks`] with their texts.
+pub fn round_ticks(low: f64, high: f64, count: f32) -> Vec<Tick> {
+    let values = ticks(low, high, count);
+    let step = values.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
+    values.into_iter().map(|value| Tick { value, text: tick_text(value, step) }).collect()
 }
 
 /// An axis: the values at the two ends of a side of the plot, and its title.
 #[derive(Debug, Clone, Copy)]
 pub struct Axis<'a> {
+    /// Left, or below.
     pub low: f64,
+    /// Right, or above.
     pub high: f64,
+    /// What it counts, with its unit.
     pub title: &'a str,
+    /// Marks; at round numbers where `None`.
+    pub ticks: Option<&'a [Tick]>,
 }
 
-impl Axis<'_> {
-    fn part(&self, value: f64) -> f32 {
+impl<'a> Axis<'a> {
+    /// With marks at round numbers.
+    pub fn new(low: f64, high: f64, title: &'a str) -> Self {
+        Axis { low, high, title, ticks: None }
+    }
+
+    /// Where a value is, 0 to 1.
+    pub fn part(&self, value: f64) -> f32 {
         ((value - self.low) / (self.high - self.low)) as f32
+    }
+
+    /// The value at a part of it.
+    pub fn at(&self, part: f32) -> f64 {
+        self.low + f64::from(part) * (self.high - self.low)
+    }
+
+    /// Its marks along `length` points to the right: as many as have room for their labels.
+    pub fn across(&self, painter: &Painter, length: f32) -> Vec<Tick> {
+        let room = |ticks: &[Tick]| ticks.iter().map(|t| width(painter, &t.text) + 10.0).fold(0.0, f32::max);
+        self.marks(length, 60.0, room)
+    }
+
+    /// Its marks along `length` points upwards.
+    pub fn upwards(&self, length: f32) -> Vec<Tick> {
+        self.marks(length, 36.0, |_| 18.0)
+    }
+
+    /// About one mark every `spacing` points, more where that would be only two, but none without the `room` that its label needs.
+    fn marks(&self, length: f32, spacing: f32, room: impl Fn(&[Tick]) -> f32) -> Vec<Tick> {
+        if let Some(ticks) = self.ticks {
+            let inside = |t: &&Tick| (-1e-4..=1.0 + 1e-4).contains(&self.part(t.value));
+            return ticks.iter().filter(inside).cloned().collect();
+        }
+        let most = (length / spacing).max(4.0) as usize;
+        let of = |count: usize| round_ticks(self.low, self.high, count as f32);
+        let fits = |ticks: &Vec<Tick>| ticks.len().saturating_sub(1) as f32 * room(ticks) <= length;
+        (1..=most).rev().map(of).find(fits).unwrap_or_else(|| of(1))
     }
 }
 
-/// Draws a frame around `rect`, ticks and titles left of it and below it.
+/// Marks of an axis that leads to the right, and of one that leads up.
+pub fn marks_of(painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) -> (Vec<Tick>, Vec<Tick>) {
+    (x.across(painter, rect.width()), y.upwards(rect.height()))
+}
+
+/// Draws a frame around `rect`, ticks and titles left of it and below it, all of it within the painter's clip rectangle.
 pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     let ink = ui.visuals().weak_text_color();
     let stroke = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
     painter.rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Outside);
-    let x_ticks = ticks(x.low, x.high, rect.width() / 58.0);
-    let x_step = step_of(&x_ticks);
-    for value in x_ticks {
-        let at = rect.left() + x.part(value) * rect.width();
+    let (x_marks, y_marks) = marks_of(painter, rect, x, y);
+    let mut free = f32::NEG_INFINITY;
+    for tick in &x_marks {
+        let at = rect.left() + x.part(tick.value) * rect.width();
         painter.vline(at, rect.bottom()..=rect.bottom() + 3.0, Stroke::new(1.0, ink));
-        text(painter, pos2(at, rect.bottom() + 4.0), Align2::CENTER_TOP, &tick_text(value, x_step), ink);
+        let label = place(painter, pos2(at, rect.bottom() + 3.0), Align2::CENTER_TOP, &tick.text);
+        if label.left() > free {
+            text(painter, label.min, Align2::LEFT_TOP, &tick.text, ink);
+            free = label.right() + 4.0;
+        }
     }
-    let y_ticks = ticks(y.low, y.high, rect.height() / 34.0);
-    let y_step = step_of(&y_ticks);
-    for value in y_ticks {
-        let at = rect.bottom() - y.part(value) * rect.height();
+    for tick in &y_marks {
+        let at = rect.bottom() - y.part(tick.value) * rect.height();
         painter.hline(rect.left() - 3.0..=rect.left(), at, Stroke::new(1.0, ink));
-        text(painter, pos2(rect.left() - 5.0, at), Align2::RIGHT_CENTER, &tick_text(value, y_step), ink);
+        let label = place(painter, pos2(rect.left() - GAP, at), Align2::RIGHT_CENTER, &tick.text);
+        // The lowest label must not run into that of the other axis.
+        let label = label.translate(vec2(0.0, (rect.bottom() + 2.0 - label.bottom()).min(0.0)));
+        text(painter, label.min, Align2::LEFT_TOP, &tick.text, ink);
     }
-    text(painter, pos2(rect.center().x, rect.bottom() + 16.0), Align2::CENTER_TOP, x.title, ink);
-    if rect.height() > 60.0 {
-        let galley = painter.layout_no_wrap(y.title.to_owned(), tick_font(), ink);
-        let at = pos2(rect.left() - LEFT + 2.0, rect.center().y + galley.size().x / 2.0);
-        let shape = egui::epaint::TextShape::new(at, galley, ink).with_angle(-std::f32::consts::FRAC_PI_2);
-        painter.add(shape);
+    let title = place(painter, pos2(rect.center().x, rect.bottom() + 18.0), Align2::CENTER_TOP, x.title);
+    text(painter, title.min, Align2::LEFT_TOP, x.title, ink);
+    let galley = painter.layout_no_wrap(y.title.to_owned(), tick_font(), ink);
+    if galley.size().x <= rect.height() {
+        let labels = y_marks.iter().map(|t| width(painter, &t.text)).fold(0.0, f32::max);
+        let left = (rect.left() - GAP - labels - 3.0 - galley.size().y).max(painter.clip_rect().left() + 1.0);
+        let at = pos2(left, rect.center().y + galley.size().x / 2.0);
+        painter.add(egui::epaint::TextShape::new(at, galley, ink).with_angle(-std::f32::consts::FRAC_PI_2));
     }
 }
 
-fn step_of(ticks: &[f64]) -> f64 {
-    ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0)
+/// Width of small text.
+pub fn width(painter: &Painter, text: &str) -> f32 {
+    painter.layout_no_wrap(text.to_owned(), tick_font(), Color32::PLACEHOLDER).size().x
+}
+
+/// The first of several titles for which there is room; the last where there is for none.
+pub fn fitting<'a>(painter: &Painter, room: f32, titles: &[&'a str]) -> &'a str {
+    let fits = titles.iter().find(|title| width(painter, title) <= room);
+    fits.or(titles.last()).copied().unwrap_or_default()
+}
+
+/// Where small text goes so that nothing of it is cut off.
+fn place(painter: &Painter, at: Pos2, align: Align2, text: &str) -> Rect {
+    let galley = painter.layout_no_wrap(text.to_owned(), tick_font(), Color32::PLACEHOLDER);
+    let (rect, room) = (align.anchor_size(at, galley.size()), painter.clip_rect().shrink(1.0));
+    let back = |low: f32, high: f32, from: f32, to: f32| (from - low).max(0.0) + (to - high).min(0.0);
+    rect.translate(vec2(back(rect.left(), rect.right(), room.left(), room.right()), 0.0))
 }
 
 /// Small text.
@@ -90,7 +174,7 @@ pub fn text(painter: &Painter, at: Pos2, align: Align2, text: &str, colour: Colo
 
 /// Small text on a patch that makes it readable over any picture.
 pub fn text_on_patch(painter: &Painter, at: Pos2, align: Align2, text: &str) {
-    let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(11.0), Color32::WHITE);
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(12.0), Color32::WHITE);
     let rect = align.anchor_size(at, galley.size()).expand2(vec2(4.0, 2.0));
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(170));
     painter.galley(rect.min + vec2(4.0, 2.0), galley, Color32::WHITE);
@@ -106,9 +190,14 @@ mod tests {
         assert_eq!(ticks(1.0, -1.0, 4.0), ticks(-1.0, 1.0, 4.0));
         assert_eq!(ticks(0.0, 38.4, 4.0), [0.0, 10.0, 20.0, 30.0]);
         assert!(ticks(1.0, 1.0, 4.0).is_empty() && ticks(f64::NAN, 1.0, 4.0).is_empty());
-        assert_eq!(
-            (tick_text(-0.5, 0.5), tick_text(-0.0, 0.5), tick_text(20.0, 10.0)),
-            ("−0.5".into(), "0".into(), "20".into())
-        );
+    }
+
+    #[test]
+    fn all_labels_of_an_axis_have_the_same_digits() {
+        let texts = |low, high| round_ticks(low, high, 4.0).into_iter().map(|t| t.text).collect::<Vec<_>>();
+        assert_eq!(texts(-1.0, 1.0), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(texts(0.0, 38.4), ["0", "10", "20", "30"]);
+        assert_eq!(texts(-0.1, 0.1), ["−0.10", "−0.05", "0.00", "0.05", "0.10"]);
+        assert_eq!(tick_text(-0.0, 0.5), "0.0");
     }
 }

@@ -63,10 +63,6 @@ impl Inks {
 pub const MARK: Color32 = Color32::WHITE;
 pub const MARK_EDGE: Color32 = Color32::from_black_alpha(200);
 
-/// Signs of messages.
-pub const INFO: Color32 = Color32::from_rgb(92, 164, 240);
-pub const ERROR: Color32 = Color32::from_rgb(240, 96, 96);
-
 /// Sets both themes up and chooses one.
 pub fn apply(ctx: &Context, theme: Brightness) {
     for of in [egui::Theme::Dark, egui::Theme::Light] {
@@ -78,12 +74,18 @@ pub fn apply(ctx: &Context, theme: Brightness) {
                 style.visuals.panel_fill = Color32::from_rgb(30, 33, 40);
                 style.visuals.extreme_bg_color = Color32::from_rgb(18, 20, 25);
                 style.visuals.override_text_color = Some(Color32::from_rgb(218, 223, 232));
-                style.visuals.weak_text_color = Some(Color32::from_rgb(154, 162, 176));
+                style.visuals.weak_text_color = Some(Color32::from_rgb(172, 180, 194));
+                style.visuals.error_fg_color = Color32::from_rgb(255, 140, 130);
+                style.visuals.warn_fg_color = Color32::from_rgb(255, 190, 92);
+                style.visuals.hyperlink_color = Color32::from_rgb(116, 180, 255);
                 style.visuals.selection.bg_fill = Color32::from_rgb(38, 92, 150);
             } else {
                 style.visuals.panel_fill = Color32::from_rgb(245, 247, 250);
                 style.visuals.override_text_color = Some(Color32::from_rgb(34, 40, 52));
-                style.visuals.weak_text_color = Some(Color32::from_rgb(88, 98, 116));
+                style.visuals.weak_text_color = Some(Color32::from_rgb(78, 88, 106));
+                style.visuals.error_fg_color = Color32::from_rgb(176, 24, 32);
+                style.visuals.warn_fg_color = Color32::from_rgb(140, 78, 0);
+                style.visuals.hyperlink_color = Color32::from_rgb(0, 92, 184);
                 style.visuals.selection.bg_fill = Color32::from_rgb(176, 210, 250);
             }
         });
@@ -93,4 +95,44 @@ pub fn apply(ctx: &Context, theme: Brightness) {
         Brightness::Light => egui::ThemePreference::Light,
         Brightness::Dark => egui::ThemePreference::Dark,
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::Rgba;
+
+    /// Contrast of two opaque colours as the WCAG defines it, 1 to 21.
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let luminance = |colour: Color32| {
+            let linear = Rgba::from(colour);
+            0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b()
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn every_text_is_readable_in_dark_and_light() {
+        let ctx = Context::default();
+        apply(&ctx, Brightness::Dark);
+        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+            let visuals = ctx.style_of(theme).visuals.clone();
+            let inks = Inks::of(&visuals);
+            let (weak, error) = (visuals.weak_text_color(), visuals.error_fg_color);
+            for ground in [visuals.panel_fill, visuals.extreme_bg_color, visuals.window_fill] {
+                for ink in [visuals.text_color(), weak, error, visuals.warn_fg_color, visuals.hyperlink_color] {
+                    assert!(
+                        contrast(ink, ground) >= 4.5,
+                        "{theme:?}: {ink:?} on {ground:?}: {}",
+                        contrast(ink, ground)
+                    );
+                }
+            }
+            for ground in [inks.ground, inks.beyond] {
+                assert!(contrast(inks.grid_text, ground) >= 4.5, "{theme:?}: the scene's grid");
+            }
+            assert!(error.r() < 255 || error.g() > 100, "{theme:?}: pure red flickers");
+        }
+    }
 }

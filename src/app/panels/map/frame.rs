@@ -75,10 +75,19 @@ pub struct Cells<'a> {
     pub scale: Option<LambdaScale>,
 }
 
+/// The reflectors of an object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Marked {
+    /// One after the other.
+    pub reflectors: Vec<Reflector>,
+    /// Whether they stand in a line: then one outline says more than their rings.
+    pub is_line: bool,
+}
+
 /// Reflectors drawn over a map.
 pub struct Marks<'a> {
-    /// True ones, as rings.
-    pub reflectors: &'a [Reflector],
+    /// True ones, object by object: as rings, or as the outline of a line.
+    pub objects: &'a [Marked],
     /// Those the method found, as crosses.
     pub found: &'a [Reflector],
 }

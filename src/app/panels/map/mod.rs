@@ -1,16 +1,19 @@
 //! One map: picture, axes, colour bar, cursor, marks.
 
-mod colour_bar;
 mod frame;
+mod outline;
 mod overlay;
+mod scale;
 mod theory;
 
-pub use frame::{Cells, Marks};
+pub use frame::{Cells, Marked, Marks};
 pub use theory::Theory;
 
-use crate::app::state::{Command, Cursor, MapKind, MapView, Panel, Projection};
+use crate::app::state::{Command, Cursor, DifferenceView, MapKind, MapView, Panel, Projection, Units};
 use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::entry::entry;
+use crate::app::widgets::numbers::percent;
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::Metrics;
 use crate::picture::ColourMap;
@@ -29,8 +32,14 @@ pub struct Input<'a> {
     pub projection: Projection,
     /// Colours of Lambda.
     pub colours: ColourMap,
+    /// What the colour bar counts.
+    pub units: Units,
+    /// How a difference is drawn.
+    pub difference: DifferenceView,
     /// Its picture, if there is one.
     pub texture: Option<TextureId>,
+    /// Where the scale of that picture ends, Lambda.
+    pub end: f32,
     /// Whether the picture is of an earlier scene, and has been for long enough to be told.
     pub stale: bool,
     /// The numbers behind the picture.
@@ -62,16 +71,13 @@ pub struct Problem<'a> {
     pub instead: Option<&'static str>,
 }
 
-/// Width of the colour bar with its numbers.
-const BAR: f32 = 38.0;
-
 /// Draws a map.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let bar = has_bar(input.kind) && area.width() > 250.0;
-    let rect = rect_of(area, bar, input.projection);
+    let bar = has_bar(input.kind).then(|| bar_of(&input)).filter(|_| area.width() > 200.0);
+    let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection);
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
@@ -118,9 +124,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
         axes::text_on_patch(&inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
     }
-    if bar {
-        let bar = Rect::from_min_max(pos2(rect.right() + 7.0, rect.top()), pos2(rect.right() + 16.0, rect.bottom()));
-        colour_bar::draw(ui, &painter, bar, input.kind, input.colours);
+    if let Some(bar) = bar {
+        bar.draw(ui, &painter, rect);
     }
     response.context_menu(|ui| menu(ui, input.kind, &mut asked));
     asked
@@ -149,8 +154,8 @@ pub fn caption(input: Caption) -> Option<String> {
         MapKind::TargetAbove => format!("η' = {:.2} {updating}", input.target_eta),
         MapKind::OutputAbove => {
             let figures = input.metrics.map_or_else(String::new, |m| {
-                let detection = m.detection.map_or("–".to_owned(), |d| format!("{:.1} %", d * 100.0));
-                format!("P_D {detection} · P_FA {:.2} % · ", m.false_alarm * 100.0)
+                let detection = m.detection.map_or("–".to_owned(), percent);
+                format!("P_D {detection} · P_FA {} · ", percent(m.false_alarm))
             });
             format!("{figures}η = {:.2} {updating}", input.output_eta)
         }
@@ -177,11 +182,18 @@ fn has_bar(kind: MapKind) -> bool {
     !matches!(kind, MapKind::TargetAbove | MapKind::OutputAbove)
 }
 
+fn bar_of(input: &Input<'_>) -> Bar {
+    let Input { kind, colours, units, difference, end, .. } = *input;
+    let lambda = input.cells.as_ref().and_then(|cells| cells.scale);
+    scale::Scale { kind, colours, units, lambda, difference, end }.bar()
+}
+
 /// Where the picture goes within the panel.
-fn rect_of(area: Rect, bar: bool, projection: Projection) -> Rect {
-    let right = if bar { BAR } else { 10.0 };
+fn rect_of(painter: &Painter, area: Rect, bar: Option<&Bar>, projection: Projection) -> Rect {
+    let height = area.height() - axes::BOTTOM - 8.0;
+    let right = bar.map_or(12.0, |bar| bar.width(painter, height));
     let rect = Rect::from_min_max(
-        area.min + vec2(axes::LEFT + 4.0, 8.0),
+        area.min + vec2(axes::LEFT, 8.0),
         pos2((area.right() - right).max(area.left() + 60.0), (area.bottom() - axes::BOTTOM).max(area.top() + 30.0)),
     );
     if projection == Projection::RangeAngle {
@@ -219,17 +231,20 @@ fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
             let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
             let title = match radar.carrier {
                 Carrier::OneWay => "cos θ",
-                Carrier::TwoWay => "cos θ, folded: each column stands for two directions",
+                Carrier::TwoWay => {
+                    let titles = ["cos θ, folded: each column stands for two directions", "cos θ, folded"];
+                    axes::fitting(painter, rect.width(), &titles)
+                }
             };
-            let x = Axis { low: cos(view.low.x), high: cos(view.high.x), title };
-            (x, Axis { low: range(view.low.y), high: range(view.high.y), title: "range, m" })
+            let x = Axis::new(cos(view.low.x), cos(view.high.x), title);
+            (x, Axis::new(range(view.low.y), range(view.high.y), "range, m"))
         }
         Projection::Cartesian => {
             let extent = radar.max_range_metres();
             let x = |fraction: f32| (2.0 * f64::from(fraction) - 1.0) * extent;
             let y = |fraction: f32| f64::from(fraction) * extent;
-            let across = Axis { low: x(view.low.x), high: x(view.high.x), title: "x, m" };
-            (across, Axis { low: y(view.low.y), high: y(view.high.y), title: "y, m" })
+            let across = Axis::new(x(view.low.x), x(view.high.x), "x, m");
+            (across, Axis::new(y(view.low.y), y(view.high.y), "y, m"))
         }
     };
     axes::draw(ui, painter, rect, x, y);
@@ -269,6 +284,7 @@ fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
     for command in [
         Command::Maximise(Panel::Map(kind)),
         Command::ToggleProjection,
+        Command::ToggleUnits,
         Command::ResetMaps,
         Command::ToggleReflectors,
         Command::ToggleTheory,
@@ -276,31 +292,44 @@ fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
     ] {
         entry(ui, command, true, asked);
     }
+    if kind == MapKind::Difference {
+        entry(ui, Command::ToggleAbsoluteDifference, true, asked);
+        entry(ui, Command::ToggleWholeDifference, true, asked);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
+    use crate::maps::{LambdaScale, RangeAngleMap};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use ndarray::Array2;
 
-    fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
-        let radar = Radar::default();
-        let input = Input {
+    fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
+        Input {
             kind: MapKind::Output,
-            radar: &radar,
+            radar,
             projection: Projection::RangeAngle,
             colours: ColourMap::Grey,
+            units: Units::Lambda,
+            difference: DifferenceView::default(),
             texture: None,
+            end: 1.0,
             stale: false,
             cells: None,
-            marks: Marks { reflectors: &[], found: &[] },
+            marks: Marks { objects: &[], found: &[] },
             theory: None,
             cursor: None,
             error,
             veil: None,
-        };
-        asked.extend(show(ui, input, &mut MapView::default()));
+        }
+    }
+
+    fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
+        let radar = Radar::default();
+        asked.extend(show(ui, input(&radar, error), &mut MapView::default()));
     }
 
     #[test]
@@ -320,8 +349,54 @@ mod tests {
         let mut map = Harness::new_ui_state(|ui, asked| draw(ui, Some(problem()), asked), Vec::new());
         map.step();
         let _told = map.get_by_label("trained on another radar");
+        let _one = map.get_by_label("Output map");
         map.get_by_label("Use capon").click();
         map.step();
         assert!(map.state().contains(&Command::Method("capon")), "{:?}", map.state());
+    }
+
+    #[test]
+    fn every_label_of_a_map_is_inside_its_panel_whatever_is_counted() {
+        let lambda = RangeAngleMap { lambda: Array2::zeros((2, 2)) };
+        for size in [[270.0, 130.0], [450.0, 270.0], [1400.0, 800.0]] {
+            for (kind, units) in [
+                (MapKind::Target, Units::Lambda),
+                (MapKind::Target, Units::Decibels),
+                (MapKind::Difference, Units::Lambda),
+                (MapKind::Difference, Units::Decibels),
+                (MapKind::TargetAbove, Units::Lambda),
+            ] {
+                let (lambda, radar) = (lambda.clone(), Radar::default());
+                let map = Harness::builder().with_size(size).build_ui(move |ui| {
+                    let scale = Some(LambdaScale { peak: 3.0, floor: -12.5 });
+                    let cells = Some(Cells { map: &lambda, minus: None, scale });
+                    let texture = Some(TextureId::default());
+                    let input = Input { kind, units, cells, texture, end: 0.05, ..input(&radar, None) };
+                    _ = show(ui, input, &mut MapView::default());
+                });
+                seen::assert_readable(map.output());
+                let texts = seen::texts(map.output());
+                assert!(texts.iter().any(|t| t.text == "range, m" || size[1] < 200.0), "{texts:?}");
+                let bar = match (kind, units) {
+                    (MapKind::TargetAbove, _) => None,
+                    (MapKind::Difference, Units::Lambda) => Some("ΔΛ"),
+                    (MapKind::Difference, Units::Decibels) => Some("Δ dB"),
+                    (_, Units::Lambda) => Some("Λ"),
+                    (_, Units::Decibels) => Some("−200"),
+                };
+                assert!(bar.is_none_or(|bar| texts.iter().any(|t| t.text == bar)), "{bar:?} at {size:?}: {texts:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
+        let radar = Radar::default();
+        let map = Harness::builder().build_ui(move |ui| {
+            _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default());
+        });
+        let texts = seen::texts(map.output());
+        assert!(texts.iter().any(|t| t.text == "computing…"));
+        assert!(!texts.iter().any(|t| t.text.contains("earlier scene")), "{texts:?}");
     }
 }

@@ -1,30 +1,42 @@
 //! What is drawn over a map: true and found reflectors, the pointer's place and the value there.
 
-use super::frame::{Cells, Frame, Marks};
+use super::frame::{Cells, Frame, Marked, Marks};
+use super::outline::outline;
 use crate::app::state::{Cursor, Projection};
 use crate::app::widgets::axes;
+use crate::app::widgets::numbers::signed;
 use crate::app::widgets::theme::{MARK, MARK_EDGE};
 use crate::scene::Reflector;
-use eframe::egui::{Align2, Color32, Painter, Pos2, Stroke, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
 
 /// Most reflectors that are marked.
 const MARKS: usize = 4000;
 
+/// Radius of a ring, points.
+const RADIUS: f32 = 6.0;
+
 /// How near the pointer must be to a ring to be told the true direction.
 const NEAR: f32 = 9.0;
 
-/// True reflectors as rings, those the method found as crosses: where the map shows what stands there. A ring under the `pointer` tells
-/// the direction in which its reflector really stands.
+/// True reflectors as rings or as outlines of lines, those the method found as crosses: where the map shows what stands there. The one
+/// under the `pointer` tells the direction in which it really stands.
 pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>, pointer: Option<Pos2>) {
-    let radius = if marks.reflectors.len() > 60 { 2.5 } else { 6.0 };
+    let mut left = MARKS;
     let mut nearest: Option<(&Reflector, f32)> = None;
-    for r in marks.reflectors.iter().take(MARKS) {
-        let at = frame.blob(r);
-        painter.circle_stroke(at, radius, Stroke::new(2.5, MARK_EDGE));
-        painter.circle_stroke(at, radius, Stroke::new(1.2, MARK));
-        let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
-        if distance < nearest.map_or(NEAR, |(_, d)| d) {
-            nearest = Some((r, distance));
+    for object in marks.objects {
+        let reflectors = &object.reflectors[..object.reflectors.len().min(left)];
+        left -= reflectors.len();
+        let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
+        for ring in rings(object, &blobs, frame.rect.height()) {
+            for (width, colour) in [(2.5, MARK_EDGE), (1.2, MARK)] {
+                painter.add(ring.shape(Stroke::new(width, colour)));
+            }
+        }
+        for (reflector, at) in reflectors.iter().zip(blobs) {
+            let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
+            if distance < nearest.map_or(NEAR, |(_, d)| d) {
+                nearest = Some((reflector, distance));
+            }
         }
     }
     for r in marks.found.iter().take(MARKS) {
@@ -34,6 +46,33 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>, pointer: Op
     if let Some((reflector, _)) = nearest {
         true_direction(painter, frame, reflector);
     }
+}
+
+/// What is drawn around reflectors.
+enum Ring {
+    Circle(Pos2, f32),
+    Outline(Vec<Pos2>),
+}
+
+impl Ring {
+    fn shape(&self, stroke: Stroke) -> Shape {
+        match self {
+            Ring::Circle(at, radius) => Shape::circle_stroke(*at, *radius, stroke),
+            Ring::Outline(points) => Shape::closed_line(points.clone(), stroke),
+        }
+    }
+}
+
+/// A ring around each reflector; around a line whose rings would run together, one outline. Where a line wraps around the end of the
+/// ranges, it is in two pieces: nothing is as far apart as `height` otherwise.
+fn rings(object: &Marked, blobs: &[Pos2], height: f32) -> Vec<Ring> {
+    let radius = if object.reflectors.len() > 20 && !object.is_line { 2.5 } else { RADIUS };
+    let fused = |pair: &[Pos2]| pair[0].distance(pair[1]) < 2.0 * radius;
+    if !object.is_line || !blobs.windows(2).all(|pair| fused(pair) || pair[0].distance(pair[1]) > height / 2.0) {
+        return blobs.iter().map(|at| Ring::Circle(*at, radius)).collect();
+    }
+    let pieces = blobs.chunk_by(|a, b| a.distance(*b) <= height / 2.0);
+    pieces.map(|piece| Ring::Outline(outline(piece, RADIUS))).collect()
 }
 
 /// From a ring to where it would be without the beam's squint.
@@ -85,13 +124,16 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
 /// Value of a cell in Lambda and decibels below the peak.
 fn value_text(cells: &Cells<'_>, bin: usize, column: usize) -> Option<String> {
     let lambda = *cells.map.lambda.get((bin, column))?;
+    let range_db = cells.scale.map(|s| 20.0 * (s.peak - s.floor));
     if let Some(minus) = cells.minus {
-        return Some(format!("ΔΛ {:+.3}", lambda - minus.lambda.get((bin, column))?));
+        let difference = f64::from(lambda - minus.lambda.get((bin, column))?);
+        let decibels = range_db.map_or_else(String::new, |range| format!("  {} dB", signed(range * difference, 1)));
+        return Some(format!("ΔΛ {}{decibels}", signed(difference, 3)));
     }
-    let decibels = cells.scale.map(|s| 20.0 * (s.peak - s.floor) * (f64::from(lambda) - 1.0));
-    Some(match decibels {
+    Some(match range_db.map(|range| range * (f64::from(lambda) - 1.0)) {
         // The peak itself, and silence, are 0 dB below the peak, not -0.
-        Some(db) => format!("Λ {lambda:.3}  {:6.1} dB", if db > -0.05 { 0.0 } else { db }),
+        Some(db) if db > -0.05 => format!("Λ {lambda:.3}  {:>6} dB", "0.0"),
+        Some(db) => format!("Λ {lambda:.3}  {:>6} dB", signed(db, 1)),
         None => format!("Λ {lambda:.3}"),
     })
 }
@@ -106,10 +148,25 @@ mod tests {
     fn values_are_told_in_lambda_and_decibels_and_nothing_is_minus_zero() {
         let map = RangeAngleMap { lambda: array![[1.0f32, 0.5], [0.0, 0.25]] };
         let cells = |peak, floor| Cells { map: &map, minus: None, scale: Some(LambdaScale { peak, floor }) };
-        assert_eq!(value_text(&cells(5.0, 0.0), 0, 1).unwrap(), "Λ 0.500   -50.0 dB");
+        assert_eq!(value_text(&cells(5.0, 0.0), 0, 1).unwrap(), "Λ 0.500   −50.0 dB");
         assert_eq!(value_text(&cells(5.0, 0.0), 0, 0).unwrap(), "Λ 1.000     0.0 dB");
         assert_eq!(value_text(&cells(0.0, 0.0), 1, 0).unwrap(), "Λ 0.000     0.0 dB", "silence");
         let difference = Cells { map: &map, minus: Some(&map), scale: None };
-        assert_eq!(value_text(&difference, 1, 1).unwrap(), "ΔΛ +0.000");
+        assert_eq!(value_text(&difference, 1, 1).unwrap(), "ΔΛ ±0.000");
+        let other = RangeAngleMap { lambda: array![[0.75f32]] };
+        let difference = Cells { minus: Some(&other), ..cells(5.0, 0.0) };
+        assert_eq!(value_text(&difference, 0, 0).unwrap(), "ΔΛ +0.250  +25.0 dB");
+    }
+
+    #[test]
+    fn a_wall_has_one_outline_and_separate_reflectors_have_rings() {
+        let reflector = Reflector { x_metres: 0.0, y_metres: 1.0, reflectivity: 1.0 };
+        let object = |is_line| Marked { reflectors: vec![reflector; 5], is_line };
+        let blobs = |step: f32| (0..5).map(|i| Pos2::new(step * i as f32, 50.0)).collect::<Vec<_>>();
+        let count = |is_line, step| rings(&object(is_line), &blobs(step), 100.0).len();
+        assert_eq!([count(true, 4.0), count(true, 14.0), count(false, 4.0)], [1, 5, 5]);
+        let mut wrapped = blobs(4.0);
+        wrapped[3..].iter_mut().for_each(|at| at.y -= 90.0);
+        assert_eq!(rings(&object(true), &wrapped, 100.0).len(), 2, "what wraps around is in two pieces");
     }
 }

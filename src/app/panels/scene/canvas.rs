@@ -74,18 +74,25 @@ fn rings(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: In
         let stroke = if degrees % 30 == 0 { thin } else { Stroke::new(1.0, inks.grid.gamma_multiply(0.5)) };
         painter.line_segment([view.to_screen(rect, Place::new(0.0, 0.0)), end], stroke);
         if degrees % 30 == 0 {
-            let out = view.to_screen(rect, Place::new(1.03 * extent * angle.cos(), 1.03 * extent * angle.sin()));
-            axes::text(painter, out, Align2::CENTER_CENTER, &format!("{degrees}°"), inks.grid_text);
+            // Beyond the arc, on the side of the label that faces it.
+            let out = end + 4.0 * vec2(angle.cos() as f32, -angle.sin() as f32);
+            let label = format!("{degrees}°");
+            let half = vec2(axes::width(painter, &label) / 2.0, 7.0);
+            let away = vec2(angle.cos() as f32 * half.x, -angle.sin() as f32 * half.y);
+            axes::text(painter, out + away, Align2::CENTER_CENTER, &label, inks.grid_text);
         }
     }
     let ranges = axes::ticks(0.0, extent, (0.5 * extent * 8.0 / visible.max(1e-3)).clamp(4.0, 60.0) as f32);
     let step = ranges.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
+    let last = ranges.last().copied();
     for range in ranges.into_iter().filter(|r| *r > 0.0) {
         painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), range), thin));
-        let at = view.to_screen(rect, Place::new(range, 0.0));
-        axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &axes::tick_text(range, step), inks.grid_text);
-        let at = view.to_screen(rect, Place::new(-range, 0.0));
-        axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &axes::tick_text(range, step), inks.grid_text);
+        for side in [-range, range] {
+            let at = view.to_screen(rect, Place::new(side, 0.0));
+            let unit = if Some(range) == last { " m" } else { "" };
+            let label = format!("{}{unit}", axes::tick_text(range, step));
+            axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &label, inks.grid_text);
+        }
     }
     let edge = Stroke::new(1.5, inks.grid_text);
     painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), extent), edge));

@@ -10,7 +10,7 @@ use crate::radar::Radar;
 use crate::scene::Reflector;
 use canvas::{Canvas, Look};
 use eframe::egui;
-use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, Response, Sense, Ui, vec2};
+use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
 
 /// What the canvas shows beside the scene.
 pub struct Input<'a> {
@@ -89,6 +89,9 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
     }
 }
 
+/// What labels take on each side of the half disc, points.
+const LABELS: Vec2 = vec2(30.0, 24.0);
+
 /// Shows everything the radar can see, and whatever else the scene holds nearby.
 fn fit(radar: &Radar, editor: &Editor, view: &mut SceneView, rect: Rect) {
     let resized = view.fitted.is_some_and(|size| size != rect.size()) && editor.dragged().is_none();
@@ -96,7 +99,7 @@ fn fit(radar: &Radar, editor: &Editor, view: &mut SceneView, rect: Rect) {
         return;
     }
     let extent = radar.max_range_metres();
-    let (mut low, mut high) = (Place::new(-extent, -0.08 * extent), Place::new(extent, 1.07 * extent));
+    let (mut low, mut high) = (Place::new(-extent, 0.0), Place::new(extent, extent));
     if let Some((a, b)) = editor.bounds() {
         // Things at a kilometre would make everything else a dot.
         let limit = 3.0 * extent;
@@ -105,7 +108,9 @@ fn fit(radar: &Radar, editor: &Editor, view: &mut SceneView, rect: Rect) {
         high.x_metres = high.x_metres.max(b.x_metres.min(limit));
         high.y_metres = high.y_metres.max(b.y_metres.min(limit));
     }
-    view.show(rect, low, high);
+    // Around the half disc there is room for the labels of its rings and spokes.
+    let inner = rect.shrink2(LABELS.min(rect.size() / 4.0));
+    view.show(inner, low, high);
     (view.fit, view.fitted) = (false, Some(rect.size()));
 }
 
@@ -249,6 +254,7 @@ fn context_menu(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen;
     use crate::scene::Scene;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -295,6 +301,30 @@ mod tests {
         let moved = held.editor.scene().objects[0].centre_metres()[0];
         assert!((moved - 40.0 * held.view.metres_per_point).abs() < 1e-6, "{moved}");
         assert!(held.asked.iter().all(|c| matches!(c, Command::Hover(_))) && !held.asked.is_empty());
+    }
+
+    #[test]
+    fn labels_stand_around_the_half_disc_and_none_is_cut() {
+        for size in [[280.0, 170.0], [480.0, 300.0], [1400.0, 800.0]] {
+            let radar = Radar::default();
+            let mut state = (Editor::new(Scene::default()), SceneView::default());
+            let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
+                let (snap, fields_of_view) = (Snap::Off, false);
+                let input = Input { radar: &radar, snap, fields_of_view, found: &[], cursor: None, error: None };
+                _ = show(ui, input, editor, view);
+            };
+            state.0.add(crate::scene::Object::Point(crate::scene::Point::new(0.0, 20.0)));
+            let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
+            seen::assert_readable(scene.output());
+            let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().1);
+            let radius = Radar::default().max_range_metres() / view.metres_per_point;
+            let origin = view.to_screen(rect, Place::new(0.0, 0.0));
+            assert!(f64::from(origin.x - rect.left()) > radius + 10.0, "the disc doesn't touch the panel at {size:?}");
+            for text in seen::texts(scene.output()).iter().filter(|t| t.text.ends_with('°')) {
+                let outside = text.rect.distance_to_pos(origin) >= radius as f32;
+                assert!(outside, "{} is on the arc at {size:?}", text.text);
+            }
+        }
     }
 
     #[test]

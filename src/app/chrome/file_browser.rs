@@ -1,0 +1,268 @@
+//! A folder on screen, to choose a file from or to name a new one in.
+
+use crate::app::jobs::{Purpose, Question};
+use eframe::egui;
+use eframe::egui::{Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
+use std::path::{Path, PathBuf};
+
+/// Most entries of a folder that are listed.
+const MOST: usize = 5000;
+
+/// An entry of a folder.
+struct Entry {
+    name: String,
+    is_folder: bool,
+}
+
+/// What the user decided.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answer {
+    /// This file.
+    Chosen(PathBuf),
+    /// None.
+    Cancelled,
+}
+
+/// The folder on screen, and what was typed.
+pub struct Browser {
+    purpose: Purpose,
+    folder: PathBuf,
+    /// The folder as it is being typed.
+    typed: String,
+    name: String,
+    /// The name where nobody typed another.
+    usual: String,
+    /// Whether hidden files and those of other kinds are listed.
+    all: bool,
+    entries: Vec<Entry>,
+    problem: Option<String>,
+}
+
+impl Browser {
+    /// Shows the folder of a question, or the one that the program was started in.
+    pub fn new(question: &Question) -> Self {
+        let start = question.folder.clone().or_else(|| std::env::current_dir().ok());
+        let (purpose, folder) = (question.purpose, start.unwrap_or_else(|| PathBuf::from("/")));
+        let (name, usual) = (question.name.clone(), question.name.clone());
+        let typed = folder.display().to_string();
+        let mut browser =
+            Browser { purpose, folder, typed, name, usual, all: false, entries: Vec::new(), problem: None };
+        browser.list();
+        browser
+    }
+
+    /// Goes to a folder; where it can't be read, says so and stays.
+    fn enter(&mut self, folder: PathBuf) {
+        let before = std::mem::replace(&mut self.folder, folder);
+        if !self.list() {
+            self.folder = before;
+        }
+        self.typed = self.folder.display().to_string();
+    }
+
+    /// Reads the folder; whether it could be read.
+    fn list(&mut self) -> bool {
+        let read = match std::fs::read_dir(&self.folder) {
+            Ok(read) => read,
+            Err(error) => {
+                self.problem = Some(format!("{}: {error}", self.folder.display()));
+                return false;
+            }
+        };
+        let (_, endings) = self.purpose.kind();
+        let of_kind =
+            |path: &Path| path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
+        let listed = |entry: std::fs::DirEntry| {
+            let path = entry.path();
+            let (name, is_folder) = (entry.file_name().to_string_lossy().into_owned(), path.is_dir());
+            let fits = self.all || (!name.starts_with('.') && (is_folder || of_kind(&path)));
+            fits.then_some(Entry { name, is_folder })
+        };
+        let mut entries: Vec<Entry> = read.filter_map(Result::ok).filter_map(listed).take(MOST).collect();
+        entries.sort_by_cached_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
+        (self.entries, self.problem) = (entries, None);
+        true
+    }
+
+    /// Draws it; what was decided, once something is.
+    pub fn show(&mut self, ctx: &Context) -> Option<Answer> {
+        let mut answer = None;
+        let window = egui::Window::new(self.purpose.title()).id(Id::unique("file dialog")).collapsible(false);
+        let size = ctx.content_rect().size();
+        let window = window.default_size([480.0f32.min(size.x - 40.0), 380.0f32.min(size.y - 80.0)]);
+        window.pivot(egui::Align2::CENTER_CENTER).default_pos(ctx.content_rect().center()).show(ctx, |ui| {
+            self.place(ui);
+            egui::Panel::bottom("file dialog foot").show_separator_line(false).show(ui, |ui| answer = self.foot(ui));
+            let chosen = self.entries(ui);
+            answer = answer.take().or(chosen);
+        });
+        let escaped = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
+        answer.or(escaped.then_some(Answer::Cancelled))
+    }
+
+    /// Where one is, and the way up.
+    fn place(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let label = ui.label("Folder");
+            let up = ui.add_enabled(self.folder.parent().is_some(), Button::new("Up"));
+            if up.on_hover_text("To the folder that this one is in").clicked()
+                && let Some(parent) = self.folder.parent().map(Path::to_path_buf)
+            {
+                self.enter(parent);
+            }
+            let field =
+                ui.add(TextEdit::singleline(&mut self.typed).desired_width(f32::INFINITY)).labelled_by(label.id);
+            if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
+                self.enter(PathBuf::from(self.typed.trim()));
+            }
+        });
+        if let Some(problem) = &self.problem {
+            ui.add(Label::new(RichText::new(problem).color(ui.visuals().error_fg_color)).wrap());
+        }
+    }
+
+    /// The folder's entries: a click goes into a folder or takes a file's name, a double click takes the file.
+    fn entries(&mut self, ui: &mut Ui) -> Option<Answer> {
+        let (mut into, mut chosen) = (None, None);
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            for entry in &self.entries {
+                let text = if entry.is_folder { format!("{}/", entry.name) } else { entry.name.clone() };
+                let response = ui.selectable_label(!entry.is_folder && entry.name == self.name, text);
+                if response.clicked() && entry.is_folder {
+                    into = Some(self.folder.join(&entry.name));
+                } else if response.clicked() {
+                    self.name.clone_from(&entry.name);
+                }
+                if response.double_clicked() && !entry.is_folder {
+                    chosen = Some(Answer::Chosen(self.folder.join(&entry.name)));
+                }
+            }
+            if self.entries.is_empty() {
+                ui.weak("Nothing of this kind is here.");
+            }
+        });
+        into.into_iter().for_each(|folder| self.enter(folder));
+        chosen
+    }
+
+    /// The file's name, and what to do with it.
+    fn foot(&mut self, ui: &mut Ui) -> Option<Answer> {
+        let mut done = false;
+        let mut answer = None;
+        ui.add_space(4.0);
+        ui.horizontal(|ui| {
+            let label = ui.label("Name");
+            let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            done = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+        });
+        ui.horizontal(|ui| {
+            let verb = if self.purpose.reads() { "Open" } else { "Save" };
+            let named = !self.name.trim().is_empty();
+            done |= ui.add_enabled(named, Button::new(verb)).clicked();
+            if ui.button("Cancel").clicked() {
+                answer = Some(Answer::Cancelled);
+            }
+            let tip = "Hidden files and those of other kinds, too";
+            if ui.checkbox(&mut self.all, "All files").on_hover_text(tip).changed() {
+                self.list();
+            }
+            if !self.purpose.reads() && ui.button("New folder").clicked() {
+                self.make_folder();
+            }
+            done &= named;
+        });
+        answer.or_else(|| done.then(|| self.choose()).flatten())
+    }
+
+    /// Takes what was typed: a folder is entered, a file chosen, and what is to be read must be there.
+    fn choose(&mut self) -> Option<Answer> {
+        let path = self.folder.join(self.name.trim());
+        if path.is_dir() {
+            self.name.clone_from(&self.usual);
+            self.enter(path);
+            return None;
+        }
+        if self.purpose.reads() && !path.exists() {
+            self.problem = Some(format!("{} is not there.", path.display()));
+            return None;
+        }
+        Some(Answer::Chosen(path))
+    }
+
+    fn make_folder(&mut self) {
+        let path = self.folder.join("New folder");
+        match std::fs::create_dir(&path) {
+            Ok(()) => self.enter(path),
+            Err(error) => self.problem = Some(format!("{}: {error}", path.display())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn panel(purpose: Purpose, folder: &Path) -> Harness<'static, (Browser, Vec<Answer>)> {
+        let draw = |ui: &mut Ui, state: &mut (Browser, Vec<Answer>)| {
+            let answer = state.0.show(ui.ctx());
+            state.1.extend(answer);
+        };
+        let browser = Browser::new(&Question { purpose, folder: Some(folder.to_path_buf()), name: String::new() });
+        let mut panel = Harness::builder().with_size([700.0, 500.0]).build_ui_state(draw, (browser, Vec::new()));
+        panel.run_steps(3);
+        panel
+    }
+
+    #[test]
+    fn folders_are_entered_and_only_files_of_the_kind_are_listed() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("walls")).unwrap();
+        for name in ["walls/a.toml", "walls/notes.txt", "walls/.hidden.toml"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let mut dialog = panel(Purpose::Open, folder.path());
+        seen::assert_readable(dialog.output());
+        dialog.get_by_label("walls/").click();
+        dialog.run_steps(3);
+        assert!(dialog.query_by_label("notes.txt").is_none() && dialog.query_by_label(".hidden.toml").is_none());
+        dialog.get_by_label("a.toml").click();
+        dialog.run_steps(3);
+        assert!(dialog.state().1.is_empty(), "chosen, not opened");
+        dialog.get_by_label("Open").click();
+        dialog.run_steps(3);
+        assert_eq!(dialog.state().1, [Answer::Chosen(folder.path().join("walls/a.toml"))]);
+        dialog.get_by_label("All files").click();
+        dialog.run_steps(3);
+        let _listed = dialog.get_by_label("notes.txt");
+        dialog.get_by_label("Up").click();
+        dialog.run_steps(3);
+        let _above = dialog.get_by_label("walls/");
+        dialog.key_press(Key::Escape);
+        dialog.run_steps(2);
+        assert_eq!(dialog.state().1.last(), Some(&Answer::Cancelled));
+    }
+
+    #[test]
+    fn every_control_has_a_name_and_what_is_missing_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut dialog = panel(Purpose::Open, folder.path());
+        dialog.get_by_label("Name").click();
+        dialog.run_steps(2);
+        dialog.event(egui::Event::Text("missing.toml".to_owned()));
+        dialog.run_steps(2);
+        dialog.get_by_label("Open").click();
+        dialog.run_steps(3);
+        assert!(dialog.state().1.is_empty());
+        let _told = dialog.get_by_label_contains("missing.toml is not there");
+        dialog.get_by_label("Folder").click();
+        dialog.run_steps(2);
+        dialog.event(egui::Event::Text("/nowhere".to_owned()));
+        dialog.key_press(Key::Enter);
+        dialog.run_steps(3);
+        let shown = dialog.state().0.folder.clone();
+        assert_eq!(shown, folder.path(), "a folder that can't be read is not entered");
+    }
+}

@@ -1,0 +1,189 @@
+//! Two markers on a cut: how they are placed and dragged, and what is read off them.
+
+use super::measure::{Width, value_at, width_at};
+use super::trace::{Cut, Trace};
+use crate::app::widgets::axes;
+use crate::app::widgets::chart::{Drawn, Span};
+use crate::app::widgets::numbers::{signed, significant};
+use crate::radar::Radar;
+use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
+
+/// How near the pointer must be to a marker to drag it, points.
+const NEAR: f32 = 7.0;
+
+/// Names of the two.
+pub const NAMES: [&str; 2] = ["A", "B"];
+
+/// Places on the axis of a cut.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Markers {
+    /// A and B, where they are placed.
+    pub places: [Option<f64>; 2],
+    /// The one that is being dragged.
+    held: Option<usize>,
+}
+
+impl Markers {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.places == [None, None]
+    }
+
+    /// Whether one is being dragged.
+    pub fn is_held(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// Puts a marker at a place: A, then B, then whichever is nearer.
+    pub fn place(&mut self, at: f64) {
+        let index = match self.places {
+            [None, _] => 0,
+            [_, None] => 1,
+            [Some(a), Some(b)] => usize::from((b - at).abs() < (a - at).abs()),
+        };
+        self.places[index] = Some(at);
+    }
+
+    /// Follows the pointer: a click places one, a drag moves the one under it.
+    pub fn follow(&mut self, ui: &Ui, drawn: &Drawn<'_>, whole: Span) {
+        let x_of = |place: f64| drawn.at([place, 0.0]).x;
+        let under = |at: f32| {
+            let away = |i: &usize| self.places[*i].map_or(f32::INFINITY, |place| (x_of(place) - at).abs());
+            (0..2).min_by(|a, b| away(a).total_cmp(&away(b))).filter(|i| away(i) <= NEAR)
+        };
+        let response = &drawn.response;
+        let hovered = response.hover_pos().and_then(|pos| under(pos.x));
+        if response.drag_started() {
+            self.held = ui.input(|i| i.pointer.press_origin()).and_then(|pos| under(pos.x));
+        }
+        if let Some((index, pos)) = self.held.zip(response.interact_pointer_pos()) {
+            self.places[index] = Some(drawn.x_at(pos).clamp(whole.low, whole.high));
+        } else if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+            self.place(drawn.x_at(pos).clamp(whole.low, whole.high));
+        }
+        if response.drag_stopped() {
+            self.held = None;
+        }
+        if hovered.or(self.held).is_some() {
+            ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+        }
+    }
+
+    /// Draws them with their names, over the lines.
+    pub fn draw(&self, drawn: &Drawn<'_>, ink: Color32) {
+        for (place, name) in self.places.into_iter().zip(NAMES) {
+            let Some(place) = place else { continue };
+            drawn.upright(place, Stroke::new(1.5, ink));
+            let at = pos2(drawn.at([place, 0.0]).x, drawn.rect.top());
+            if drawn.rect.x_range().contains(at.x) {
+                axes::text_on_patch(drawn.painter(), at + vec2(6.0, 3.0), Align2::LEFT_TOP, name);
+            }
+        }
+    }
+}
+
+/// What is read off a line at the markers.
+pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, markers: &Markers) -> Vec<String> {
+    let decibels = trace.decibels();
+    let level = |place: f64| decibels.as_ref().and_then(|points| value_at(points, place));
+    let mut said = Vec::new();
+    let one = |(place, name): (Option<f64>, &str)| {
+        let lambda = value_at(&trace.lambda, place?)?;
+        let level = level(place?).map_or_else(String::new, |db| format!(", {} dB", signed(db.min(0.0), 1)));
+        Some(format!("{name}: Λ {lambda:.3}{level}"))
+    };
+    said.extend(markers.places.into_iter().zip(NAMES).filter_map(one));
+    if let [Some(a), Some(b)] = markers.places {
+        let levels = level(a).zip(level(b)).map_or_else(String::new, |(a, b)| format!(", {} dB", signed(b - a, 1)));
+        said.push(format!("B − A: {}{levels}", between(cut, radar, a, b)));
+    }
+    let width = |(place, name): (Option<f64>, &str)| {
+        let Width { low, high, cells, .. } = width_at(decibels.as_ref()?, place?)?;
+        Some(format!("3 dB width at {name}: {}", extent(cut, low, high, cells)))
+    };
+    said.extend(markers.places.into_iter().zip(NAMES).filter_map(width));
+    said
+}
+
+fn degrees(cos: f64) -> f64 {
+    cos.clamp(-1.0, 1.0).acos().to_degrees()
+}
+
+/// From one place to another, in everything that the axis counts.
+fn between(cut: Cut, radar: &Radar, a: f64, b: f64) -> String {
+    match cut {
+        Cut::Angle => {
+            let columns = (b - a) / (radar.cos_of_column(1.0) - radar.cos_of_column(0.0));
+            let (cos, angle) = (signed(b - a, 4), signed(degrees(b) - degrees(a), 2));
+            format!("{cos} in cos θ = {} columns = {angle}°", signed(columns, 1))
+        }
+        Cut::Range => {
+            let bins = radar.bin_of_range(b) - radar.bin_of_range(a);
+            format!("{} m = {} bins", signed(b - a, 3), signed(bins, 1))
+        }
+    }
+}
+
+fn extent(cut: Cut, low: f64, high: f64, cells: f64) -> String {
+    let size = significant(high - low);
+    match cut {
+        Cut::Angle => {
+            let angle = significant((degrees(low) - degrees(high)).abs());
+            format!("{size} in cos θ = {} columns = {angle}°", significant(cells))
+        }
+        Cut::Range => format!("{size} m = {} bins", significant(cells)),
+    }
+}
+
+/// Draws the width of the peak at each marker, where the line has fallen by 3 dB. `y_of` turns decibels into what the chart counts.
+pub fn draw_widths(drawn: &Drawn<'_>, trace: &Trace, markers: &Markers, ink: Color32, y_of: impl Fn(f64) -> f64) {
+    let Some(points) = trace.decibels() else { return };
+    for place in markers.places.into_iter().flatten() {
+        let Some(width) = width_at(&points, place) else { continue };
+        let y = y_of(width.level_db);
+        drawn.line([[width.low, y], [width.high, y]], Stroke::new(2.5, ink), None);
+        drawn.dot([width.low, y], 3.0, ink);
+        drawn.dot([width.high, y], 3.0, ink);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::{Cursor, CutMap, MapKind};
+    use crate::maps::{LambdaScale, RangeAngleMap};
+    use ndarray::Array2;
+    use std::sync::Arc;
+
+    #[test]
+    fn clicks_place_a_then_b_then_move_the_nearer() {
+        let mut markers = Markers::default();
+        for at in [1.0, 5.0, 4.0, 1.5] {
+            markers.place(at);
+        }
+        assert_eq!(markers.places, [Some(1.5), Some(4.0)]);
+    }
+
+    #[test]
+    fn differences_are_told_in_the_units_of_the_cut_and_in_decibels() {
+        let radar = Radar::default();
+        let mut lambda = Array2::zeros((radar.samples, radar.elements));
+        (lambda[[100, 512]], lambda[[110, 512]], lambda[[100, 640]]) = (1.0f32, 0.5, 0.75);
+        let scale = Some(LambdaScale { peak: 0.0, floor: -2.0 });
+        let map = CutMap { kind: MapKind::Target, map: Arc::new(RangeAngleMap { lambda }), scale };
+        let cursor = Cursor::at_cell(&radar, 100.0, 512.0);
+        let told = |cut, a: f64, b: f64| {
+            let trace = Trace::of(&radar, &cursor, &map, cut, None).unwrap();
+            let markers = Markers { places: [Some(a), Some(b)], held: None };
+            readings(cut, &radar, &trace, &markers)
+        };
+        let range = |bin: f64| radar.range_of_bin_metres(bin);
+        let told_range = told(Cut::Range, range(100.0), range(110.0));
+        assert_eq!(told_range[..2], ["A: Λ 1.000, ±0.0 dB", "B: Λ 0.500, −20.0 dB"]);
+        let metres = signed(10.0 * radar.range_resolution_metres(), 3);
+        assert_eq!(told_range[2], format!("B − A: {metres} m = +10.0 bins, −20.0 dB"));
+        assert!(told_range[3].starts_with("3 dB width at A: ") && told_range.len() == 5, "{told_range:?}");
+        let told_angle = told(Cut::Angle, radar.cos_of_column(512.0), radar.cos_of_column(640.0));
+        assert_eq!(told_angle[2], "B − A: +0.2500 in cos θ = +128.0 columns = −14.48°, −10.0 dB");
+    }
+}

@@ -1,0 +1,439 @@
+//! Range profile and angle cut of all maps through the cursor, with cuts that were pinned, and markers to measure between.
+
+mod markers;
+mod measure;
+mod trace;
+
+use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units};
+use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::chart::{Chart, Dash, Drawn, Span};
+use crate::app::widgets::entry::button;
+use crate::app::widgets::theme::Inks;
+use crate::radar::Radar;
+use eframe::egui;
+use eframe::egui::{Color32, ComboBox, DragValue, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use markers::{Markers, NAMES};
+use std::collections::{BTreeMap, BTreeSet};
+use trace::{Cut, Trace};
+
+/// What is cut, and where.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Where the cuts cross.
+    pub cursor: Cursor,
+    /// The maps that can be cut.
+    pub maps: &'a [CutMap],
+    /// Cuts that stay.
+    pub pins: &'a [PinnedCut],
+    /// What is drawn upwards.
+    pub units: Units,
+}
+
+/// What is looked at, and measured.
+#[derive(Default)]
+pub struct Memory {
+    hidden: BTreeSet<MapKind>,
+    /// The line that the markers read: of a map, of a pinned cut or of the one at the cursor.
+    read: Option<Line>,
+    views: BTreeMap<Cut, View>,
+}
+
+/// A line of both cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Line {
+    kind: MapKind,
+    pin: Option<usize>,
+}
+
+impl Line {
+    fn name(self) -> String {
+        match self.pin {
+            None => self.kind.title().to_owned(),
+            Some(pin) => format!("{}, pinned {}", self.kind.title(), pin + 1),
+        }
+    }
+}
+
+/// Of one cut: the part in sight, and the markers.
+#[derive(Default, Clone, Copy)]
+struct View {
+    span: Option<Span>,
+    markers: Markers,
+}
+
+/// Draws the panel: angle cut above (or left), range profile below (or right).
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 });
+    frame.show(ui, |ui| {
+        head(ui, &input, memory, &mut asked);
+        let lines = lines(&input, &memory.hidden);
+        let read = memory.read.filter(|line| lines.contains(line)).or_else(|| {
+            let best = lines.iter().find(|line| line.kind == MapKind::Target);
+            best.or(lines.first()).copied()
+        });
+        memory.read = read;
+    });
+    let area = ui.available_rect_before_wrap();
+    let wide = area.width() > 1.6 * area.height();
+    let (first, second) = match wide {
+        true => area.split_left_right_at_fraction(0.5),
+        false => area.split_top_bottom_at_fraction(0.5),
+    };
+    for (cut, area) in Cut::ALL.into_iter().zip([first, second]) {
+        draw(ui, area, &input, memory, cut);
+    }
+    asked
+}
+
+/// The lines that are drawn: of the cut at the cursor, then of those that were pinned.
+fn lines(input: &Input<'_>, hidden: &BTreeSet<MapKind>) -> Vec<Line> {
+    let live = input.maps.iter().map(|map| Line { kind: map.kind, pin: None });
+    let pinned = input
+        .pins
+        .iter()
+        .enumerate()
+        .flat_map(|(i, p)| p.maps.iter().map(move |m| Line { kind: m.kind, pin: Some(i) }));
+    live.chain(pinned).filter(|line| !hidden.contains(&line.kind)).collect()
+}
+
+/// What is drawn, in its colours; units; pinned cuts.
+fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        for map in input.maps {
+            let kind = map.kind;
+            let mut shown = !memory.hidden.contains(&kind);
+            let name = RichText::new(kind.title()).color(colour(ui, kind)).strong();
+            if ui.checkbox(&mut shown, name).on_hover_text("Draw this line or not").changed() {
+                match shown {
+                    true => memory.hidden.remove(&kind),
+                    false => memory.hidden.insert(kind),
+                };
+            }
+        }
+        ui.add_space(6.0);
+        for (units, name) in [(Units::Lambda, "Λ"), (Units::Decibels, "dB")] {
+            let tip = "Λ, or decibels below each map's peak (D)";
+            if ui.selectable_label(input.units == units, name).on_hover_text(tip).clicked() && input.units != units {
+                asked.push(Command::SetUnits(units));
+            }
+        }
+        ui.add_space(6.0);
+        button(ui, "Pin", Command::PinCuts, !input.maps.is_empty(), asked);
+        for (index, pin) in input.pins.iter().enumerate() {
+            let place = format!("{}: {:.2} m, cos {:.3}", index + 1, pin.cursor.range_metres, pin.cursor.cos_theta);
+            let tip = "A cut that stays, drawn thin; click to let it go";
+            if ui.button(format!("Unpin {place}")).on_hover_text(tip).clicked() {
+                asked.push(Command::Unpin(index));
+            }
+        }
+        ui.add_space(6.0);
+        marks(ui, input, memory);
+    });
+}
+
+/// The markers as numbers, for whoever doesn't click, and the line they read.
+fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
+    if memory.views.values().all(|view| view.markers.is_empty()) {
+        let tip = "Two places to measure between; a click in a cut places one, too, and they can be dragged";
+        if ui.button("Markers").on_hover_text(tip).clicked() {
+            for cut in Cut::ALL {
+                let at = cut.position(input.radar, &input.cursor);
+                memory.views.entry(cut).or_default().markers.place(at);
+            }
+        }
+    } else {
+        let label = ui.label("Read");
+        let lines = lines(input, &memory.hidden);
+        let name = memory.read.map_or_else(String::new, Line::name);
+        let combo = ComboBox::from_id_salt("read").selected_text(name).show_ui(ui, |ui| {
+            for line in lines {
+                ui.selectable_value(&mut memory.read, Some(line), line.name());
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text("The line that the markers measure");
+        if ui.button("No markers").on_hover_text("Take the markers away").clicked() {
+            memory.views.values_mut().for_each(|view| view.markers = Markers::default());
+        }
+    }
+    if memory.views.values().any(|view| view.span.is_some())
+        && ui.button("Whole cuts").on_hover_text("Undo zoom and pan of the cuts").clicked()
+    {
+        memory.views.values_mut().for_each(|view| view.span = None);
+    }
+}
+
+/// Colour of a map's line.
+fn colour(ui: &Ui, kind: MapKind) -> Color32 {
+    let rgb = Color32::from_rgb;
+    match (kind, ui.visuals().dark_mode) {
+        (MapKind::Input0, true) => rgb(84, 168, 255),
+        (MapKind::Input0, false) => rgb(0, 98, 196),
+        (MapKind::Input1, true) => rgb(248, 112, 140),
+        (MapKind::Input1, false) => rgb(196, 24, 80),
+        (MapKind::Target, true) => rgb(222, 228, 238),
+        (MapKind::Target, false) => rgb(52, 60, 74),
+        (_, true) => rgb(255, 176, 59),
+        (_, false) => rgb(176, 92, 0),
+    }
+}
+
+/// Lines differ by dash as well as by colour.
+fn dash(kind: MapKind) -> Dash {
+    match kind {
+        MapKind::Input0 => Some([7.0, 3.0]),
+        MapKind::Input1 => Some([2.5, 2.5]),
+        _ => None,
+    }
+}
+
+/// One cut: its chart, and what its markers read beneath.
+fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut Memory, cut: Cut) {
+    let traces = traces(input, &memory.hidden, cut);
+    let whole = cut.whole(input.radar);
+    let mut view = memory.views.get(&cut).copied().unwrap_or_default();
+    let read = memory.read.and_then(|line| traces.iter().find(|t| (t.kind, t.pin) == (line.kind, line.pin)));
+    let said = read.map_or_else(Vec::new, |trace| markers::readings(cut, input.radar, trace, &view.markers));
+    let area = if view.markers.is_empty() { area } else { readings(ui, area, cut, whole, &mut view.markers, &said) };
+    let span = view.span.unwrap_or(whole);
+    let range_db = traces.iter().filter_map(Trace::range_db).fold(1.0, f64::max);
+    let y = match input.units {
+        Units::Lambda => Axis::new(0.0, 1.05, "Λ"),
+        Units::Decibels => Axis::new(-range_db, 0.05 * range_db, "below the peak, dB"),
+    };
+    let title = cut.title(input.radar, &input.cursor);
+    let title = axes::fitting(ui.painter(), area.width() - 20.0, &[&title, cut.unit()]);
+    let chart = Chart { name: cut.name(), x: Axis::new(span.low, span.high, title), y };
+    let drawn = chart.show(ui, area, Sense::click_and_drag());
+    view.markers.follow(ui, &drawn, whole);
+    let turned = span.navigate(ui, &drawn, whole, !view.markers.is_held());
+    view.span = (turned != whole).then_some(turned);
+    for trace in &traces {
+        let Some(points) = trace.points(input.units) else { continue };
+        let (width, fade) = if trace.pin.is_some() { (1.0, 0.6) } else { (1.6, 1.0) };
+        let stroke = Stroke::new(width, colour(ui, trace.kind).gamma_multiply(fade));
+        drawn.line(in_sight(&points, span), stroke, dash(trace.kind));
+    }
+    drawn.upright(cut.position(input.radar, &input.cursor), Stroke::new(1.0, ui.visuals().weak_text_color()));
+    measured(ui, input.units, &drawn, read, &view.markers);
+    memory.views.insert(cut, view);
+}
+
+/// The lines of one cut: those of pinned cuts first, beneath the others.
+fn traces(input: &Input<'_>, hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace> {
+    let shown = |map: &&CutMap| !hidden.contains(&map.kind);
+    let pinned = input.pins.iter().enumerate().flat_map(|(i, pin)| {
+        let maps = pin.maps.iter().filter(shown);
+        maps.filter_map(move |map| Trace::of(&pin.radar, &pin.cursor, map, cut, Some(i)))
+    });
+    let live = input.maps.iter().filter(shown).filter_map(|map| Trace::of(input.radar, &input.cursor, map, cut, None));
+    pinned.chain(live).collect()
+}
+
+/// The cells of a line that are in sight, and one beyond on either side.
+fn in_sight(points: &[[f64; 2]], span: Span) -> Vec<[f64; 2]> {
+    let first = points.partition_point(|[x, _]| *x < span.low).saturating_sub(1);
+    let last = (points.partition_point(|[x, _]| *x <= span.high) + 1).min(points.len());
+    points[first.min(last)..last].to_vec()
+}
+
+/// Markers over the lines, and how wide the peaks under them are.
+fn measured(ui: &Ui, units: Units, drawn: &Drawn<'_>, read: Option<&Trace>, markers: &Markers) {
+    let ink = Inks::of(ui.visuals()).selected;
+    if let Some(trace) = read {
+        let range = trace.range_db().unwrap_or(1.0);
+        let y_of = |db: f64| if units == Units::Decibels { db } else { 1.0 + db / range };
+        markers::draw_widths(drawn, trace, markers, ink, y_of);
+    }
+    markers.draw(drawn, ink);
+}
+
+/// The markers' places, to be typed, and what they read, at the foot of `area`; what is left of it.
+fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Markers, said: &[String]) -> Rect {
+    let (font, ink) = (axes::tick_font(), ui.visuals().text_color());
+    let width = area.width() - 16.0;
+    let height_of = |text: &String| ui.painter().layout(text.clone(), font.clone(), ink, width).size().y + 2.0;
+    let wanted: f32 = said.iter().map(height_of).sum::<f32>() + ui.spacing().interact_size.y + 6.0;
+    let (chart, foot) = area.split_top_bottom_at_y(area.bottom() - wanted.min(0.55 * area.height()));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(foot.shrink2(vec2(8.0, 0.0))), |ui| {
+        egui::ScrollArea::vertical().id_salt(cut).auto_shrink([false, false]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            ui.horizontal(|ui| {
+                let digits = if cut == Cut::Angle { 4 } else { 3 };
+                for (place, name) in markers.places.iter_mut().zip(NAMES) {
+                    let Some(place) = place else { continue };
+                    let label = ui.label(format!("{name}, {}", cut.unit()));
+                    let step = (whole.high - whole.low) / 1000.0;
+                    let drag = DragValue::new(place).range(whole.low..=whole.high).speed(step).fixed_decimals(digits);
+                    ui.add(drag).labelled_by(label.id);
+                }
+            });
+            for line in said {
+                ui.add(Label::new(RichText::new(line).font(font.clone())).wrap());
+            }
+        });
+    });
+    chart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use crate::maps::{LambdaScale, RangeAngleMap};
+    use eframe::egui::{Pos2, pos2};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+    use ndarray::Array2;
+    use std::sync::Arc;
+
+    struct Held {
+        memory: Memory,
+        asked: Vec<Command>,
+        pins: Vec<PinnedCut>,
+        units: Units,
+        bin: f64,
+    }
+
+    /// A map with one lobe at bin 300 and column 700, on a scale of 100 dB.
+    fn lobe(kind: MapKind, radar: &Radar) -> CutMap {
+        let level = |(k1, k2): (usize, usize)| {
+            let (range, angle) = ((k1 as f32 - 300.0) / 20.0, (k2 as f32 - 700.0) / 40.0);
+            1.0 - 0.03 * (range * range + angle * angle).min(30.0)
+        };
+        let lambda = Array2::from_shape_fn((radar.samples, radar.elements), level);
+        CutMap { kind, map: Arc::new(RangeAngleMap { lambda }), scale: Some(LambdaScale { peak: 0.0, floor: -5.0 }) }
+    }
+
+    fn panel(size: [f32; 2]) -> Harness<'static, Held> {
+        let radar = Radar::default();
+        let small = CutMap {
+            kind: MapKind::Output,
+            map: Arc::new(RangeAngleMap { lambda: Array2::zeros((8, 8)) }),
+            scale: None,
+        };
+        let maps = [lobe(MapKind::Input0, &radar), lobe(MapKind::Target, &radar), small];
+        let draw = move |ui: &mut Ui, held: &mut Held| {
+            let cursor = Cursor::at_cell(&radar, held.bin, 700.0);
+            let input = Input { radar: &radar, cursor, maps: &maps, pins: &held.pins, units: held.units };
+            let commands = show(ui, input, &mut held.memory);
+            if commands.contains(&Command::PinCuts) {
+                held.pins.push(PinnedCut { radar: radar.clone(), cursor, maps: maps.to_vec() });
+            }
+            held.asked.extend(commands);
+        };
+        let held =
+            Held { memory: Memory::default(), asked: Vec::new(), pins: Vec::new(), units: Units::Lambda, bin: 300.0 };
+        let mut panel = Harness::builder().with_size(size).with_step_dt(0.02).build_ui_state(draw, held);
+        panel.run_steps(2);
+        panel
+    }
+
+    fn places(panel: &Harness<'_, Held>) -> [Option<f64>; 2] {
+        panel.state().memory.views[&Cut::Range].markers.places
+    }
+
+    fn click(panel: &mut Harness<'_, Held>, at: Pos2) {
+        panel.hover_at(at);
+        panel.step();
+        panel.drag_at(at);
+        panel.step();
+        panel.drop_at(at);
+        // Two clicks in quick succession would be a double click.
+        panel.run_steps(40);
+    }
+
+    #[test]
+    fn maps_of_another_radar_are_left_out_and_nothing_is_asked() {
+        let cuts = panel([640.0, 300.0]);
+        let _named = cuts.get_by_label("Target");
+        assert!(cuts.state().asked.is_empty());
+        let lines = cuts.state().memory.read.map(|line| line.kind);
+        assert_eq!(lines, Some(MapKind::Target), "what is measured where nobody chose");
+    }
+
+    #[test]
+    fn clicks_place_markers_drags_move_them_and_their_difference_is_told() {
+        let mut cuts = panel([700.0, 600.0]);
+        let chart = cuts.get_by_label("Range profile").rect();
+        let at = |part: f32, rect: Rect| pos2(rect.left() + part * rect.width(), rect.center().y);
+        click(&mut cuts, at(0.25, chart));
+        let chart = cuts.get_by_label("Range profile").rect();
+        click(&mut cuts, at(0.5, chart));
+        let extent = Radar::default().max_range_metres();
+        let [Some(a), Some(b)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
+        assert!((a / extent - 0.25).abs() < 5e-3 && (b / extent - 0.5).abs() < 5e-3, "{a} {b}");
+        let _difference = cuts.get_by_label_contains("B − A: +9.");
+        let chart = cuts.get_by_label("Range profile").rect();
+        let from = at((b / extent) as f32, chart);
+        cuts.hover_at(from);
+        cuts.step();
+        cuts.drag_at(from);
+        cuts.step();
+        cuts.hover_at(at(0.75, chart));
+        cuts.step();
+        cuts.drop_at(at(0.75, chart));
+        cuts.step();
+        let [now, Some(moved)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
+        assert_eq!(now, Some(a));
+        assert!((moved / extent - 0.75).abs() < 5e-3, "{moved}");
+        assert!(cuts.state().memory.views[&Cut::Range].span.is_none(), "the cut itself was not dragged");
+        let _width = cuts.get_by_label_contains("3 dB width at B: ");
+    }
+
+    #[test]
+    fn a_pinned_cut_stays_while_the_cursor_moves_on() {
+        let mut cuts = panel([900.0, 500.0]);
+        cuts.get_by_label("Pin").click();
+        cuts.run_steps(2);
+        assert_eq!(cuts.state().asked, [Command::PinCuts]);
+        cuts.state_mut().bin = 400.0;
+        cuts.run_steps(2);
+        let held = cuts.state();
+        let radar = Radar::default();
+        let maps = held.pins[0].maps.clone();
+        let input = Input {
+            radar: &radar,
+            cursor: Cursor::at_cell(&radar, 400.0, 700.0),
+            maps: &maps,
+            pins: &held.pins,
+            units: Units::Decibels,
+        };
+        let drawn = traces(&input, &BTreeSet::from([MapKind::Input0]), Cut::Angle);
+        let highest = |t: &Trace| t.lambda.iter().map(|p| p[1]).fold(0.0, f64::max);
+        assert_eq!(
+            drawn.iter().map(|t| (t.kind, t.pin)).collect::<Vec<_>>(),
+            [(MapKind::Target, Some(0)), (MapKind::Target, None)]
+        );
+        assert!(highest(&drawn[0]) > 0.999 && highest(&drawn[1]) < 0.3, "one through the lobe, one beside it");
+        cuts.get_by_label_contains("Unpin 1: ").click();
+        cuts.step();
+        assert_eq!(cuts.state().asked, [Command::PinCuts, Command::Unpin(0)]);
+    }
+
+    #[test]
+    fn decibels_are_an_axis_and_a_choice() {
+        let mut cuts = panel([900.0, 400.0]);
+        cuts.get_by_label("dB").click();
+        cuts.step();
+        assert_eq!(cuts.state().asked, [Command::SetUnits(Units::Decibels)]);
+        cuts.state_mut().units = Units::Decibels;
+        cuts.run_steps(2);
+        let texts = seen::texts(cuts.output());
+        assert!(texts.iter().filter(|t| t.text == "below the peak, dB").count() == 2, "{texts:?}");
+        assert!(texts.iter().any(|t| t.text == "−80" || t.text == "−50"), "{texts:?}");
+    }
+
+    #[test]
+    fn a_cut_has_several_labels_none_cut_off_at_any_size() {
+        for size in [[290.0, 190.0], [480.0, 260.0], [480.0, 900.0], [1400.0, 800.0]] {
+            let cuts = panel(size);
+            seen::assert_readable(cuts.output());
+            let texts = seen::texts(cuts.output());
+            for label in ["0.0", "10", "20", "30"] {
+                assert!(texts.iter().any(|t| t.text == label), "{label} at {size:?}: {texts:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! One row or one column of a map, as a line to draw and to measure.
+
+use crate::app::state::{Cursor, CutMap, MapKind, Units};
+use crate::app::widgets::chart::Span;
+use crate::maps::LambdaScale;
+use crate::radar::Radar;
+
+/// Which way a cut goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Cut {
+    /// All directions at one range.
+    Angle,
+    /// All ranges in one direction.
+    Range,
+}
+
+impl Cut {
+    /// Both.
+    pub const ALL: [Cut; 2] = [Cut::Angle, Cut::Range];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Cut::Angle => "Angle cut",
+            Cut::Range => "Range profile",
+        }
+    }
+
+    /// What its axis counts.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Cut::Angle => "cos θ",
+            Cut::Range => "range, m",
+        }
+    }
+
+    /// What its axis spans.
+    pub fn whole(self, radar: &Radar) -> Span {
+        match self {
+            Cut::Angle => {
+                let columns = radar.elements as f64;
+                Span { low: radar.cos_of_column(-0.5), high: radar.cos_of_column(columns - 0.5) }
+            }
+            Cut::Range => Span { low: 0.0, high: radar.max_range_metres() },
+        }
+    }
+
+    /// Where the cursor is on its axis.
+    pub fn position(self, radar: &Radar, cursor: &Cursor) -> f64 {
+        match self {
+            Cut::Angle => radar.cos_of_column(cursor.column),
+            Cut::Range => cursor.range_metres,
+        }
+    }
+
+    /// Title of its axis: what it counts, and where the cut was taken.
+    pub fn title(self, radar: &Radar, cursor: &Cursor) -> String {
+        match self {
+            Cut::Angle => format!("{}, at range {:.2} m", self.unit(), radar.range_of_bin_metres(cursor.bin.round())),
+            Cut::Range => format!("{}, at cos θ {:.3}", self.unit(), radar.cos_of_column(cursor.column.round())),
+        }
+    }
+}
+
+/// A line of a cut.
+#[derive(Debug, Clone)]
+pub struct Trace {
+    /// Of which map.
+    pub kind: MapKind,
+    /// Of which pinned cut; of the cut at the cursor where `None`.
+    pub pin: Option<usize>,
+    /// Place on the axis and Lambda, cell by cell.
+    pub lambda: Vec<[f64; 2]>,
+    scale: Option<LambdaScale>,
+}
+
+impl Trace {
+    /// The line through a map; `None` where the map is of another radar that doesn't reach there.
+    pub fn of(radar: &Radar, cursor: &Cursor, map: &CutMap, cut: Cut, pin: Option<usize>) -> Option<Trace> {
+        let (bin, column) = cursor.cell(radar)?;
+        let (rows, columns) = map.map.lambda.dim();
+        let lambda = match cut {
+            Cut::Angle if bin < rows => {
+                let cells = map.map.lambda.row(bin);
+                cells.iter().enumerate().map(|(k, v)| [radar.cos_of_column(k as f64), f64::from(*v)]).collect()
+            }
+            Cut::Range if column < columns => {
+                let cells = map.map.lambda.column(column);
+                cells.iter().enumerate().map(|(k, v)| [radar.range_of_bin_metres(k as f64), f64::from(*v)]).collect()
+            }
+            _ => return None,
+        };
+        Some(Trace { kind: map.kind, pin, lambda, scale: map.scale })
+    }
+
+    /// What Lambda spans, decibels.
+    pub fn range_db(&self) -> Option<f64> {
+        self.scale.map(|s| 20.0 * (s.peak - s.floor)).filter(|range| *range > 0.0)
+    }
+
+    /// Place on the axis and decibels below the map's peak, cell by cell.
+    pub fn decibels(&self) -> Option<Vec<[f64; 2]>> {
+        let range = self.range_db()?;
+        Some(self.lambda.iter().map(|[x, lambda]| [*x, range * (lambda - 1.0)]).collect())
+    }
+
+    /// What is drawn.
+    pub fn points(&self, units: Units) -> Option<Vec<[f64; 2]>> {
+        match units {
+            Units::Lambda => Some(self.lambda.clone()),
+            Units::Decibels => self.decibels(),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The outline around a line of places.
+
+use eframe::egui::{Pos2, Vec2, vec2};
+use std::f32::consts::PI;
+
+/// Points of a half circle at each end.
+const ROUND: usize = 8;
+
+/// What lies `radius` from a path, along one side of it and back along the other, round at the ends.
+pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
+    let (Some(first), Some(last)) = (path.first(), path.last()) else { return Vec::new() };
+    // The direction at a place is that between its neighbours; along the screen where they all coincide.
+    let direction = |i: usize| {
+        let (before, after) = (path[i.saturating_sub(1)], path[(i + 1).min(path.len() - 1)]);
+        let way = (after - before).normalized();
+        if way == Vec2::ZERO { vec2(1.0, 0.0) } else { way }
+    };
+    let aside = |i: usize, sign: f32| path[i] + sign * radius * direction(i).rot90();
+    let cap = |at: Pos2, way: Vec2, sign: f32| {
+        (1..ROUND).map(move |i| {
+            let (sin, cos) = (PI * i as f32 / ROUND as f32).sin_cos();
+            at + radius * (sign * cos * way.rot90() + sign * sin * way)
+        })
+    };
+    let there = (0..path.len()).map(|i| aside(i, -1.0));
+    let back = (0..path.len()).rev().map(|i| aside(i, 1.0));
+    let (start, end) = (direction(0), direction(path.len() - 1));
+    let far = cap(*last, end, 1.0).collect::<Vec<_>>().into_iter().rev();
+    let near = cap(*first, start, -1.0).collect::<Vec<_>>().into_iter().rev();
+    there.chain(far).chain(back).chain(near).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_of_an_outline_is_one_radius_from_the_path_and_neighbours_are_near() {
+        let path: Vec<Pos2> = (0..40).map(|i| Pos2::new(i as f32, 20.0 + 0.01 * (i * i) as f32)).collect();
+        let around = outline(&path, 6.0);
+        for point in &around {
+            let nearest = path.iter().map(|p| p.distance(*point)).fold(f32::INFINITY, f32::min);
+            assert!((nearest - 6.0).abs() < 0.3, "{nearest} at {point:?}");
+        }
+        let closed = around.iter().zip(around.iter().cycle().skip(1));
+        assert!(closed.clone().all(|(a, b)| a.distance(*b) < 4.0), "it goes round without a jump");
+        assert_eq!(outline(&[Pos2::ZERO], 6.0).len(), 2 + 2 * (ROUND - 1), "a line of one is a circle");
+        assert!(outline(&[], 6.0).is_empty());
+    }
+}

@@ -1,0 +1,68 @@
+//! What the colours of a map stand for.
+
+use crate::app::state::{DifferenceView, MapKind, Units};
+use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::textures::colour_table;
+use crate::maps::LambdaScale;
+use crate::picture::ColourMap;
+
+/// The scale of a map's colours.
+pub struct Scale {
+    /// Which map.
+    pub kind: MapKind,
+    /// Colours of Lambda.
+    pub colours: ColourMap,
+    /// What is counted.
+    pub units: Units,
+    /// From Lambda to decades, where it is known.
+    pub lambda: Option<LambdaScale>,
+    /// How a difference is drawn.
+    pub difference: DifferenceView,
+    /// Where the scale of a difference ends, Lambda.
+    pub end: f32,
+}
+
+impl Scale {
+    /// The bar of this scale.
+    pub fn bar(&self) -> Bar {
+        let range_db = self.lambda.map(|s| 20.0 * (s.peak - s.floor)).filter(|range| *range > 0.0);
+        let range_db = range_db.filter(|_| self.units == Units::Decibels);
+        if self.kind != MapKind::Difference {
+            let table = colour_table(self.colours);
+            return match range_db {
+                Some(range) => Bar { table, low: -range, high: 0.0, title: "dB" },
+                None => Bar { table, low: 0.0, high: 1.0, title: "Λ" },
+            };
+        }
+        let high = f64::from(self.end) * range_db.unwrap_or(1.0);
+        let decibels = range_db.is_some();
+        match (self.difference.absolute, decibels) {
+            (true, true) => Bar { table: colour_table(self.colours), low: 0.0, high, title: "|Δ| dB" },
+            (true, false) => Bar { table: colour_table(self.colours), low: 0.0, high, title: "|ΔΛ|" },
+            (false, true) => Bar { table: colour_table(ColourMap::Diverging), low: -high, high, title: "Δ dB" },
+            (false, false) => Bar { table: colour_table(ColourMap::Diverging), low: -high, high, title: "ΔΛ" },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scale(kind: MapKind, units: Units, absolute: bool) -> Bar {
+        let lambda = Some(LambdaScale { peak: 1.0, floor: -2.0 });
+        let difference = DifferenceView { absolute, whole: false };
+        Scale { kind, colours: ColourMap::Grey, units, lambda, difference, end: 0.2 }.bar()
+    }
+
+    #[test]
+    fn a_difference_is_symmetric_and_its_absolute_value_begins_at_nothing() {
+        let ends = |bar: Bar| (bar.low, bar.high, bar.title);
+        let end = f64::from(0.2f32);
+        assert_eq!(ends(scale(MapKind::Target, Units::Lambda, false)), (0.0, 1.0, "Λ"));
+        assert_eq!(ends(scale(MapKind::Target, Units::Decibels, false)), (-60.0, 0.0, "dB"));
+        assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, false)), (-end, end, "ΔΛ"));
+        assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, true)), (0.0, end, "|ΔΛ|"));
+        assert_eq!(ends(scale(MapKind::Difference, Units::Decibels, false)), (-60.0 * end, 60.0 * end, "Δ dB"));
+    }
+}

@@ -1,0 +1,64 @@
+//! A bar of colours and what they stand for.
+
+use super::axes::{self, Axis};
+use eframe::egui::{Align2, Color32, Mesh, Painter, Rect, Shape, Stroke, Ui, pos2};
+
+/// Width of the colours.
+const COLOURS: f32 = 9.0;
+
+/// Between map and colours, and between colours and labels.
+const GAPS: [f32; 2] = [7.0, 5.0];
+
+/// A scale of colours.
+pub struct Bar {
+    /// Its colours, from the lowest to the highest.
+    pub table: [Color32; 256],
+    /// What the first stands for.
+    pub low: f64,
+    /// What the last stands for.
+    pub high: f64,
+    /// What is counted.
+    pub title: &'static str,
+}
+
+impl Bar {
+    fn axis(&self) -> Axis<'static> {
+        Axis::new(self.low, self.high, self.title)
+    }
+
+    /// What it needs beside a map of a height, labels included.
+    pub fn width(&self, painter: &Painter, height: f32) -> f32 {
+        let labels = self.axis().upwards(height);
+        let labels = labels.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
+        let beneath = axes::width(painter, self.title);
+        GAPS[0] + (COLOURS + GAPS[1] + labels).max(beneath) + 5.0
+    }
+
+    /// Draws it right of a map.
+    pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
+        let left = map.right() + GAPS[0];
+        let rect = Rect::from_x_y_ranges(left..=left + COLOURS, map.y_range());
+        let mut mesh = Mesh::default();
+        let steps = 64;
+        for i in 0..=steps {
+            let part = i as f32 / steps as f32;
+            let y = rect.bottom() - part * rect.height();
+            let colour = self.table[(part * 255.0) as usize];
+            mesh.colored_vertex(pos2(rect.left(), y), colour);
+            mesh.colored_vertex(pos2(rect.right(), y), colour);
+            if i > 0 {
+                let v = 2 * i as u32;
+                mesh.add_triangle(v - 2, v - 1, v);
+                mesh.add_triangle(v - 1, v, v + 1);
+            }
+        }
+        painter.add(Shape::mesh(mesh));
+        let (ink, axis) = (ui.visuals().weak_text_color(), self.axis());
+        for tick in axis.upwards(rect.height()) {
+            let y = rect.bottom() - axis.part(tick.value) * rect.height();
+            painter.hline(rect.right()..=rect.right() + 3.0, y, Stroke::new(1.0, ink));
+            axes::text(painter, pos2(rect.right() + GAPS[1], y), Align2::LEFT_CENTER, &tick.text, ink);
+        }
+        axes::text(painter, pos2(rect.left(), rect.bottom() + 18.0), Align2::LEFT_TOP, self.title, ink);
+    }
+}

@@ -1,0 +1,65 @@
+//! What the lines and marks of a chart stand for: a row of its own, not over the data.
+
+use eframe::egui::{Color32, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
+
+/// Width of a sign, and what is between it and the name, points.
+const SIGN: f32 = 14.0;
+const GAP: f32 = 4.0;
+
+/// How something is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sign {
+    /// A line.
+    Line,
+    /// A circle.
+    Circle {
+        /// Whether it is filled.
+        filled: bool,
+    },
+    /// A square.
+    Square {
+        /// Whether it is filled.
+        filled: bool,
+    },
+}
+
+/// One entry of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// What is drawn.
+    pub sign: Sign,
+    /// In which colour.
+    pub colour: Color32,
+    /// What it is.
+    pub name: String,
+}
+
+/// Draws the entries, row after row where they are many.
+pub fn row(ui: &mut Ui, entries: &[Entry]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 12.0;
+        for entry in entries {
+            // Sign and name in one piece, so that no row ends between them.
+            let (font, ink) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
+            let name = ui.painter().layout_no_wrap(entry.name.clone(), font, ink);
+            let size = vec2(SIGN + GAP + name.size().x, name.size().y);
+            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &entry.name));
+            sign(ui, rect.with_max_x(rect.left() + SIGN), entry);
+            ui.painter().galley(rect.min + vec2(SIGN + GAP, 0.0), name, ink);
+        }
+    });
+}
+
+fn sign(ui: &Ui, rect: Rect, entry: &Entry) {
+    let (painter, stroke) = (ui.painter(), Stroke::new(1.5, entry.colour));
+    let fill = |filled: bool| if filled { entry.colour } else { Color32::TRANSPARENT };
+    match entry.sign {
+        Sign::Line => _ = painter.hline(rect.x_range(), rect.center().y, Stroke::new(2.0, entry.colour)),
+        Sign::Circle { filled } => _ = painter.circle(rect.center(), 4.5, fill(filled), stroke),
+        Sign::Square { filled } => {
+            let square = Rect::from_center_size(rect.center(), vec2(8.0, 8.0));
+            painter.rect(square, 0.0, fill(filled), stroke, StrokeKind::Middle);
+        }
+    }
+}
