@@ -81,7 +81,7 @@ impl Drawn<'_> {
         let points: Vec<Pos2> = points.into_iter().map(|p| self.at(p)).collect();
         match dash {
             None => _ = self.painter.add(Shape::line(points, stroke)),
-            Some([long, gap]) => _ = self.painter.extend(Shape::dashed_line(&points, stroke, long, gap)),
+            Some([long, gap]) => self.painter.extend(Shape::dashed_line(&points, stroke, long, gap)),
         }
     }
 
