@@ -2,6 +2,7 @@
 //! is told, so that the window shows its own.
 
 use crate::app::state::Command;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -133,12 +134,22 @@ pub struct Dialogs {
     system: Option<System>,
     answers: (Sender<Answer>, Receiver<Answer>),
     unanswered: Option<Question>,
+    /// What is to be told with the first question that the window asks itself.
+    apology: Option<&'static str>,
+    told: Option<&'static str>,
 }
+
+/// What is told once where the system has no dialogs.
+const APOLOGY: &str = "This system shows no file dialog (no portal, no zenity), so the window shows its own.";
 
 impl Dialogs {
     /// Asks by the system's dialogs as long as there are some.
     pub fn of_the_system() -> Self {
-        Dialogs::by(Some(Arc::new(system_dialog)))
+        let [bus, runtime, path] = ["DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR", "PATH"].map(std::env::var_os);
+        match cfg!(not(target_os = "linux")) || may_have_dialogs(bus, runtime, path) {
+            true => Dialogs::by(Some(Arc::new(system_dialog))),
+            false => Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) },
+        }
     }
 
     /// Leaves every question to the window.
@@ -147,7 +158,7 @@ impl Dialogs {
     }
 
     fn by(system: Option<System>) -> Self {
-        Dialogs { system, answers: channel(), unanswered: None }
+        Dialogs { system, answers: channel(), unanswered: None, apology: None, told: None }
     }
 
     /// Asks the user for a file; [`Dialogs::poll`] has the command later.
@@ -157,6 +168,7 @@ impl Dialogs {
     pub fn ask(&mut self, question: Question, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
         let Some(system) = self.system.clone() else {
             self.unanswered = Some(question);
+            self.told = self.apology.take();
             return Ok(());
         };
         let answers = self.answers.0.clone();
@@ -176,16 +188,14 @@ impl Dialogs {
 
     /// What the user chose since the last call. Returns also what to tell the user, when it turns out that the system has no dialogs.
     pub fn poll(&mut self) -> (Vec<Command>, Option<&'static str>) {
-        let (mut chosen, mut told) = (Vec::new(), None);
+        let (mut chosen, mut told) = (Vec::new(), self.told.take());
         while let Ok(answer) = self.answers.1.try_recv() {
             match answer {
                 Answer::Chosen(command) => chosen.push(command),
                 Answer::NotShown(question) => {
                     self.unanswered = Some(question);
                     if self.system.take().is_some() {
-                        told = Some(
-                            "This system shows no file dialog (no portal, no zenity), so the window shows its own.",
-                        );
+                        told = Some(APOLOGY);
                     }
                 }
             }
@@ -197,6 +207,13 @@ impl Dialogs {
     pub fn take_unanswered(&mut self) -> Option<Question> {
         self.unanswered.take()
     }
+}
+
+/// Whether there can be a dialog at all: a portal is asked over the session's bus, and `zenity` is a program. Without either the system's
+/// answer comes too late to tell it from somebody who closed a dialog.
+fn may_have_dialogs(bus: Option<OsString>, runtime: Option<OsString>, path: Option<OsString>) -> bool {
+    let has_bus = bus.is_some_and(|b| !b.is_empty()) || runtime.is_some_and(|r| Path::new(&r).join("bus").exists());
+    has_bus || path.is_some_and(|p| std::env::split_paths(&p).any(|folder| folder.join("zenity").exists()))
 }
 
 fn system_dialog(question: &Question) -> Option<PathBuf> {
@@ -217,6 +234,24 @@ mod tests {
         // Nobody wakes for a dialog that was closed, and nobody needs to for one of the window.
         let _closed = woken.recv_timeout(Duration::from_secs(2));
         dialogs.poll()
+    }
+
+    #[test]
+    fn a_system_without_a_bus_and_without_zenity_is_not_asked() {
+        let folder = tempfile::tempdir().unwrap();
+        let there = || Some(folder.path().as_os_str().to_owned());
+        assert!(!may_have_dialogs(None, None, None) && !may_have_dialogs(Some("".into()), there(), there()));
+        assert!(may_have_dialogs(Some("unix:path=/bus".into()), None, None));
+        std::fs::write(folder.path().join("zenity"), "").unwrap();
+        assert!(may_have_dialogs(None, None, there()));
+        std::fs::write(folder.path().join("bus"), "").unwrap();
+        assert!(may_have_dialogs(None, there(), None));
+        let mut dialogs = Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) };
+        for told in [Some(APOLOGY), None] {
+            dialogs.ask(Question::beside(Purpose::Open, None), || ()).unwrap();
+            assert_eq!(dialogs.poll(), (Vec::new(), told), "told once");
+            assert!(dialogs.take_unanswered().is_some());
+        }
     }
 
     #[test]
