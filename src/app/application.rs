@@ -6,7 +6,7 @@ use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::state::{Arrangement, Command, Methods, Notices, Pointer, Settings, State};
-use super::widgets::theme;
+use super::widgets::{focus_ring, theme};
 use crate::interact::{Document, Editor};
 use crate::lesson::Progress;
 use crate::reconstruct::Reconstructor;
@@ -19,6 +19,9 @@ use std::time::Instant;
 
 /// Name under which settings and the autosave are kept.
 pub const APP_ID: &str = "apertura";
+
+/// How much larger everything is in a presentation.
+const PRESENTATION_ZOOM: f32 = 1.5;
 
 /// How the app is started.
 #[derive(Default)]
@@ -52,6 +55,8 @@ struct Kept {
     arrangement: Arrangement,
     recent: Vec<PathBuf>,
     progress: Progress,
+    /// Size of the interface before a presentation that was on screen in the end.
+    zoom: Option<f32>,
 }
 
 /// The app.
@@ -65,6 +70,8 @@ pub struct App {
     title: String,
     /// Whether the window fills the screen because a lesson does.
     is_full_screen: bool,
+    /// Size of the interface before the presentation that is shown.
+    zoom_before: Option<f32>,
     /// Keys that came too quickly for one frame.
     later: input::Later,
 }
@@ -104,6 +111,7 @@ impl App {
             lossy_save: None,
             lesson: None,
             before_presenting: None,
+            without_numbers: false,
             progress: kept.progress,
             recent: kept.recent,
             dark: ctx.theme() == egui::Theme::Dark,
@@ -112,6 +120,9 @@ impl App {
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
         state.settings.method = options.method.unwrap_or(state.settings.method);
+        if let Some(zoom) = kept.zoom {
+            ctx.set_zoom_factor(zoom);
+        }
         start(&mut state, &jobs, options.scene);
         let asked = options.lesson.map(Command::OpenLessonFile).into_iter();
         let asked = asked.chain(options.shared.map(Command::OpenShared)).collect();
@@ -124,6 +135,7 @@ impl App {
             frame_log,
             title: String::new(),
             is_full_screen: false,
+            zoom_before: None,
             later: Default::default(),
         })
     }
@@ -140,6 +152,7 @@ impl App {
                 Some(Effect::Zoom(None)) => ctx.set_zoom_factor(1.0),
                 Some(Effect::Zoom(Some(by))) => ctx.set_zoom_factor((ctx.zoom_factor() + by).clamp(0.5, 3.0)),
                 Some(Effect::Copy(text)) => ctx.copy_text(text),
+                Some(Effect::CopyImage(image)) => ctx.copy_image(image),
                 Some(Effect::RequestPaste) => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
                 Some(Effect::Palette) => self.memory.palette.toggle(),
                 Some(Effect::Close) => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
@@ -166,7 +179,9 @@ impl App {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let is_open = |panel| state.arrangement.is_open(panel);
         let mut commands = menu::show(ui, contents::menu_input(state, jobs, &is_open), &mut memory.menu);
-        status_bar::show(ui, contents::status_input(state, jobs));
+        if !state.without_numbers {
+            status_bar::show(ui, contents::status_input(state, jobs));
+        }
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
@@ -188,6 +203,21 @@ impl App {
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
+        }
+    }
+
+    /// Large type in a presentation; that of before after it.
+    fn update_type(&mut self, ctx: &egui::Context) {
+        match (self.state.without_numbers, self.zoom_before) {
+            (true, None) => {
+                self.zoom_before = Some(ctx.zoom_factor());
+                ctx.set_zoom_factor((PRESENTATION_ZOOM * ctx.zoom_factor()).min(3.0));
+            }
+            (false, Some(before)) => {
+                self.zoom_before = None;
+                ctx.set_zoom_factor(before);
+            }
+            _ => {}
         }
     }
 
@@ -263,7 +293,9 @@ impl eframe::App for App {
         self.jobs.ask(&mut self.state);
         self.update_title(&ctx);
         self.update_full_screen(&ctx);
+        self.update_type(&ctx);
         messages::show(&ctx, &mut self.state.notices);
+        focus_ring::draw(&ctx);
         self.write_frame_log(frame.info().cpu_usage);
     }
 
@@ -275,6 +307,7 @@ impl eframe::App for App {
             arrangement,
             recent: state.recent.clone(),
             progress: state.progress.clone(),
+            zoom: self.zoom_before,
         };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         *state.kept_arrangement() = kept.arrangement;

@@ -1,6 +1,8 @@
 //! What each command does: the only place that changes settings, and the only one that starts work.
 
+mod hand;
 mod lessons;
+mod map_picture;
 mod saving;
 mod shared;
 
@@ -18,6 +20,7 @@ use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
 use crate::scene::{GaussianCluster, Line, Object, Point, presets};
 use crate::signal::Floor;
+use eframe::egui::ColorImage;
 use std::path::{Path, PathBuf};
 
 /// What a command asks of the window.
@@ -29,6 +32,8 @@ pub enum Effect {
     Zoom(Option<f32>),
     /// This text on the clipboard.
     Copy(String),
+    /// This picture on the clipboard.
+    CopyImage(ColorImage),
     /// Ask the system for the clipboard.
     RequestPaste,
     /// Show or hide the palette.
@@ -52,6 +57,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Eff
     let left = shared::apply(state, jobs, command)
         .and_then(|c| settings(&mut state.settings, c))
         .and_then(|c| edit(state, c))
+        .and_then(|c| hand::apply(state, c))
         .and_then(|c| scenes(state, jobs, c))
         .and_then(|c| lessons::apply(state, jobs, c))
         .and_then(|c| panels(state, c))
@@ -92,6 +98,7 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
         Command::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
         Command::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
         Command::SetSnap(snap) => settings.snap = snap,
+        Command::SetCoordinates(coordinates) => settings.coordinates = coordinates,
         Command::SetBounds(bounds) => settings.bounds = bounds,
         Command::MarkReflectors => settings.show_reflectors = true,
         Command::ToggleReflectors => settings.show_reflectors ^= true,
@@ -173,9 +180,10 @@ fn panels(state: &mut State, command: Command) -> Option<Command> {
         Command::OpenPanel(panel) => state.arrangement.set_open(panel, true),
         Command::Maximise(panel) => state.arrangement.toggle_maximised(panel),
         Command::ResetLayout => {
-            state.before_presenting = None;
+            state.stop_presenting();
             state.arrangement = Arrangement::default();
         }
+        Command::Present => state.present(),
         Command::CloseMessages => state.notices.clear(),
         other => return Some(other),
     }
@@ -249,6 +257,7 @@ fn window(state: &mut State, jobs: &Jobs, command: Command) -> Option<Effect> {
         Command::CopyShared => Effect::Copy(shared::text(state)?),
         Command::CopyEvaluation => Effect::Copy(jobs.evaluation.to_csv()),
         Command::Paste => Effect::RequestPaste,
+        Command::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),
         Command::ToggleTheme => {
             state.settings.theme = if state.dark { Brightness::Light } else { Brightness::Dark };
             Effect::Brightness(state.settings.theme)

@@ -4,7 +4,8 @@ use super::chrome::tiles::Draw;
 use super::chrome::{menu, status_bar};
 use super::jobs::{Jobs, TheoryResult};
 use super::panels::{
-    bounds, controls, cuts, evaluation, guide, inspector, lesson, map, roc, run_time, scene, several, timing, training,
+    bounds, controls, cuts, evaluation, guide, inspector, lesson, map, objects, roc, run_time, scene, several, timing,
+    training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
@@ -27,6 +28,8 @@ pub struct Memory {
     guide: guide::Memory,
     lesson: lesson::Memory,
     several: several::Memory,
+    map: map::Memory,
+    objects: objects::Memory,
     hidden: Texture,
 }
 
@@ -81,6 +84,7 @@ impl<'a> Contents<'a> {
             found: found.map_or(&[], |o| &o.found.reflectors),
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
+            numbers: shows_numbers(state),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }
@@ -122,6 +126,8 @@ impl<'a> Contents<'a> {
         let input = map::Input {
             kind,
             radar: self.state.editor.radar(),
+            scene,
+            selection: self.state.editor.selection(),
             projection: settings.projection,
             colours: settings.colours,
             units: settings.units,
@@ -140,8 +146,9 @@ impl<'a> Contents<'a> {
             cursor: self.state.shown_cursor(),
             error: error(self.state, self.jobs, kind),
             veil: veil(self.state, kind),
+            numbers: shows_numbers(self.state),
         };
-        map::show(ui, input, self.state.map_views.of(settings.projection))
+        map::show(ui, input, self.state.map_views.of(settings.projection), &mut self.memory.map)
     }
 
     fn cuts(&mut self, ui: &mut Ui) -> Vec<Command> {
@@ -246,6 +253,17 @@ impl<'a> Contents<'a> {
         let input = training::Input { path: job.path(), log: job.log(), note: job.note(), running };
         training::show(ui, input, &mut self.memory.training)
     }
+
+    fn inspector(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (editor, coordinates) = (&self.state.editor, self.state.settings.coordinates);
+        inspector::show(ui, inspector::Input { editor, radar: editor.radar(), coordinates })
+    }
+
+    fn objects(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (editor, coordinates) = (&self.state.editor, self.state.settings.coordinates);
+        let input = objects::Input { scene: editor.scene(), selection: editor.selection(), coordinates };
+        objects::show(ui, input, &mut self.memory.objects)
+    }
 }
 
 impl Draw for Contents<'_> {
@@ -253,10 +271,8 @@ impl Draw for Contents<'_> {
         let commands = match panel {
             Panel::Scene => self.scene(ui),
             Panel::Controls => self.controls(ui),
-            Panel::Inspector => {
-                let radar = self.state.editor.radar().clone();
-                inspector::show(ui, inspector::Input { radar: &radar }, &mut self.state.editor)
-            }
+            Panel::Inspector => self.inspector(ui),
+            Panel::Objects => self.objects(ui),
             Panel::Map(kind) => self.map(ui, kind),
             Panel::Cuts => self.cuts(ui),
             Panel::Roc => self.roc(ui),
@@ -274,6 +290,9 @@ impl Draw for Contents<'_> {
 
     fn caption(&self, panel: Panel) -> Option<String> {
         let Panel::Map(kind) = panel else { return None };
+        if !shows_numbers(self.state) {
+            return None;
+        }
         let pipeline = &self.jobs.pipeline;
         map::caption(map::Caption {
             kind,
@@ -284,6 +303,11 @@ impl Draw for Contents<'_> {
             output_eta: self.state.output_eta(),
         })
     }
+}
+
+/// Whether numbers are told: not in a presentation.
+fn shows_numbers(state: &State) -> bool {
+    !state.without_numbers
 }
 
 /// The numbers behind a map's picture.
@@ -341,6 +365,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
 pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
     let history = state.editor.history();
     menu::Input {
+        presents: state.is_presenting(),
         can_undo: state.can_undo(),
         can_redo: history.redo_label().is_some(),
         selected: !state.editor.selection().is_empty(),

@@ -1,6 +1,7 @@
 //! Keys, clipboard events and dropped files become commands.
 
 use super::state::{Command, shortcuts};
+use super::widgets::nudge::nudge;
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput};
 
 /// Events of one frame that must wait for the next.
@@ -89,19 +90,6 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
         commands.extend(nudge(ctx, input.bin_metres));
     }
     commands
-}
-
-/// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
-fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
-    let (mut dx, mut dy) = (0.0, 0.0);
-    ctx.input_mut(|input| {
-        for (modifiers, step) in [(Modifiers::SHIFT, 10.0), (Modifiers::ALT, 0.1), (Modifiers::NONE, 1.0)] {
-            let mut pressed = |key| input.count_and_consume_key(modifiers, key) as f64 * step;
-            dx += pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
-            dy += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
-        }
-    });
-    ((dx, dy) != (0.0, 0.0)).then_some(Command::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres })
 }
 
 #[cfg(test)]

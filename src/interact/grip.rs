@@ -133,17 +133,36 @@ fn count_over(length: f64, spacing: f64) -> Option<usize> {
     (spacing.abs() > 0.0 && steps.is_finite()).then(|| (steps.max(0.0) as usize + 1).min(MAX_LINE_COUNT))
 }
 
-/// Smallest rectangle around all reflectors' anchors: (low corner, high corner), or `None` for an empty scene.
+/// Smallest rectangle around an object, (low corner, high corner): a line's ends, one standard deviation around a cluster's centre.
+pub(super) fn extent(object: &Object) -> (Place, Place) {
+    match object {
+        Object::Point(p) => (Place::new(p.x_metres, p.y_metres), Place::new(p.x_metres, p.y_metres)),
+        Object::Line(l) => around(Place::new(l.x_metres, l.y_start_metres), l.end_metres().into()),
+        Object::Gaussian(g) => (
+            Place::new(g.x_metres - g.x_std_metres, g.y_metres - g.y_std_metres),
+            Place::new(g.x_metres + g.x_std_metres, g.y_metres + g.y_std_metres),
+        ),
+    }
+}
+
+/// Smallest rectangle around two places.
+fn around(a: Place, b: Place) -> (Place, Place) {
+    (
+        Place::new(a.x_metres.min(b.x_metres), a.y_metres.min(b.y_metres)),
+        Place::new(a.x_metres.max(b.x_metres), a.y_metres.max(b.y_metres)),
+    )
+}
+
+/// Smallest rectangle around all objects: (low corner, high corner), or `None` for an empty scene.
 pub(super) fn bounds(scene: &Scene) -> Option<(Place, Place)> {
+    let finite = |p: &Place| p.x_metres.is_finite() && p.y_metres.is_finite();
     let corners = scene.objects.iter().flat_map(|o| {
-        grips(o, 0.0).into_iter().map(|g| g.place).filter(|p| p.x_metres.is_finite() && p.y_metres.is_finite())
+        let (low, high) = extent(o);
+        [low, high].into_iter().filter(finite)
     });
     corners.fold(None, |bounds, p| {
-        let (a, b) = bounds.unwrap_or((p, p));
-        Some((
-            Place::new(a.x_metres.min(p.x_metres), a.y_metres.min(p.y_metres)),
-            Place::new(b.x_metres.max(p.x_metres), b.y_metres.max(p.y_metres)),
-        ))
+        let (low, high) = bounds.unwrap_or((p, p));
+        Some((around(low, p).0, around(high, p).1))
     })
 }
 

@@ -9,19 +9,24 @@
 //!  key, menu ──────────────► Editor::{add, delete_selected, nudge, paste, ..}            (one step each)
 //! ```
 
+mod arrange;
 pub mod autosave;
+pub mod blob;
 pub mod clipboard;
 mod document;
 mod editor;
+mod field;
 mod grip;
 mod history;
 pub mod hit;
 mod selection;
 mod snap;
 
+pub use arrange::{Alignment, Along};
 pub use autosave::Autosave;
 pub use document::{Document, Restored};
 pub use editor::{Editor, Saved};
+pub use field::{Change, Coordinates, Field, Shared, shared};
 pub use grip::{Grip, GripPlace, MAX_LINE_COUNT, grips, move_grip};
 pub use history::History;
 pub use selection::{Selection, SelectionMode};

@@ -11,58 +11,108 @@ pub enum SelectionMode {
     Toggle,
     /// They join them.
     Add,
+    /// Everything from the object picked before to the last of them takes their place.
+    Range,
 }
 
-/// Indices of selected objects.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Selection(BTreeSet<usize>);
+/// Indices of selected objects. Two selections of the same objects are equal, whatever was picked last.
+#[derive(Debug, Clone, Default)]
+pub struct Selection {
+    picked: BTreeSet<usize>,
+    /// Where a range begins.
+    anchor: Option<usize>,
+    /// What was picked last.
+    latest: Option<usize>,
+}
+
+impl PartialEq for Selection {
+    fn eq(&self, other: &Self) -> bool {
+        self.picked == other.picked
+    }
+}
+
+impl Eq for Selection {}
 
 impl Selection {
-    /// Objects `indices`.
+    /// Objects `indices`, the last of them picked last.
     pub fn of(indices: impl IntoIterator<Item = usize>) -> Self {
-        Selection(indices.into_iter().collect())
+        let mut selection = Selection::default();
+        selection.pick(indices, SelectionMode::Replace);
+        selection
     }
 
     /// Whether object `index` is selected.
     pub fn contains(&self, index: usize) -> bool {
-        self.0.contains(&index)
+        self.picked.contains(&index)
     }
 
     /// Number of selected objects.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.picked.len()
     }
 
     /// Whether nothing is selected.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.picked.is_empty()
     }
 
     /// The selected indices, rising.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
-        self.0.iter().copied()
+        self.picked.iter().copied()
     }
 
     /// The object, where exactly one is selected.
     pub fn single(&self) -> Option<usize> {
-        if self.0.len() == 1 { self.0.first().copied() } else { None }
+        if self.picked.len() == 1 { self.picked.first().copied() } else { None }
+    }
+
+    /// The object that was picked last.
+    pub fn latest(&self) -> Option<usize> {
+        self.latest
+    }
+
+    /// The object after or before the one that was picked last, around the ends of a scene of `count` objects; `None` in an empty one.
+    pub fn neighbour(&self, count: usize, forward: bool) -> Option<usize> {
+        let last = count.checked_sub(1)?;
+        Some(match (self.latest, forward) {
+            (None, true) => 0,
+            (None, false) | (Some(0), false) => last,
+            (Some(i), true) => {
+                if i < last {
+                    i + 1
+                } else {
+                    0
+                }
+            }
+            (Some(i), false) => (i - 1).min(last),
+        })
     }
 
     /// Picks `indices`.
     pub fn pick(&mut self, indices: impl IntoIterator<Item = usize>, mode: SelectionMode) {
+        if mode == SelectionMode::Range {
+            let Some(to) = indices.into_iter().last() else { return };
+            let from = self.anchor.unwrap_or(to);
+            self.picked = (from.min(to)..=from.max(to)).collect();
+            (self.anchor, self.latest) = (Some(from), Some(to));
+            return;
+        }
         if mode == SelectionMode::Replace {
-            self.0.clear();
+            *self = Selection::default();
         }
         for index in indices {
-            if !self.0.insert(index) && mode == SelectionMode::Toggle {
-                self.0.remove(&index);
+            if !self.picked.insert(index) && mode == SelectionMode::Toggle {
+                self.picked.remove(&index);
             }
+            (self.anchor, self.latest) = (Some(index), Some(index));
         }
     }
 
     /// Drops indices that a scene of `count` objects doesn't have.
     pub fn clamp(&mut self, count: usize) {
-        self.0.retain(|&i| i < count);
+        self.picked.retain(|&i| i < count);
+        self.anchor = self.anchor.filter(|i| *i < count);
+        self.latest = self.latest.filter(|i| *i < count);
     }
 }
 
@@ -81,5 +131,30 @@ mod tests {
         assert_eq!(s.single(), Some(4));
         s.clamp(4);
         assert!(s.is_empty());
+    }
+
+    #[test]
+    fn a_range_begins_where_something_was_picked_before() {
+        let mut s = Selection::of([3]);
+        s.pick([6], SelectionMode::Range);
+        assert_eq!((s.clone(), s.latest()), (Selection::of([3, 4, 5, 6]), Some(6)));
+        s.pick([1], SelectionMode::Range);
+        assert_eq!(s, Selection::of([1, 2, 3]), "it turns around its beginning");
+        s.pick([8], SelectionMode::Toggle);
+        s.pick([7], SelectionMode::Range);
+        assert_eq!(s, Selection::of([7, 8]));
+    }
+
+    #[test]
+    fn neighbours_go_round() {
+        let mut s = Selection::default();
+        assert_eq!((s.neighbour(3, true), s.neighbour(3, false), s.neighbour(0, true)), (Some(0), Some(2), None));
+        let mut walk = |forward| {
+            let next = s.neighbour(3, forward).unwrap();
+            s.pick([next], SelectionMode::Replace);
+            next
+        };
+        assert_eq!([walk(true), walk(true), walk(true), walk(true)], [0, 1, 2, 0]);
+        assert_eq!([walk(false), walk(false)], [2, 1]);
     }
 }

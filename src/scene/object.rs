@@ -173,13 +173,36 @@ impl Object {
         }
     }
 
+    /// Sets the reflectivity sigma of each of its reflectors.
+    pub fn set_reflectivity(&mut self, reflectivity: f64) {
+        *match self {
+            Object::Point(p) => &mut p.reflectivity,
+            Object::Line(l) => &mut l.reflectivity,
+            Object::Gaussian(g) => &mut g.reflectivity,
+        } = reflectivity;
+    }
+
+    /// The place that its file gives: the point, a line's first reflector, a cluster's centre. (x, y) in metres.
+    pub fn anchor_metres(&self) -> [f64; 2] {
+        match self {
+            Object::Point(p) => [p.x_metres, p.y_metres],
+            Object::Line(l) => [l.x_metres, l.y_start_metres],
+            Object::Gaussian(g) => [g.x_metres, g.y_metres],
+        }
+    }
+
+    /// The same place, to be changed: the whole object moves with it.
+    pub fn anchor_mut(&mut self) -> [&mut f64; 2] {
+        match self {
+            Object::Point(p) => [&mut p.x_metres, &mut p.y_metres],
+            Object::Line(l) => [&mut l.x_metres, &mut l.y_start_metres],
+            Object::Gaussian(g) => [&mut g.x_metres, &mut g.y_metres],
+        }
+    }
+
     /// Moves the whole object.
     pub fn translate(&mut self, dx_metres: f64, dy_metres: f64) {
-        let (x, y) = match self {
-            Object::Point(p) => (&mut p.x_metres, &mut p.y_metres),
-            Object::Line(l) => (&mut l.x_metres, &mut l.y_start_metres),
-            Object::Gaussian(g) => (&mut g.x_metres, &mut g.y_metres),
-        };
+        let [x, y] = self.anchor_mut();
         *x += dx_metres;
         *y += dy_metres;
     }

@@ -3,10 +3,12 @@
 
 mod documents;
 mod figures;
+mod keyboard;
 mod lessons;
 mod monkey;
 mod panels;
 mod pictures;
+mod presentation;
 mod scene;
 mod session;
 mod work;

@@ -2,7 +2,7 @@
 
 use super::unsaved;
 use crate::app::state::{Command, NewObject, Panel, Projection};
-use crate::app::widgets::entry::{button, entry, tooltip};
+use crate::app::widgets::entry::{arrange, button, entry, tooltip};
 use crate::interact::Document;
 use crate::picture::ColourMap;
 use crate::scene::generate::Kind;
@@ -13,6 +13,8 @@ use std::path::PathBuf;
 
 /// What the bar shows.
 pub struct Input<'a> {
+    /// Whether a presentation is shown.
+    pub presents: bool,
     /// Whether there is something to undo.
     pub can_undo: bool,
     /// Whether there is something to redo.
@@ -81,6 +83,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             button(ui, "Redo", Command::Redo, input.can_redo, &mut asked);
             ui.separator();
             button(ui, "Lessons", Command::OpenPanel(Panel::Lesson), true, &mut asked);
+            if input.presents {
+                button(ui, "End presentation", Command::Present, true, &mut asked);
+            }
             let right = egui::Layout::right_to_left(egui::Align::Center);
             ui.with_layout(right, |ui| self::right(ui, input.projection, &mut asked));
         });
@@ -146,10 +151,14 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         (Command::Duplicate, input.selected),
         (Command::Delete, input.selected),
         (Command::SelectAll, true),
+        (Command::SelectNext, true),
+        (Command::SelectPrevious, true),
         (Command::Escape, input.selected),
     ] {
         entry(ui, command, enabled, asked);
     }
+    ui.separator();
+    ui.add_enabled_ui(input.selected, |ui| ui.menu_button("Arrange", |ui| arrange(ui, asked)));
 }
 
 fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Command>) {
@@ -216,7 +225,14 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ];
     entries(ui, of_maps, asked);
     ui.separator();
-    let of_window = [Command::ToggleTheme, Command::ZoomIn, Command::ZoomOut, Command::ZoomReset, Command::Palette];
+    let of_window = [
+        Command::Present,
+        Command::ToggleTheme,
+        Command::ZoomIn,
+        Command::ZoomOut,
+        Command::ZoomReset,
+        Command::Palette,
+    ];
     entries(ui, of_window, asked);
 }
 
@@ -230,6 +246,7 @@ mod tests {
     fn menus_ask_for_what_they_list() {
         let draw = |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
             let input = Input {
+                presents: false,
                 can_undo: true,
                 can_redo: false,
                 selected: false,

@@ -125,36 +125,67 @@ fn chapters() -> impl Iterator<Item = &'static str> {
     })
 }
 
-/// What the text needs from frame to frame.
+/// What a chapter is about: its heading.
+fn heading(chapter: &str) -> &str {
+    chapter.lines().next().unwrap_or_default().trim_start_matches('#').trim()
+}
+
+/// What the guide remembers from frame to frame.
 #[derive(Default)]
 pub struct Memory {
     cache: CommonMarkCache,
+    /// The chapter that is open, from 0.
+    open: usize,
 }
 
-/// Draws the panel.
+/// Draws the panel: one chapter, and the way to the others.
 pub fn show(ui: &mut Ui, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        turn(ui, &mut memory.open);
+        ui.separator();
+        let Some((chapter, steps)) = chapters().zip(CHAPTERS).nth(memory.open) else { return };
+        // Each chapter begins at its top, and is found again where it was left.
+        let area = ScrollArea::vertical().id_salt(("chapter", memory.open)).auto_shrink([false, false]);
+        area.show(ui, |ui| {
             ui.set_max_width(ui.available_width().min(620.0));
-            for (chapter, steps) in chapters().zip(CHAPTERS) {
-                CommonMarkViewer::new().show(ui, &mut memory.cache, chapter);
-                ui.horizontal_wrapped(|ui| {
-                    for step in *steps {
-                        if ui
-                            .button(step.label)
-                            .on_hover_text("Set it up; undo brings your scene and your settings back")
-                            .clicked()
-                        {
-                            asked.push(Command::Guided((step.commands)()));
-                        }
+            CommonMarkViewer::new().show(ui, &mut memory.cache, chapter);
+            ui.horizontal_wrapped(|ui| {
+                for step in *steps {
+                    let button = ui.button(step.label);
+                    if button.on_hover_text("Set it up; undo brings your scene and your settings back").clicked() {
+                        asked.push(Command::Guided((step.commands)()));
                     }
-                });
-                ui.add_space(14.0);
-            }
+                }
+            });
         });
     });
     asked
+}
+
+/// Previous, contents, next.
+fn turn(ui: &mut Ui, open: &mut usize) {
+    let last = CHAPTERS.len().saturating_sub(1);
+    *open = (*open).min(last);
+    ui.horizontal(|ui| {
+        if ui.add_enabled(*open > 0, egui::Button::new("Previous")).clicked() {
+            *open -= 1;
+        }
+        if ui.add_enabled(*open < last, egui::Button::new("Next")).clicked() {
+            *open += 1;
+        }
+        ui.weak(format!("{} of {}", *open + 1, CHAPTERS.len()));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.menu_button("Contents", |ui| {
+                for (index, chapter) in chapters().enumerate() {
+                    if ui.selectable_label(index == *open, heading(chapter)).clicked() {
+                        *open = index;
+                        ui.close();
+                    }
+                }
+            });
+        });
+    });
 }
 
 #[cfg(test)]
@@ -169,11 +200,38 @@ mod tests {
             let commands = show(ui, &mut state.0);
             state.1.extend(commands);
         };
-        let mut guide = Harness::builder().with_size([640.0, 9000.0]).build_ui_state(draw, Default::default());
+        let mut guide = Harness::builder().with_size([640.0, 2000.0]).build_ui_state(draw, Default::default());
+        guide.state_mut().0.open = 3;
+        guide.run();
         guide.get_by_role_and_label(egui::accesskit::Role::Button, "Hamming").click();
         guide.step();
         let steps = scene("four-reflectors", window(WindowFunction::Hamming));
         assert_eq!(guide.state().1, [Command::Guided(steps)]);
+    }
+
+    #[test]
+    fn previous_next_and_contents_lead_to_every_chapter() {
+        let draw = |ui: &mut Ui, memory: &mut Memory| _ = show(ui, memory);
+        let mut guide = Harness::builder().with_size([360.0, 600.0]).build_ui_state(draw, Memory::default());
+        let button = |guide: &mut Harness<'_, Memory>, name: &str| {
+            guide.get_by_role_and_label(egui::accesskit::Role::Button, name).click();
+            guide.run();
+        };
+        let titles: Vec<&str> = chapters().map(heading).collect();
+        assert!(titles.iter().all(|t| !t.is_empty()));
+        button(&mut guide, "Previous");
+        assert_eq!(guide.state().open, 0, "there is none before the first");
+        for chapter in 1..titles.len() {
+            button(&mut guide, "Next");
+            assert_eq!(guide.state().open, chapter);
+        }
+        button(&mut guide, "Next");
+        assert_eq!(guide.state().open, titles.len() - 1, "nor one after the last");
+        button(&mut guide, "Contents");
+        button(&mut guide, titles[2]);
+        assert_eq!(guide.state().open, 2);
+        button(&mut guide, "Previous");
+        assert_eq!(guide.state().open, 1);
     }
 
     #[test]

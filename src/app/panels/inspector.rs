@@ -1,27 +1,30 @@
-//! Numbers of what is selected, with units.
+//! Numbers of what is selected, with units: of one object, or those that several have in common.
 
 use crate::app::state::{Command, NewObject};
-use crate::app::widgets::entry::button;
-use crate::interact::Editor;
+use crate::app::widgets::entry::{arrange, button};
+use crate::interact::{Change, Coordinates, Editor, Field, Shared};
 use crate::radar::Radar;
-use crate::scene::{Object, Scene};
+use crate::scene::Scene;
 use eframe::egui;
 use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
 
-/// What the numbers are turned into.
+/// What the numbers are of, and turned into.
 pub struct Input<'a> {
+    /// The scene, and what of it is selected.
+    pub editor: &'a Editor,
     /// The radar.
     pub radar: &'a Radar,
+    /// In which numbers places are told.
+    pub coordinates: Coordinates,
 }
 
-/// Draws the panel; numbers that are edited go straight to the editor, each as a step that can be undone.
-pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor) -> Vec<Command> {
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| match editor.selection().len() {
-            0 => nothing(ui, editor.scene(), &mut asked),
-            1 => single(ui, input.radar, editor, &mut asked),
-            count => many(ui, editor, count, &mut asked),
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| match input.editor.selection().is_empty() {
+            true => nothing(ui, input.editor.scene(), &mut asked),
+            false => selected(ui, &input, &mut asked),
         });
     });
     asked
@@ -45,23 +48,73 @@ fn nothing(ui: &mut Ui, scene: &Scene, asked: &mut Vec<Command>) {
     ui.weak("Click an object to see and edit its numbers; drag a box around several.");
 }
 
-fn many(ui: &mut Ui, editor: &Editor, count: usize, asked: &mut Vec<Command>) {
-    ui.strong(format!("{count} objects selected"));
-    let selected = editor.selection().iter().filter_map(|i| editor.scene().objects.get(i));
-    let reflectors: usize = selected.map(Object::reflector_count).sum();
-    ui.label(format!("{reflectors} reflectors"));
-    buttons(ui, asked);
-}
-
-fn buttons(ui: &mut Ui, asked: &mut Vec<Command>) {
+fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let Input { editor, radar, coordinates } = *input;
+    let single = editor.selection().single();
+    let object = single.and_then(|index| editor.scene().objects.get(index));
+    ui.horizontal(|ui| {
+        ui.strong(match (object, single) {
+            (Some(object), Some(index)) => format!("{} {}", capital(object.kind()), index + 1),
+            _ => format!("{} objects", editor.selection().len()),
+        });
+        if object.is_none() {
+            ui.weak(format!("{} reflectors", editor.selected_reflectors()));
+        }
+        toggle(ui, coordinates, asked);
+    });
+    // Another selection has fields of its own: what is typed into one is never taken for another's.
+    ui.push_id((editor.selection().latest(), editor.selection().len()), |ui| {
+        Grid::new("numbers").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+            for shared in editor.shared_fields(coordinates) {
+                let change = number(ui, &shared);
+                asked.extend(change.map(|change| Command::SetField(shared.field, change)));
+            }
+        });
+    });
+    if let Some(object) = object {
+        seen(ui, radar, object.centre_metres(), coordinates);
+    }
     ui.horizontal(|ui| {
         button(ui, "Duplicate", Command::Duplicate, true, asked);
         button(ui, "Delete", Command::Delete, true, asked);
+        if object.is_none() {
+            ui.menu_button("Arrange", |ui| arrange(ui, asked)).response.on_hover_text("Align and distribute them");
+        }
     });
 }
 
+fn toggle(ui: &mut Ui, shown: Coordinates, asked: &mut Vec<Command>) {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        for (coordinates, label, tip) in [
+            (Coordinates::Polar, "R, θ", "Enter places as range and direction"),
+            (Coordinates::Cartesian, "x, y", "Enter places as x and y"),
+        ] {
+            if ui.selectable_label(shown == coordinates, label).on_hover_text(tip).clicked() {
+                asked.push(Command::SetCoordinates(coordinates));
+            }
+        }
+    });
+}
+
+/// Where the maps show an object, and what is odd about it.
+fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) {
+    let polar = radar.polar_of(x, y);
+    let blob = radar.blob_of(0.0, x, y);
+    let (bin, column) = (radar.bin_of_range(polar.range_metres), radar.column_of_cos(blob.cos_theta));
+    let other = match coordinates {
+        Coordinates::Cartesian => format!("range {:.3} m · cos θ {:.4}", polar.range_metres, polar.cos_theta),
+        Coordinates::Polar => format!("x {x:.3} m · y {y:.3} m"),
+    };
+    ui.weak(format!("{other} · bin {bin:.1} · column {column:.1}"));
+    if polar.range_metres > radar.max_range_metres() {
+        ui.colored_label(ui.visuals().warn_fg_color, "Beyond the maximum range: it wraps around in the maps.");
+    } else if y < 0.0 {
+        ui.colored_label(ui.visuals().warn_fg_color, "Behind the array: it appears mirrored in front of it.");
+    }
+}
+
 /// How a number is shown and edited.
-struct Field {
+struct Look {
     name: &'static str,
     tooltip: &'static str,
     unit: &'static str,
@@ -71,105 +124,87 @@ struct Field {
     digits: usize,
 }
 
-const fn metres(name: &'static str, tooltip: &'static str) -> Field {
-    Field { name, tooltip, unit: " m", speed: 0.02, low: -1e4, high: 1e4, digits: 3 }
+fn look(field: Field) -> Look {
+    let metres = |name, tooltip| Look { name, tooltip, unit: " m", speed: 0.02, low: -1e4, high: 1e4, digits: 3 };
+    let spread = |name| Look { low: 0.0, ..metres(name, "Standard deviation") };
+    let degrees =
+        |name, tooltip| Look { unit: "°", speed: 0.5, low: -360.0, high: 360.0, digits: 2, ..metres(name, tooltip) };
+    let plain = |name, tooltip| Look { unit: "", ..metres(name, tooltip) };
+    let whole = |name, tooltip| Look { digits: 0, speed: 0.2, ..plain(name, tooltip) };
+    match field {
+        Field::X => metres("x", "Along the array; a line's first reflector, a cluster's centre"),
+        Field::Y => metres("y", "Ahead of the array; a line's first reflector, a cluster's centre"),
+        Field::Range => Look { low: 1e-3, ..metres("range", "From the middle of the array; the direction stays") },
+        Field::CosTheta => Look {
+            speed: 0.002,
+            low: -1.0,
+            high: 1.0,
+            digits: 4,
+            ..plain("cos θ", "Of the angle to the array's axis: the range stays")
+        },
+        Field::ThetaDegrees => Look {
+            low: -180.0,
+            high: 180.0,
+            ..degrees("θ", "0° along the array, 90° straight ahead, negative behind it")
+        },
+        Field::Spacing => {
+            Look { speed: 0.001, low: 1e-3, high: 100.0, digits: 4, ..metres("spacing", "Between neighbours") }
+        }
+        Field::Direction => degrees(
+            "direction",
+            "Where the line leads from its first reflector: 0° along the array, 90° straight ahead",
+        ),
+        Field::SpreadX => spread("spread in x"),
+        Field::SpreadY => spread("spread in y"),
+        Field::Count => Look { low: 1.0, high: 10_000.0, ..whole("count", "Number of reflectors") },
+        Field::Seed => Look {
+            speed: 0.05,
+            low: 0.0,
+            high: u64::MAX as f64,
+            ..whole("seed", "Another seed scatters the reflectors otherwise")
+        },
+        Field::Reflectivity => Look {
+            speed: 0.01,
+            low: -1e6,
+            high: 1e6,
+            ..plain("reflectivity", "σ of each reflector; the thesis uses 1")
+        },
+    }
 }
 
-const REFLECTIVITY: Field = Field {
-    name: "reflectivity",
-    tooltip: "σ of each reflector; the thesis uses 1",
-    unit: "",
-    speed: 0.01,
-    low: -1e6,
-    high: 1e6,
-    digits: 3,
-};
-
-const DIRECTION: Field = Field {
-    name: "direction",
-    tooltip: "Where the line leads from its first reflector: 0° along the array, 90° straight ahead",
-    unit: "°",
-    speed: 0.5,
-    low: -360.0,
-    high: 360.0,
-    digits: 2,
-};
-
-fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
-    let label = ui.label(field.name).on_hover_text(field.tooltip);
-    let drag = DragValue::new(value)
-        .range(field.low..=field.high)
+/// A number to drag or to type; what becomes of it in all objects. Where it differs between them, typing sets it in all, dragging moves
+/// it in all by the same.
+fn number(ui: &mut Ui, shared: &Shared) -> Option<Change> {
+    let look = look(shared.field);
+    let label = ui.label(look.name).on_hover_text(look.tooltip);
+    let entered = ui.scope_id().with(look.name);
+    // A range read back from x and y differs in its last bits from the one that was entered; that mustn't disturb the typing.
+    let before: Option<f64> = ui.data(|d| d.get_temp(entered));
+    let base = before.filter(|v| (v - shared.first).abs() < 1e-9 * v.abs().max(1.0)).unwrap_or(shared.first);
+    let mut asked = None;
+    let get_set = |new: Option<f64>| {
+        asked = new.or(asked);
+        asked.unwrap_or(base)
+    };
+    let mut drag = DragValue::from_get_set(get_set)
+        .range(look.low..=look.high)
         .clamp_existing_to_range(false)
-        .speed(field.speed)
-        .max_decimals(6)
-        .min_decimals(field.digits)
-        .suffix(field.unit);
-    ui.add(drag).labelled_by(label.id).on_hover_text(field.tooltip);
+        .speed(look.speed)
+        .max_decimals(if look.digits == 0 { 0 } else { 6 })
+        .min_decimals(look.digits)
+        .suffix(look.unit);
+    if !shared.is_same {
+        drag = drag.custom_formatter(|_, _| "various".to_owned()).suffix("");
+    }
+    let response = ui.add(drag).labelled_by(label.id).on_hover_text(look.tooltip);
     ui.end_row();
-}
-
-fn count(ui: &mut Ui, value: &mut usize) {
-    let label = ui.label("count").on_hover_text("Number of reflectors");
-    ui.add(DragValue::new(value).range(1..=10_000).speed(0.2)).labelled_by(label.id);
-    ui.end_row();
-}
-
-fn single(ui: &mut Ui, radar: &Radar, editor: &mut Editor, asked: &mut Vec<Command>) {
-    let Some(index) = editor.selection().single() else { return };
-    let Some(object) = editor.scene().objects.get(index) else { return };
-    let mut edited = object.clone();
-    ui.strong(format!("{} {}", capital(object.kind()), index + 1));
-    Grid::new("object").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| fields(ui, &mut edited));
-    let [x, y] = edited.centre_metres();
-    let polar = radar.polar_of(x, y);
-    let seen = radar.blob_of(0.0, x, y);
-    let (bin, column) = (radar.bin_of_range(polar.range_metres), radar.column_of_cos(seen.cos_theta));
-    ui.weak(format!(
-        "range {:.3} m · cos θ {:.4} · bin {bin:.1} · column {column:.1}",
-        polar.range_metres, polar.cos_theta
-    ));
-    if polar.range_metres > radar.max_range_metres() {
-        ui.colored_label(ui.visuals().warn_fg_color, "Beyond the maximum range: it wraps around in the maps.");
-    } else if y < 0.0 {
-        ui.colored_label(ui.visuals().warn_fg_color, "Behind the array: it appears mirrored in front of it.");
+    let asked = asked?;
+    if !shared.is_same && response.dragged() {
+        return Some(Change::By(asked - base));
     }
-    if edited != editor.scene().objects[index] {
-        let key = format!("inspector {index}");
-        editor.edit("edit numbers", Some(&key), |scene: &mut Scene, _| scene.objects[index] = edited);
-    }
-    buttons(ui, asked);
-}
-
-fn fields(ui: &mut Ui, object: &mut Object) {
-    match object {
-        Object::Point(p) => {
-            number(ui, &metres("x", "Along the array"), &mut p.x_metres);
-            number(ui, &metres("y", "Ahead of the array"), &mut p.y_metres);
-            number(ui, &REFLECTIVITY, &mut p.reflectivity);
-        }
-        Object::Line(l) => {
-            number(ui, &metres("x of the first", "Along the array"), &mut l.x_metres);
-            number(ui, &metres("y of the first", "Ahead of the array"), &mut l.y_start_metres);
-            let spacing =
-                Field { speed: 0.001, low: 1e-3, high: 100.0, digits: 4, ..metres("spacing", "Between neighbours") };
-            number(ui, &spacing, &mut l.spacing_metres);
-            number(ui, &DIRECTION, &mut l.direction_degrees);
-            count(ui, &mut l.count);
-            number(ui, &REFLECTIVITY, &mut l.reflectivity);
-        }
-        Object::Gaussian(g) => {
-            number(ui, &metres("x", "Of its centre, along the array"), &mut g.x_metres);
-            number(ui, &metres("y", "Of its centre, ahead of the array"), &mut g.y_metres);
-            let spread = |name| Field { low: 0.0, ..metres(name, "Standard deviation") };
-            number(ui, &spread("spread in x"), &mut g.x_std_metres);
-            number(ui, &spread("spread in y"), &mut g.y_std_metres);
-            count(ui, &mut g.count);
-            let label = ui.label("seed").on_hover_text("Another seed scatters the reflectors otherwise");
-            ui.add(DragValue::new(&mut g.seed).speed(0.05)).labelled_by(label.id);
-            ui.end_row();
-            number(ui, &REFLECTIVITY, &mut g.reflectivity);
-        }
-    }
+    ui.data_mut(|d| d.insert_temp(entered, asked));
+    // A number that was looked at only comes back as it was printed.
+    (!shared.is_same || (asked - base).abs() > 0.5e-6).then_some(Change::To(asked))
 }
 
 fn capital(word: &str) -> String {
@@ -181,38 +216,129 @@ fn capital(word: &str) -> String {
 mod tests {
     use super::*;
     use crate::interact::SelectionMode;
+    use crate::scene::{Line, Object};
     use eframe::egui::{Event, Key};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn panel(editor: Editor) -> Harness<'static, (Editor, Vec<Command>)> {
-        let draw = |ui: &mut Ui, state: &mut (Editor, Vec<Command>)| {
-            let commands = show(ui, Input { radar: &Radar::default() }, &mut state.0);
-            state.1.extend(commands);
+    struct Held {
+        editor: Editor,
+        coordinates: Coordinates,
+        asked: Vec<Command>,
+    }
+
+    /// The panel, and an editor that does what it asks for.
+    fn panel(editor: Editor, coordinates: Coordinates) -> Harness<'static, Held> {
+        let draw = |ui: &mut Ui, held: &mut Held| {
+            let input = Input { editor: &held.editor, radar: &Radar::default(), coordinates: held.coordinates };
+            for command in show(ui, input) {
+                if let Command::SetField(field, change) = command {
+                    held.editor.set_field(field, change).unwrap();
+                }
+                held.asked.push(command);
+            }
         };
-        Harness::new_ui_state(draw, (editor, Vec::new()))
+        Harness::new_ui_state(draw, Held { editor, coordinates, asked: Vec::new() })
+    }
+
+    fn of(points: &[(f64, f64)]) -> Editor {
+        let mut editor = Editor::new(Scene::of_points(points.iter().copied()));
+        editor.select_all();
+        editor
+    }
+
+    fn enter(inspector: &mut Harness<'static, Held>, name: &str, text: &str) {
+        inspector.get_by_label(name).click();
+        inspector.run();
+        for letter in text.chars() {
+            inspector.event(Event::Text(letter.to_string()));
+            inspector.step();
+        }
+        inspector.key_press(Key::Enter);
+        inspector.run();
+    }
+
+    fn places(inspector: &Harness<'static, Held>) -> Vec<[f64; 2]> {
+        inspector.state().editor.scene().objects.iter().map(Object::anchor_metres).collect()
     }
 
     #[test]
     fn an_empty_scene_offers_a_point() {
-        let mut inspector = panel(Editor::new(Scene::default()));
+        let mut inspector = panel(Editor::new(Scene::default()), Coordinates::Cartesian);
         inspector.get_by_label("Add a point").click();
         inspector.step();
-        assert_eq!(inspector.state().1, [Command::Add(NewObject::Point, None)]);
+        assert_eq!(inspector.state().asked, [Command::Add(NewObject::Point, None)]);
     }
 
     #[test]
     fn a_number_that_is_typed_is_one_step() {
-        let mut editor = Editor::new(Scene::of_points([(1.0, 10.0)]));
+        let mut inspector = panel(of(&[(1.0, 10.0)]), Coordinates::Cartesian);
+        enter(&mut inspector, "y", "12.5");
+        assert_eq!(places(&inspector), [[1.0, 12.5]]);
+        assert_eq!(inspector.state().editor.history().depth(), 1);
+    }
+
+    #[test]
+    fn a_number_that_is_only_looked_at_stays_as_it_was() {
+        let mut inspector = panel(of(&[(1.0, 1.0 / 3.0)]), Coordinates::Cartesian);
+        enter(&mut inspector, "y", "");
+        assert_eq!((places(&inspector), inspector.state().asked.len()), (vec![[1.0, 1.0 / 3.0]], 0));
+    }
+
+    #[test]
+    fn what_is_typed_goes_to_every_selected_object_and_undo_takes_it_back() {
+        let mut inspector = panel(of(&[(1.0, 10.0), (2.0, 12.0), (3.0, 12.0)]), Coordinates::Cartesian);
+        let _differs = inspector.get_by_label("3 objects");
+        enter(&mut inspector, "x", "2.5");
+        assert_eq!(places(&inspector), [[2.5, 10.0], [2.5, 12.0], [2.5, 12.0]]);
+        enter(&mut inspector, "y", "");
+        assert_eq!(places(&inspector)[0], [2.5, 10.0], "a number that differs isn't evened out by a look");
+        enter(&mut inspector, "reflectivity", "0.5");
+        let editor = &mut inspector.state_mut().editor;
+        assert!(editor.scene().objects.iter().all(|o| o.reflectivity() == 0.5));
+        while editor.undo() {}
+        assert_eq!(places(&inspector), [[1.0, 10.0], [2.0, 12.0], [3.0, 12.0]]);
+    }
+
+    #[test]
+    fn a_drag_of_a_number_that_differs_moves_all_by_the_same() {
+        let mut inspector = panel(of(&[(1.0, 10.0), (2.0, 12.0)]), Coordinates::Cartesian);
+        let at = inspector.get_by_label("y").rect().center();
+        inspector.drag_at(at);
+        inspector.step();
+        for step in 1..=4 {
+            inspector.hover_at(at + egui::vec2(20.0 * step as f32, 0.0));
+            inspector.step();
+        }
+        inspector.drop_at(at + egui::vec2(80.0, 0.0));
+        inspector.run();
+        let places = places(&inspector);
+        assert!(places[0][1] > 10.5 && (places[1][1] - places[0][1] - 2.0).abs() < 1e-9, "{places:?}");
+    }
+
+    #[test]
+    fn places_are_entered_as_range_and_direction() {
+        let mut inspector = panel(of(&[(3.0, 4.0)]), Coordinates::Polar);
+        enter(&mut inspector, "range", "10");
+        assert_eq!(places(&inspector), [[6.0, 8.0]]);
+        enter(&mut inspector, "cos θ", "-0.8");
+        let [x, y] = places(&inspector)[0];
+        assert!((x + 8.0).abs() < 1e-9 && (y - 6.0).abs() < 1e-9, "{x}, {y}");
+        enter(&mut inspector, "θ", "90");
+        let [x, y] = places(&inspector)[0];
+        assert!(x == 0.0 && (y - 10.0).abs() < 1e-9, "{x}, {y}");
+        inspector.get_by_label("x, y").click();
+        inspector.step();
+        assert_eq!(inspector.state().asked.last(), Some(&Command::SetCoordinates(Coordinates::Cartesian)));
+    }
+
+    #[test]
+    fn a_line_has_its_own_numbers() {
+        let line = Object::Line(Line::vertical(1.0, 10.0, 0.5, 11));
+        let mut editor = Editor::new(Scene { objects: vec![line], ..Scene::default() });
         editor.select([0], SelectionMode::Replace);
-        let mut inspector = panel(editor);
-        inspector.get_by_label("y").click();
-        inspector.run();
-        inspector.event(Event::Text("12.5".to_owned()));
-        inspector.key_press(Key::Enter);
-        inspector.run();
-        let (editor, asked) = inspector.state();
-        assert_eq!(editor.scene().objects[0].centre_metres(), [1.0, 12.5]);
-        assert_eq!((editor.history().depth(), asked.len()), (1, 0));
+        let mut inspector = panel(editor, Coordinates::Cartesian);
+        enter(&mut inspector, "count", "7");
+        assert_eq!(inspector.state().editor.scene().objects[0].reflector_count(), 7);
     }
 }

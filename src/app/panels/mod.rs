@@ -8,6 +8,7 @@ pub mod guide;
 pub mod inspector;
 pub mod lesson;
 pub mod map;
+pub mod objects;
 pub mod roc;
 pub mod run_time;
 pub mod scene;

@@ -20,7 +20,8 @@ impl Default for Arrangement {
     fn default() -> Self {
         let mut tiles = Tiles::default();
         let mut pane = |panel| tiles.insert_pane(panel);
-        let [scene, controls, inspector] = [Panel::Scene, Panel::Controls, Panel::Inspector].map(&mut pane);
+        let [scene, controls, inspector, objects] =
+            [Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects].map(&mut pane);
         let [in0, in1, target, output, target_above, output_above, difference] =
             MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
         let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
@@ -30,8 +31,10 @@ impl Default for Arrangement {
         }
         let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
         let scene = tabs(&mut tiles, vec![scene]);
-        let controls = tabs(&mut tiles, vec![controls, timing, guide, lesson]);
-        let inspector = tabs(&mut tiles, vec![inspector]);
+        let controls = tabs(&mut tiles, vec![controls, timing]);
+        // What is read while settings change stands beside them.
+        let beside = tabs(&mut tiles, vec![guide, lesson]);
+        let inspector = tabs(&mut tiles, vec![inspector, objects]);
         let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
         let first = tabs(&mut tiles, vec![in0]);
         let second = tabs(&mut tiles, vec![target]);
@@ -41,7 +44,8 @@ impl Default for Arrangement {
         let second = tabs(&mut tiles, vec![output, difference]);
         let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
         let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
-        let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, left_maps, right_maps], &[1.1, 1.0, 1.0]);
+        let root =
+            linear(&mut tiles, LinearDir::Horizontal, vec![left, beside, left_maps, right_maps], &[1.1, 0.9, 1.0, 1.0]);
         Arrangement {
             tree: Tree::new(egui::Id::unique("panels"), root, tiles),
             maximised: None,
@@ -87,6 +91,22 @@ impl Arrangement {
     /// An arrangement of nothing, to stand in for one that is being drawn.
     pub fn empty() -> Self {
         let tree = Tree::empty(egui::Id::unique("no panels"));
+        Arrangement { tree, maximised: None, shown: BTreeSet::new() }
+    }
+
+    /// What is shown to many people at once: the scene, an end's map, the target and the output, large.
+    pub fn presentation() -> Self {
+        let mut tiles = Tiles::default();
+        let shown =
+            [Panel::Scene, Panel::Map(MapKind::Input0), Panel::Map(MapKind::Target), Panel::Map(MapKind::Output)];
+        let [scene, input, target, output] = shown.map(|panel| {
+            let pane = tiles.insert_pane(panel);
+            tiles.insert_tab_tile(vec![pane])
+        });
+        let left = column(&mut tiles, vec![scene, input], &[1.0, 1.0]);
+        let right = column(&mut tiles, vec![target, output], &[1.0, 1.0]);
+        let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, right], &[1.0, 1.0]);
+        let tree = Tree::new(egui::Id::unique("presentation"), root, tiles);
         Arrangement { tree, maximised: None, shown: BTreeSet::new() }
     }
 
@@ -136,6 +156,9 @@ impl Arrangement {
     /// Shows or hides a panel; a shown one comes to the front.
     pub fn set_open(&mut self, panel: Panel, open: bool) {
         self.maximised = None;
+        if open && matches!(panel, Panel::Guide | Panel::Lesson) {
+            self.take_from_over_settings(panel);
+        }
         match self.tree.tiles.find_pane(&panel) {
             Some(id) => {
                 self.tree.tiles.set_visible(id, open);
@@ -151,6 +174,21 @@ impl Arrangement {
                 }
             }
             None => {}
+        }
+    }
+
+    /// Moves a panel that is read while settings change from the settings' tabs to a place beside them: that is where layouts kept from
+    /// older versions have it.
+    fn take_from_over_settings(&mut self, panel: Panel) {
+        let tiles = &self.tree.tiles;
+        let [of_panel, of_settings] =
+            [panel, Panel::Controls].map(|p| tiles.find_pane(&p).and_then(|id| tiles.parent_of(id)));
+        if let (Some(id), Some(root)) = (tiles.find_pane(&panel), self.tree.root())
+            && of_panel.is_some()
+            && of_panel == of_settings
+            && of_panel != Some(root)
+        {
+            self.tree.move_tile_to_container(id, root, 1, false);
         }
     }
 }
@@ -175,5 +213,23 @@ mod tests {
         arrangement.shown.insert(Panel::Cuts);
         arrangement.toggle(Panel::Cuts);
         assert!(arrangement.is_open(Panel::Timing) && !arrangement.is_open(Panel::Cuts));
+    }
+
+    fn tabs_of(arrangement: &Arrangement, panel: Panel) -> Option<TileId> {
+        let tiles = &arrangement.tree.tiles;
+        tiles.parent_of(tiles.find_pane(&panel)?)
+    }
+
+    #[test]
+    fn the_guide_opens_beside_the_settings_even_where_an_older_layout_had_it_over_them() {
+        let mut arrangement = Arrangement::default();
+        let controls = tabs_of(&arrangement, Panel::Controls).unwrap();
+        assert_ne!(tabs_of(&arrangement, Panel::Guide), Some(controls));
+        let guide = arrangement.tree.tiles.find_pane(&Panel::Guide).unwrap();
+        arrangement.tree.move_tile_to_container(guide, controls, 0, false);
+        assert_eq!(tabs_of(&arrangement, Panel::Guide), Some(controls), "as older versions had it");
+        arrangement.set_open(Panel::Guide, true);
+        assert_ne!(tabs_of(&arrangement, Panel::Guide), Some(controls));
+        assert!(arrangement.is_open(Panel::Guide) && arrangement.is_open(Panel::Controls));
     }
 }

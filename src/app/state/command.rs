@@ -2,11 +2,12 @@
 
 use super::bounds_settings::BoundsSettings;
 use super::lossy_save::LossyAnswer;
-use super::panel::Panel;
+use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
 use super::several::Several;
 use super::view::Cursor;
-use crate::interact::{Place, Snap};
+use crate::interact::blob::BlobHit;
+use crate::interact::{Alignment, Along, Change, Coordinates, Field, Place, SelectionMode, Snap};
 use crate::lesson::Guess;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
@@ -125,6 +126,26 @@ pub enum Command {
     Delete,
     /// Select every object.
     SelectAll,
+    /// Select these objects.
+    Select(Vec<usize>, SelectionMode),
+    /// Select the object after the one that was picked last.
+    SelectNext,
+    /// Select the one before it.
+    SelectPrevious,
+    /// Change a number of every selected object.
+    SetField(Field, Change),
+    /// Align the selected objects.
+    Align(Alignment),
+    /// Put the selected objects the same distance apart.
+    Distribute(Along),
+    /// Start dragging the object behind a blob.
+    Grab(BlobHit),
+    /// Drag what is held here.
+    DragTo(Place),
+    /// Let go of it.
+    Drop,
+    /// In which numbers places are told and entered.
+    SetCoordinates(Coordinates),
     /// Select nothing, end maximising, close the palette.
     Escape,
     /// Add an object, at a place or where there is room.
@@ -245,6 +266,10 @@ pub enum Command {
     SetLearner(String),
     /// Forget what the learner did.
     ForgetProgress,
+    /// Large type, few panels, no numbers; or everything as before.
+    Present,
+    /// Copy the picture of a map to the clipboard.
+    CopyMap(MapKind),
     /// Close every message.
     CloseMessages,
     /// Light or dark.

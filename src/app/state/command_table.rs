@@ -1,8 +1,9 @@
 //! The one list of commands: what each is called, what it does, and its key. Menus, tooltips, shortcuts and the palette read it.
 
 use super::command::{Command, NewObject};
-use super::panel::Panel;
+use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
+use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, Decibels, WindowFunction};
@@ -32,6 +33,10 @@ const fn entry(command: Command, name: &'static str, tooltip: &'static str, key:
 
 const fn key(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::SHIFT, key))
 }
 
 const fn command(key: Key) -> Option<KeyboardShortcut> {
@@ -74,11 +79,28 @@ const TABLE: &[Entry] = {
         entry(Duplicate, "Duplicate", "Copy the selected objects a metre aside", command(Key::D)),
         entry(Delete, "Delete", "Delete the selected objects", key(Key::Delete)),
         entry(SelectAll, "Select all", "Select every object", command(Key::A)),
+        entry(SelectNext, "Select next object", "Select the object after the one that was picked last", key(Key::O)),
+        entry(SelectPrevious, "Select previous object", "Select the object before it", shift(Key::O)),
+        entry(SetCoordinates(Coordinates::Cartesian), "Places: x and y", "Tell and enter places as x and y", None),
+        entry(
+            SetCoordinates(Coordinates::Polar),
+            "Places: range and angle",
+            "Tell and enter places as range and direction",
+            None,
+        ),
+        entry(Align(Alignment::Left), "Align left", "Move the selected objects' left ends to the leftmost", None),
+        entry(Align(Alignment::Centre), "Align centres", "Move the selected objects one behind the other", None),
+        entry(Align(Alignment::Right), "Align right", "Move the selected objects' right ends to the rightmost", None),
+        entry(Align(Alignment::Near), "Align near", "Move the selected objects' near ends to the nearest", None),
+        entry(Align(Alignment::Middle), "Align middles", "Move the selected objects one beside the other", None),
+        entry(Align(Alignment::Far), "Align far", "Move the selected objects' far ends to the farthest", None),
+        entry(Distribute(Along::X), "Distribute along x", "The same distance in x between selected objects", None),
+        entry(Distribute(Along::Y), "Distribute along y", "The same distance in y between selected objects", None),
         entry(Escape, "Deselect", "Cancel a drag, show all panels, select nothing", key(Key::Escape)),
         entry(FitScene, "Fit scene", "Show the whole scene", key(Key::F)),
         entry(ResetMaps, "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
         entry(OpenLesson, "Open lesson…", "Begin a lesson from a TOML file", None),
-        entry(PresentLesson, "Lessons: whole screen", "Lesson, scene and maps large, for a projector", key(Key::F11)),
+        entry(PresentLesson, "Lessons: whole screen", "Lesson, scene and maps large, for a projector", shift(Key::F11)),
         entry(LeaveLesson, "Leave lesson", "End the lesson; your scene and settings come back", None),
         entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
         entry(
@@ -169,6 +191,12 @@ const TABLE: &[Entry] = {
         ),
         entry(NextMethod, "Next method", "Reconstruct with the next method", key(Key::N)),
         entry(CancelMethod, "Cancel reconstruction", "Stop the reconstruction that runs", None),
+        entry(
+            Present,
+            "Presentation",
+            "Large type, few panels, no numbers; the same key brings everything back",
+            key(Key::F11),
+        ),
         entry(CloseMessages, "Close messages", "Close every message in the corner", None),
         entry(ToggleTheme, "Light / dark", "Switch between light and dark", command(Key::T)),
         entry(ZoomIn, "Zoom in", "Larger interface", command(Key::Plus)),
@@ -225,6 +253,10 @@ pub fn listed() -> &'static [Entry] {
         all.extend(Kind::all().map(random));
         all.extend(Panel::all().into_iter().map(toggle));
         all.extend(Panel::all().into_iter().map(maximise));
+        all.extend(MapKind::ALL.map(|kind| {
+            let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
+            named(Command::CopyMap(kind), format!("Copy picture: {}", kind.title()), tooltip, None)
+        }));
         all.extend(presets::ALL.iter().enumerate().map(preset));
         all
     })
@@ -255,7 +287,6 @@ impl Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::panel::MapKind;
     use std::collections::BTreeMap;
 
     #[test]

@@ -67,8 +67,10 @@ pub struct State {
     pub lossy_save: Option<LossySave>,
     /// The lesson being taken.
     pub lesson: Option<LessonRun>,
-    /// Where the panels were before a lesson took the whole screen.
+    /// Where the panels were before a lesson or a presentation took the whole screen.
     pub before_presenting: Option<Arrangement>,
+    /// Whether that is a presentation: large type, no numbers.
+    pub without_numbers: bool,
     /// Who has answered what.
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
@@ -95,7 +97,7 @@ impl State {
         self.pointer.now.filter(|_| !self.is_predicting())
     }
 
-    /// Whether a lesson has the whole screen.
+    /// Whether a lesson or a presentation has the whole screen.
     pub fn is_presenting(&self) -> bool {
         self.before_presenting.is_some()
     }
@@ -111,8 +113,20 @@ impl State {
         }
     }
 
-    /// Puts the panels back to where they were before a lesson had the whole screen.
+    /// Gives the scene and three maps the whole screen, in large type and without numbers, or ends whatever has it.
+    pub fn present(&mut self) {
+        match self.is_presenting() {
+            true => self.stop_presenting(),
+            false => {
+                let before = std::mem::replace(&mut self.arrangement, Arrangement::presentation());
+                (self.before_presenting, self.without_numbers) = (Some(before), true);
+            }
+        }
+    }
+
+    /// Puts the panels back to where they were before a lesson or a presentation had the whole screen.
     pub fn stop_presenting(&mut self) {
+        self.without_numbers = false;
         if let Some(before) = self.before_presenting.take() {
             self.arrangement = before;
         }

@@ -11,6 +11,8 @@ pub enum Panel {
     Controls,
     /// Numbers of the selected objects.
     Inspector,
+    /// The list of objects.
+    Objects,
     /// A map.
     Map(MapKind),
     /// Range profile and angle cut through the cursor.
@@ -50,7 +52,7 @@ impl Panel {
 
     /// All panels, in the order menus list them.
     pub fn all() -> Vec<Panel> {
-        let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector];
+        let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects];
         all.extend(MapKind::ALL.map(Panel::Map));
         all.extend([Panel::Cuts, Panel::Roc, Panel::Timing]);
         all.extend(Panel::TOOLS);
@@ -63,6 +65,7 @@ impl Panel {
             Panel::Scene => "Scene",
             Panel::Controls => "Settings",
             Panel::Inspector => "Inspector",
+            Panel::Objects => "Objects",
             Panel::Map(kind) => kind.title(),
             Panel::Cuts => "Cuts",
             Panel::Roc => "ROC",
@@ -83,6 +86,7 @@ impl Panel {
             Panel::Scene => "The reflectors before the radar; drag them",
             Panel::Controls => "Radar, display and reconstruction settings",
             Panel::Inspector => "Numbers of what is selected",
+            Panel::Objects => "The scene's objects in a list: click to select, with Ctrl or Shift several",
             Panel::Map(kind) => kind.describe(),
             Panel::Cuts => "Range profile and angle cut of all maps through the cursor",
             Panel::Roc => "Detection against false alarm of this scene, over every threshold",

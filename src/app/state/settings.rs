@@ -2,7 +2,7 @@
 
 use super::bounds_settings::BoundsSettings;
 use super::several::Several;
-use crate::interact::Snap;
+use crate::interact::{Coordinates, Snap};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::Decibels;
@@ -86,6 +86,8 @@ pub struct Settings {
     pub show_theory: bool,
     /// Where dragged objects come to rest.
     pub snap: Snap,
+    /// In which numbers places are told and entered.
+    pub coordinates: Coordinates,
     /// Light or dark.
     pub theme: Brightness,
     /// What the bounds are computed for.
@@ -130,6 +132,7 @@ impl Default for Settings {
             show_fields_of_view: false,
             show_theory: false,
             snap: Snap::Off,
+            coordinates: Coordinates::default(),
             theme: Brightness::System,
             bounds: BoundsSettings::default(),
             several: Several::default(),

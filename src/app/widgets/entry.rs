@@ -1,6 +1,7 @@
 //! Menu entries and buttons of commands: name, tooltip and key come from the one list.
 
 use crate::app::state::Command;
+use crate::interact::{Alignment, Along};
 use eframe::egui::{Button, Ui};
 
 /// A menu entry; a click asks for the command and closes the menu.
@@ -13,6 +14,13 @@ pub fn entry(ui: &mut Ui, command: Command, enabled: bool, asked: &mut Vec<Comma
     if ui.add_enabled(enabled, button).on_hover_text(listed.tooltip).clicked() {
         asked.push(command);
         ui.close();
+    }
+}
+
+/// Entries that put several objects in a row.
+pub fn arrange(ui: &mut Ui, asked: &mut Vec<Command>) {
+    for command in Alignment::ALL.map(Command::Align).into_iter().chain(Along::BOTH.map(Command::Distribute)) {
+        entry(ui, command, true, asked);
     }
 }
 

@@ -1,12 +1,15 @@
-//! What panels draw with: axes, charts, colours of the interface, buttons of commands, small drawn buttons, bars of progress, pictures on the graphics card.
+//! What panels draw with: axes, charts, colours of the interface, buttons of commands, small drawn buttons, bars of progress, the ring
+//! around what has the focus, pictures on the graphics card.
 
 pub mod axes;
 pub mod chart;
 pub mod colour_bar;
 pub mod entry;
+pub mod focus_ring;
 pub mod icons;
 pub mod inline;
 pub mod legend;
+pub mod nudge;
 pub mod numbers;
 pub mod progress;
 #[cfg(test)]

@@ -61,7 +61,13 @@ impl Inks {
 
 /// Marks over maps: readable on any colour map.
 pub const MARK: Color32 = Color32::WHITE;
+pub const MARK_SELECTED: Color32 = Color32::from_rgb(255, 176, 59);
 pub const MARK_EDGE: Color32 = Color32::from_black_alpha(200);
+
+/// The ring around what has the keyboard's focus.
+pub fn focus(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(120, 190, 255) } else { Color32::from_rgb(0, 92, 200) }
+}
 
 /// Sets both themes up and chooses one.
 pub fn apply(ctx: &Context, theme: Brightness) {

@@ -1,9 +1,11 @@
 //! A document being edited: selection, drags, history.
 
+mod fields;
 mod keeping;
 
 pub use keeping::Saved;
 
+use super::blob::BlobHit;
 use super::document::Document;
 use super::history::Snapshot;
 use super::hit::{self, Hit};
@@ -198,10 +200,17 @@ impl Editor {
         });
     }
 
-    /// Selects objects.
+    /// Selects objects, and ends the current undo step: what is done to others is another.
     pub fn select(&mut self, indices: impl IntoIterator<Item = usize>, mode: SelectionMode) {
+        self.seal();
         self.selection.pick(indices, mode);
         self.selection.clamp(self.document.scene().objects.len());
+    }
+
+    /// Selects the object after or before the one that was picked last.
+    pub fn select_neighbour(&mut self, forward: bool) {
+        let next = self.selection.neighbour(self.scene().objects.len(), forward);
+        self.select(next, SelectionMode::Replace);
     }
 
     /// Selects every object.
@@ -227,6 +236,13 @@ impl Editor {
             self.selection = Selection::of([hit.object]);
         }
         self.drag = Some(Drag { hit, offset, before });
+    }
+
+    /// Starts dragging the object whose blob was hit on a map, by the reflector behind it.
+    pub fn grab(&mut self, blob: BlobHit) {
+        if let Some(hit) = blob.as_hit(self.scene()) {
+            self.begin_drag(hit, blob.place);
+        }
     }
 
     /// What is being dragged.

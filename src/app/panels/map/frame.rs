@@ -45,6 +45,22 @@ impl Frame<'_> {
         self.at(Polar { range_metres: cursor.range_metres, cos_theta })
     }
 
+    /// The range and the direction of the map at a place on screen.
+    pub fn polar(&self, pos: Pos2) -> Polar {
+        let (radar, fraction) = (self.radar, self.view.at(self.rect, pos));
+        let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
+        match self.projection {
+            Projection::RangeAngle => Polar {
+                range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5),
+                cos_theta: radar.cos_of_column(fx * radar.elements as f64 - 0.5),
+            },
+            Projection::Cartesian => {
+                let extent = radar.max_range_metres();
+                radar.polar_of((2.0 * fx - 1.0) * extent, fy * extent)
+            }
+        }
+    }
+
     /// Where a range and a direction of the map are; ranges wrap around where the map's do.
     fn at(&self, blob: Polar) -> Pos2 {
         let (radar, Polar { range_metres, cos_theta }) = (self.radar, blob);

@@ -1,23 +1,28 @@
 //! One map: picture, axes, colour bar, cursor, marks.
 
 mod frame;
+mod hand;
 mod outline;
 mod overlay;
 mod scale;
 mod theory;
 
 pub use frame::{Cells, Marked, Marks};
+pub use hand::Memory;
 pub use theory::Theory;
 
 use crate::app::state::{Command, Cursor, DifferenceView, MapKind, MapView, Panel, Projection, Units};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::entry::entry;
+use crate::app::widgets::nudge::{nudge, zoom_keys};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::Metrics;
+use crate::interact::Selection;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, End, Radar};
+use crate::scene::Scene;
 use eframe::egui;
 use eframe::egui::{Align2, Color32, Painter, Rect, Sense, TextureId, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
@@ -28,6 +33,10 @@ pub struct Input<'a> {
     pub kind: MapKind,
     /// The radar.
     pub radar: &'a Radar,
+    /// The scene: what can be grabbed by its blobs.
+    pub scene: &'a Scene,
+    /// What of it is selected.
+    pub selection: &'a Selection,
     /// Over which coordinates.
     pub projection: Projection,
     /// Colours of Lambda.
@@ -54,6 +63,41 @@ pub struct Input<'a> {
     pub error: Option<Problem<'a>>,
     /// Hides the picture: a prediction is asked for.
     pub veil: Option<Veil>,
+    /// Whether axes, values and the colours' scale are told.
+    pub numbers: bool,
+}
+
+#[cfg(test)]
+impl<'a> Input<'a> {
+    /// A map without a picture.
+    fn bare(
+        kind: MapKind,
+        radar: &'a Radar,
+        projection: Projection,
+        scene: &'a Scene,
+        selection: &'a Selection,
+    ) -> Input<'a> {
+        Input {
+            kind,
+            radar,
+            scene,
+            selection,
+            projection,
+            colours: ColourMap::Grey,
+            units: Units::Lambda,
+            difference: DifferenceView::default(),
+            texture: None,
+            end: 1.0,
+            stale: false,
+            cells: None,
+            marks: Marks { objects: &[], found: &[] },
+            theory: None,
+            cursor: None,
+            error: None,
+            veil: None,
+            numbers: true,
+        }
+    }
 }
 
 /// A map that is hidden until somebody has predicted what it shows.
@@ -72,16 +116,16 @@ pub struct Problem<'a> {
 }
 
 /// Draws a map.
-pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let bar = has_bar(input.kind).then(|| bar_of(&input)).filter(|_| area.width() > 200.0);
+    let is_told = has_bar(input.kind) && input.numbers && area.width() > 200.0;
+    let bar = is_told.then(|| bar_of(&input));
     let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection);
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
-    navigate(ui, rect, &response, view);
     let frame = Frame {
         rect,
         view: *view,
@@ -89,8 +133,43 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
         projection: input.projection,
         centre_x_metres: centre_x_metres(input.kind, input.radar),
     };
+    let is_bare = input.veil.is_none();
+    let holds = is_bare && hand::work(ui, input.kind, input.scene, frame, &response, memory, &mut asked);
+    navigate(ui, rect, &response, view, !holds);
+    if response.has_focus() && !input.selection.is_empty() {
+        asked.extend(nudge(ui.ctx(), input.radar.range_resolution_metres()));
+    }
+    let frame = Frame { view: *view, ..frame };
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(rect.intersect(area));
+    let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
+    if input.numbers {
+        draw_axes(ui, &painter, frame);
+    }
+    if input.veil.is_none() {
+        overlay::marks(&inner, frame, &input.marks, response.hover_pos().filter(|_| input.numbers));
+        overlay::selected(&inner, frame, input.scene, input.selection);
+        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(&inner, frame));
+    }
+    point(&input, frame, &response, &mut asked);
+    if let Some(cursor) = &input.cursor {
+        let told = input.veil.is_none() && input.numbers;
+        overlay::cursor(&inner, frame, cursor, input.cells.as_ref().filter(|_| told));
+    }
+    if input.stale && is_drawn {
+        let corner = rect.left_bottom() + vec2(8.0, -8.0);
+        axes::text_on_patch(&inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
+    }
+    if let Some(bar) = bar {
+        bar.draw(ui, &painter, rect);
+    }
+    response.context_menu(|ui| menu(ui, input.kind, &mut asked));
+    asked
+}
+
+/// Draws the map itself, or says why there is none; whether there is one.
+fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, asked: &mut Vec<Command>) -> bool {
+    let (rect, view) = (frame.rect, frame.view);
     let texture = input.texture.filter(|_| input.veil.is_none());
     match texture {
         Some(texture) => {
@@ -100,35 +179,22 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView) -> Vec<Command> {
             inner.image(texture, rect, uv, tint);
         }
         None if input.veil.is_some() => {
-            veil(&inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
+            veil(inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
         }
-        None => empty(ui, &inner, rect, input.error.as_ref(), &mut asked),
+        None => empty(ui, inner, rect, input.error.as_ref(), asked),
     }
-    draw_axes(ui, &painter, frame);
-    if input.veil.is_none() {
-        overlay::marks(&inner, frame, &input.marks, response.hover_pos());
-        input.theory.iter().for_each(|theory| theory.draw(&inner, frame));
+    texture.is_some()
+}
+
+/// Tells where the pointer is; a click predicts where that is asked for.
+fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: &mut Vec<Command>) {
+    let Some(pos) = response.hover_pos() else { return };
+    let Some(cursor) = cursor_at(input.radar, input.projection, frame.view.at(frame.rect, pos)) else { return };
+    if input.veil.is_some_and(|v| v.is_clicked) && response.clicked() {
+        let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
+        asked.push(Command::Predict(crate::lesson::Guess::Place(cell)));
     }
-    if let Some(pos) = response.hover_pos() {
-        let under = cursor_at(input.radar, input.projection, view.at(rect, pos));
-        if let Some(cursor) = under.filter(|_| input.veil.is_some_and(|v| v.is_clicked) && response.clicked()) {
-            let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
-            asked.push(Command::Predict(crate::lesson::Guess::Place(cell)));
-        }
-        asked.extend(under.map(Command::Hover));
-    }
-    if let Some(cursor) = &input.cursor {
-        overlay::cursor(&inner, frame, cursor, input.cells.as_ref().filter(|_| input.veil.is_none()));
-    }
-    if input.stale && texture.is_some() {
-        let corner = rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(&inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
-    }
-    if let Some(bar) = bar {
-        bar.draw(ui, &painter, rect);
-    }
-    response.context_menu(|ui| menu(ui, input.kind, &mut asked));
-    asked
+    asked.push(Command::Hover(cursor));
 }
 
 /// Figures for a map's title bar.
@@ -204,7 +270,7 @@ fn rect_of(painter: &Painter, area: Rect, bar: Option<&Bar>, projection: Project
     Align2::CENTER_CENTER.align_size_within_rect(size, rect)
 }
 
-fn navigate(ui: &Ui, rect: Rect, response: &egui::Response, view: &mut MapView) {
+fn navigate(ui: &Ui, rect: Rect, response: &egui::Response, view: &mut MapView, pans: bool) {
     if let Some(pos) = response.hover_pos() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = pinch * (scroll / 200.0).exp();
@@ -213,7 +279,11 @@ fn navigate(ui: &Ui, rect: Rect, response: &egui::Response, view: &mut MapView) 
             view.zoom(factor, fixed);
         }
     }
-    if response.dragged() {
+    if let Some(factor) = zoom_keys(response) {
+        let middle = view.at(rect, rect.center());
+        view.zoom(factor, middle);
+    }
+    if pans && response.dragged() {
         let before = view.at(rect, rect.min);
         let after = view.at(rect, rect.min + response.drag_delta());
         view.pan(before - after);
@@ -288,6 +358,7 @@ fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
         Command::ResetMaps,
         Command::ToggleReflectors,
         Command::ToggleTheory,
+        Command::CopyMap(kind),
         Command::ClosePanel(Panel::Map(kind)),
     ] {
         entry(ui, command, true, asked);
@@ -306,30 +377,18 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use ndarray::Array2;
+    use std::sync::LazyLock;
+
+    static NOTHING: LazyLock<(Scene, Selection)> = LazyLock::new(Default::default);
 
     fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
-        Input {
-            kind: MapKind::Output,
-            radar,
-            projection: Projection::RangeAngle,
-            colours: ColourMap::Grey,
-            units: Units::Lambda,
-            difference: DifferenceView::default(),
-            texture: None,
-            end: 1.0,
-            stale: false,
-            cells: None,
-            marks: Marks { objects: &[], found: &[] },
-            theory: None,
-            cursor: None,
-            error,
-            veil: None,
-        }
+        let (scene, selection) = &*NOTHING;
+        Input { error, ..Input::bare(MapKind::Output, radar, Projection::RangeAngle, scene, selection) }
     }
 
     fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
         let radar = Radar::default();
-        asked.extend(show(ui, input(&radar, error), &mut MapView::default()));
+        asked.extend(show(ui, input(&radar, error), &mut MapView::default(), &mut Memory::default()));
     }
 
     #[test]
@@ -372,7 +431,7 @@ mod tests {
                     let cells = Some(Cells { map: &lambda, minus: None, scale });
                     let texture = Some(TextureId::default());
                     let input = Input { kind, units, cells, texture, end: 0.05, ..input(&radar, None) };
-                    _ = show(ui, input, &mut MapView::default());
+                    _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
                 });
                 seen::assert_readable(map.output());
                 let texts = seen::texts(map.output());
@@ -393,7 +452,7 @@ mod tests {
     fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
         let radar = Radar::default();
         let map = Harness::builder().build_ui(move |ui| {
-            _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default());
+            _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default(), &mut Memory::default());
         });
         let texts = seen::texts(map.output());
         assert!(texts.iter().any(|t| t.text == "computing…"));

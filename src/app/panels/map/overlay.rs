@@ -5,8 +5,9 @@ use super::outline::outline;
 use crate::app::state::{Cursor, Projection};
 use crate::app::widgets::axes;
 use crate::app::widgets::numbers::signed;
-use crate::app::widgets::theme::{MARK, MARK_EDGE};
-use crate::scene::Reflector;
+use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
+use crate::interact::Selection;
+use crate::scene::{Object, Reflector, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
 
 /// Most reflectors that are marked.
@@ -73,6 +74,17 @@ fn rings(object: &Marked, blobs: &[Pos2], height: f32) -> Vec<Ring> {
     }
     let pieces = blobs.chunk_by(|a, b| a.distance(*b) <= height / 2.0);
     pieces.map(|piece| Ring::Outline(outline(piece, RADIUS))).collect()
+}
+
+/// Rings around the blobs of what is selected.
+pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
+    let objects = selection.iter().filter_map(|i| scene.objects.get(i));
+    let reflectors = objects.flat_map(Object::reflectors).take(MARKS);
+    for r in reflectors {
+        let at = frame.blob(&r);
+        painter.circle_stroke(at, 8.0, Stroke::new(3.0, MARK_EDGE));
+        painter.circle_stroke(at, 8.0, Stroke::new(1.6, MARK_SELECTED));
+    }
 }
 
 /// From a ring to where it would be without the beam's squint.

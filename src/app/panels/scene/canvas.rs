@@ -34,8 +34,8 @@ impl Canvas<'_> {
 }
 
 /// Everything that doesn't move: ground, rings, spokes, fields of view, array.
-pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool) {
-    let Canvas { rect, view, radar, inks } = canvas;
+pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbers: bool) {
+    let Canvas { rect, view, radar, mut inks } = canvas;
     painter.rect_filled(rect, 0.0, inks.beyond);
     let extent = radar.max_range_metres();
     let origin = Place::new(0.0, 0.0);
@@ -45,7 +45,13 @@ pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool) {
             field_of_view(radar, view, painter, rect, end, colour);
         }
     }
+    let ink = inks.grid_text;
+    if !numbers {
+        inks.grid_text = Color32::TRANSPARENT;
+    }
     rings(radar, view, painter, rect, inks);
+    let edge = half_disc(view, rect, origin, extent);
+    painter.add(Shape::line(edge, Stroke::new(1.5, ink)));
     array(radar, view, painter, rect, inks);
 }
 
@@ -94,8 +100,6 @@ fn rings(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: In
             axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &label, inks.grid_text);
         }
     }
-    let edge = Stroke::new(1.5, inks.grid_text);
-    painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), extent), edge));
 }
 
 /// What one end can see: its unambiguous angles out to the maximum range (thesis figure 5-6).
@@ -237,11 +241,50 @@ pub fn selection_box(painter: &Painter, canvas: Canvas<'_>, corner: Place, point
 /// How many metres a bar of the scale stands for, in the corner.
 pub fn scale_bar(painter: &Painter, canvas: Canvas<'_>) {
     let Canvas { rect, view, inks, .. } = canvas;
-    let wanted = 70.0 * view.metres_per_point;
-    let Some(length) = axes::ticks(0.0, wanted, 1.0).into_iter().rev().find(|v| *v > 0.0) else { return };
+    let length = round_length(100.0 * view.metres_per_point);
     let width = (length / view.metres_per_point) as f32;
     let left = pos2(rect.left() + 10.0, rect.top() + 14.0);
     painter.line_segment([left, left + vec2(width, 0.0)], Stroke::new(2.0, inks.grid_text));
-    let text = format!("{} m", axes::tick_text(length, length));
-    axes::text(painter, left + vec2(width + 5.0, 0.0), Align2::LEFT_CENTER, &text, inks.grid_text);
+    axes::text(painter, left + vec2(width + 5.0, 0.0), Align2::LEFT_CENTER, &length_text(length), inks.grid_text);
+}
+
+/// The longest of 1, 2, 5, 10, .. metres (and their parts) that is not above `at_most`.
+fn round_length(at_most: f64) -> f64 {
+    let decade = 10f64.powf(at_most.log10().floor());
+    [10.0, 5.0, 2.0].into_iter().map(|m| m * decade).find(|v| *v <= at_most * 1.000_001).unwrap_or(decade)
+}
+
+/// A round length in the unit in which it has the fewest digits.
+fn length_text(metres: f64) -> String {
+    let (length, unit) = match metres {
+        m if m >= 999.0 => (m / 1e3, "km"),
+        m if m >= 0.99 => (m, "m"),
+        m if m >= 0.0099 => (m * 1e2, "cm"),
+        m => (m * 1e3, "mm"),
+    };
+    format!("{} {unit}", axes::tick_text(length, length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scale_has_a_round_length_at_every_zoom() {
+        // As far in and out as the view goes, in steps of 1 %.
+        for step in 0..1620 {
+            let metres_per_point = 1e-4 * 1.01f64.powi(step);
+            let length = round_length(100.0 * metres_per_point);
+            let points = length / metres_per_point;
+            assert!((40.0 - 1e-6..=100.001).contains(&points), "{points} points at {metres_per_point} m a point");
+            let text = length_text(length);
+            let digits = text.chars().find(|c| ('1'..='9').contains(c));
+            assert!(matches!(digits, Some('1' | '2' | '5')), "{text}");
+            assert!(text.chars().filter(|c| ('1'..='9').contains(c)).count() == 1 && text.len() < 9, "{text}");
+        }
+        assert_eq!(
+            [length_text(10.0), length_text(0.5), length_text(0.002), length_text(2000.0)],
+            ["10 m", "50 cm", "2 mm", "2 km"]
+        );
+    }
 }

@@ -4,6 +4,7 @@ mod canvas;
 
 use crate::app::state::{Command, Cursor, NewObject, SceneView};
 use crate::app::widgets::entry::entry;
+use crate::app::widgets::nudge::{nudge, zoom_keys};
 use crate::app::widgets::theme::Inks;
 use crate::interact::{Editor, Grip, Place, SelectionMode, Snap, grips, hit};
 use crate::radar::Radar;
@@ -26,6 +27,8 @@ pub struct Input<'a> {
     pub cursor: Option<Cursor>,
     /// Why the scene can't be computed.
     pub error: Option<&'a str>,
+    /// Whether ranges, angles and the scale are told.
+    pub numbers: bool,
 }
 
 /// Draws the canvas. Drags and selections go straight to the editor: as commands they would lag a frame.
@@ -37,12 +40,13 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let response = ui.interact(rect, ui.scope_id().with("scene canvas"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
     navigate(view, ui, rect, &response);
+    keys(input.radar, editor, view, rect, &response, &mut asked);
     pointer(ui, &input, editor, view, rect, &response, &mut asked);
     let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
     let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, inks: Inks::of(ui.visuals()) };
-    canvas::ground(&painter, canvas, input.fields_of_view);
+    canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
         let look = Look { selected: editor.selection().contains(index), hovered };
@@ -58,13 +62,16 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         (None, Some(cursor)) => canvas::cursor(&painter, canvas, &cursor),
         (None, None) => {}
     }
-    canvas::scale_bar(&painter, canvas);
+    if input.numbers {
+        canvas::scale_bar(&painter, canvas);
+    }
     say(ui, &painter, rect, editor.scene().objects.is_empty(), input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
             (Grip::Body, Some(_)) => CursorIcon::Grabbing,
             (Grip::Body, None) => CursorIcon::Grab,
             (Grip::SpreadX, _) => CursorIcon::ResizeHorizontal,
+            (Grip::NearEnd | Grip::FarEnd, _) => CursorIcon::Move,
             _ => CursorIcon::ResizeVertical,
         });
     }
@@ -131,6 +138,24 @@ fn navigate(view: &mut SceneView, ui: &Ui, rect: Rect, response: &Response) {
     }
 }
 
+/// What keys do while the canvas has the focus.
+fn keys(
+    radar: &Radar,
+    editor: &Editor,
+    view: &mut SceneView,
+    rect: Rect,
+    response: &Response,
+    asked: &mut Vec<Command>,
+) {
+    if let Some(factor) = zoom_keys(response) {
+        view.zoom(f64::from(factor), rect, rect.center());
+        view.fitted = None;
+    }
+    if response.has_focus() && !editor.selection().is_empty() {
+        asked.extend(nudge(&response.ctx, radar.range_resolution_metres()));
+    }
+}
+
 /// Selects, drags, draws boxes, adds points.
 fn pointer(
     ui: &Ui,
@@ -160,7 +185,9 @@ fn pointer(
             }
         }
     }
-    if let (Some(_), Some(now)) = (editor.dragged(), now) {
+    // What is dragged in a map is none of this panel's business.
+    let dragging = response.dragged_by(PointerButton::Primary) || response.drag_stopped_by(PointerButton::Primary);
+    if let (Some(_), Some(now), true) = (editor.dragged(), now, dragging) {
         editor.drag_to(view.to_scene(rect, now), input.snap);
     }
     if response.drag_stopped_by(PointerButton::Primary) {
@@ -275,6 +302,7 @@ mod tests {
                 found: &[],
                 cursor: None,
                 error: Some("too far"),
+                numbers: true,
             };
             let commands = show(ui, input, &mut held.editor, &mut held.view);
             held.asked.extend(commands);
@@ -310,7 +338,8 @@ mod tests {
             let mut state = (Editor::new(Scene::default()), SceneView::default());
             let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
                 let (snap, fields_of_view) = (Snap::Off, false);
-                let input = Input { radar: &radar, snap, fields_of_view, found: &[], cursor: None, error: None };
+                let (found, numbers) = (&[], true);
+                let input = Input { radar: &radar, snap, fields_of_view, found, cursor: None, error: None, numbers };
                 _ = show(ui, input, editor, view);
             };
             state.0.add(crate::scene::Object::Point(crate::scene::Point::new(0.0, 20.0)));
@@ -325,6 +354,43 @@ mod tests {
                 assert!(outside, "{} is on the arc at {size:?}", text.text);
             }
         }
+    }
+
+    #[test]
+    fn either_end_of_a_line_can_be_dragged_to_any_slant_and_back() {
+        use crate::scene::{Line, Object};
+        let before = Line::vertical(0.0, 10.0, 0.5, 21);
+        let mut scene = panel(Scene { objects: vec![Object::Line(before.clone())], ..Scene::default() });
+        scene.state_mut().editor.select_all();
+        scene.step();
+        let line = |scene: &Harness<'static, Held>| match &scene.state().editor.scene().objects[0] {
+            Object::Line(line) => line.clone(),
+            other => panic!("{other:?}"),
+        };
+        let drag = |scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2| {
+            let from = scene.get_by_label(handle).rect().center();
+            scene.hover_at(from);
+            scene.step();
+            scene.drag_at(from);
+            scene.step();
+            scene.hover_at(from + by);
+            scene.step();
+            scene.drop_at(from + by);
+            scene.step();
+            scene.state().view.metres_per_point
+        };
+        let metres = drag(&mut scene, "line 1: move the far end: more or fewer reflectors", vec2(50.0, 10.0));
+        let turned = line(&scene);
+        let wanted = 90.0 - (50.0 * metres).atan2(10.0 - 10.0 * metres).to_degrees();
+        assert!((turned.direction_degrees - wanted).abs() < 0.1, "{turned:?}, not {wanted}");
+        assert_eq!([turned.x_metres, turned.y_start_metres], [0.0, 10.0], "the other end stays");
+        let far = turned.end_metres();
+        drag(&mut scene, "line 1: move the near end: more or fewer reflectors", vec2(-60.0, -20.0));
+        let [x, y] = line(&scene).end_metres();
+        assert!((x - far[0]).hypot(y - far[1]) < 1e-9 && line(&scene).x_metres < -1.0, "{:?}", line(&scene));
+        let editor = &mut scene.state_mut().editor;
+        assert!(editor.undo() && editor.undo() && !editor.undo());
+        assert_eq!(line(&scene), before);
     }
 
     #[test]

@@ -1,0 +1,62 @@
+//! A map's picture for the clipboard.
+
+use crate::app::jobs::Jobs;
+use crate::app::state::{MapKind, Panel, State};
+use eframe::egui::ColorImage;
+
+/// Most pixels of a picture on the clipboard: it is held there several times over.
+const MAX_PIXELS: usize = 1 << 24;
+
+/// The picture of a map, for the clipboard; says why where there is none.
+pub fn copy(state: &mut State, jobs: &Jobs, kind: MapKind) -> Option<ColorImage> {
+    match picture(state, jobs, kind) {
+        Ok(image) => {
+            let [width, height] = image.size;
+            state.notices.info(format!("Copied {}, {width} × {height} pixels.", kind.title()));
+            Some(image)
+        }
+        Err(error) => {
+            state.notices.error(format!("{} was not copied: {error}", kind.title()));
+            None
+        }
+    }
+}
+
+/// A map's picture as it hangs on screen, the farthest range on top; cell by cell, whatever part of it is in sight.
+fn picture(state: &State, jobs: &Jobs, kind: MapKind) -> Result<ColorImage, String> {
+    if state.is_predicting() {
+        return Err("it is hidden until you have predicted".to_owned());
+    }
+    let painted = jobs.pipeline.result().and_then(|r| r.pictures.get(&kind));
+    let Some(picture) = painted.filter(|_| state.arrangement.shown().contains(&Panel::Map(kind))) else {
+        return Err("bring it into sight first".to_owned());
+    };
+    upright(&picture.image)
+}
+
+/// The rows of a texture the other way round.
+fn upright(image: &ColorImage) -> Result<ColorImage, String> {
+    let [width, height] = image.size;
+    if image.pixels.len() > MAX_PIXELS {
+        return Err(format!(
+            "{width} × {height} pixels are more than the {MAX_PIXELS} that fit the clipboard; export the maps"
+        ));
+    }
+    let rows = image.pixels.chunks_exact(width.max(1)).rev();
+    Ok(ColorImage::new(image.size, rows.flatten().copied().collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::Color32;
+
+    #[test]
+    fn a_picture_hangs_upright_and_is_bounded() {
+        let pixels = [Color32::RED, Color32::GREEN, Color32::BLUE, Color32::WHITE].to_vec();
+        let image = upright(&ColorImage::new([2, 2], pixels)).unwrap();
+        assert_eq!(image.pixels, [Color32::BLUE, Color32::WHITE, Color32::RED, Color32::GREEN]);
+        let error = upright(&ColorImage::filled([4097, 4096], Color32::RED)).unwrap_err();
+        assert!(error.contains("4097 × 4096"), "{error}");
+    }
+}

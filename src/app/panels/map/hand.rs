@@ -1,0 +1,212 @@
+//! The pointer on a map: a click selects the reflector behind a blob, a drag moves it.
+
+use super::frame::Frame;
+use crate::app::state::{Command, MapKind};
+use crate::interact::SelectionMode;
+use crate::interact::blob::{self, BlobHit};
+use crate::radar::Polar;
+use crate::scene::Scene;
+use eframe::egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
+
+/// Most reflectors among which the one under a resting pointer is looked for in every frame.
+const HOVERED: usize = 2000;
+
+/// A blob that is held.
+#[derive(Debug, Clone, Copy)]
+struct Held {
+    blob: BlobHit,
+    /// Where on the map it was grabbed.
+    from: Polar,
+}
+
+/// What the maps remember from frame to frame.
+#[derive(Default)]
+pub struct Memory {
+    /// The blob that is held, and in which map.
+    held: Option<(MapKind, Held)>,
+}
+
+/// What the pointer does with blobs; whether it holds one, so that the map stays where it is.
+pub fn work(
+    ui: &Ui,
+    kind: MapKind,
+    scene: &Scene,
+    frame: Frame<'_>,
+    response: &Response,
+    memory: &mut Memory,
+    asked: &mut Vec<Command>,
+) -> bool {
+    let (origin, now, modifiers) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers));
+    let mode = if modifiers.shift || modifiers.command { SelectionMode::Toggle } else { SelectionMode::Replace };
+    if response.drag_started_by(PointerButton::Primary)
+        && let Some(origin) = origin
+        && let Some(blob) = under(scene, frame, origin)
+    {
+        memory.held = Some((kind, Held { blob, from: frame.polar(origin) }));
+        asked.push(Command::Grab(blob));
+    }
+    if response.clicked_by(PointerButton::Primary)
+        && let Some(pos) = now
+    {
+        let hit = under(scene, frame, pos);
+        asked.push(Command::Select(hit.map(|h| h.object).into_iter().collect(), mode));
+    }
+    let held = memory.held.filter(|(of, _)| *of == kind).map(|(_, held)| held);
+    if let (Some(held), Some(now)) = (held, now) {
+        let to = blob::moved(frame.radar, frame.centre_x_metres, held.blob.place, held.from, frame.polar(now));
+        asked.push(Command::DragTo(to));
+        ui.set_cursor_icon(CursorIcon::Grabbing);
+    } else if let Some(pos) = response.hover_pos()
+        && scene.reflector_count() <= HOVERED
+        && under(scene, frame, pos).is_some()
+    {
+        ui.set_cursor_icon(CursorIcon::Grab);
+    }
+    if held.is_some() && !response.dragged_by(PointerButton::Primary) {
+        memory.held = None;
+        asked.push(Command::Drop);
+    }
+    held.is_some()
+}
+
+/// Whose blob is at a place on screen.
+fn under(scene: &Scene, frame: Frame<'_>, pos: Pos2) -> Option<BlobHit> {
+    blob::nearest(scene, |reflector| f64::from(frame.blob(reflector).distance(pos)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Input, show};
+    use super::*;
+    use crate::app::state::{MapView, Projection};
+    use crate::interact::{Editor, Snap};
+    use crate::radar::Radar;
+    use crate::scene::Reflector;
+    use eframe::egui::{Modifiers, Rect, vec2};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Desk {
+        editor: Editor,
+        snap: Snap,
+        view: MapView,
+        memory: Memory,
+        asked: Vec<Command>,
+    }
+
+    /// A map, and an editor that does what it asks for.
+    fn map(kind: MapKind, projection: Projection, points: &[(f64, f64)]) -> Harness<'static, Desk> {
+        let draw = move |ui: &mut Ui, desk: &mut Desk| {
+            let radar = Radar::default();
+            let (scene, selection) = (desk.editor.scene().clone(), desk.editor.selection().clone());
+            let input = Input::bare(kind, &radar, projection, &scene, &selection);
+            for command in show(ui, input, &mut desk.view, &mut desk.memory) {
+                match command.clone() {
+                    Command::Grab(blob) => desk.editor.grab(blob),
+                    Command::DragTo(place) => _ = desk.editor.drag_to(place, desk.snap),
+                    Command::Drop => desk.editor.end_drag(),
+                    Command::Select(objects, mode) => desk.editor.select(objects, mode),
+                    _ => continue,
+                }
+                desk.asked.push(command);
+            }
+        };
+        let editor = Editor::new(Scene::of_points(points.iter().copied()));
+        let (view, memory) = (MapView::default(), Memory::default());
+        let desk = Desk { editor, snap: Snap::Off, view, memory, asked: Vec::new() };
+        let mut map = Harness::builder().with_size([700.0, 420.0]).with_step_dt(0.05).build_ui_state(draw, desk);
+        map.step();
+        map
+    }
+
+    fn frame(radar: &Radar, kind: MapKind, projection: Projection, rect: Rect) -> Frame<'_> {
+        let centre_x_metres = super::super::centre_x_metres(kind, radar);
+        Frame { rect, view: MapView::default(), radar, projection, centre_x_metres }
+    }
+
+    fn place(map: &Harness<'static, Desk>, object: usize) -> [f64; 2] {
+        map.state().editor.scene().objects[object].anchor_metres()
+    }
+
+    #[test]
+    fn a_blob_is_dragged_in_every_map_and_both_views_and_one_undo_brings_it_back() {
+        let radar = Radar::default();
+        for projection in [Projection::RangeAngle, Projection::Cartesian] {
+            for kind in [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output, MapKind::Difference] {
+                let mut map = map(kind, projection, &[(-8.0, 18.0), (9.0, 25.0)]);
+                let label = format!("{} map", kind.title());
+                let rect = map.get_by_label(&label).rect();
+                let frame = frame(&radar, kind, projection, rect);
+                let at =
+                    |[x_metres, y_metres]: [f64; 2]| frame.blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 });
+                let (from, by) = (at([9.0, 25.0]), vec2(-60.0, 35.0));
+                map.hover_at(from + vec2(2.0, 1.0));
+                map.step();
+                map.drag_at(from + vec2(2.0, 1.0));
+                map.step();
+                for part in [0.3, 0.7, 1.0] {
+                    map.hover_at(from + by * part + vec2(2.0, 1.0));
+                    map.step();
+                }
+                map.drop_at(from + by + vec2(2.0, 1.0));
+                map.run_steps(2);
+                let off = at(place(&map, 1)).distance(from + by);
+                assert!(off < 1.5, "{kind:?}, {projection:?}: its blob is {off} points beside the pointer");
+                assert_eq!(place(&map, 0), [-8.0, 18.0]);
+                assert_eq!(map.state().view, MapView::default(), "the map itself stays");
+                assert_eq!(map.state().asked.last(), Some(&Command::Drop));
+                let editor = &mut map.state_mut().editor;
+                assert_eq!((editor.selection().single(), editor.history().depth()), (Some(1), 1));
+                editor.undo();
+                assert_eq!(place(&map, 1), [9.0, 25.0]);
+            }
+        }
+    }
+
+    #[test]
+    fn clicks_select_what_is_behind_a_blob_and_nothing_elsewhere() {
+        let radar = Radar::default();
+        let points = [(-8.0, 18.0), (9.0, 25.0)];
+        let mut map = map(MapKind::Target, Projection::RangeAngle, &points);
+        let frame = frame(&radar, MapKind::Target, Projection::RangeAngle, map.get_by_label("Target map").rect());
+        let at = |i: usize| {
+            let (x_metres, y_metres) = points[i];
+            frame.blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 })
+        };
+        let click = |map: &mut Harness<'static, Desk>, pos: Pos2, modifiers: Modifiers| {
+            for pressed in [true, false] {
+                map.hover_at(pos);
+                map.event_modifiers(
+                    eframe::egui::Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers },
+                    modifiers,
+                );
+                map.step();
+            }
+            map.run_steps(12);
+            map.state().editor.selection().iter().collect::<Vec<_>>()
+        };
+        assert_eq!(click(&mut map, at(1), Modifiers::NONE), [1]);
+        assert_eq!(click(&mut map, at(0), Modifiers::NONE), [0]);
+        assert_eq!(click(&mut map, at(1), Modifiers::COMMAND), [0, 1]);
+        assert!(click(&mut map, at(1) + vec2(70.0, 40.0), Modifiers::NONE).is_empty());
+        assert_eq!(map.state().editor.history().depth(), 0);
+    }
+
+    #[test]
+    fn a_dragged_blob_snaps_as_in_the_scene() {
+        let radar = Radar::default();
+        let mut map = map(MapKind::Target, Projection::Cartesian, &[(4.0, 20.0)]);
+        map.state_mut().snap = Snap::Metres(2.0);
+        let frame = frame(&radar, MapKind::Target, Projection::Cartesian, map.get_by_label("Target map").rect());
+        let from = frame.blob(&Reflector { x_metres: 4.0, y_metres: 20.0, reflectivity: 1.0 });
+        map.hover_at(from);
+        map.drag_at(from);
+        map.step();
+        map.hover_at(from + vec2(55.0, 0.0));
+        map.step();
+        map.drop_at(from + vec2(55.0, 0.0));
+        map.run_steps(2);
+        let [x, y] = place(&map, 0);
+        assert!(x > 5.0 && x % 2.0 == 0.0 && y % 2.0 == 0.0, "{x}, {y}");
+    }
+}

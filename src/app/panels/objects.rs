@@ -1,0 +1,254 @@
+//! The list of the scene's objects: what each is, where it stands, how strongly it reflects; a click selects it.
+
+use crate::app::state::Command;
+use crate::app::widgets::axes;
+use crate::interact::{Coordinates, Field, Selection, SelectionMode};
+use crate::scene::{Object, Scene};
+use eframe::egui;
+use eframe::egui::{
+    Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
+};
+
+/// What is listed.
+pub struct Input<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What of it is selected.
+    pub selection: &'a Selection,
+    /// In which numbers places are told.
+    pub coordinates: Coordinates,
+}
+
+/// What the list remembers from frame to frame.
+#[derive(Default)]
+pub struct Memory {
+    /// The object that was picked last, when it was last drawn.
+    latest: Option<usize>,
+}
+
+const ROW_HEIGHT: f32 = 20.0;
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    if input.scene.objects.is_empty() {
+        egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| ui.weak("The scene is empty."));
+        return asked;
+    }
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
+        let list = ui.interact(
+            ui.available_rect_before_wrap(),
+            ui.scope_id().with("objects"),
+            Sense::focusable_noninteractive(),
+        );
+        list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Objects"));
+        if list.has_focus() {
+            asked.extend(keys(ui, &list, &input));
+        }
+        heading(ui, input.coordinates);
+        rows(ui, &input, memory, &list, &mut asked);
+    });
+    asked
+}
+
+/// Arrow keys walk along the list, with shift they take along what lies between.
+fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
+    let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|m| m.set_focus_lock_filter(list.id, filter));
+    let last = input.scene.objects.len() - 1;
+    ui.input_mut(|i| {
+        let mut asked = None;
+        for (modifiers, mode) in [(Modifiers::SHIFT, SelectionMode::Range), (Modifiers::NONE, SelectionMode::Replace)] {
+            let mut steps = |key| i.count_and_consume_key(modifiers, key);
+            let (down, up) = (steps(Key::ArrowDown), steps(Key::ArrowUp));
+            if down == up {
+                continue;
+            }
+            let to = match input.selection.latest() {
+                Some(from) => (from + down).saturating_sub(up).min(last),
+                None => {
+                    if down > up {
+                        0
+                    } else {
+                        last
+                    }
+                }
+            };
+            asked = Some(Command::Select(vec![to], mode));
+        }
+        asked
+    })
+}
+
+/// Where the columns end, as parts of the width, and what is in them.
+const COLUMNS: [f32; 4] = [0.34, 0.56, 0.78, 1.0];
+
+fn place_fields(coordinates: Coordinates) -> [(Field, &'static str); 2] {
+    match coordinates {
+        Coordinates::Cartesian => [(Field::X, "x, m"), (Field::Y, "y, m")],
+        Coordinates::Polar => [(Field::Range, "range, m"), (Field::ThetaDegrees, "θ, °")],
+    }
+}
+
+fn heading(ui: &mut Ui, coordinates: Coordinates) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::hover());
+    let ink = ui.visuals().weak_text_color();
+    let [x, y] = place_fields(coordinates).map(|(_, name)| name);
+    cells(ui, rect, ["object", x, y, "σ"].map(str::to_owned), ink);
+    ui.painter().hline(
+        rect.x_range(),
+        rect.bottom(),
+        Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color),
+    );
+}
+
+/// The first cell from the left, numbers from the right.
+fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
+    for (column, text) in texts.into_iter().enumerate() {
+        let (at, align) = match column {
+            0 => (pos2(rect.left() + 6.0, rect.center().y), Align2::LEFT_CENTER),
+            _ => (pos2(rect.left() + COLUMNS[column] * rect.width() - 8.0, rect.center().y), Align2::RIGHT_CENTER),
+        };
+        ui.painter().text(at, align, text, FontId::proportional(12.5), ink);
+    }
+}
+
+fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, list: &Response, asked: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let latest = input.selection.latest();
+    let mut area = ScrollArea::vertical().auto_shrink([false, false]);
+    if latest != memory.latest
+        && let Some(row) = latest
+    {
+        // What was selected elsewhere comes into sight, where it isn't.
+        area = in_sight(ui, area, row);
+    }
+    memory.latest = latest;
+    let output = area.show_rows(ui, ROW_HEIGHT, input.scene.objects.len(), |ui, range| {
+        for index in range {
+            let Some(object) = input.scene.objects.get(index) else { break };
+            if let Some(mode) = row(ui, input, index, object) {
+                list.request_focus();
+                asked.push(Command::Select(vec![index], mode));
+            }
+        }
+    });
+    let shown = [output.state.clamped_offset().y, output.inner_rect.height()];
+    ui.data_mut(|d| d.insert_temp(list_window(ui), shown));
+}
+
+fn list_window(ui: &Ui) -> egui::Id {
+    ui.scope_id().with("rows in sight")
+}
+
+/// Scrolls so far that `row` is in sight.
+fn in_sight(ui: &Ui, area: ScrollArea, row: usize) -> ScrollArea {
+    let Some([offset, height]) = ui.data(|d| d.get_temp::<[f32; 2]>(list_window(ui))) else { return area };
+    let (top, bottom) = (row as f32 * ROW_HEIGHT, (row + 1) as f32 * ROW_HEIGHT);
+    if top < offset {
+        area.vertical_scroll_offset(top)
+    } else if bottom > offset + height {
+        area.vertical_scroll_offset(bottom - height)
+    } else {
+        area
+    }
+}
+
+/// Draws a row; how its object is to be selected, if it was clicked.
+fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<SelectionMode> {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::CLICK);
+    let selected = input.selection.contains(index);
+    let name = format!("{} {}", object.kind(), index + 1);
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, format!("{name} in the list"))
+    });
+    let visuals = ui.visuals();
+    if selected {
+        ui.painter().rect_filled(rect, 2.0, visuals.selection.bg_fill);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 2.0, visuals.widgets.hovered.weak_bg_fill);
+    }
+    let place = |(field, _): (Field, &str)| {
+        let digits = if field == Field::ThetaDegrees { 0.1 } else { 0.01 };
+        field.get(object).map(|v| axes::tick_text(v, digits)).unwrap_or_default()
+    };
+    let [x, y] = place_fields(input.coordinates).map(place);
+    let many = match object.reflector_count() {
+        1 => name,
+        n => format!("{name} (×{n})"),
+    };
+    cells(ui, rect, [many, x, y, format!("{:.2}", object.reflectivity())], visuals.text_color());
+    response.clicked().then(|| ui.input(|i| mode_of(i.modifiers)))
+}
+
+fn mode_of(modifiers: Modifiers) -> SelectionMode {
+    match (modifiers.shift, modifiers.command) {
+        (true, _) => SelectionMode::Range,
+        (_, true) => SelectionMode::Toggle,
+        _ => SelectionMode::Replace,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Held {
+        scene: Scene,
+        selection: Selection,
+        memory: Memory,
+    }
+
+    fn panel(points: usize) -> Harness<'static, Held> {
+        let draw = |ui: &mut Ui, held: &mut Held| {
+            let input = Input { scene: &held.scene, selection: &held.selection, coordinates: Coordinates::Cartesian };
+            for command in show(ui, input, &mut held.memory) {
+                let Command::Select(objects, mode) = command else { panic!("{command:?}") };
+                held.selection.pick(objects, mode);
+            }
+        };
+        let scene = Scene::of_points((0..points).map(|i| (i as f64, 5.0)));
+        let held = Held { scene, selection: Selection::default(), memory: Memory::default() };
+        let mut list = Harness::builder().with_size([300.0, 200.0]).build_ui_state(draw, held);
+        list.step();
+        list
+    }
+
+    fn click(list: &mut Harness<'static, Held>, name: &str, modifiers: Modifiers) {
+        list.get_by_label(name).click_modifiers(modifiers);
+        list.run();
+    }
+
+    #[test]
+    fn clicks_select_one_several_and_a_range() {
+        let mut list = panel(6);
+        click(&mut list, "point 2 in the list", Modifiers::NONE);
+        assert_eq!(list.state().selection, Selection::of([1]));
+        click(&mut list, "point 4 in the list", Modifiers::COMMAND);
+        assert_eq!(list.state().selection, Selection::of([1, 3]));
+        click(&mut list, "point 6 in the list", Modifiers::SHIFT);
+        assert_eq!(list.state().selection, Selection::of([3, 4, 5]));
+        click(&mut list, "point 1 in the list", Modifiers::NONE);
+        assert_eq!(list.state().selection, Selection::of([0]));
+    }
+
+    #[test]
+    fn arrow_keys_walk_and_the_list_follows() {
+        let mut list = panel(1000);
+        click(&mut list, "point 2 in the list", Modifiers::NONE);
+        list.key_press(Key::ArrowDown);
+        list.run();
+        list.key_press_modifiers(Modifiers::SHIFT, Key::ArrowDown);
+        list.run();
+        assert_eq!(list.state().selection, Selection::of([2, 3]));
+        list.key_press(Key::ArrowUp);
+        list.run();
+        assert_eq!(list.state().selection, Selection::of([2]));
+        assert!(list.query_by_label("point 700 in the list").is_none(), "only rows in sight are drawn");
+        list.state_mut().selection.pick([699], SelectionMode::Replace);
+        list.run();
+        let _in_sight = list.get_by_label("point 700 in the list");
+    }
+}

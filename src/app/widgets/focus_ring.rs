@@ -1,0 +1,62 @@
+//! A ring around what has the keyboard's focus: the same one, well visible, around every control.
+
+use super::theme::focus;
+use eframe::egui::{Context, LayerId, Rect, Stroke, StrokeKind};
+
+/// What has the focus: on which layer, and where. `None` where nothing has it, or what has it is out of sight.
+pub fn place(ctx: &Context) -> Option<(LayerId, Rect)> {
+    let id = ctx.memory(|m| m.focused())?;
+    let response = ctx.read_response(id)?;
+    Some((response.layer_id, response.interact_rect)).filter(|(_, rect)| rect.is_positive())
+}
+
+/// Draws the ring, over everything that was drawn before it on the same layer.
+pub fn draw(ctx: &Context) {
+    let Some((layer, rect)) = place(ctx) else { return };
+    let stroke = Stroke::new(2.0, focus(ctx.style_of(ctx.theme()).visuals.dark_mode));
+    // Inside the window, even around what reaches its edge.
+    let around = rect.expand(1.5).intersect(ctx.content_rect().shrink(1.0));
+    ctx.layer_painter(layer).rect_stroke(around, 3.0, stroke, StrokeKind::Middle);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{self, Key, Shape};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn rings(harness: &Harness<'_, ()>) -> Vec<Rect> {
+        let shapes = harness.output().shapes.iter().filter_map(|s| match &s.shape {
+            Shape::Rect(r) if [true, false].map(focus).contains(&r.stroke.color) => Some(r.rect),
+            _ => None,
+        });
+        shapes.collect()
+    }
+
+    #[test]
+    fn the_ring_goes_with_the_focus_to_every_kind_of_control() {
+        let mut number = 1.0;
+        let mut panel = Harness::new_ui(move |ui| {
+            _ = ui.button("one");
+            ui.add(egui::DragValue::new(&mut number).prefix("two "));
+            _ = ui.selectable_label(false, "three");
+            draw(ui.ctx());
+        });
+        panel.run();
+        assert!(rings(&panel).is_empty(), "nothing has the focus");
+        let mut seen = Vec::new();
+        for _ in 0..3 {
+            panel.key_press(Key::Tab);
+            panel.run();
+            let rings = rings(&panel);
+            assert_eq!(rings.len(), 1);
+            seen.push(rings[0]);
+        }
+        for (ring, name) in [(seen[0], "one"), (seen[2], "three")] {
+            let control = panel.get_by_label(name).rect();
+            assert!(ring.contains_rect(control) && ring.width() < control.width() + 8.0, "{ring} around {control}");
+        }
+        assert!(seen[1].top() > seen[0].bottom() - 4.0 && seen[1].bottom() < seen[2].top() + 4.0);
+    }
+}

@@ -1,0 +1,241 @@
+//! The numbers of an object that can be read and set, by name: a form shows those of one object, or those that several have in common.
+
+use crate::scene::Object;
+use serde::{Deserialize, Serialize};
+
+/// In which numbers places are told and entered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Coordinates {
+    /// x and y, metres.
+    #[default]
+    Cartesian,
+    /// Range, and direction as cos(theta) or in degrees.
+    Polar,
+}
+
+/// A number of an object. The place is [`Object::anchor_metres`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Field {
+    /// Along the array's axis, metres.
+    X,
+    /// Ahead of the array, metres.
+    Y,
+    /// Distance from the array's middle, metres.
+    Range,
+    /// Cosine of the angle between the array's axis and the direction from its middle.
+    CosTheta,
+    /// That angle in degrees: 0 along the array, 90 straight ahead, negative behind.
+    ThetaDegrees,
+    /// Distance between a line's neighbouring reflectors, metres.
+    Spacing,
+    /// Where a line leads, degrees.
+    Direction,
+    /// Standard deviation of a cluster along x, metres.
+    SpreadX,
+    /// Standard deviation of a cluster along y, metres.
+    SpreadY,
+    /// Number of reflectors of a line or a cluster.
+    Count,
+    /// Seed of a cluster.
+    Seed,
+    /// Reflectivity sigma of each reflector.
+    Reflectivity,
+}
+
+/// What happens to a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Change {
+    /// It becomes this.
+    To(f64),
+    /// It grows by this.
+    By(f64),
+}
+
+impl Change {
+    /// What becomes of `value`.
+    pub fn of(self, value: f64) -> f64 {
+        match self {
+            Change::To(new) => new,
+            Change::By(step) => value + step,
+        }
+    }
+}
+
+/// A field that several objects have, and its value in them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shared {
+    /// Which.
+    pub field: Field,
+    /// Its value in the first of the objects.
+    pub first: f64,
+    /// Whether all others have the same.
+    pub is_same: bool,
+}
+
+impl Field {
+    fn of_place(coordinates: Coordinates) -> &'static [Field] {
+        match coordinates {
+            Coordinates::Cartesian => &[Field::X, Field::Y],
+            Coordinates::Polar => &[Field::Range, Field::CosTheta, Field::ThetaDegrees],
+        }
+    }
+
+    fn of_kind(object: &Object) -> &'static [Field] {
+        match object {
+            Object::Point(_) => &[Field::Reflectivity],
+            Object::Line(_) => &[Field::Spacing, Field::Direction, Field::Count, Field::Reflectivity],
+            Object::Gaussian(_) => &[Field::SpreadX, Field::SpreadY, Field::Count, Field::Seed, Field::Reflectivity],
+        }
+    }
+
+    /// Its value; `None` where the object has no such number.
+    pub fn get(self, object: &Object) -> Option<f64> {
+        let [x, y] = object.anchor_metres();
+        let range = x.hypot(y);
+        Some(match (self, object) {
+            (Field::X, _) => x,
+            (Field::Y, _) => y,
+            (Field::Range, _) => range,
+            (Field::CosTheta, _) => {
+                if range > 0.0 {
+                    x / range
+                } else {
+                    0.0
+                }
+            }
+            (Field::ThetaDegrees, _) => {
+                if range > 0.0 {
+                    y.atan2(x).to_degrees()
+                } else {
+                    90.0
+                }
+            }
+            (Field::Reflectivity, _) => object.reflectivity(),
+            (Field::Spacing, Object::Line(l)) => l.spacing_metres,
+            (Field::Direction, Object::Line(l)) => l.direction_degrees,
+            (Field::Count, Object::Line(l)) => l.count as f64,
+            (Field::Count, Object::Gaussian(g)) => g.count as f64,
+            (Field::SpreadX, Object::Gaussian(g)) => g.x_std_metres,
+            (Field::SpreadY, Object::Gaussian(g)) => g.y_std_metres,
+            (Field::Seed, Object::Gaussian(g)) => g.seed as f64,
+            _ => return None,
+        })
+    }
+
+    /// Sets it, in the nearest value that makes sense (counts are whole, cosines at most 1); nothing where the object has no such number.
+    pub fn set(self, object: &mut Object, value: f64) {
+        match (self, &mut *object) {
+            (Field::X, _) => *object.anchor_mut()[0] = value,
+            (Field::Y, _) => *object.anchor_mut()[1] = value,
+            (Field::Range | Field::CosTheta | Field::ThetaDegrees, _) => self.set_polar(object, value),
+            (Field::Reflectivity, _) => object.set_reflectivity(value),
+            (Field::Spacing, Object::Line(l)) => l.spacing_metres = value,
+            (Field::Direction, Object::Line(l)) => l.direction_degrees = value,
+            (Field::Count, Object::Line(l)) => l.count = value.round().max(1.0) as usize,
+            (Field::Count, Object::Gaussian(g)) => g.count = value.round().max(1.0) as usize,
+            (Field::SpreadX, Object::Gaussian(g)) => g.x_std_metres = value.max(0.0),
+            (Field::SpreadY, Object::Gaussian(g)) => g.y_std_metres = value.max(0.0),
+            (Field::Seed, Object::Gaussian(g)) => g.seed = value.round().max(0.0) as u64,
+            _ => {}
+        }
+    }
+
+    /// Range and direction: either stays when the other is set. cos(theta) says nothing of ahead or behind; that stays, too.
+    fn set_polar(self, object: &mut Object, value: f64) {
+        let [x, y] = object.anchor_mut();
+        let range = x.hypot(*y);
+        (*x, *y) = match self {
+            Field::Range if range > 0.0 => (*x * value.max(0.0) / range, *y * value.max(0.0) / range),
+            Field::Range => (0.0, value.max(0.0)),
+            Field::CosTheta => {
+                let cos = value.clamp(-1.0, 1.0);
+                (range * cos, (range * (1.0 - cos * cos).sqrt()).copysign(*y))
+            }
+            _ => {
+                // Counted from straight ahead, where sine and cosine are exact.
+                let (sin, cos) = (value - 90.0).to_radians().sin_cos();
+                (-range * sin, range * cos)
+            }
+        };
+    }
+}
+
+/// The fields that all `objects` have, in the order of a form.
+pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates: Coordinates) -> Vec<Shared> {
+    let Some(first) = objects.clone().next() else { return Vec::new() };
+    let fields = Field::of_place(coordinates).iter().chain(Field::of_kind(first));
+    let shared = |field: &Field| {
+        let value = field.get(first)?;
+        let mut is_same = true;
+        for object in objects.clone() {
+            is_same &= field.get(object)? == value;
+        }
+        Some(Shared { field: *field, first: value, is_same })
+    };
+    fields.filter_map(shared).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{GaussianCluster, Line, Point};
+
+    fn cluster() -> Object {
+        Object::Gaussian(GaussianCluster {
+            x_metres: 3.0,
+            y_metres: 4.0,
+            x_std_metres: 1.0,
+            y_std_metres: 2.0,
+            count: 5,
+            seed: 3,
+            reflectivity: 1.0,
+        })
+    }
+
+    #[test]
+    fn every_field_of_every_kind_is_set_to_what_it_then_reads() {
+        for object in [Object::Point(Point::new(3.0, 4.0)), Object::Line(Line::vertical(3.0, 4.0, 0.5, 7)), cluster()] {
+            for coordinates in [Coordinates::Cartesian, Coordinates::Polar] {
+                let fields = shared([&object].into_iter(), coordinates);
+                assert!(fields.len() >= 3 && fields.iter().all(|f| f.is_same), "{fields:?}");
+                for Shared { field, first, .. } in fields {
+                    let mut changed = object.clone();
+                    let wanted = if field == Field::CosTheta { -0.25 } else { first + 2.0 };
+                    field.set(&mut changed, wanted);
+                    let read = field.get(&changed).unwrap();
+                    assert!((read - wanted).abs() < 1e-12, "{field:?} of a {}: {read}", object.kind());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn range_and_direction_leave_each_other_alone() {
+        let mut p = Object::Point(Point::new(3.0, -4.0));
+        Field::Range.set(&mut p, 10.0);
+        assert_eq!(p.anchor_metres(), [6.0, -8.0]);
+        Field::CosTheta.set(&mut p, 0.8);
+        let [x, y] = p.anchor_metres();
+        assert!((x - 8.0).abs() < 1e-12 && (y + 6.0).abs() < 1e-12, "behind stays behind: {x}, {y}");
+        Field::ThetaDegrees.set(&mut p, 90.0);
+        assert_eq!(p.anchor_metres()[0], 0.0, "straight ahead is exact");
+        Field::CosTheta.set(&mut p, 7.0);
+        assert_eq!(p.anchor_metres()[1], 0.0, "no cosine is larger than 1");
+        let mut origin = Object::Point(Point::new(0.0, 0.0));
+        Field::Range.set(&mut origin, 5.0);
+        assert_eq!(origin.anchor_metres(), [0.0, 5.0]);
+    }
+
+    #[test]
+    fn several_objects_share_what_all_of_them_have() {
+        let (point, line) = (Object::Point(Point::new(3.0, 1.0)), Object::Line(Line::vertical(3.0, 4.0, 0.5, 5)));
+        let of = |objects: &[&Object]| shared(objects.iter().copied(), Coordinates::Cartesian);
+        let fields = of(&[&line, &cluster()]);
+        let named: Vec<_> = fields.iter().map(|f| (f.field, f.is_same)).collect();
+        assert_eq!(named, [(Field::X, true), (Field::Y, true), (Field::Count, true), (Field::Reflectivity, true)]);
+        let fields = of(&[&point, &line]);
+        assert_eq!(fields[1], Shared { field: Field::Y, first: 1.0, is_same: false });
+        assert!(of(&[]).is_empty());
+    }
+}
