@@ -26,7 +26,7 @@ const PRESENTATION_ZOOM: f32 = 1.5;
 /// How the app is started.
 #[derive(Default)]
 pub struct Options {
-    /// Scene to open.
+    /// Scene or recording to open.
     pub scene: Option<PathBuf>,
     /// Name of the reconstruction to begin with; the one used last where `None`.
     pub method: Option<String>,
@@ -247,6 +247,9 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
         state.notices.error(format!("An unsaved scene of the last session can't be read: {problem}"));
     }
     let asked = asked.and_then(|path| apply::read(state, &path));
+    if asked.as_ref().is_some_and(|document| document.recording().is_some()) {
+        apply::show_recording_panels(state);
+    }
     match (&restored.on_screen, &asked) {
         (Some(_), None) => {
             state.notices.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");

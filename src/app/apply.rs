@@ -3,6 +3,7 @@
 mod hand;
 mod lessons;
 mod map_picture;
+mod radar;
 mod saving;
 mod shared;
 
@@ -10,12 +11,12 @@ pub use shared::of as shared_text;
 
 use super::jobs::{EvaluationPlan, Jobs, Purpose, tell};
 use super::state::{
-    Arrangement, Brightness, Command, EvaluationChoice, MapViews, NewObject, PinnedCut, Projection, Settings, State,
-    Units,
+    Arrangement, Brightness, Command, EvaluationChoice, MapKind, MapViews, NewObject, Panel, PinnedCut, Projection,
+    Settings, State, Units,
 };
 use crate::evaluate::campaign::Campaign;
 use crate::interact::{Document, Place, SelectionMode};
-use crate::radar::Radar;
+use crate::recording;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
 use crate::scene::{GaussianCluster, Line, Object, Point, presets};
@@ -58,6 +59,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Eff
         .and_then(|c| settings(&mut state.settings, c))
         .and_then(|c| edit(state, c))
         .and_then(|c| hand::apply(state, c))
+        .and_then(|c| radar::apply(state, c))
         .and_then(|c| scenes(state, jobs, c))
         .and_then(|c| lessons::apply(state, jobs, c))
         .and_then(|c| panels(state, c))
@@ -112,7 +114,7 @@ fn settings(settings: &mut Settings, command: Command) -> Option<Command> {
     None
 }
 
-/// Commands that change the scene on screen, its selection or its radar.
+/// Commands that change the scene on screen or its selection.
 fn edit(state: &mut State, command: Command) -> Option<Command> {
     let editor = &mut state.editor;
     match command {
@@ -136,9 +138,6 @@ fn edit(state: &mut State, command: Command) -> Option<Command> {
         Command::SetNoiseSeed(seed) => {
             editor.edit("noise seed", Some("noise seed"), |scene, _| scene.noise_seed = seed);
         }
-        Command::SetCarrier(carrier) => edit_radar(state, "carrier", |r| r.carrier = carrier),
-        Command::SetWindow(window) => edit_radar(state, "window", |r| r.window = window),
-        Command::SetRadar(radar) => edit_radar(state, "radar", |r| *r = *radar),
         other => return Some(other),
     }
     None
@@ -162,6 +161,7 @@ fn scenes(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Comman
         Command::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
         Command::Discard(id) => state.editor.discard(id),
         Command::Preset(index) => preset(state, index),
+        Command::Recording(index) => shipped_recording(state, index),
         Command::RandomScene(kind) => random_scene(state, kind),
         other => return Some(other),
     }
@@ -236,7 +236,7 @@ fn work(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command>
         Command::OpenLog => jobs.choose_file(state, Purpose::OpenLog),
         Command::WatchLog(path) => {
             jobs.training.follow(path);
-            state.arrangement.set_open(super::state::Panel::Training, true);
+            state.arrangement.set_open(Panel::Training, true);
         }
         Command::Train(recipe) => train(state, jobs, recipe),
         Command::CancelTraining => jobs.training.cancel(),
@@ -282,16 +282,36 @@ fn copy(state: &mut State) -> Option<Effect> {
     copied
 }
 
-/// Opens a scene file; on any error the scene on screen stays.
+/// Opens a scene file or a recording; on any error the scene on screen stays.
 pub fn open(state: &mut State, path: PathBuf) {
     if let Some(document) = read(state, &path) {
-        state.set_document("open", document);
+        show(state, "open", document);
     }
 }
 
-/// Reads a scene file; says why where it can't.
+/// Puts a document on screen, and where it is a recording, what recordings are looked at with.
+fn show(state: &mut State, label: &str, document: Document) {
+    let is_recording = document.recording().is_some();
+    state.set_document(label, document);
+    if is_recording {
+        show_recording_panels(state);
+    }
+}
+
+/// The list of what was found in front, and what reflectors leave unexplained behind the output.
+pub fn show_recording_panels(state: &mut State) {
+    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output), Panel::Found] {
+        state.arrangement.set_open(panel, true);
+    }
+}
+
+/// Reads a scene file or a recording; says why where it can't.
 pub fn read(state: &mut State, path: &Path) -> Option<Document> {
-    match Document::read(path) {
+    let read = match recording::file::is_recording_at(path) {
+        true => Document::read_recording(path).map_err(|e| e.to_string()),
+        false => Document::read(path).map_err(|e| e.to_string()),
+    };
+    match read {
         Ok(document) => {
             state.remember(path);
             Some(document)
@@ -300,13 +320,6 @@ pub fn read(state: &mut State, path: &Path) -> Option<Document> {
             state.notices.error(format!("{error}\nThe scene on screen was kept."));
             None
         }
-    }
-}
-
-/// Changes the radar, as a step that can be undone.
-fn edit_radar(state: &mut State, label: &str, change: impl FnOnce(&mut Radar)) {
-    if let Err(error) = state.editor.edit_radar(label, None, change) {
-        state.notices.error(error.to_string());
     }
 }
 
@@ -330,6 +343,14 @@ fn preset(state: &mut State, index: usize) {
             state.set_document("preset", Document::shipped(file));
         }
         Err(error) => state.notices.error(format!("Preset {}: {error}", preset.id)),
+    }
+}
+
+fn shipped_recording(state: &mut State, index: usize) {
+    let Some(preset) = recording::presets::ALL.get(index) else { return };
+    match Document::shipped_recording(preset) {
+        Ok(document) => show(state, "recording", document),
+        Err(error) => state.notices.error(format!("Recording {}: {error}", preset.id)),
     }
 }
 

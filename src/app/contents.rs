@@ -2,10 +2,10 @@
 
 use super::chrome::tiles::Draw;
 use super::chrome::{menu, status_bar};
-use super::jobs::{Jobs, TheoryResult};
+use super::jobs::{Jobs, Pipeline, TheoryResult};
 use super::panels::{
-    bounds, controls, cuts, evaluation, guide, inspector, lesson, map, objects, roc, run_time, scene, several, timing,
-    training,
+    bounds, controls, cuts, disturbances, elements, evaluation, found, guide, inspector, lesson, map, objects, radar,
+    roc, run_time, scene, several, timing, training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
@@ -22,6 +22,7 @@ pub struct Memory {
     reflectors: Reflectors,
     bounds: bounds::Memory,
     cuts: cuts::Memory,
+    elements: elements::Memory,
     evaluation: evaluation::Memory,
     run_time: run_time::Memory,
     training: training::Memory,
@@ -75,13 +76,13 @@ impl<'a> Contents<'a> {
 
     fn scene(&mut self, ui: &mut Ui) -> Vec<Command> {
         let (state, pipeline) = (&mut *self.state, &self.jobs.pipeline);
-        let found = pipeline.output().filter(|_| state.settings.show_found && !state.is_predicting());
+        let found = shown_found(state, pipeline);
         let radar = state.editor.radar().clone();
         let input = scene::Input {
             radar: &radar,
             snap: state.settings.snap,
             fields_of_view: state.settings.show_fields_of_view,
-            found: found.map_or(&[], |o| &o.found.reflectors),
+            found,
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
             numbers: shows_numbers(state),
@@ -100,6 +101,7 @@ impl<'a> Contents<'a> {
             wanted: pipeline.wants_output(),
         };
         let input = controls::Input {
+            is_recorded: state.editor.document().recording().is_some(),
             settings: &state.settings,
             radar: state.radar(),
             noise_seed: state.editor.scene().noise_seed,
@@ -122,7 +124,7 @@ impl<'a> Contents<'a> {
         let settings = &self.state.settings;
         let scene = self.state.editor.scene();
         let objects = if settings.show_reflectors { self.memory.reflectors.of(scene) } else { &[] };
-        let found = pipeline.output().filter(|_| settings.show_found && kind.needs_output());
+        let found = if kind.needs_output() { shown_found(self.state, pipeline) } else { &[] };
         let input = map::Input {
             kind,
             radar: self.state.editor.radar(),
@@ -136,7 +138,7 @@ impl<'a> Contents<'a> {
             end: picture.map_or(1.0, |p| p.end),
             stale: pipeline.is_stale(kind),
             cells: cells(self.jobs, kind),
-            marks: map::Marks { objects, found: found.map_or(&[], |o| &o.found.reflectors) },
+            marks: map::Marks { objects, found },
             theory: self
                 .jobs
                 .theory
@@ -173,6 +175,40 @@ impl<'a> Contents<'a> {
         let method = pipeline.output().map_or("output", |o| o.method);
         let refusal = pipeline.refusal().map(|r| r.reason.as_str());
         roc::show(ui, roc::Input { points, method, eta: self.state.output_eta(), refusal })
+    }
+
+    fn radar(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let recording = self.state.editor.document().recording();
+        let measured = recording.map(|r| radar::Measured { by_all_elements: r.signal().is_some() });
+        radar::show(ui, radar::Input { radar: self.state.radar(), measured })
+    }
+
+    fn elements(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let input = elements::Input {
+            radar: self.state.radar(),
+            elements: &self.state.editor.scene().disturbances.elements,
+            calibration: self.jobs.calibration.result(),
+        };
+        elements::show(ui, input, &mut self.memory.elements)
+    }
+
+    fn disturbances(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let document = self.state.editor.document();
+        let is_recorded = document.recording().is_some();
+        disturbances::show(ui, disturbances::Input { disturbances: &document.scene().disturbances, is_recorded })
+    }
+
+    fn found(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let pipeline = &self.jobs.pipeline;
+        let output = pipeline.output();
+        let recording = self.state.editor.document().recording();
+        let input = found::Input {
+            method: output.map(|o| o.method),
+            found: output.filter(|_| !self.state.is_predicting()).and_then(|o| o.found.as_deref()),
+            refusal: pipeline.refusal().map(|r| r.reason.as_str()),
+            has_ranges: self.state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),
+        };
+        found::show(ui, input)
     }
 
     fn timing(&mut self, ui: &mut Ui) -> Vec<Command> {
@@ -271,10 +307,14 @@ impl Draw for Contents<'_> {
         let commands = match panel {
             Panel::Scene => self.scene(ui),
             Panel::Controls => self.controls(ui),
+            Panel::Radar => self.radar(ui),
             Panel::Inspector => self.inspector(ui),
             Panel::Objects => self.objects(ui),
             Panel::Map(kind) => self.map(ui, kind),
             Panel::Cuts => self.cuts(ui),
+            Panel::Elements => self.elements(ui),
+            Panel::Disturbances => self.disturbances(ui),
+            Panel::Found => self.found(ui),
             Panel::Roc => self.roc(ui),
             Panel::Timing => self.timing(ui),
             Panel::Bounds => self.bounds(ui),
@@ -301,6 +341,7 @@ impl Draw for Contents<'_> {
             metrics: pipeline.scores().map(|s| s.metrics).filter(|_| !self.state.is_predicting()),
             target_eta: self.state.settings.target_eta,
             output_eta: self.state.output_eta(),
+            explained: pipeline.unexplained().map(|u| u.explained),
         })
     }
 }
@@ -308,6 +349,12 @@ impl Draw for Contents<'_> {
 /// Whether numbers are told: not in a presentation.
 fn shows_numbers(state: &State) -> bool {
     !state.without_numbers
+}
+
+/// Where the method found something, if that is to be drawn: over a recording always.
+fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
+    let drawn = state.settings.show_found || state.editor.document().recording().is_some();
+    pipeline.output().filter(|_| drawn && !state.is_predicting()).map_or(&[], |output| &output.reflectors)
 }
 
 /// The numbers behind a map's picture.
@@ -320,7 +367,10 @@ fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
         MapKind::Input1 => frame.last.as_ref().map(cells_of),
         MapKind::Target | MapKind::TargetAbove => frame.full.as_ref().map(cells_of),
         MapKind::Output | MapKind::OutputAbove => pair.map(|p| map::Cells { map: &p.output, minus: None, scale }),
-        MapKind::Difference => pair.map(|p| map::Cells { map: &p.output, minus: Some(&p.target), scale }),
+        MapKind::Difference => {
+            pair.and_then(|p| Some(map::Cells { map: &p.output, minus: Some(p.target.as_deref()?), scale }))
+        }
+        MapKind::Unexplained => jobs.pipeline.unexplained().map(|u| cells_of(&u.map)),
     }
 }
 
@@ -357,8 +407,22 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
     if let Some(reason) = jobs.pipeline.scene_error() {
         return Some(map::Problem { reason, instead: None });
     }
+    let is_recorded = state.editor.document().recording().is_some();
+    if kind == MapKind::Unexplained {
+        let reason = match jobs.pipeline.why_unexplained() {
+            Some(reason) => reason,
+            None if is_recorded => return None,
+            None => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
+        };
+        return Some(map::Problem { reason, instead: None });
+    }
+    if is_recorded && matches!(kind, MapKind::Target | MapKind::TargetAbove | MapKind::Difference) {
+        // Where there is a target, there is a picture, and nobody reads this.
+        let reason = "The recording has the samples of the two ends alone: nobody knows what all elements would see.";
+        return Some(map::Problem { reason, instead: None });
+    }
     let refusal = jobs.pipeline.refusal().filter(|_| kind.needs_output())?;
-    Some(map::Problem { reason: &refusal.reason, instead: state.methods.instead_of(refusal.method) })
+    Some(map::Problem { reason: &refusal.reason, instead: state.methods.instead_of(refusal.method, state.radar()) })
 }
 
 /// What the menu bar shows.

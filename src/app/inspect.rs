@@ -8,6 +8,7 @@ use crate::engine::Report;
 use crate::evaluate::Metrics;
 use crate::interact::Editor;
 use crate::radar::Radar;
+use crate::reconstruct::Detection;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.
@@ -58,6 +59,21 @@ impl App {
     /// Requests sent to the maps worker, and pictures painted, since the start.
     pub fn work_done(&self) -> (u64, u64) {
         (self.jobs.pipeline.requests(), self.jobs.pipeline.result().map_or(0, |r| r.painted))
+    }
+
+    /// What the method found, where it is listed.
+    pub fn found(&self) -> Option<&[Detection]> {
+        self.jobs.pipeline.output()?.found.as_deref()
+    }
+
+    /// Part of the recording that the reflectors laid over it explain, where that is looked at.
+    pub fn explained(&self) -> Option<f64> {
+        self.jobs.pipeline.unexplained().map(|u| u.explained)
+    }
+
+    /// Why the method has no output, where it has none.
+    pub fn refusal(&self) -> Option<&str> {
+        self.jobs.pipeline.refusal().map(|r| r.reason.as_str())
     }
 
     /// Bounds asked for since the start.

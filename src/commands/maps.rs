@@ -105,7 +105,7 @@ impl Args {
         match output {
             Output::Archive => {
                 let (_, full) = maps_of(&recording);
-                write_recorded_maps(&self.output, &recording.radar, &recording.two_ends(), full.as_ref())
+                write_recorded_maps(&self.output, &recording.radar, &recording.two_ends(), full.as_ref(), None)
                     .map_err(CommandError::on(&self.output))
             }
             Output::Picture(format) => {

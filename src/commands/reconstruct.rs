@@ -6,8 +6,8 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::files::npz::{Npz, NpzError, write_npz};
 use crate::radar::Radar;
-use crate::reconstruct::found::{Found, find};
-use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::reconstruct::found::find;
+use crate::reconstruct::{Detection, ReconstructError, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::{Array1, Array2, Ix2, arr0};
 use std::path::PathBuf;
@@ -82,14 +82,14 @@ impl Args {
     }
 
     fn write(&self, answer: &Answer, eta: f32) -> Result<(), NpzError> {
-        let list = |of: fn(&Found) -> f64| answer.found.iter().map(of).collect::<Array1<f64>>();
+        let list = |of: fn(&Detection) -> f64| answer.found.iter().map(of).collect::<Array1<f64>>();
         write_npz(&self.output, |out| {
             out.add("net_output", &answer.map)?;
             out.add("eta", &arr0(f64::from(eta)))?;
             out.add("milliseconds", &arr0(answer.milliseconds))?;
             out.add("found_cos_theta", &list(|f| f.cos_theta))?;
             out.add("found_range_metres", &list(|f| f.range_metres))?;
-            out.add("found_db", &list(|f| f.relative_db.0))
+            out.add("found_db", &list(|f| f.relative_power.0))
         })
     }
 }
@@ -98,5 +98,5 @@ impl Args {
 struct Answer {
     map: Array2<f32>,
     milliseconds: f64,
-    found: Vec<Found>,
+    found: Vec<Detection>,
 }

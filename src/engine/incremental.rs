@@ -108,12 +108,15 @@ impl Engine {
     }
 
     /// Computes what is wanted of `scene`; what did not change since the last call is the same `Arc` as then. A scene that was settled
-    /// stays so.
+    /// stays so. A disturbed one is settled at once: what it is made of isn't the sum of its objects.
     ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn update(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
         let begin = Instant::now();
+        if !scene.disturbances.is_none() {
+            return self.settle(scene, wanted);
+        }
         scene.validate(&self.radar)?;
         self.settled = self.settled.take().filter(|settled| settled.has(scene, wanted));
         let mut frame = match &mut self.settled {

@@ -4,7 +4,7 @@ use super::frame::{Frame, ReadyMap, Wanted};
 use super::report::{Report, Stage};
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
 use crate::radar::{End, Radar};
-use crate::scene::{Object, Scene, SceneError};
+use crate::scene::{Disturbances, Object, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,6 +14,7 @@ const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::
 /// The maps of one scene by [`signal::simulate`] and the plain transforms in f64; nothing of any other scene is in them.
 pub(super) struct Settled {
     objects: Vec<Object>,
+    disturbances: Disturbances,
     floor: Floor,
     seed: u64,
     ends: Arc<TwoEnds>,
@@ -39,15 +40,17 @@ impl Settled {
             *log = Some(angle_transform(radar, &profiles, APERTURES[i]).log_magnitude());
             report.computed(Stage::MAPS[i], start.elapsed(), "all rows in f64");
         }
-        let (objects, normalisation) = (scene.objects.clone(), wanted.normalisation);
+        let (objects, disturbances) = (scene.objects.clone(), scene.disturbances.clone());
+        let normalisation = wanted.normalisation;
         let (floor, seed, maps) = (wanted.floor, wanted.seed, [None, None, None]);
-        Ok(Settled { objects, floor, seed, ends, logs, normalisation, maps })
+        Ok(Settled { objects, disturbances, floor, seed, ends, logs, normalisation, maps })
     }
 
     /// Whether it has all that is wanted of `scene`.
     pub fn has(&self, scene: &Scene, wanted: &Wanted) -> bool {
         let visible = wanted.visible();
         self.objects == scene.objects
+            && self.disturbances == scene.disturbances
             && (self.floor, self.seed) == (wanted.floor, wanted.seed)
             && (0..3).all(|i| !visible[i] || self.logs[i].is_some())
     }

@@ -3,6 +3,7 @@
 //! Undo, the autosave and the window's title all speak of it. It is shared and never changed in place: an edit makes another.
 
 use crate::radar::Radar;
+use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
 use crate::scene::file::{self, SceneFile, SceneFileError};
 use std::path::{Path, PathBuf};
@@ -37,6 +38,26 @@ pub struct Document {
     path: Option<Arc<Path>>,
     /// What is on disk, or can be had again as easily; `None` where it is nowhere.
     saved: Option<Content>,
+    measured: Option<Measured>,
+}
+
+/// A recording that stands where the echoes of the scene would: the scene is what is laid over it.
+#[derive(Debug, Clone)]
+struct Measured {
+    recording: Arc<Recording>,
+    /// The path of its TOML, or the name of the preset.
+    source: Arc<str>,
+}
+
+impl Measured {
+    /// Reads it again from where it came from.
+    fn again(source: &str) -> Result<Self, RecordingError> {
+        let recording = match presets::Preset::by_id(source) {
+            Some(preset) => preset.load()?,
+            None => recording::file::load(Path::new(source))?,
+        };
+        Ok(Measured { recording: Arc::new(recording), source: source.into() })
+    }
 }
 
 impl Default for Document {
@@ -49,7 +70,7 @@ impl Default for Document {
 impl Document {
     fn new(content: Content, path: Option<Arc<Path>>, saved: Option<Content>) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        Document { id: NEXT.fetch_add(1, Ordering::Relaxed), content, path, saved }
+        Document { id: NEXT.fetch_add(1, Ordering::Relaxed), content, path, saved, measured: None }
     }
 
     /// A scene that comes with the program: untitled, and nothing is lost with it.
@@ -82,6 +103,48 @@ impl Document {
         Document::new(Content::of(file), path.map(Arc::from), None)
     }
 
+    /// An empty scene over the recording whose TOML is `path`.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
+    pub fn read_recording(path: &Path) -> Result<Self, RecordingError> {
+        Measured::again(&whole_path(path).to_string_lossy()).map(Document::over)
+    }
+
+    /// An empty scene over a recording that comes with the program.
+    ///
+    /// # Errors
+    /// None for the presets there are.
+    pub fn shipped_recording(preset: &presets::Preset) -> Result<Self, RecordingError> {
+        Measured::again(preset.id).map(Document::over)
+    }
+
+    fn over(measured: Measured) -> Self {
+        let Recording { name, notes, radar, .. } = &*measured.recording;
+        let scene = Scene { name: name.clone(), notes: notes.clone(), ..Scene::default() };
+        let document = Document::shipped(SceneFile { scene, radar: radar.clone() });
+        Document { measured: Some(measured), ..document }
+    }
+
+    /// Lays the document over the recording from `source` again, as [`Document::recording_source`] told it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] where it isn't there any more, or is another.
+    pub(super) fn lay_over(&mut self, source: &str) -> Result<(), RecordingError> {
+        self.measured = Some(Measured::again(source)?);
+        Ok(())
+    }
+
+    /// The recording that stands where the echoes of the scene would, if one does.
+    pub fn recording(&self) -> Option<&Arc<Recording>> {
+        self.measured.as_ref().map(|m| &m.recording)
+    }
+
+    /// Where the recording comes from.
+    pub(super) fn recording_source(&self) -> Option<&str> {
+        self.measured.as_ref().map(|m| &*m.source)
+    }
+
     /// Which document it is, through all its edits.
     pub fn id(&self) -> u64 {
         self.id
@@ -102,9 +165,9 @@ impl Document {
         self.path.as_deref()
     }
 
-    /// Its file's name, or "untitled".
+    /// Its file's name, that of the recording it is laid over, or "untitled".
     pub fn name(&self) -> String {
-        let name = self.path().and_then(Path::file_name);
+        let name = self.path().or(self.recording_source().map(Path::new)).and_then(Path::file_name);
         name.map_or_else(|| "untitled".to_owned(), |n| n.to_string_lossy().into_owned())
     }
 
@@ -125,7 +188,9 @@ impl Document {
 
     /// Whether it would be the same file as `other`.
     pub(super) fn same_as(&self, other: &Document) -> bool {
-        self.path == other.path && self.content.same(&other.content)
+        self.path == other.path
+            && self.recording_source() == other.recording_source()
+            && self.content.same(&other.content)
     }
 
     /// Whether nothing at all happened between this and `other`, told without a look at the objects.

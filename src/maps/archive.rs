@@ -27,10 +27,7 @@ pub fn write_maps(
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
         add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
-        match output {
-            Some(output) => out.add("output", &output.lambda.view().insert_axis(Axis(0))),
-            None => Ok(()),
-        }
+        add_output(out, output)
     })
 }
 
@@ -38,8 +35,21 @@ pub fn write_maps(
 ///
 /// # Errors
 /// As [`write_maps`].
-pub fn write_recorded_maps(path: &Path, radar: &Radar, ends: &TwoEnds, full: Option<&LogMap>) -> Result<(), NpzError> {
-    write_npz(path, |out| add_samples_and_maps(out, radar, ends, full))
+pub fn write_recorded_maps(
+    path: &Path,
+    radar: &Radar,
+    ends: &TwoEnds,
+    full: Option<&LogMap>,
+    output: Option<&RangeAngleMap>,
+) -> Result<(), NpzError> {
+    write_npz(path, |out| {
+        add_samples_and_maps(out, radar, ends, full)?;
+        add_output(out, output)
+    })
+}
+
+fn add_output(out: &mut NpzOutput, output: Option<&RangeAngleMap>) -> Result<(), NpzError> {
+    output.map_or(Ok(()), |output| out.add("output", &output.lambda.view().insert_axis(Axis(0))))
 }
 
 fn add_samples_and_maps(

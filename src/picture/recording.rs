@@ -6,10 +6,10 @@ use super::directions::{Curve, Directions, Mark};
 use super::{Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
 use crate::radar::{Carrier, Decibels, End, Radar};
-use crate::reconstruct::found::{Found, reconstruct_and_find};
-use crate::reconstruct::{Reconstructor, Request};
+use crate::reconstruct::found::reconstruct_and_find;
+use crate::reconstruct::{Detection, Reconstructor, Request};
 use crate::recording::{Recorded, Recording};
-use crate::scene::{Object, Point, Scene};
+use crate::scene::{Object, Point, Reflector, Scene};
 use ndarray::{ArrayView1, Axis};
 use num_complex::Complex64;
 use plotters::style::RGBColor;
@@ -63,8 +63,9 @@ fn bytes_of(drawing: &impl Drawing, format: Format) -> Result<Vec<u8>, ComposeEr
     })
 }
 
-fn request(style: &Style) -> Request {
-    Request { floor: style.floor, normalisation: style.normalisation, ..Request::default() }
+fn request(recording: &Recording, style: &Style) -> Request {
+    let snapshot_range_metres = recording.range_metres;
+    Request { floor: style.floor, normalisation: style.normalisation, snapshot_range_metres, ..Request::default() }
 }
 
 fn panels(
@@ -75,7 +76,7 @@ fn panels(
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
-    let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request(style))?;
+    let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request(recording, style))?;
     let lambda = |map: &LogMap| -> RangeAngleMap { map.normalise(style.normalisation) };
     let target = full.as_ref().map(lambda);
     let scene = Scene {
@@ -110,9 +111,9 @@ fn panels(
     bytes_of(&panels, format)
 }
 
-fn point(found: &Found) -> Point {
-    let Found { cos_theta, range_metres, .. } = *found;
-    Point::new(range_metres * cos_theta, range_metres * (1.0 - cos_theta * cos_theta).max(0.0).sqrt())
+fn point(found: &Detection) -> Point {
+    let Reflector { x_metres, y_metres, .. } = found.reflector();
+    Point::new(x_metres, y_metres)
 }
 
 fn curves(
@@ -124,7 +125,7 @@ fn curves(
     let radar = &recording.radar;
     let ends = recording.two_ends();
     let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..*style };
-    let (output, found) = reconstruct_and_find(method, radar, &ends, &request(&in_decibels))?;
+    let (output, found) = reconstruct_and_find(method, radar, &ends, &request(recording, &in_decibels))?;
     let mut curves = Vec::new();
     if let Some(signal) = recording.signal() {
         let name = format!("all {} elements", radar.elements);
@@ -147,7 +148,7 @@ fn curves(
     let range = recording.range_metres.unwrap_or_default();
     let found: Vec<Mark> = found
         .iter()
-        .map(|f| Mark { angle_degrees: degrees(f.cos_theta), below_strongest_db: f.relative_db.0 })
+        .map(|f| Mark { angle_degrees: degrees(f.cos_theta), below_strongest_db: f.relative_power.0 })
         .collect();
     let about =
         format!("one snapshot at about {range} m, {} elements; found by {}: stems", radar.elements, method.name());

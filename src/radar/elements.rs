@@ -75,12 +75,84 @@ impl Tolerances {
 }
 
 /// The elements of a built array; an empty list is an array that is as it should be.
+///
+/// In files it is lists of what differs: `count`, `gain_db`, `phase_degrees`, `position_millimetres` (one number an element each, or
+/// none at all) and `dead`, the elements that hear nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(transparent)]
+#[serde(try_from = "Lists", into = "Lists")]
 pub struct BuiltArray {
     /// One an element of the radar, in the radar's order.
     pub elements: Vec<ElementError>,
 }
+
+/// A built array as files hold it.
+#[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Lists {
+    count: usize,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    gain_db: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    phase_degrees: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    position_millimetres: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    dead: Vec<usize>,
+}
+
+impl From<BuiltArray> for Lists {
+    fn from(BuiltArray { elements }: BuiltArray) -> Self {
+        let list = |of: fn(&ElementError) -> f64| -> Vec<f64> {
+            let differs = elements.iter().any(|e| of(e) != 0.0);
+            if differs { elements.iter().map(of).collect() } else { Vec::new() }
+        };
+        Lists {
+            count: elements.len(),
+            gain_db: list(|e| e.gain.0),
+            phase_degrees: list(|e| e.phase_degrees),
+            position_millimetres: list(|e| e.position_millimetres),
+            dead: (0..elements.len()).filter(|n| elements[*n].dead).collect(),
+        }
+    }
+}
+
+impl TryFrom<Lists> for BuiltArray {
+    type Error = String;
+
+    fn try_from(lists: Lists) -> Result<Self, String> {
+        let Lists { count, gain_db, phase_degrees, position_millimetres, dead } = lists;
+        if count > MOST_ELEMENTS {
+            return Err(format!("elements: count is {count}; at most {MOST_ELEMENTS} are read"));
+        }
+        for (name, list) in
+            [("gain_db", &gain_db), ("phase_degrees", &phase_degrees), ("position_millimetres", &position_millimetres)]
+        {
+            if !list.is_empty() && list.len() != count {
+                return Err(format!(
+                    "elements: {name} has {} numbers; expected none or {count}, as count says",
+                    list.len()
+                ));
+            }
+        }
+        if let Some(n) = dead.iter().find(|n| **n >= count) {
+            return Err(format!("elements: element {n} is dead, of {count}; they are counted from 0"));
+        }
+        let of = |list: &[f64], n: usize| list.get(n).copied().unwrap_or(0.0);
+        let mut elements: Vec<ElementError> = (0..count)
+            .map(|n| ElementError {
+                gain: Decibels(of(&gain_db, n)),
+                phase_degrees: of(&phase_degrees, n),
+                position_millimetres: of(&position_millimetres, n),
+                dead: false,
+            })
+            .collect();
+        dead.iter().for_each(|n| elements[*n].dead = true);
+        Ok(BuiltArray { elements })
+    }
+}
+
+/// Most elements of an array that is read.
+const MOST_ELEMENTS: usize = 65536;
 
 /// What no element can do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -115,6 +187,56 @@ const MOST_PHASE: f64 = 3600.0;
 const MOST_POSITION: f64 = 1000.0;
 
 impl BuiltArray {
+    /// Whether every element is as it should be.
+    pub fn is_ideal(&self) -> bool {
+        self.elements.iter().all(|e| *e == ElementError::default())
+    }
+
+    /// The same for an array of `count` elements: those that are new are as they should be.
+    pub fn fitted(&self, count: usize) -> Self {
+        let mut elements = self.elements.clone();
+        if !elements.is_empty() {
+            elements.resize(count, ElementError::default());
+        }
+        BuiltArray { elements }
+    }
+
+    /// Elements that hear nothing.
+    pub fn dead(&self) -> usize {
+        self.elements.iter().filter(|e| e.dead).count()
+    }
+
+    /// Root mean squares of what the living elements are off by, gain and phase counted from their means.
+    pub fn spread(&self) -> Tolerances {
+        let living: Vec<&ElementError> = self.elements.iter().filter(|e| !e.dead).collect();
+        let count = living.len().max(1) as f64;
+        let gain_mean = living.iter().map(|e| e.gain.0).sum::<f64>() / count;
+        let turned: Complex64 = living.iter().map(|e| Complex64::cis(e.phase_degrees.to_radians())).sum();
+        let phase =
+            |e: &ElementError| (Complex64::cis(e.phase_degrees.to_radians()) * turned.conj()).arg().to_degrees();
+        let rms =
+            |of: &dyn Fn(&ElementError) -> f64| (living.iter().map(|e| of(e).powi(2)).sum::<f64>() / count).sqrt();
+        Tolerances {
+            gain: Decibels(rms(&|e| e.gain.0 - gain_mean)),
+            phase_degrees: rms(&phase),
+            position_millimetres: rms(&|e| e.position_millimetres),
+        }
+    }
+
+    /// What is left of these errors once the gains and phases of `estimate` are taken off; an element that it calls dead stays as it is.
+    pub fn corrected(&self, estimate: &BuiltArray) -> Self {
+        let count = self.elements.len().max(estimate.elements.len());
+        let element = |n: usize| {
+            let (own, found) = (self.element(n), estimate.element(n));
+            if found.dead {
+                return own;
+            }
+            let turned = (own.phase_degrees - found.phase_degrees + 180.0).rem_euclid(360.0) - 180.0;
+            ElementError { gain: Decibels(own.gain.0 - found.gain.0), phase_degrees: turned, ..own }
+        };
+        BuiltArray { elements: (0..count).map(element).collect() }
+    }
+
     /// The error of element `n`.
     pub fn element(&self, n: usize) -> ElementError {
         self.elements.get(n).copied().unwrap_or_default()
@@ -185,6 +307,30 @@ mod tests {
         assert_eq!(BuiltArray::default().element(5).response(), Complex64::from(1.0));
         let array = BuiltArray { elements: vec![off; 1024] };
         assert!((array.element_x_metres(&radar, 4) - radar.element_x_metres(4) - 3e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_was_estimated_is_taken_off_and_files_give_back_the_rest() {
+        let radar = Radar { elements: 16, ..Radar::default() };
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 100.0, position_millimetres: 0.0 };
+        let mut array = tolerances.build(&radar, 3);
+        array.elements[4].dead = true;
+        let left = array.corrected(&array);
+        assert!(left.elements[4].dead && left.spread().gain.0 < 1e-12 && left.spread().phase_degrees < 1e-9);
+        assert!(!left.is_ideal() && left.dead() == 1, "a dead element stays dead");
+        let text = toml::to_string(&array).unwrap();
+        assert!(!text.contains("position") && text.contains("dead = [4]"), "{text}");
+        assert_eq!(toml::from_str::<BuiltArray>(&text).unwrap(), array);
+        for (text, told) in [
+            ("count = 3\ngain_db = [1.0]", "gain_db has 1 numbers; expected none or 3"),
+            ("count = 3\ndead = [3]", "element 3 is dead, of 3"),
+            ("count = 99999999", "at most 65536"),
+        ] {
+            let error = toml::from_str::<BuiltArray>(text).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+        }
+        assert_eq!(array.fitted(20).elements.len(), 20);
+        assert!(BuiltArray::default().fitted(20).elements.is_empty() && BuiltArray::default().is_ideal());
     }
 
     #[test]

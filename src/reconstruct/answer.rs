@@ -53,6 +53,15 @@ pub struct Detection {
     pub relative_power: Decibels,
 }
 
+impl Detection {
+    /// A reflector of reflectivity 1 at its place, ahead of the array.
+    pub fn reflector(&self) -> Reflector {
+        let Detection { cos_theta, range_metres, .. } = *self;
+        let y_metres = range_metres * (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+        Reflector { x_metres: range_metres * cos_theta, y_metres, reflectivity: 1.0 }
+    }
+}
+
 impl Reconstruction {
     /// The answer to silence: Lambda 0 everywhere, no reflector.
     pub fn silence(radar: &Radar) -> Self {

@@ -1,22 +1,10 @@
 //! What a method found, as a list: its reflectors, or the peaks of its map.
 
-use super::{ReconstructError, Reconstruction, Reconstructor, Request};
+use super::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::maps::Normalisation;
 use crate::maps::peaks::peaks;
 use crate::radar::{Decibels, Radar};
-use crate::scene::Reflector;
 use crate::signal::TwoEnds;
-
-/// A direction and a range that something was found in.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Found {
-    /// Cosine of the angle between the array's axis (+x) and the place.
-    pub cos_theta: f64,
-    /// Distance from the centre of the array, metres; of a snapshot (`radar.samples` = 1) without meaning.
-    pub range_metres: f64,
-    /// Strength of its echo relative to the strongest found, 0 and below.
-    pub relative_db: Decibels,
-}
 
 /// A map's peaks are listed this far below its strongest.
 const SPAN: Decibels = Decibels(20.0);
@@ -36,7 +24,7 @@ pub fn reconstruct_and_find(
     radar: &Radar,
     ends: &TwoEnds,
     request: &Request,
-) -> Result<(Reconstruction, Vec<Found>), ReconstructError> {
+) -> Result<(Reconstruction, Vec<Detection>), ReconstructError> {
     let answer = method.reconstruct(radar, ends, request)?;
     let found = find(method, radar, ends, request, &answer)?;
     Ok((answer, found))
@@ -54,10 +42,10 @@ pub fn find(
     ends: &TwoEnds,
     request: &Request,
     answer: &Reconstruction,
-) -> Result<Vec<Found>, ReconstructError> {
+) -> Result<Vec<Detection>, ReconstructError> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
     if !answer.reflectors.is_empty() {
-        Ok(found_reflectors(radar, &answer.reflectors))
+        Ok(answer.detections(radar))
     } else if request.normalisation == normalisation {
         Ok(found_in_map(radar, answer))
     } else {
@@ -66,35 +54,18 @@ pub fn find(
     }
 }
 
-/// The reflectors by the strength of their echoes, which fall with the square of the range.
-fn found_reflectors(radar: &Radar, reflectors: &[Reflector]) -> Vec<Found> {
-    let mut found: Vec<(f64, Found)> = reflectors
-        .iter()
-        .map(|r| {
-            let place = radar.polar_of(r.x_metres, r.y_metres);
-            let strength = r.reflectivity.abs() / place.range_metres.powi(2).max(f64::MIN_POSITIVE);
-            let (cos_theta, range_metres) = (place.cos_theta, place.range_metres);
-            (strength, Found { cos_theta, range_metres, relative_db: Decibels(0.0) })
-        })
-        .filter(|(strength, _)| *strength > 0.0)
-        .collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let strongest = found.first().map_or(1.0, |f| f.0);
-    found.into_iter().map(|(s, f)| Found { relative_db: Decibels(20.0 * (s / strongest).log10()), ..f }).collect()
-}
-
 /// The peaks of a map whose Lambda spans [`MAP_RANGE`].
-fn found_in_map(radar: &Radar, answer: &Reconstruction) -> Vec<Found> {
+fn found_in_map(radar: &Radar, answer: &Reconstruction) -> Vec<Detection> {
     let decibels = answer.lambda.lambda.mapv(|v| (f64::from(v) - 1.0) * MAP_RANGE.0);
     let peaks = peaks(decibels.view(), SPAN.0, MOST_PEAKS);
     let strongest = peaks.first().map_or(0.0, |p| p.value);
     let place = |column: f64| radar.cos_of_column(column).clamp(-1.0, 1.0);
     peaks
         .into_iter()
-        .map(|p| Found {
+        .map(|p| Detection {
             cos_theta: place(p.column),
             range_metres: radar.range_of_bin_metres(p.range_bin.rem_euclid(radar.samples as f64)),
-            relative_db: Decibels(p.value - strongest),
+            relative_power: Decibels(p.value - strongest),
         })
         .collect()
 }
@@ -116,13 +87,13 @@ mod tests {
             let (_, found) = reconstruct_and_find(method, &radar, &ends, &Request::default()).unwrap();
             for reflector in scene.reflectors() {
                 let place = radar.polar_of(reflector.x_metres, reflector.y_metres);
-                let near = |f: &&Found| {
+                let near = |f: &&Detection| {
                     (f.range_metres - place.range_metres).abs() < 0.1 && (f.cos_theta - place.cos_theta).abs() < 0.1
                 };
                 assert!(found.iter().take(4).any(|f| near(&f)), "{}: {place:?} in {found:?}", method.name());
             }
-            assert_eq!(found[0].relative_db, Decibels(0.0), "{}", method.name());
-            assert!(found.windows(2).all(|w| w[0].relative_db >= w[1].relative_db), "{}", method.name());
+            assert_eq!(found[0].relative_power, Decibels(0.0), "{}", method.name());
+            assert!(found.windows(2).all(|w| w[0].relative_power >= w[1].relative_power), "{}", method.name());
         }
     }
 

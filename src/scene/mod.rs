@@ -2,15 +2,17 @@
 //!
 //! An [`Object`] is what a person drags; a [`Reflector`] is what the radar sees. [`Scene::reflectors`] turns the first into the second.
 
+mod disturbances;
 pub mod file;
 pub mod generate;
 pub mod npz;
 mod object;
 pub mod presets;
 
+pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use object::{GaussianCluster, Line, Object, Point};
 
-use crate::radar::{Radar, RadarError};
+use crate::radar::{BuiltArrayError, Radar, RadarError};
 use serde::{Deserialize, Serialize};
 
 /// One ideal point reflector.
@@ -37,6 +39,9 @@ pub struct Scene {
     /// Picks the noise of the floor beneath the scene, where there is noise. TOML holds it up to 2^63.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub noise_seed: u64,
+    /// What is not as the formulas assume.
+    #[serde(default, skip_serializing_if = "Disturbances::is_none")]
+    pub disturbances: Disturbances,
     /// The objects.
     #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<Object>,
@@ -92,8 +97,25 @@ pub enum SceneError {
     TooMany {
         /// Reflectors or objects in the scene.
         count: usize,
-        /// "reflectors" or "objects".
+        /// "reflectors", "objects" or "reflectors and ghosts".
         what: &'static str,
+    },
+    /// The elements as they are built are not those of the radar.
+    #[error("disturbances.elements: {0}")]
+    Elements(#[from] BuiltArrayError),
+    /// A number of an interferer or a mirror is not usable.
+    #[error("{what}: {field} is {value}; expected a number from {low} to {high}")]
+    Disturbance {
+        /// "interferer" or "mirror".
+        what: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// Smallest that is taken.
+        low: f64,
+        /// Largest that is taken.
+        high: f64,
     },
     /// The radar that is to see it makes no sense, or asks for too much memory.
     #[error(transparent)]
@@ -111,6 +133,16 @@ impl Scene {
     /// Every reflector of every object, in order.
     pub fn reflectors(&self) -> Vec<Reflector> {
         self.objects.iter().flat_map(Object::reflectors).collect()
+    }
+
+    /// Every reflector, and what a mirror makes of each: all that echoes.
+    pub fn echoing(&self, radar: &Radar) -> Vec<Reflector> {
+        let mut all = self.reflectors();
+        if let Some(mirror) = &self.disturbances.mirror {
+            let ghosts: Vec<Reflector> = all.iter().flat_map(|r| mirror.ghosts(radar, r)).collect();
+            all.extend(ghosts.into_iter().filter(|ghost| touched_element(radar, ghost).is_none()));
+        }
+        all
     }
 
     /// Number of reflectors, without making them.
@@ -145,6 +177,10 @@ impl Scene {
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {
         radar.validate()?;
         self.check_count()?;
+        self.disturbances.validate(radar)?;
+        if self.disturbances.mirror.is_some() {
+            within_limit(self.reflector_count().saturating_mul(4), "reflectors and ghosts")?;
+        }
         for (index, object) in self.objects.iter().enumerate() {
             object.validate(index)?;
             for r in object.reflectors() {

@@ -2,16 +2,17 @@
 
 use super::echo::{ArrayEcho, add_echo};
 use super::floor::Floor;
+use super::interference::add_interference;
+use super::over_floor::simulate_echoes;
 use super::phase::EchoModel;
 use super::samples::BeatSignal;
-use super::simulate::simulate_echoes;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar};
 use crate::scene::{Reflector, Scene, SceneError};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Beat signal of a scene as `array` hears it, over the named floor; `seed` picks the floor's noise, which each element's
-/// receiver adds whatever its gain: that of an ideal array, except in dead elements, which hear nothing.
+/// Beat signal of a scene as `array` hears it, with the ghosts and the interferer of the scene, over the named floor; `seed` picks the
+/// floor's noise, which each element's receiver adds whatever its gain: that of an ideal array, except in dead elements, which hear nothing.
 ///
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
@@ -22,29 +23,40 @@ pub fn simulate_built(
     floor: Floor,
     seed: u64,
 ) -> Result<BeatSignal, SceneError> {
-    simulate_echoes(radar, scene, floor, seed, |signal| {
-        let reflectors = scene.reflectors();
+    scene.validate(radar)?;
+    array.validate(radar)?;
+    let reflectors = scene.echoing(radar);
+    let mut signal = simulate_echoes(radar, &reflectors, floor, seed, |signal| {
         let model = EchoModel::new(radar);
         signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
-            let error = array.element(n);
-            if error.position_millimetres != 0.0 {
+            if array.element(n).position_millimetres != 0.0 {
                 samples.fill(Complex64::default());
                 let Some(samples) = samples.as_slice_mut() else { return };
                 let x = array.element_x_metres(radar, n);
                 reflectors.iter().for_each(|r| add_echo(&model, x, r, Complex64::from(1.0), samples));
             }
+        });
+        if let Some(interferer) = &scene.disturbances.interferer {
+            add_interference(radar, array, interferer, signal);
+        }
+        apply_responses(array, signal);
+    });
+    for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
+        if array.element(n).dead {
+            samples.fill(Complex64::default());
+        }
+    }
+    Ok(signal)
+}
+
+/// Multiplies the samples of every element with what it does to them; those of an element that is as it should be keep their bits.
+pub fn apply_responses(array: &BuiltArray, signal: &mut BeatSignal) {
+    for (mut samples, error) in signal.samples.outer_iter_mut().zip(&array.elements) {
+        if error.dead || error.gain.0 != 0.0 || error.phase_degrees != 0.0 {
             let response = error.response();
             samples.iter_mut().for_each(|v| *v *= response);
-        });
-    })
-    .map(|mut signal| {
-        for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
-            if array.element(n).dead {
-                samples.fill(Complex64::default());
-            }
         }
-        signal
-    })
+    }
 }
 
 /// What was learned of an array from one reflector.
@@ -179,6 +191,38 @@ mod tests {
         found.take_off(&mut signal);
         let (gain, phase) = calibrate(&radar, &signal, &reflector).unwrap().spread();
         assert!(gain.0 < 1e-6 && phase < 1e-6, "{gain} {phase}");
+    }
+
+    #[test]
+    fn a_disturbed_scene_is_simulated_disturbed_and_an_undisturbed_one_keeps_its_bits() {
+        let (radar, plain) = (small(), two_points());
+        let mut scene = plain.clone();
+        scene.disturbances.elements = BuiltArray { elements: vec![ElementError::default(); 64] };
+        for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(30.0))] {
+            let ideal = simulate(&radar, &plain, floor, 3).unwrap();
+            assert_eq!(simulate(&radar, &scene, floor, 3).unwrap(), ideal, "a list of ideal elements disturbs nothing");
+        }
+        scene.disturbances.mirror = Some(crate::scene::Mirror::default());
+        let mirrored = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
+        let ghosts = Scene::of_points([]);
+        assert_eq!(simulate(&radar, &ghosts, Floor::Exact, 3).unwrap().peak(), 0.0);
+        let explicit = Scene {
+            objects: scene
+                .echoing(&radar)
+                .into_iter()
+                .map(|r| {
+                    let Reflector { x_metres, y_metres, reflectivity } = r;
+                    crate::scene::Object::Point(crate::scene::Point { x_metres, y_metres, reflectivity })
+                })
+                .collect(),
+            ..Scene::default()
+        };
+        assert_eq!(explicit.objects.len(), 8);
+        assert_eq!(simulate(&radar, &explicit, Floor::Exact, 3).unwrap(), mirrored);
+        scene.disturbances.elements.elements[5].dead = true;
+        let ends = crate::signal::simulate_ends(&radar, &scene, Floor::Thesis, 3).unwrap();
+        assert_eq!(ends, simulate(&radar, &scene, Floor::Thesis, 3).unwrap().two_ends(&radar));
+        assert_eq!(ends.first.row(5).iter().map(|v| v.norm()).sum::<f64>(), 0.0);
     }
 
     #[test]

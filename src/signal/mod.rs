@@ -12,7 +12,7 @@
 //! A [`Plan`] says which of them, in which precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! [`simulate`] goes from a scene to samples over a floor.
 //!
-//! [`built`] is the signal of elements that are not as they should be, and calibration.
+//! [`built`] is the signal of disturbed scenes, whose elements are not as they should be or hear somebody else, and calibration.
 //!
 //! [`echo`] is one reflector's echo as a value: what sparse methods take a signal apart into.
 //!
@@ -26,8 +26,10 @@ pub mod echo;
 pub mod exact;
 pub mod floor;
 pub mod gridded;
+mod interference;
 pub mod judge;
 pub mod lane_fft;
+mod over_floor;
 pub mod phase;
 pub mod plan;
 pub mod rows;
@@ -39,9 +41,10 @@ pub mod split;
 pub mod synthesis;
 
 pub use algorithm::{Algorithm, Precision, UnknownAlgorithm};
-pub use built::{Calibration, calibrate, simulate_built};
+pub use built::{Calibration, apply_responses, calibrate, simulate_built};
 pub use echo::ArrayEcho;
 pub use floor::Floor;
+pub use interference::add_interference;
 pub use plan::Plan;
 pub use rows::Rows;
 pub use run::beat_signal;

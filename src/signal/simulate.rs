@@ -1,11 +1,13 @@
 //! From a scene to samples over a floor: what every command and every figure starts from.
 
+use super::built::simulate_built;
 use super::floor::{self, Floor};
-use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
-use super::run::{beat_signal, samples_of};
+use super::over_floor::{noise_variance, simulate_echoes, tolerance};
+use super::plan::{Plan, amplitude_bound};
+use super::run::samples_of;
 use super::samples::{BeatSignal, TwoEnds};
 use crate::radar::{End, Radar};
-use crate::scene::{Reflector, Scene, SceneError};
+use crate::scene::{Scene, SceneError};
 
 /// Beat signal of a scene over the named floor; `seed` picks the floor's noise.
 ///
@@ -17,26 +19,11 @@ use crate::scene::{Reflector, Scene, SceneError};
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
-    simulate_echoes(radar, scene, floor, seed, |_| {})
-}
-
-/// As [`simulate`]; `heard` does to the echoes what the array does before its receivers add their noise.
-pub(super) fn simulate_echoes(
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-    heard: impl FnOnce(&mut BeatSignal),
-) -> Result<BeatSignal, SceneError> {
-    scene.validate(radar)?;
-    let reflectors = scene.reflectors();
-    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
-    let mut signal = beat_signal(radar, &reflectors, &plan);
-    heard(&mut signal);
-    if let Some(variance) = noise_variance(radar, &reflectors, floor) {
-        floor::add_noise(&mut signal, &variance, seed);
+    if !scene.disturbances.is_none() {
+        return simulate_built(radar, scene, &scene.disturbances.elements, floor, seed);
     }
-    Ok(signal)
+    scene.validate(radar)?;
+    Ok(simulate_echoes(radar, &scene.reflectors(), floor, seed, |_| {}))
 }
 
 /// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
@@ -44,6 +31,9 @@ pub(super) fn simulate_echoes(
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<TwoEnds, SceneError> {
+    if !scene.disturbances.is_none() {
+        return Ok(simulate(radar, scene, floor, seed)?.two_ends(radar));
+    }
     scene.validate(radar)?;
     let reflectors = scene.reflectors();
     let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
@@ -57,24 +47,6 @@ pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> R
         samples
     });
     Ok(TwoEnds { first, last })
-}
-
-/// Variance of the noise that is the floor, for each element, if there is any.
-fn noise_variance(radar: &Radar, reflectors: &[Reflector], floor: Floor) -> Option<Vec<f64>> {
-    match floor {
-        Floor::Exact => None,
-        Floor::Thesis => Some(floor::thesis_noise_variance(radar, reflectors)),
-        Floor::Snr(snr) => Some(floor::snr_noise_variance(radar, reflectors, snr)),
-    }
-}
-
-/// Samples are for any use and kept in f64: no error may show however they are normalised, over a loud floor none above 1e-12.
-fn tolerance(floor: Floor) -> f64 {
-    match floor {
-        Floor::Exact => BEST_TOLERANCE,
-        Floor::Snr(snr) if snr.0 <= 40.0 => 1e-12,
-        Floor::Thesis | Floor::Snr(_) => FLOOR_TOLERANCE,
-    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,8 @@ mod monkey;
 mod panels;
 mod pictures;
 mod presentation;
+mod radars;
+mod recordings;
 mod scene;
 mod session;
 mod work;

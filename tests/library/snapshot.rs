@@ -14,14 +14,13 @@ fn seen(recording: &Recording, method: &str, end_elements: usize) -> Vec<f64> {
     let request = Request { floor: recording::FLOOR, ..Request::default() };
     let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
     let (_, found) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request).unwrap_or_else(|e| panic!("{e}"));
-    let strong = found.iter().filter(|f| f.relative_db.0 > -8.0);
+    let strong = found.iter().filter(|f| f.relative_power.0 > -8.0);
     let mut degrees: Vec<f64> = strong.map(|f| f.cos_theta.asin().to_degrees()).collect();
     degrees.sort_by(f64::total_cmp);
     degrees
 }
 
 #[test]
-#[ignore = "iaa and sbl are not among the methods yet"]
 fn twelve_elements_at_either_end_see_what_all_86_see() {
     let recording = Preset::by_id("cascade-86").unwrap().load().unwrap();
     for method in ["iaa", "sbl"] {

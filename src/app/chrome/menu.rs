@@ -5,6 +5,7 @@ use crate::app::state::{Command, NewObject, Panel, Projection};
 use crate::app::widgets::entry::{arrange, button, entry, tooltip};
 use crate::interact::Document;
 use crate::picture::ColourMap;
+use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
 use eframe::egui;
@@ -172,6 +173,9 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Comma
                 ui.close();
             }
         }
+    });
+    ui.menu_button("Recordings", |ui| {
+        entries(ui, (0..recordings::ALL.len()).map(Command::Recording), asked);
     });
     ui.separator();
     entries(ui, Kind::all().map(Command::RandomScene), asked);

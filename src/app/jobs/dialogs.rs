@@ -58,7 +58,7 @@ impl Purpose {
     /// Title of the dialog.
     pub fn title(self) -> &'static str {
         match self {
-            Purpose::Open => "Open a scene",
+            Purpose::Open => "Open a scene or a recording",
             Purpose::OpenLog => "Open the log of a training",
             Purpose::OpenLesson => "Open a lesson",
             Purpose::SaveScene => "Save the scene",
@@ -73,7 +73,8 @@ impl Purpose {
     /// How the file's name may end, and what such files are.
     pub fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Purpose::Open | Purpose::SaveScene => ("Scenes", &["toml", "npz"]),
+            Purpose::Open => ("Scenes and recordings", &["toml", "npz"]),
+            Purpose::SaveScene => ("Scenes", &["toml", "npz"]),
             Purpose::OpenLesson => ("Lessons", &["toml"]),
             Purpose::OpenLog | Purpose::ExportMetrics => ("Table", &["csv"]),
             Purpose::ExportPicture => ("Picture", &["png", "svg"]),

@@ -1,11 +1,14 @@
 //! Pictures, arrays and figures for other programs, written on threads of their own.
 
 use super::pipeline::Pipeline;
+use super::recorded::seen_by;
 use crate::app::state::State;
 use crate::files::write_bytes;
-use crate::maps::archive::write_maps;
-use crate::picture::{Format, Style, compose};
-use crate::reconstruct::Request;
+use crate::maps::Normalisation;
+use crate::maps::archive::{write_maps, write_recorded_maps};
+use crate::picture::{Format, Style, compose, compose_recording, maps_of};
+use crate::reconstruct::{Reconstructor, Request};
+use crate::recording::{self, Recording};
 use crate::signal;
 use crate::task::panic_message;
 use eframe::egui::{ColorImage, Context};
@@ -84,16 +87,23 @@ impl Exports {
             return Err("There is no method to draw the output of.".to_owned());
         };
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
+        let recording = seen_recording(state);
         let style = Style {
-            floor: state.settings.floor,
+            floor: if recording.is_some() { recording::FLOOR } else { state.settings.floor },
             normalisation: state.settings.normalisation,
             colours: state.settings.colours,
             eta: Some(state.output_eta()),
         };
         self.begin(path, move |path| {
-            let signal = signal::simulate(&radar, &scene, style.floor, scene.noise_seed).map_err(|e| e.to_string())?;
-            let bytes =
-                compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg).map_err(|e| e.to_string())?;
+            let bytes = match recording {
+                Some(recording) => compose_recording(&recording, method.as_ref(), &style, Format::Svg),
+                None => {
+                    let seed = scene.noise_seed;
+                    let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
+                    compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg)
+                }
+            };
+            let bytes = bytes.map_err(|e| e.to_string())?;
             write_bytes(path, &bytes).map(|()| None).map_err(|e| e.to_string())
         })
     }
@@ -107,6 +117,9 @@ impl Exports {
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
+        if let Some(recording) = seen_recording(state) {
+            return self.begin(path, move |path| write_recording(path, &recording, method.as_deref(), normalisation));
+        }
         self.begin(path, move |path| {
             let signal = signal::simulate(&radar, &scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
             let request = Request { floor, normalisation, ..Request::default() };
@@ -138,6 +151,29 @@ impl Exports {
             Err(error) => Err(format!("{name}: the export could not be started: {error}")),
         }
     }
+}
+
+/// The recording on screen as its radar takes it now.
+fn seen_recording(state: &State) -> Option<Recording> {
+    let document = state.editor.document();
+    document.recording().map(|r| seen_by(r, document.radar(), &document.scene().disturbances.elements))
+}
+
+/// Writes samples and maps of a recording, and the output of a method. Returns what could not be had.
+fn write_recording(
+    path: &Path,
+    recording: &Recording,
+    method: Option<&dyn Reconstructor>,
+    normalisation: Normalisation,
+) -> Result<Option<String>, String> {
+    let (_, full) = maps_of(recording);
+    let ends = recording.two_ends();
+    let snapshot_range_metres = recording.range_metres;
+    let request = Request { floor: recording::FLOOR, normalisation, snapshot_range_metres, ..Request::default() };
+    let found = method.map(|m| m.reconstruct(&recording.radar, &ends, &request)).transpose();
+    let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
+    write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), output).map_err(|e| e.to_string())?;
+    Ok(found.err().map(|why| format!("without the output: {why}")))
 }
 
 /// Writes a file on a thread of its own; a panic there is an error like any other.

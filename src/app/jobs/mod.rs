@@ -2,6 +2,7 @@
 //! polled at the beginning of the next.
 
 mod bounds;
+mod calibration;
 mod dialogs;
 mod evaluation;
 mod export;
@@ -9,6 +10,7 @@ mod frame_log;
 mod lessons;
 mod painter;
 mod pipeline;
+mod recorded;
 mod recording;
 mod rest;
 mod rows;
@@ -21,6 +23,7 @@ mod training;
 #[cfg(test)]
 pub use bounds::bounds_of;
 pub use bounds::{Bounds, BoundsRequest, BoundsResult};
+pub use calibration::{Calibrated, Calibration};
 pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
@@ -49,6 +52,8 @@ pub struct Jobs {
     pub pipeline: Pipeline,
     /// Bounds of one reflector.
     pub bounds: Bounds,
+    /// What the selected reflector tells of the elements.
+    pub calibration: Calibration,
     /// Methods on test sets.
     pub evaluation: Evaluation,
     /// Run time against error.
@@ -87,6 +92,7 @@ impl Jobs {
         Ok(Jobs {
             pipeline: Pipeline::start(wake.clone())?,
             bounds: Bounds::start(wake.clone())?,
+            calibration: Calibration::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
             run_time: RunTime::start(wake.clone())?,
             training: Training::start(wake.clone())?,
@@ -106,6 +112,7 @@ impl Jobs {
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = self.pipeline.poll();
         errors.extend(self.bounds.poll());
+        errors.extend(self.calibration.poll());
         errors.extend(self.evaluation.poll());
         errors.extend(self.run_time.poll());
         errors.extend(self.training.poll());
@@ -133,6 +140,9 @@ impl Jobs {
         let shown = state.arrangement.shown();
         if shown.contains(&Panel::Bounds) {
             self.bounds.ask(state);
+        }
+        if shown.contains(&Panel::Elements) {
+            self.calibration.ask(state);
         }
         if shown.contains(&Panel::Training)
             && let Some(later) = self.training.look()
@@ -184,6 +194,7 @@ impl Jobs {
             || self.bounds.is_busy()
             || self.theory.is_busy()
             || self.several.is_busy()
+            || self.calibration.is_busy()
             || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }

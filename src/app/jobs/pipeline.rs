@@ -6,14 +6,17 @@
 //!                               └── pair of maps ◄── method worker ◄───────┘
 //! ```
 
+use super::recorded::Unexplained;
 use super::rest::{Motion, Rest};
 use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
 use crate::app::state::{CutMap, MapKind, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::scene::SceneError;
+use crate::reconstruct::found::find;
+use crate::reconstruct::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::recording;
+use crate::scene::Reflector;
 use crate::signal::{Floor, TwoEnds};
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
@@ -33,19 +36,26 @@ struct Basis {
     ends: Arc<TwoEnds>,
     floor: Floor,
     normalisation: Normalisation,
+    snapshot_range_metres: Option<f64>,
 }
 
 impl Basis {
     /// What the method gets of a scene; `None` where nobody wanted its ends.
     fn of(result: &MapsResult) -> Option<Basis> {
-        let MapsRequest { radar, wanted, .. } = &result.request;
-        let ends = result.frame.ends.clone()?;
-        Some(Basis { radar: radar.clone(), ends, floor: wanted.floor, normalisation: wanted.normalisation })
+        let MapsRequest { radar, wanted, recording, .. } = &result.request;
+        Some(Basis {
+            radar: radar.clone(),
+            ends: result.frame.ends.clone()?,
+            floor: if recording.is_some() { recording::FLOOR } else { wanted.floor },
+            normalisation: wanted.normalisation,
+            snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
+        })
     }
 
     fn same(&self, other: &Basis) -> bool {
         Arc::ptr_eq(&self.ends, &other.ends)
             && (self.floor, self.normalisation) == (other.floor, other.normalisation)
+            && self.snapshot_range_metres == other.snapshot_range_metres
             && self.radar == other.radar
     }
 }
@@ -54,14 +64,16 @@ impl Basis {
 #[derive(Clone)]
 struct MethodRequest {
     basis: Basis,
-    /// What it aims for.
-    target: Arc<RangeAngleMap>,
+    /// What it aims for; `None` where a recording has the two ends alone.
+    target: Option<Arc<RangeAngleMap>>,
     method: Arc<dyn Reconstructor>,
+    /// Whether what was found is to be listed.
+    listed: bool,
 }
 
 impl MethodRequest {
     fn same(&self, other: &MethodRequest) -> bool {
-        self.basis.same(&other.basis) && self.method.name() == other.method.name()
+        self.basis.same(&other.basis) && self.method.name() == other.method.name() && self.listed == other.listed
     }
 }
 
@@ -72,11 +84,20 @@ pub struct MethodResult {
     pub method: &'static str,
     /// Its map, and the one it aimed for.
     pub pair: Pair,
-    /// All that it found.
-    pub found: Arc<Reconstruction>,
+    /// What it found, the strongest first, where a list was asked for.
+    pub found: Option<Vec<Detection>>,
+    /// Where it found reflectors.
+    pub reflectors: Vec<Reflector>,
     /// Time it took.
     pub took: Duration,
     basis: Basis,
+}
+
+impl MethodResult {
+    /// The radar that it reconstructed for.
+    pub fn radar(&self) -> &Radar {
+        &self.basis.radar
+    }
 }
 
 /// Why a method gave nothing.
@@ -88,11 +109,14 @@ pub struct Refusal {
     pub reason: String,
 }
 
-type MethodReply = (MethodRequest, Result<Reconstruction, ReconstructError>);
+/// What a method made of the samples, and the list of what it found where one was asked for.
+type Answer = (Reconstruction, Option<Vec<Detection>>);
+
+type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 
 /// The workers, what they were asked last, and what they made last.
 pub struct Pipeline {
-    maps: Worker<MapsRequest, Result<MapsResult, SceneError>>,
+    maps: Worker<MapsRequest, Result<MapsResult, String>>,
     method: Worker<MethodRequest, MethodReply>,
     asked: Option<MapsRequest>,
     rest: Rest,
@@ -122,9 +146,14 @@ impl Pipeline {
         // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
         let threads = || rayon::ThreadPoolBuilder::new().thread_name(|i| format!("reconstruction {i}")).build().ok();
         let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
-            let Basis { floor, normalisation, .. } = q.basis;
-            let request = Request { floor, normalisation, task: task.clone(), ..Request::default() };
-            let reconstruct = || q.method.reconstruct(&q.basis.radar, &q.basis.ends, &request);
+            let Basis { floor, normalisation, snapshot_range_metres, .. } = q.basis;
+            let request = Request { floor, normalisation, snapshot_range_metres, task: task.clone() };
+            let reconstruct = || {
+                let answer = q.method.reconstruct(&q.basis.radar, &q.basis.ends, &request)?;
+                let list = || find(q.method.as_ref(), &q.basis.radar, &q.basis.ends, &request, &answer);
+                let found = q.listed.then(list).transpose()?;
+                Ok((answer, found))
+            };
             let result = match threads {
                 Some(threads) => threads.install(reconstruct),
                 None => reconstruct(),
@@ -160,7 +189,7 @@ impl Pipeline {
                     result.took = elapsed;
                     self.take_in_maps(result);
                 }
-                Reply::Done { result: Err(error), .. } => self.scene_error = Some(error.to_string()),
+                Reply::Done { result: Err(error), .. } => self.scene_error = Some(error),
                 Reply::Panicked { message, .. } => messages.push(format!(
                     "Computing the maps failed ({message}). The last maps stay; undo the last change (Ctrl+Z) or change the scene."
                 )),
@@ -168,7 +197,7 @@ impl Pipeline {
         }
         for reply in self.method.replies() {
             match reply {
-                Reply::Done { result: (request, Ok(found)), elapsed, .. } => self.take_in(request, found, elapsed),
+                Reply::Done { result: (request, Ok(answer)), elapsed, .. } => self.take_in(request, answer, elapsed),
                 // Cancelled by the user, or because the scene moved on and the next request waits.
                 Reply::Done { result: (_, Err(ReconstructError::Cancelled)), .. } => {}
                 Reply::Done { result: (request, Err(error)), .. } => {
@@ -198,7 +227,7 @@ impl Pipeline {
         if let (Some(target), Some(output)) = (target_of(&result), &mut self.output)
             && Basis::of(&result).is_some_and(|basis| basis.same(&output.basis))
         {
-            output.pair.target = target;
+            output.pair.target = Some(target);
         }
         let only_settled = result.request.at_rest && result.frame.report.ran(Stage::Signal);
         if !only_settled || self.took.is_none() {
@@ -208,13 +237,16 @@ impl Pipeline {
         self.scene_error = None;
     }
 
-    fn take_in(&mut self, request: MethodRequest, found: Reconstruction, took: Duration) {
-        let found = Arc::new(found);
-        let latest = self.result.as_ref().filter(|r| Basis::of(r).is_some_and(|basis| basis.same(&request.basis)));
-        let target = latest.and_then(target_of).unwrap_or(request.target);
-        let pair = Pair { target, output: Arc::new(found.lambda.clone()) };
+    fn take_in(&mut self, request: MethodRequest, (answer, found): Answer, took: Duration) {
+        let MethodRequest { basis, target, method, .. } = request;
+        let Reconstruction { lambda, mut reflectors } = answer;
+        if reflectors.is_empty() {
+            reflectors = found.iter().flatten().map(Detection::reflector).collect();
+        }
+        let latest = self.result.as_ref().filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
+        let pair = Pair { target: latest.and_then(target_of).or(target), output: Arc::new(lambda) };
         self.refusal = None;
-        self.output = Some(MethodResult { method: request.method.name(), pair, found, took, basis: request.basis });
+        self.output = Some(MethodResult { method: method.name(), pair, found, reflectors, took, basis });
     }
 
     /// There is no output, and the last one is not its own: nothing of it stays.
@@ -228,7 +260,9 @@ impl Pipeline {
         let shown = state.arrangement.shown();
         let map = |kind| shown.contains(&Panel::Map(kind));
         let (cuts, roc) = (shown.contains(&Panel::Cuts), shown.contains(&Panel::Roc));
-        let output = MapKind::ALL.into_iter().any(|k| k.needs_output() && map(k)) || cuts || roc;
+        let listed = shown.contains(&Panel::Found);
+        let output = MapKind::ALL.into_iter().any(|k| k.needs_output() && map(k)) || cuts || roc || listed;
+        let recording = state.editor.document().recording().cloned();
         let settings = &state.settings;
         let wanted = Wanted {
             floor: settings.floor,
@@ -236,7 +270,7 @@ impl Pipeline {
             normalisation: settings.normalisation,
             first: map(MapKind::Input0) || cuts,
             last: map(MapKind::Input1) || cuts,
-            full: map(MapKind::Target) || map(MapKind::TargetAbove) || output,
+            full: map(MapKind::Target) || map(MapKind::TargetAbove) || output || map(MapKind::Unexplained),
             ends: output,
         };
         let (scene, held) = (state.editor.scene(), state.editor.dragged().is_some());
@@ -244,21 +278,22 @@ impl Pipeline {
         self.ask_maps(MapsRequest {
             radar: state.radar().clone(),
             scene: scene.clone(),
+            recording: recording.clone(),
             wanted,
             at_rest: self.motion == Motion::AtRest,
             pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
-            pair: self.output.as_ref().filter(|_| output).map(|o| o.pair.clone()),
+            pair: self.output.as_ref().filter(|o| output && o.radar() == state.radar()).map(|o| o.pair.clone()),
             colours: settings.colours,
             projection: settings.projection,
             difference: settings.difference,
             dark: state.dark,
             target_eta: settings.target_eta,
             output_eta: state.output_eta(),
-            scores: output && !scene.objects.is_empty(),
+            scores: output && (recording.is_some() || !scene.objects.is_empty()),
             roc,
         });
         if output {
-            self.ask_method(state);
+            self.ask_method(state, listed || recording.is_some());
         }
     }
 
@@ -275,10 +310,14 @@ impl Pipeline {
     }
 
     /// Asks for an output of the latest maps, unless it was asked for just that.
-    fn ask_method(&mut self, state: &State) {
-        let latest = self.result.as_ref().and_then(|r| Basis::of(r).zip(target_of(r)));
+    fn ask_method(&mut self, state: &State, listed: bool) {
+        let latest = self.result.as_ref().and_then(|r| {
+            let target = target_of(r);
+            // A recording of the two ends has none; a scene has one as soon as somebody wants it.
+            (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target))
+        });
         let Some(((basis, target), method)) = latest.zip(state.method().cloned()) else { return };
-        let request = MethodRequest { basis, target, method };
+        let request = MethodRequest { basis, target, method, listed };
         let current =
             self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
         self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
@@ -325,6 +364,16 @@ impl Pipeline {
         // A method aims for the target's Lambda, so its decibels are the target's.
         let output = self.output.as_ref().map(|o| CutMap { kind: MapKind::Output, map: o.pair.output.clone(), scale });
         ready.chain(output).collect()
+    }
+
+    /// What the reflectors on screen leave of the recording, where somebody looks at it.
+    pub fn unexplained(&self) -> Option<&Unexplained> {
+        self.result.as_ref()?.unexplained.as_ref()?.as_ref().ok()
+    }
+
+    /// Why the reflectors can't be fitted to the recording.
+    pub fn why_unexplained(&self) -> Option<&str> {
+        self.result.as_ref()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
     /// Figures of that output, against the target of the same scene.

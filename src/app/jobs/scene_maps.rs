@@ -1,13 +1,15 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
 use super::painter::{Paint, Painter, Picture, Subject};
+use super::recorded::{RecordedMaps, Unexplained};
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, Frame, ReadyMap, Wanted};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
 use crate::radar::Radar;
-use crate::scene::{Scene, SceneError};
+use crate::recording::Recording;
+use crate::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,15 +17,24 @@ use std::time::Duration;
 /// An output and the target it aimed for: figures are always of such a pair, whatever has changed since.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    /// The whole array's map.
-    pub target: Arc<RangeAngleMap>,
+    /// The whole array's map; `None` where a recording has the two ends alone.
+    pub target: Option<Arc<RangeAngleMap>>,
     /// What the method made of the ends of the same scene.
     pub output: Arc<RangeAngleMap>,
 }
 
 impl Pair {
     fn same(&self, other: &Pair) -> bool {
-        Arc::ptr_eq(&self.target, &other.target) && Arc::ptr_eq(&self.output, &other.output)
+        same_target(&self.target, &other.target) && Arc::ptr_eq(&self.output, &other.output)
+    }
+}
+
+/// Whether both are the same map, or both are missing.
+fn same_target(a: &Option<Arc<RangeAngleMap>>, b: &Option<Arc<RangeAngleMap>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (None, None) => true,
+        _ => false,
     }
 }
 
@@ -32,8 +43,10 @@ impl Pair {
 pub struct MapsRequest {
     /// The radar.
     pub radar: Radar,
-    /// What stands before it.
+    /// What stands before it, or is laid over the recording.
     pub scene: Arc<Scene>,
+    /// What was measured in the place of the scene's echoes.
+    pub recording: Option<Arc<Recording>>,
     /// Which maps, and how.
     pub wanted: Wanted,
     /// Whether the scene rests: its maps are then those of the command line, bit for bit.
@@ -68,7 +81,13 @@ impl MapsRequest {
             (None, None) => true,
             _ => false,
         };
-        pair && Arc::ptr_eq(&self.scene, &other.scene)
+        let recording = match (&self.recording, &other.recording) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        pair && recording
+            && Arc::ptr_eq(&self.scene, &other.scene)
             && self.radar == other.radar
             && (self.wanted, self.at_rest) == (other.wanted, other.at_rest)
             && self.pictures == other.pictures
@@ -97,6 +116,8 @@ pub struct MapsResult {
     pub request: MapsRequest,
     /// The maps.
     pub frame: Frame,
+    /// What the scene leaves of a recording, where somebody looks at it, or why it can't be fitted.
+    pub unexplained: Option<Result<Unexplained, String>>,
     /// Their pictures.
     pub pictures: BTreeMap<MapKind, Picture>,
     /// Figures of the pair that was asked about.
@@ -113,6 +134,7 @@ pub struct MapsResult {
 #[derive(Default)]
 pub struct MapsState {
     engine: Option<Engine>,
+    recorded: Option<RecordedMaps>,
     painter: Painter,
     scores: Option<ScoresOf>,
     roc: Option<RocOf>,
@@ -135,56 +157,79 @@ impl MapsState {
     /// Does what was asked, and nothing that was done before.
     ///
     /// # Errors
-    /// [`SceneError`] for a scene that has no maps.
-    pub fn work(&mut self, request: MapsRequest) -> Result<MapsResult, SceneError> {
-        let engine = match &mut self.engine {
-            Some(engine) if *engine.radar() == request.radar => engine,
-            slot => slot.insert(Engine::new(request.radar.clone())),
-        };
-        let frame = match request.at_rest {
-            true => engine.settle(&request.scene, &request.wanted)?,
-            false => engine.update(&request.scene, &request.wanted)?,
-        };
+    /// Why a scene has no maps.
+    pub fn work(&mut self, request: MapsRequest) -> Result<MapsResult, String> {
+        let (frame, unexplained) = self.frame(&request)?;
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
-            if let Some(subject) = subject(&frame, &request, kind) {
+            if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, kind) {
                 pictures.insert(kind, self.painter.paint(&request.radar, kind, &subject));
             }
         }
         self.painter.keep(|kind| request.pictures.contains(&kind));
         let scored = request.pair.as_ref().filter(|_| request.scores);
-        let scores = scored.map(|pair| self.scores(pair, [request.target_eta, request.output_eta]));
-        let roc = request.pair.as_ref().filter(|_| request.roc).map(|pair| self.roc(pair));
+        let scores = scored.and_then(|pair| self.scores(pair, [request.target_eta, request.output_eta]));
+        let roc = request.pair.as_ref().filter(|_| request.roc).and_then(|pair| self.roc(pair));
         let painted = self.painter.painted;
-        Ok(MapsResult { request, frame, pictures, scores, roc, painted, took: Duration::ZERO })
+        Ok(MapsResult { request, frame, unexplained, pictures, scores, roc, painted, took: Duration::ZERO })
     }
 
-    fn scores(&mut self, pair: &Pair, etas: [f32; 2]) -> Scores {
-        if let Some(last) = self.scores.as_ref().filter(|s| s.pair.same(pair) && s.etas == etas) {
-            return last.scores;
+    /// The maps of the scene, or of the recording that stands in its place, and what the scene leaves of it.
+    fn frame(&mut self, request: &MapsRequest) -> Result<(Frame, Option<Result<Unexplained, String>>), String> {
+        let MapsRequest { radar, scene, wanted, .. } = request;
+        if let Some(recording) = &request.recording {
+            scene.validate(radar).map_err(|e| e.to_string())?;
+            let elements = &scene.disturbances.elements;
+            let maps = match &mut self.recorded {
+                Some(maps) if maps.is_of(recording, radar, elements) => maps,
+                slot => slot.insert(RecordedMaps::new(recording, radar, elements)),
+            };
+            let frame = maps.frame(wanted);
+            let looked_at = request.pictures.contains(&MapKind::Unexplained);
+            return Ok((frame, looked_at.then(|| maps.unexplained(scene))));
         }
+        self.recorded = None;
+        let engine = match &mut self.engine {
+            Some(engine) if engine.radar() == radar => engine,
+            slot => slot.insert(Engine::new(radar.clone())),
+        };
+        let frame = if request.at_rest { engine.settle(scene, wanted) } else { engine.update(scene, wanted) };
+        Ok((frame.map_err(|e| e.to_string())?, None))
+    }
+
+    /// Figures of a pair; `None` where there is nothing to compare the output with.
+    fn scores(&mut self, pair: &Pair, etas: [f32; 2]) -> Option<Scores> {
+        if let Some(last) = self.scores.as_ref().filter(|s| s.pair.same(pair) && s.etas == etas) {
+            return Some(last.scores);
+        }
+        let target = pair.target.as_ref()?;
         let [target_eta, output_eta] = etas;
         let scores = Scores {
-            metrics: Metrics::of(&pair.target, &pair.output, output_eta),
-            target_blobs: blobs(&pair.target, target_eta),
+            metrics: Metrics::of(target, &pair.output, output_eta),
+            target_blobs: blobs(target, target_eta),
             output_blobs: blobs(&pair.output, output_eta),
         };
         self.scores = Some(ScoresOf { pair: pair.clone(), etas, scores });
-        scores
+        Some(scores)
     }
 
-    fn roc(&mut self, pair: &Pair) -> Arc<Vec<RocPoint>> {
+    fn roc(&mut self, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {
         if let Some(last) = self.roc.as_ref().filter(|r| r.pair.same(pair)) {
-            return last.points.clone();
+            return Some(last.points.clone());
         }
-        let points: Arc<Vec<RocPoint>> = Arc::new(Roc::of(&pair.target, &pair.output).points().collect());
+        let points: Arc<Vec<RocPoint>> = Arc::new(Roc::of(pair.target.as_ref()?, &pair.output).points().collect());
         self.roc = Some(RocOf { pair: pair.clone(), points: points.clone() });
-        points
+        Some(points)
     }
 }
 
 /// What the picture of one map shows; `None` where there is no such map.
-fn subject(frame: &Frame, request: &MapsRequest, kind: MapKind) -> Option<Subject> {
+fn subject(
+    frame: &Frame,
+    unexplained: Option<&Result<Unexplained, String>>,
+    request: &MapsRequest,
+    kind: MapKind,
+) -> Option<Subject> {
     let lambda = |map: &Option<ReadyMap>| map.as_ref().map(|m| m.lambda.clone());
     let pair = request.pair.as_ref();
     let output = pair.map(|p| p.output.clone());
@@ -199,9 +244,10 @@ fn subject(frame: &Frame, request: &MapsRequest, kind: MapKind) -> Option<Subjec
         MapKind::OutputAbove => (output, None, above(request.output_eta)),
         MapKind::Difference => (
             output,
-            pair.map(|p| p.target.clone()),
+            Some(pair?.target.clone()?),
             Paint::Difference { view: request.difference, colours: request.colours },
         ),
+        MapKind::Unexplained => (lambda(&unexplained?.as_ref().ok().map(|u| u.map.clone())), None, colours),
     };
     Some(Subject { map: map?, minus, paint, projection: request.projection })
 }

@@ -20,6 +20,8 @@ const MAX_NOISE_SEED: u64 = i64::MAX as u64;
 
 /// What is chosen, and what came of it.
 pub struct Input<'a> {
+    /// Whether a recording stands in the place of the scene: its floor is its own.
+    pub is_recorded: bool,
     /// What the user chose.
     pub settings: &'a Settings,
     /// The radar, which has the carrier and the window.
@@ -65,7 +67,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             heading(ui, "Maps");
             Grid::new("maps").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
                 normalisation(ui, settings, &mut asked);
-                floor(ui, settings, input.noise_seed, &mut asked);
+                match input.is_recorded {
+                    true => row(ui, "Floor", "What lies beneath the echoes", |ui| ui.weak("as it was recorded")),
+                    false => floor(ui, settings, input.noise_seed, &mut asked),
+                }
                 carrier(ui, input.radar.carrier, &mut asked);
                 window(ui, input.radar.window, &mut asked);
             });
@@ -339,6 +344,7 @@ mod tests {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             let input = Input {
+                is_recorded: false,
                 settings: &settings,
                 radar: &radar,
                 noise_seed: 0,
@@ -382,7 +388,8 @@ mod tests {
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
             let (eta, run) = (0.123, Run::default());
             let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
-            let input = Input { settings: &settings, radar: &radar, noise_seed, methods: &[], method, eta, run };
+            let (is_recorded, settings, radar) = (false, &settings, &radar);
+            let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, run };
             asked.extend(show(ui, input));
         };
         let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());

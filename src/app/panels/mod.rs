@@ -3,12 +3,16 @@
 pub mod bounds;
 pub mod controls;
 pub mod cuts;
+pub mod disturbances;
+pub mod elements;
 pub mod evaluation;
+pub mod found;
 pub mod guide;
 pub mod inspector;
 pub mod lesson;
 pub mod map;
 pub mod objects;
+pub mod radar;
 pub mod roc;
 pub mod run_time;
 pub mod scene;

@@ -22,16 +22,16 @@ impl Default for Arrangement {
         let mut pane = |panel| tiles.insert_pane(panel);
         let [scene, controls, inspector, objects] =
             [Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects].map(&mut pane);
-        let [in0, in1, target, output, target_above, output_above, difference] =
+        let [in0, in1, target, output, target_above, output_above, difference, unexplained] =
             MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
         let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-        let [guide, lesson, tools @ ..] = Panel::TOOLS.map(pane);
-        for closed in [timing, guide, lesson].iter().chain(&tools) {
+        let [guide, lesson, radar, elements, disturbances, tools @ ..] = Panel::TOOLS.map(pane);
+        for closed in [timing, guide, lesson, radar, elements, disturbances, unexplained].iter().chain(&tools) {
             tiles.set_visible(*closed, false);
         }
         let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
         let scene = tabs(&mut tiles, vec![scene]);
-        let controls = tabs(&mut tiles, vec![controls, timing]);
+        let controls = tabs(&mut tiles, vec![controls, radar, elements, disturbances, timing]);
         // What is read while settings change stands beside them.
         let beside = tabs(&mut tiles, vec![guide, lesson]);
         let inspector = tabs(&mut tiles, vec![inspector, objects]);
@@ -41,7 +41,7 @@ impl Default for Arrangement {
         let third = tabs(&mut tiles, vec![target_above, cuts]);
         let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
         let first = tabs(&mut tiles, vec![in1]);
-        let second = tabs(&mut tiles, vec![output, difference]);
+        let second = tabs(&mut tiles, vec![output, difference, unexplained]);
         let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
         let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
         let root =
@@ -201,7 +201,8 @@ mod tests {
     fn every_panel_is_there_and_the_tools_are_closed() {
         let mut arrangement = Arrangement::default();
         for panel in Panel::all() {
-            let closed = panel == Panel::Timing || Panel::TOOLS.contains(&panel);
+            let closed =
+                [Panel::Timing, Panel::Map(MapKind::Unexplained)].contains(&panel) || Panel::TOOLS.contains(&panel);
             assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
         }
         let lesson = Arrangement::of_a_lesson();

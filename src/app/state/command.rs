@@ -11,10 +11,12 @@ use crate::interact::{Alignment, Along, Change, Coordinates, Field, Place, Selec
 use crate::lesson::Guess;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Radar, WindowFunction};
+use crate::radar::{BuiltArray, Carrier, Radar, WindowFunction};
 use crate::scene::generate::Kind;
+use crate::scene::{Interferer, Mirror};
 use crate::signal::Floor;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A kind of object to add.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +65,8 @@ pub enum Command {
     Discard(u64),
     /// Open a scene that comes with the program.
     Preset(usize),
+    /// Open a recording that comes with the program.
+    Recording(usize),
     /// Make a random test scene.
     RandomScene(Kind),
     /// Which random scene is next.
@@ -203,8 +207,16 @@ pub enum Command {
     SetCarrier(Carrier),
     /// Which window both transforms use.
     SetWindow(WindowFunction),
+    /// Elements as they are built.
+    SetElements(Arc<BuiltArray>),
+    /// Another radar that sends at the same time, or none.
+    SetInterferer(Option<Interferer>),
+    /// A wall that mirrors, or none.
+    SetMirror(Option<Mirror>),
     /// This radar before the scene.
     SetRadar(Box<Radar>),
+    /// A radar of the list of presets.
+    RadarPreset(usize),
     /// eta', the threshold of the target.
     SetTargetEta(f32),
     /// eta of the method of this name; its own where `None`.

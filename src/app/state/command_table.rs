@@ -6,7 +6,9 @@ use super::settings::{Projection, Units};
 use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
+use crate::radar::presets::{self as radar_presets, RadarPreset};
 use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
 use crate::signal::Floor;
@@ -55,7 +57,7 @@ const TABLE: &[Entry] = {
         entry(Add(NewObject::Line, None), "Add line", "Add a vertical line of 75 reflectors", key(Key::L)),
         entry(Add(NewObject::Cluster, None), "Add cluster", "Add a Gaussian cluster of 40 reflectors", key(Key::G)),
         entry(New, "New scene", "Start with an empty scene; undo brings this one back", command(Key::N)),
-        entry(Open, "Open…", "Open a scene (.toml or .npz)", command(Key::O)),
+        entry(Open, "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O)),
         entry(Save, "Save", "Save the scene as TOML", command(Key::S)),
         entry(SaveAs, "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S)),
         entry(OpenLog, "Open training log…", "Watch the loss of a training (its log.csv)", None),
@@ -176,6 +178,8 @@ const TABLE: &[Entry] = {
             "No weights: the narrowest main lobe, the highest side lobes",
             None,
         ),
+        entry(SetInterferer(None), "Interferer: none", "No other radar sends", None),
+        entry(SetMirror(None), "Mirror: none", "No wall mirrors", None),
         entry(Colours(ColourMap::Grey), "Colours: grey", "The thesis' grey", None),
         entry(Colours(ColourMap::Viridis), "Colours: viridis", "Colours of even brightness steps", None),
         entry(Colours(ColourMap::Diverging), "Colours: diverging", "Blue below the middle, red above", None),
@@ -220,6 +224,7 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Evaluation, Key::F9),
     (Panel::RunTime, Key::F10),
     (Panel::Several, Key::S),
+    (Panel::Radar, Key::F11),
     (Panel::Training, Key::F12),
 ];
 
@@ -249,6 +254,13 @@ pub fn listed() -> &'static [Entry] {
             };
             named(Command::RandomScene(kind), format!("Random scene: {}", kind.description()), tooltip, key)
         };
+        let radar = |(index, preset): (usize, &RadarPreset)| {
+            named(Command::RadarPreset(index), format!("Radar: {}", preset.name), preset.about, None)
+        };
+        let recording = |(index, preset): (usize, &recordings::Preset)| {
+            let name = format!("Recording: {}", preset.id.replace('-', " "));
+            named(Command::Recording(index), name, "Open samples that a radar measured", None)
+        };
         let mut all = TABLE.to_vec();
         all.extend(Kind::all().map(random));
         all.extend(Panel::all().into_iter().map(toggle));
@@ -258,6 +270,8 @@ pub fn listed() -> &'static [Entry] {
             named(Command::CopyMap(kind), format!("Copy picture: {}", kind.title()), tooltip, None)
         }));
         all.extend(presets::ALL.iter().enumerate().map(preset));
+        all.extend(recordings::ALL.iter().enumerate().map(recording));
+        all.extend(radar_presets::ALL.iter().enumerate().map(radar));
         all
     })
 }

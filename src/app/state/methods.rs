@@ -1,9 +1,10 @@
 //! The reconstruction methods that the app offers.
 
+use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use std::sync::Arc;
 
-/// Methods that work for any radar and any scene, best first.
+/// Methods that work for any radar and any scene, where the one preferred for the radar doesn't.
 const ROBUST: [&str; 2] = ["capon", "baseline"];
 
 /// Every method, in order, and which is shown where nobody chose one.
@@ -26,10 +27,14 @@ impl Methods {
         named(name).or_else(|| named(self.preferred)).or_else(|| self.all.first())
     }
 
-    /// A method that works where the one called `name` didn't, if there is one.
-    pub fn instead_of(&self, name: &str) -> Option<&'static str> {
-        let robust = ROBUST.iter().find(|robust| **robust != name && self.all.iter().any(|m| m.name() == **robust));
-        robust.copied()
+    /// A method that works on samples of `radar` where the one called `name` didn't, if there is one.
+    pub fn instead_of(&self, name: &str, radar: &Radar) -> Option<&'static str> {
+        let preferred = crate::methods::preferred_for(radar).name();
+        let works = |other: &&str| {
+            let method = self.all.iter().find(|m| m.name() == *other);
+            *other != name && method.is_some_and(|m| m.check_radar(radar).is_ok())
+        };
+        [preferred].into_iter().chain(ROBUST).find(|other| works(&other))
     }
 
     /// The method after the one called `name`; the first after the last.

@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 pub enum Panel {
     /// The scene's canvas.
     Scene,
-    /// Radar, display and reconstruction settings.
+    /// Floor, display and reconstruction settings.
     Controls,
+    /// The radar's constants and what follows from them.
+    Radar,
     /// Numbers of the selected objects.
     Inspector,
     /// The list of objects.
@@ -17,6 +19,12 @@ pub enum Panel {
     Map(MapKind),
     /// Range profile and angle cut through the cursor.
     Cuts,
+    /// Elements as they are built.
+    Elements,
+    /// An interferer and a mirror.
+    Disturbances,
+    /// What the method found, as a list.
+    Found,
     /// P_D against P_FA.
     Roc,
     /// What each stage cost and what was skipped.
@@ -40,9 +48,13 @@ pub enum Panel {
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 7] = [
+    pub const TOOLS: [Panel; 11] = [
         Panel::Guide,
         Panel::Lesson,
+        Panel::Radar,
+        Panel::Elements,
+        Panel::Disturbances,
+        Panel::Found,
         Panel::Bounds,
         Panel::Evaluation,
         Panel::RunTime,
@@ -64,10 +76,14 @@ impl Panel {
         match self {
             Panel::Scene => "Scene",
             Panel::Controls => "Settings",
+            Panel::Radar => "Radar",
             Panel::Inspector => "Inspector",
             Panel::Objects => "Objects",
             Panel::Map(kind) => kind.title(),
             Panel::Cuts => "Cuts",
+            Panel::Elements => "Elements",
+            Panel::Disturbances => "Disturbances",
+            Panel::Found => "Found",
             Panel::Roc => "ROC",
             Panel::Timing => "Timing",
             Panel::Bounds => "Bounds",
@@ -84,11 +100,15 @@ impl Panel {
     pub fn describe(self) -> &'static str {
         match self {
             Panel::Scene => "The reflectors before the radar; drag them",
-            Panel::Controls => "Radar, display and reconstruction settings",
+            Panel::Controls => "Floor, display and reconstruction settings",
+            Panel::Radar => "The radar's constants, and what follows from each",
             Panel::Inspector => "Numbers of what is selected",
             Panel::Objects => "The scene's objects in a list: click to select, with Ctrl or Shift several",
             Panel::Map(kind) => kind.describe(),
             Panel::Cuts => "Range profile and angle cut of all maps through the cursor",
+            Panel::Elements => "Gain, phase and place of each element, dead ones, and calibration on a reflector",
+            Panel::Disturbances => "An unsynchronised radar, and a wall that mirrors",
+            Panel::Found => "What the method found: angle, range and strength",
             Panel::Roc => "Detection against false alarm of this scene, over every threshold",
             Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
             Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
@@ -121,11 +141,13 @@ pub enum MapKind {
     OutputAbove,
     /// Output minus target.
     Difference,
+    /// A recording minus the reflectors laid over it.
+    Unexplained,
 }
 
 impl MapKind {
     /// All of them, in reading order.
-    pub const ALL: [MapKind; 7] = [
+    pub const ALL: [MapKind; 8] = [
         MapKind::Input0,
         MapKind::Input1,
         MapKind::Target,
@@ -133,6 +155,7 @@ impl MapKind {
         MapKind::TargetAbove,
         MapKind::OutputAbove,
         MapKind::Difference,
+        MapKind::Unexplained,
     ];
 
     /// Title of its panel.
@@ -145,19 +168,23 @@ impl MapKind {
             MapKind::TargetAbove => "Target > η'",
             MapKind::OutputAbove => "Output > η",
             MapKind::Difference => "Difference",
+            MapKind::Unexplained => "Unexplained",
         }
     }
 
     /// What it shows, for tooltips.
     pub fn describe(self) -> &'static str {
         match self {
-            MapKind::Input0 => "What the 12 elements at the left end of the array see",
-            MapKind::Input1 => "What the 12 elements at the right end of the array see",
-            MapKind::Target => "What all 1024 elements see: the map that a reconstruction aims for",
+            MapKind::Input0 => "What the elements at the left end of the array see",
+            MapKind::Input1 => "What the elements at the right end of the array see",
+            MapKind::Target => "What all elements see: the map that a reconstruction aims for",
             MapKind::Output => "What the chosen method makes of the two ends",
             MapKind::TargetAbove => "Cells where the target exceeds η'",
             MapKind::OutputAbove => "Cells where the output exceeds η: the detections",
             MapKind::Difference => "Output minus target: red where the output is too bright, blue where it is too dark",
+            MapKind::Unexplained => {
+                "What reflectors laid over a recording leave of it: their echoes are fitted and taken off"
+            }
         }
     }
 

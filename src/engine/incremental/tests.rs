@@ -43,6 +43,22 @@ fn what_is_forgotten_vouches_for_no_precision() {
 }
 
 #[test]
+fn a_disturbed_scene_is_computed_as_commands_do_and_the_undisturbed_one_comes_back() {
+    let mut engine = Engine::new(small());
+    let plain = Scene::of_points([(0.3, 1.0)]);
+    let before = lambda(&engine.update(&plain, &Wanted::default()).unwrap());
+    let mut scene = plain.clone();
+    scene.disturbances.interferer = Some(crate::scene::Interferer::default());
+    let disturbed = engine.update(&scene, &Wanted::default()).unwrap();
+    let signal = signal::simulate(&small(), &scene, Floor::Thesis, 0).unwrap();
+    assert_eq!(*lambda(&disturbed), LogMaps::of_signal(&small(), &signal).full.normalise(Normalisation::MinMax));
+    assert!(disturbed.settled && *lambda(&disturbed) != *before);
+    assert_eq!(*disturbed.ends.unwrap(), signal.two_ends(&small()));
+    let after = engine.update(&plain, &Wanted::default()).unwrap();
+    assert!(!after.settled && lambda(&after) == before);
+}
+
+#[test]
 fn hidden_maps_are_not_computed() {
     let mut engine = Engine::new(small());
     let wanted = Wanted { first: false, full: false, ends: false, ..Wanted::default() };

@@ -18,6 +18,9 @@ struct Kept {
     /// Its own file. A path that is not Unicode is not kept: the document comes back untitled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     path: Option<String>,
+    /// The recording that it is laid over.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    recording: Option<String>,
 }
 
 /// The documents that copies are wanted of.
@@ -152,7 +155,10 @@ impl Store {
 }
 
 fn write(path: &Path, document: &Document) -> Result<(), SceneFileError> {
-    let kept = Kept { path: document.path().and_then(Path::to_str).map(str::to_owned) };
+    let kept = Kept {
+        path: document.path().and_then(Path::to_str).map(str::to_owned),
+        recording: document.recording_source().map(str::to_owned),
+    };
     let text = file::to_toml_beside(&document.to_file(), TABLE, &kept)
         .map_err(|source| SceneFileError::Unwritable { path: path.to_owned(), source })?;
     write_bytes(path, text.as_bytes()).map_err(|source| SceneFileError::Io { path: path.to_owned(), source })
@@ -164,8 +170,14 @@ fn read(path: &Path) -> Result<Document, SceneFileError> {
     let text = String::from_utf8(bytes).map_err(|e| io(std::io::Error::other(e.utf8_error())))?;
     let (file, kept) = file::from_toml_beside::<Kept>(&text, TABLE)
         .map_err(|source| SceneFileError::Text { path: path.to_owned(), source })?;
-    let own = kept.and_then(|k| k.path).map(PathBuf::from);
-    Ok(Document::unsaved(own.as_deref(), file))
+    let Kept { path: own, recording } = kept.unwrap_or_default();
+    let mut document = Document::unsaved(own.as_deref().map(Path::new), file);
+    if let Some(source) = recording
+        && let Err(error) = document.lay_over(&source)
+    {
+        tracing::warn!("a scene comes back without the recording it was laid over: {error}");
+    }
+    Ok(document)
 }
 
 /// Deletes a file; not there is as good as deleted.

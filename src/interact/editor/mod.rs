@@ -127,6 +127,12 @@ impl Editor {
             return Ok(false);
         }
         let before = self.snapshot();
+        let built = &self.scene().disturbances.elements;
+        if radar.elements != self.radar().elements && !built.elements.is_empty() {
+            // Elements keep what is wrong with them, counted from the first.
+            let fitted = built.fitted(radar.elements);
+            self.document.scene_mut().disturbances.elements = fitted;
+        }
         *self.document.radar_mut() = radar;
         self.history.push(label, merge_key, before);
         Ok(true)

@@ -25,9 +25,6 @@ const LEAST_BESIDE: f64 = 0.05;
 /// Range side lobes are expected to lie this much, in power, above what the window gives a single reflector.
 const SIDE_LOBE_ROOM: f64 = 8.0;
 
-/// Range bins over which side lobes are looked for.
-const SIDE_LOBE_BINS: usize = 128;
-
 /// Most places that are looked into; the strongest.
 const MOST_PLACES: usize = 4096;
 
@@ -124,10 +121,11 @@ pub(super) fn places(
     Ok(found)
 }
 
-/// The least power of a place at every range that is not a side lobe of the `strongest` at all ranges.
+/// The least power of a place at every range that is not a side lobe of the `strongest` at all ranges. Ranges wrap: the last bin lies
+/// beside the first.
 fn side_lobes(strongest: &[f64]) -> Vec<f64> {
-    let reach = SIDE_LOBE_BINS * PER_BIN;
-    let envelope: Vec<f64> = (0..=reach)
+    let count = strongest.len();
+    let envelope: Vec<f64> = (0..=count / 2)
         .map(|i| {
             let bins = i as f64 / PER_BIN as f64;
             // Beyond the main lobe the highest of each side lobe, at half bins.
@@ -135,12 +133,10 @@ fn side_lobes(strongest: &[f64]) -> Vec<f64> {
             if bins < 2.0 { LEAST_BESIDE } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_BESIDE) }
         })
         .collect();
-    (0..strongest.len())
+    let apart = |i: usize, j: usize| i.abs_diff(j).min(count - i.abs_diff(j));
+    (0..count)
         .into_par_iter()
-        .map(|i| {
-            let near = i.saturating_sub(reach)..(i + reach + 1).min(strongest.len());
-            near.map(|j| strongest[j] * envelope[i.abs_diff(j)]).fold(0.0, f64::max)
-        })
+        .map(|i| strongest.iter().enumerate().map(|(j, power)| power * envelope[apart(i, j)]).fold(0.0, f64::max))
         .collect()
 }
 
@@ -148,4 +144,30 @@ fn side_lobes(strongest: &[f64]) -> Vec<f64> {
 fn vertex(before: f64, here: f64, after: f64) -> f64 {
     let curvature = before - 2.0 * here + after;
     if curvature < 0.0 { (0.5 * (before - after) / curvature).clamp(-0.5, 0.5) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reconstruct::noise::ends_noise_variance;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+    use crate::task::Task;
+
+    #[test]
+    fn one_reflector_is_looked_for_near_its_range_alone_and_no_side_lobe_is_a_place() {
+        let radar = Radar { elements: 128, ..Radar::default() };
+        let scene = Scene::of_points([(2.0, 9.0)]);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let heard = Ends::new(&radar, &ends);
+        let sectors = Sectors::new(&radar, &heard);
+        let noise = ends_noise_variance(&radar, &ends) * 1.5 / radar.samples as f64;
+        let found = places(&radar, &heard, &sectors, noise, &Task::default()).unwrap();
+        let range = 2f64.hypot(9.0);
+        assert!(!found.is_empty() && found.len() < 4 * sectors.all.len(), "{} places", found.len());
+        for place in &found {
+            let bins = radar.bin_of_range((place.range_metres - range).abs());
+            assert!(bins < 6.0, "{bins} bins off: {place:?}");
+        }
+    }
 }

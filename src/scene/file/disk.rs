@@ -53,7 +53,13 @@ mod tests {
     fn scene() -> SceneFile {
         let objects = vec![Object::Point(Point { x_metres: 0.1 + 0.2, y_metres: 1e-300, reflectivity: -2.5 })];
         SceneFile {
-            scene: Scene { name: "One".to_owned(), notes: "Here.".to_owned(), noise_seed: 3, objects },
+            scene: Scene {
+                name: "One".to_owned(),
+                notes: "Here.".to_owned(),
+                noise_seed: 3,
+                objects,
+                ..Scene::default()
+            },
             radar: Radar::default(),
         }
     }

@@ -16,6 +16,8 @@ pub enum Loss {
     NoiseSeed,
     /// A radar other than table 3.1's: reopened, the scene stands before the usual one.
     Radar,
+    /// Elements as they are built, an interferer or a mirror: reopened, there are none.
+    Disturbances,
     /// Reflectivities other than 1: reopened, they are 1.
     Reflectivity {
         /// Objects that have one.
@@ -37,6 +39,7 @@ impl fmt::Display for Loss {
             Loss::Notes => f.write_str("its notes"),
             Loss::NoiseSeed => f.write_str("its noise seed"),
             Loss::Radar => f.write_str("its radar"),
+            Loss::Disturbances => f.write_str("what disturbs it"),
             Loss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
             Loss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
             Loss::Structure { objects: 1, points } => write!(f, "one line or cluster, which becomes {points} points"),
@@ -50,7 +53,7 @@ impl fmt::Display for Loss {
 impl Format {
     /// What a file of this format would not give back of `file`; empty where it gives back everything.
     pub fn losses(self, file: &SceneFile) -> Vec<Loss> {
-        let SceneFile { scene: Scene { name, notes, noise_seed, objects }, radar } = file;
+        let SceneFile { scene: Scene { name, notes, noise_seed, disturbances, objects }, radar } = file;
         if self == Format::Toml {
             return Vec::new();
         }
@@ -59,6 +62,7 @@ impl Format {
         losses.extend((!notes.is_empty()).then_some(Loss::Notes));
         losses.extend((*noise_seed != 0).then_some(Loss::NoiseSeed));
         losses.extend((*radar != Radar::default()).then_some(Loss::Radar));
+        losses.extend((!disturbances.is_none()).then_some(Loss::Disturbances));
         let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
         losses.extend((reflective > 0).then_some(Loss::Reflectivity { objects: reflective }));
         let structured = || objects.iter().filter(|o| !matches!(o, Object::Point(_)));
@@ -102,7 +106,7 @@ mod tests {
         let noise_seed = prop_oneof![2 => Just(0u64), 1 => 1..99u64];
         (text(), text(), noise_seed, objects, carrier).prop_map(|(name, notes, noise_seed, objects, carrier)| {
             SceneFile {
-                scene: Scene { name, notes, noise_seed, objects },
+                scene: Scene { name, notes, noise_seed, objects, ..Scene::default() },
                 radar: Radar { carrier, ..Radar::default() },
             }
         })

@@ -8,6 +8,26 @@
 //! [radar]                  # optional; only what differs from table 3.1
 //! carrier = "two-way"
 //!
+//! [disturbances.mirror]   # optional; a wall that makes ghosts
+//! x_metres = -5.0
+//! y_metres = 0.0
+//! direction_degrees = 90.0
+//! reflection = 0.5
+//!
+//! [disturbances.interferer] # optional; another radar, heard while its frequency crosses ours
+//! x_metres = 6.0
+//! y_metres = 25.0
+//! strength = 0.1
+//! crossing = 0.6
+//! duration = 0.1
+//!
+//! [disturbances.elements] # optional; elements as they are built: one number an element, or no list at all
+//! count = 1024
+//! gain_db = []
+//! phase_degrees = []
+//! position_millimetres = []
+//! dead = [17]
+//!
 //! [[object]]
 //! kind = "point"           # or "line", "gaussian"
 //! x_metres = -4.0

@@ -2,7 +2,7 @@
 
 use super::content::{SceneFile, SceneTextError};
 use crate::radar::Radar;
-use crate::scene::{GaussianCluster, Line, Object, Point, Scene, SceneError};
+use crate::scene::{Disturbances, GaussianCluster, Line, Object, Point, Scene, SceneError};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -27,14 +27,16 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
         noise_seed: Option<u64>,
         #[serde(skip_serializing_if = "toml::Table::is_empty")]
         radar: toml::Table,
+        #[serde(skip_serializing_if = "Disturbances::is_none")]
+        disturbances: &'a Disturbances,
         object: &'a [Object],
     }
-    let Scene { name, notes, noise_seed, objects } = &file.scene;
+    let Scene { name, notes, noise_seed, disturbances, objects } = &file.scene;
     let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
     let usual = toml::Table::try_from(Radar::default())?;
     let mut radar = toml::Table::try_from(&file.radar)?;
     radar.retain(|key, value| usual.get(key) != Some(value));
-    toml::to_string_pretty(&Document { name, notes, noise_seed, radar, object: objects })
+    toml::to_string_pretty(&Document { name, notes, noise_seed, radar, disturbances, object: objects })
 }
 
 /// [`to_toml`] with a table of somebody else's, called `key`, after it.
@@ -58,6 +60,7 @@ pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
         let span = match &error {
             SceneError::Value { object, field, .. } => object_spans(text, *object).field(field),
             SceneError::OnElement { object, .. } => object_spans(text, *object).whole,
+            SceneError::Elements(_) | SceneError::Disturbance { .. } => disturbances_span(text),
             SceneError::TooMany { .. } | SceneError::Radar(_) => 0..0,
         };
         SceneTextError::at(text, span.start, error.to_string())
@@ -105,6 +108,8 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
         noise_seed: u64,
         #[serde(default)]
         radar: Radar,
+        #[serde(default)]
+        disturbances: Disturbances,
         #[serde(default, rename = "object")]
         _objects: Option<IgnoredAny>,
     }
@@ -127,7 +132,13 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
     let objects = entries.map(|e| objects(text, e)).transpose()?.unwrap_or_default();
     Ok((
         SceneFile {
-            scene: Scene { name: head.name, notes: head.notes, noise_seed: head.noise_seed, objects },
+            scene: Scene {
+                name: head.name,
+                notes: head.notes,
+                noise_seed: head.noise_seed,
+                disturbances: head.disturbances,
+                objects,
+            },
             radar: head.radar,
         },
         other,
@@ -178,6 +189,11 @@ fn object_spans(text: &str, index: usize) -> Spans {
     let document = table(text).ok();
     let entries = document.as_ref().and_then(|d| d.get_ref().get("object")).and_then(|e| e.get_ref().as_array());
     entries.and_then(|e| e.get(index)).map_or(Spans { whole: 0..0, fields: Vec::new() }, Spans::of)
+}
+
+/// Where the table of disturbances stands in a text that was read before.
+fn disturbances_span(text: &str) -> Range<usize> {
+    table(text).ok().and_then(|d| d.get_ref().get("disturbances").map(Spanned::span)).unwrap_or(0..0)
 }
 
 /// Where a table and its keys stand in the text.
@@ -241,6 +257,11 @@ mod tests {
             name: "All \"three\"".to_owned(),
             notes: "First line.\nSecond: 'x'.".to_owned(),
             noise_seed: 9,
+            disturbances: Disturbances {
+                interferer: Some(crate::scene::Interferer { x_metres: -1.5, ..Default::default() }),
+                mirror: Some(crate::scene::Mirror { reflection: 0.25, ..Default::default() }),
+                ..Disturbances::default()
+            },
             objects,
         };
         SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, ..Radar::default() } }

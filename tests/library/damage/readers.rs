@@ -42,7 +42,13 @@ fn scene() -> SceneFile {
         reflectivity: 1.0,
     };
     let objects = vec![Object::Point(Point::new(1.0, 2.0)), Object::Line(line), Object::Gaussian(cluster)];
-    let scene = Scene { name: "All \"three\"".to_owned(), notes: "First.\nSecond.".to_owned(), noise_seed: 5, objects };
+    let scene = Scene {
+        name: "All \"three\"".to_owned(),
+        notes: "First.\nSecond.".to_owned(),
+        noise_seed: 5,
+        objects,
+        ..Scene::default()
+    };
     SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, elements: 64, samples: 128, ..Radar::default() } }
 }
 

@@ -211,6 +211,8 @@ pub struct Caption {
     pub target_eta: f32,
     /// eta.
     pub output_eta: f32,
+    /// Part of a recording's power that the reflectors laid over it explain.
+    pub explained: Option<f64>,
 }
 
 /// What stands in the title bar of a map's panel.
@@ -230,6 +232,9 @@ pub fn caption(input: Caption) -> Option<String> {
             let figures = input.metrics.map_or_else(String::new, |m| format!("SE {:.0} ", m.squared_error));
             format!("{figures}{updating}")
         }
+        MapKind::Unexplained => input.explained.map_or_else(String::new, |explained| {
+            format!("{:.1} % of the power explained {updating}", 100.0 * explained)
+        }),
         _ => updating.to_owned(),
     };
     (!text.trim().is_empty()).then_some(text)

@@ -1,6 +1,7 @@
 //! The scene's canvas: what the pointer does in it.
 
 mod canvas;
+mod disturbances;
 
 use crate::app::state::{Command, Cursor, NewObject, SceneView};
 use crate::app::widgets::entry::entry;
@@ -47,6 +48,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
+    disturbances::draw(&painter, canvas, &editor.scene().disturbances);
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
         let look = Look { selected: editor.selection().contains(index), hovered };

@@ -1,0 +1,76 @@
+//! Commands that change the radar before the scene, its elements, and what else disturbs it.
+
+use crate::app::state::{Command, State};
+use crate::radar::{BuiltArray, Radar, presets};
+use crate::recording::Recording;
+use crate::scene::Disturbances;
+
+/// Does those commands, and hands others on.
+pub fn apply(state: &mut State, command: Command) -> Option<Command> {
+    match command {
+        Command::SetCarrier(carrier) => edit(state, "carrier", None, |r| r.carrier = carrier),
+        Command::SetWindow(window) => edit(state, "window", None, |r| r.window = window),
+        Command::SetRadar(radar) => {
+            let field = changed_field(state.radar(), &radar);
+            edit(state, field, Some(field), |r| *r = *radar);
+        }
+        Command::SetElements(elements) => disturb(state, "built elements", |d| {
+            d.elements = if elements.is_ideal() { BuiltArray::default() } else { BuiltArray::clone(&elements) };
+        }),
+        Command::SetInterferer(interferer) => disturb(state, "interferer", |d| d.interferer = interferer),
+        Command::SetMirror(mirror) => disturb(state, "mirror", |d| d.mirror = mirror),
+        Command::RadarPreset(index) => {
+            if let Some(preset) = presets::ALL.get(index) {
+                edit(state, "radar preset", None, |r| *r = preset.radar.clone());
+            }
+        }
+        other => return Some(other),
+    }
+    None
+}
+
+/// Changes what disturbs the scene; changes of one kind in a row are one step until the pointer is let go.
+fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)) {
+    let mut changed = state.editor.scene().disturbances.clone();
+    change(&mut changed);
+    match changed.validate(state.radar()) {
+        Ok(()) => _ = state.editor.edit(what, Some(what), |scene, _| scene.disturbances = changed),
+        Err(error) => state.notices.error(error.to_string()),
+    }
+}
+
+/// What differs first: edits of one field merge into one step, those of another begin another.
+fn changed_field(before: &Radar, after: &Radar) -> &'static str {
+    let changes = [
+        ("carrier frequency", before.carrier_hz != after.carrier_hz),
+        ("bandwidth", before.bandwidth_hz != after.bandwidth_hz),
+        ("samples", before.samples != after.samples),
+        ("elements", before.elements != after.elements),
+        ("elements of an end", before.end_elements != after.end_elements),
+        ("spacing", before.element_spacing_metres != after.element_spacing_metres),
+        ("power", before.transmit_power_watts != after.transmit_power_watts),
+    ];
+    changes.into_iter().find(|(_, changed)| *changed).map_or("radar", |(name, _)| name)
+}
+
+/// Whether a recording made with `before` can be looked at with `after`: its constants are what they were.
+fn fits_recording(recording: &Recording, before: &Radar, after: &Radar) -> bool {
+    let end_elements = if recording.signal().is_some() { after.end_elements } else { before.end_elements };
+    Radar { window: after.window, end_elements, ..before.clone() } == *after
+}
+
+/// Changes the radar, as a step that can be undone.
+fn edit(state: &mut State, label: &str, merge_key: Option<&str>, change: impl FnOnce(&mut Radar)) {
+    let mut changed = state.radar().clone();
+    change(&mut changed);
+    let recording = state.editor.document().recording();
+    if recording.is_some_and(|r| !fits_recording(r, state.radar(), &changed)) {
+        let advice = "Open a scene to look with another.";
+        return state
+            .notices
+            .error(format!("The radar on screen is the one that the recording was made with. {advice}"));
+    }
+    if let Err(error) = state.editor.edit_radar(label, merge_key, |r| *r = changed) {
+        state.notices.error(error.to_string());
+    }
+}

@@ -1,0 +1,167 @@
+//! What disturbs the scene: somebody else's radar, and a wall that mirrors.
+
+use crate::app::state::Command;
+use crate::scene::{Disturbances, Interferer, Mirror};
+use eframe::egui;
+use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+
+/// What is shown.
+pub struct Input<'a> {
+    /// What disturbs the scene.
+    pub disturbances: &'a Disturbances,
+    /// Whether a recording stands in the place of the scene: nothing is added to what was measured.
+    pub is_recorded: bool,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            if input.is_recorded {
+                ui.weak("A recording has the disturbances that it was made with.");
+                return;
+            }
+            interferer(ui, input.disturbances.interferer, &mut asked);
+            ui.add_space(8.0);
+            mirror(ui, input.disturbances.mirror, &mut asked);
+        });
+    });
+    asked
+}
+
+/// How a number is shown and edited.
+struct Field {
+    name: &'static str,
+    tooltip: &'static str,
+    unit: &'static str,
+    /// What the number is multiplied with on screen.
+    scale: f64,
+    low: f64,
+    high: f64,
+    speed: f64,
+}
+
+const fn metres(name: &'static str, tooltip: &'static str) -> Field {
+    Field { name, tooltip, unit: " m", scale: 1.0, low: -1e4, high: 1e4, speed: 0.05 }
+}
+
+fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
+    let label = ui.label(field.name).on_hover_text(field.tooltip);
+    let mut shown = *value * field.scale;
+    let drag = DragValue::new(&mut shown)
+        .range(field.low..=field.high)
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .speed(field.speed)
+        .max_decimals(4)
+        .suffix(field.unit);
+    if ui.add(drag).labelled_by(label.id).on_hover_text(field.tooltip).changed()
+        && (shown - *value * field.scale).abs() >= 0.5e-4
+    {
+        *value = shown / field.scale;
+    }
+    ui.end_row();
+}
+
+fn interferer(ui: &mut Ui, now: Option<Interferer>, asked: &mut Vec<Command>) {
+    let mut on = now.is_some();
+    let tooltip = "Another radar whose chirps are not synchronised: heard while its frequency crosses ours";
+    if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
+        asked.push(Command::SetInterferer(on.then(Interferer::default)));
+        return;
+    }
+    let Some(now) = now else { return };
+    let mut edited = now;
+    let percent = |name, tooltip, low| Field { name, tooltip, unit: " %", scale: 100.0, low, high: 200.0, speed: 0.5 };
+    Grid::new("interferer").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+        number(ui, &metres("interferer's x", "Position along the array's axis"), &mut edited.x_metres);
+        number(ui, &metres("interferer's y", "Position ahead of the array"), &mut edited.y_metres);
+        let tooltip = "Its amplitude at 1 m, in units of the radar's power; a reflector of reflectivity 1 at 1 m has 1";
+        let field = Field { name: "strength", tooltip, unit: "", scale: 1.0, low: 0.0, high: 1e3, speed: 0.005 };
+        number(ui, &field, &mut edited.strength);
+        let tooltip = "When its frequency crosses ours, as a part of the chirp";
+        number(ui, &percent("crosses at", tooltip, -100.0), &mut edited.crossing);
+        let tooltip = "For which part of the chirp it is heard: less, the steeper its chirp against ours";
+        number(ui, &percent("heard for", tooltip, 0.1), &mut edited.duration);
+    });
+    if edited != now {
+        asked.push(Command::SetInterferer(Some(edited)));
+    }
+}
+
+fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
+    let mut on = now.is_some();
+    let tooltip = "A straight wall: every reflector on the radar's side of it gets three ghosts";
+    if ui.checkbox(&mut on, "Mirror").on_hover_text(tooltip).changed() {
+        asked.push(Command::SetMirror(on.then(Mirror::default)));
+        return;
+    }
+    let Some(now) = now else { return };
+    let mut edited = now;
+    Grid::new("mirror").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+        number(ui, &metres("mirror's x", "Of a point of the wall"), &mut edited.x_metres);
+        number(ui, &metres("mirror's y", "Of the same point"), &mut edited.y_metres);
+        let tooltip = "Where the wall leads: 0° along the array, 90° straight ahead";
+        let field = Field { name: "direction", tooltip, unit: "°", scale: 1.0, low: -360.0, high: 360.0, speed: 0.5 };
+        number(ui, &field, &mut edited.direction_degrees);
+        let tooltip = "Part of an amplitude that the wall reflects; a ghost over it both ways has the square of it";
+        let field = Field { name: "reflection", tooltip, unit: " %", scale: 100.0, low: 0.0, high: 100.0, speed: 0.5 };
+        number(ui, &field, &mut edited.reflection);
+    });
+    if edited != now {
+        asked.push(Command::SetMirror(Some(edited)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn panel(is_recorded: bool) -> Harness<'static, Disturbances> {
+        let draw = move |ui: &mut Ui, state: &mut Disturbances| {
+            for command in show(ui, Input { disturbances: &state.clone(), is_recorded }) {
+                match command {
+                    Command::SetInterferer(interferer) => state.interferer = interferer,
+                    Command::SetMirror(mirror) => state.mirror = mirror,
+                    other => panic!("{other:?}"),
+                }
+            }
+        };
+        let mut panel = Harness::builder().with_size([360.0, 420.0]).build_ui_state(draw, Disturbances::default());
+        panel.run();
+        panel
+    }
+
+    #[test]
+    fn both_are_switched_on_edited_and_off() {
+        let mut panel = panel(false);
+        for label in ["Interferer", "Mirror"] {
+            panel.get_by_label(label).click();
+            panel.run();
+        }
+        assert_eq!(panel.state().interferer, Some(Interferer::default()));
+        assert_eq!(panel.state().mirror, Some(Mirror::default()));
+        let field = panel
+            .get_by(|n| n.label().as_deref() == Some("crosses at") && n.role() == egui::accesskit::Role::SpinButton);
+        field.focus();
+        panel.run();
+        panel.event(egui::Event::Text("25".to_owned()));
+        panel.run();
+        panel.key_press(egui::Key::Enter);
+        panel.run();
+        let edited = panel.state().interferer.unwrap();
+        assert_eq!(edited, Interferer { crossing: 0.25, ..Interferer::default() }, "and nothing else moved");
+        panel.get_by_label("Interferer").click();
+        panel.run();
+        assert_eq!((panel.state().interferer, panel.state().mirror.is_some()), (None, true));
+    }
+
+    #[test]
+    fn nothing_is_added_to_a_recording() {
+        let panel = panel(true);
+        assert!(panel.query_by_label("Mirror").is_none());
+    }
+}

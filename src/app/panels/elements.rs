@@ -1,0 +1,322 @@
+//! Elements as they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
+
+use crate::app::jobs::Calibrated;
+use crate::app::state::Command;
+use crate::app::widgets::theme::Inks;
+use crate::radar::{BuiltArray, Decibels, ElementError, End, Radar, Tolerances};
+use eframe::egui;
+use eframe::egui::{DragValue, Grid, Key, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use std::sync::Arc;
+
+/// What is shown.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Its elements.
+    pub elements: &'a BuiltArray,
+    /// What the selected reflector tells of them; `None` where none is selected.
+    pub calibration: Option<Result<&'a Calibrated, &'a str>>,
+}
+
+/// What the panel remembers.
+pub struct Memory {
+    /// The element whose numbers are shown.
+    chosen: usize,
+    tolerances: Tolerances,
+    seed: u64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
+        Memory { chosen: 0, tolerances, seed: 0 }
+    }
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    memory.chosen = memory.chosen.min(input.radar.elements - 1);
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            summary(ui, &input, &mut asked);
+            strip(ui, &input, memory, &mut asked);
+            one(ui, &input, memory, &mut asked);
+            ui.separator();
+            draw_from_seed(ui, &input, memory, &mut asked);
+            ui.separator();
+            calibration(ui, &input, &mut asked);
+        });
+    });
+    asked
+}
+
+/// The array with one element changed.
+fn with(input: &Input<'_>, n: usize, change: impl FnOnce(&mut ElementError)) -> Command {
+    let mut elements = input.elements.elements.clone();
+    elements.resize(input.radar.elements, ElementError::default());
+    change(&mut elements[n]);
+    Command::SetElements(Arc::new(BuiltArray { elements }))
+}
+
+fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        if input.elements.is_ideal() {
+            ui.weak("Every element is as it should be. Click one to silence it.");
+            return;
+        }
+        ui.label(told(input.elements));
+        let tooltip = "Every element as it should be; undo brings the errors back";
+        if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
+            asked.push(Command::SetElements(Arc::default()));
+        }
+    });
+}
+
+/// What an array is off by.
+fn told(elements: &BuiltArray) -> String {
+    let Tolerances { gain, phase_degrees, position_millimetres } = elements.spread();
+    let dead = match elements.dead() {
+        0 => String::new(),
+        n => format!("{n} dead, "),
+    };
+    format!("{dead}gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
+}
+
+/// The elements side by side: red where one is dead, the gain as the height of its bar, the phase as where its dot stands.
+fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    let count = input.radar.elements;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 58.0), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Elements"));
+    let at = |n: usize| rect.left() + (n as f32 + 0.5) / count as f32 * rect.width();
+    let under = |x: f32| (((x - rect.left()) / rect.width() * count as f32).max(0.0) as usize).min(count - 1);
+    let inks = Inks::of(ui.visuals());
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect_filled(rect, 3.0, inks.ground);
+    let [first, last] = End::BOTH.map(|end| input.radar.end_range(end));
+    let width = (rect.width() / count as f32 * 0.7).clamp(1.0, 10.0);
+    for n in 0..count {
+        let error = input.elements.element(n);
+        let ink = match n {
+            n if first.contains(&n) => inks.ends[0],
+            n if last.contains(&n) => inks.ends[1],
+            _ => inks.array,
+        };
+        let x = at(n) + (error.position_millimetres * 1e-3 / input.radar.element_spacing_metres) as f32 * width;
+        let middle = rect.center().y;
+        if error.dead {
+            let cross = Stroke::new(1.5, ui.visuals().error_fg_color);
+            painter.line_segment([pos2(x - 3.0, middle - 8.0), pos2(x + 3.0, middle + 8.0)], cross);
+            painter.line_segment([pos2(x - 3.0, middle + 8.0), pos2(x + 3.0, middle - 8.0)], cross);
+            continue;
+        }
+        let half = (9.0 + error.gain.0 as f32 * 2.0).clamp(2.0, 24.0);
+        painter.rect_filled(Rect::from_center_size(pos2(x, middle), vec2(width, 2.0 * half)), 1.0, ink);
+        if error.phase_degrees != 0.0 {
+            let up = (error.phase_degrees / 180.0) as f32 * 24.0;
+            painter.circle_filled(pos2(x, middle - up), 2.0, inks.selected);
+        }
+    }
+    let chosen = at(memory.chosen);
+    painter.vline(chosen, rect.y_range(), Stroke::new(1.0, inks.selected));
+    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+        memory.chosen = under(pos.x);
+        asked.push(with(input, memory.chosen, |e| e.dead = !e.dead));
+    }
+    if response.has_focus() {
+        let key = |key| ui.input(|i| i.key_pressed(key));
+        memory.chosen = (memory.chosen + usize::from(key(Key::ArrowRight))).min(count - 1);
+        memory.chosen = memory.chosen.saturating_sub(usize::from(key(Key::ArrowLeft)));
+    }
+    let tip = response.hover_pos().map(|pos| {
+        let n = under(pos.x);
+        let e = input.elements.element(n);
+        let state = if e.dead { "dead".to_owned() } else { format!("{:+.2} dB, {:+.1}°", e.gain.0, e.phase_degrees) };
+        format!("element {n}: {state}, {:+.2} mm\nclick: dead or alive", e.position_millimetres)
+    });
+    if let Some(tip) = tip {
+        response.on_hover_text_at_pointer(tip);
+    }
+}
+
+/// A number that is typed or dragged; what the focus only passes through keeps its decimals.
+fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64) -> Option<f64> {
+    let label = ui.label(name);
+    let mut edited = value;
+    let drag = DragValue::new(&mut edited)
+        .range(-most..=most)
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .speed(speed)
+        .max_decimals(3)
+        .suffix(unit);
+    let changed = ui.add(drag).labelled_by(label.id).changed();
+    (changed && (edited - value).abs() >= 0.5e-3).then_some(edited)
+}
+
+/// Numbers of the chosen element.
+fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    let n = memory.chosen;
+    let error = input.elements.element(n);
+    ui.horizontal_wrapped(|ui| {
+        let label = ui.label("element");
+        let most = input.radar.elements - 1;
+        ui.add(DragValue::new(&mut memory.chosen).range(0..=most).speed(0.2)).labelled_by(label.id);
+        let mut dead = error.dead;
+        if ui.checkbox(&mut dead, "dead").changed() {
+            asked.push(with(input, n, |e| e.dead = dead));
+        }
+        if let Some(db) = number(ui, "gain", " dB", error.gain.0, 60.0, 0.05) {
+            asked.push(with(input, n, |e| e.gain = Decibels(db)));
+        }
+        if let Some(degrees) = number(ui, "phase", "°", error.phase_degrees, 360.0, 0.5) {
+            asked.push(with(input, n, |e| e.phase_degrees = degrees));
+        }
+        if let Some(mm) = number(ui, "place", " mm", error.position_millimetres, 1000.0, 0.01) {
+            asked.push(with(input, n, |e| e.position_millimetres = mm));
+        }
+    });
+}
+
+/// Errors of all elements at once, from a seed.
+fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let Tolerances { gain, phase_degrees, position_millimetres } = &mut memory.tolerances;
+        for (name, value, unit, most) in [
+            ("gains ±", &mut gain.0, " dB", 40.0),
+            ("phases ±", phase_degrees, "°", 180.0),
+            ("places ±", position_millimetres, " mm", 100.0),
+        ] {
+            let label = ui.label(name).on_hover_text("Standard deviation");
+            ui.add(DragValue::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit))
+                .labelled_by(label.id);
+        }
+        let label = ui.label("seed");
+        ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+        let tooltip = "Give every element an error of its own; the dead stay dead";
+        if ui.button("Draw").on_hover_text(tooltip).clicked() {
+            let mut drawn = memory.tolerances.build(input.radar, memory.seed);
+            drawn.elements.iter_mut().enumerate().for_each(|(n, e)| e.dead = input.elements.element(n).dead);
+            asked.push(Command::SetElements(Arc::new(drawn)));
+        }
+    });
+}
+
+fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let found = match &input.calibration {
+        None => {
+            ui.weak("Select a point of the scene: what is heard of it calibrates the elements.");
+            return;
+        }
+        Some(Err(reason)) => {
+            ui.weak(*reason);
+            return;
+        }
+        Some(Ok(found)) => found,
+    };
+    ui.strong(format!("Calibration on {}", found.name));
+    Grid::new("calibration").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+        let unexplained = format!("{:.1} % of the power is not its echo", 100.0 * found.calibration.unexplained);
+        let rows = [
+            ("found", told(&found.calibration.array), "Gain and phase that the reflector's echo tells of each element"),
+            ("left", told(&found.left), "What is wrong with the elements once that is taken off: places can't be"),
+            ("besides", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
+        ];
+        for (name, text, tooltip) in rows {
+            ui.weak(name).on_hover_text(tooltip);
+            ui.label(text).on_hover_text(tooltip);
+            ui.end_row();
+        }
+    });
+    let tooltip = "Divide every element's samples by what was found of it";
+    if ui.button("Calibrate on this reflector").on_hover_text(tooltip).clicked() {
+        asked.push(Command::SetElements(Arc::new(found.left.clone())));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Reflector;
+    use crate::signal::{Floor, calibrate, simulate_built};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Panel {
+        elements: Arc<BuiltArray>,
+        memory: Memory,
+        asked: usize,
+        calibrated: Option<Calibrated>,
+    }
+
+    fn radar() -> Radar {
+        Radar { elements: 32, samples: 64, ..Radar::default() }
+    }
+
+    fn panel(elements: BuiltArray, calibrated: Option<Calibrated>) -> Harness<'static, Panel> {
+        let draw = |ui: &mut Ui, state: &mut Panel| {
+            let elements = state.elements.clone();
+            let calibration = state.calibrated.as_ref().map(Ok);
+            let input = Input { radar: &radar(), elements: &elements, calibration };
+            for command in show(ui, input, &mut state.memory) {
+                let Command::SetElements(elements) = command else { panic!("{command:?}") };
+                state.elements = elements;
+                state.asked += 1;
+            }
+        };
+        let state = Panel { elements: Arc::new(elements), memory: Memory::default(), asked: 0, calibrated };
+        let mut panel = Harness::builder().with_size([640.0, 360.0]).build_ui_state(draw, state);
+        panel.run();
+        panel
+    }
+
+    #[test]
+    fn a_click_silences_an_element_and_another_wakes_it() {
+        let mut panel = panel(BuiltArray::default(), None);
+        let strip = panel.get_by_label("Elements").rect();
+        let on_fifth = pos2(strip.left() + 5.5 / 32.0 * strip.width(), strip.center().y);
+        for dead in [true, false] {
+            panel.hover_at(on_fifth);
+            panel.drag_at(on_fifth);
+            panel.step();
+            panel.drop_at(on_fifth);
+            panel.run();
+            assert_eq!(panel.state().elements.elements[5].dead, dead);
+        }
+        assert_eq!(panel.state().asked, 2);
+        assert!(panel.state().elements.is_ideal());
+    }
+
+    #[test]
+    fn errors_are_drawn_from_a_seed_and_taken_back() {
+        let mut panel = panel(BuiltArray::default(), None);
+        panel.get_by_label("Draw").click();
+        panel.run();
+        let drawn = panel.state().elements.clone();
+        let tolerances = Memory::default().tolerances;
+        assert_eq!(*drawn, tolerances.build(&radar(), 0));
+        panel.get_by_label("Ideal array").click();
+        panel.run();
+        assert!(panel.state().elements.is_ideal() && panel.query_by_label("Ideal array").is_none());
+    }
+
+    #[test]
+    fn a_reflector_calibrates_and_what_is_left_is_told() {
+        let radar = radar();
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.0 };
+        let array = tolerances.build(&radar, 1);
+        let scene = crate::scene::Scene::of_points([(0.0, 2.0)]);
+        let reflector: Reflector = scene.reflectors()[0];
+        let signal = simulate_built(&radar, &scene, &array, Floor::Exact, 0).unwrap();
+        let calibration = calibrate(&radar, &signal, &reflector).unwrap();
+        let left = array.corrected(&calibration.array);
+        let calibrated = Calibrated { name: "point 1".to_owned(), calibration, left };
+        let mut panel = panel(array, Some(calibrated));
+        let _told =
+            (panel.get_by_label("Calibration on point 1"), panel.get_by_label("0.0 % of the power is not its echo"));
+        panel.get_by_label("Calibrate on this reflector").click();
+        panel.run();
+        let left = panel.state().elements.spread();
+        assert!(left.gain.0 < 1e-6 && left.phase_degrees < 1e-4, "{left:?}");
+    }
+}

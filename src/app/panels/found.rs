@@ -1,0 +1,109 @@
+//! What the method found, as a list: angle, range, strength.
+
+use crate::app::state::Command;
+use crate::reconstruct::Detection;
+use eframe::egui;
+use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
+
+/// Most lines that are shown.
+const LINES: usize = 200;
+
+/// What is listed.
+pub struct Input<'a> {
+    /// The method whose output is shown.
+    pub method: Option<&'static str>,
+    /// What it found, the strongest first; `None` until the list is there.
+    pub found: Option<&'a [Detection]>,
+    /// Why there is no output.
+    pub refusal: Option<&'a str>,
+    /// Whether a range was measured: one sample tells none.
+    pub has_ranges: bool,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        let Some((method, found)) = input.method.zip(input.found).filter(|_| input.refusal.is_none()) else {
+            match input.refusal {
+                Some(reason) => _ = ui.colored_label(ui.visuals().error_fg_color, reason),
+                None => _ = ui.weak("Nothing is listed yet."),
+            }
+            return;
+        };
+        let more = found.len().saturating_sub(LINES);
+        ui.weak(match found.len() {
+            0 => format!("{method} found nothing."),
+            1 => format!("{method} found one echo"),
+            count => format!("{method} found {count} echoes, the strongest first"),
+        });
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            Grid::new("found").num_columns(4).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
+                if !found.is_empty() {
+                    for (heading, tooltip) in [
+                        ("", ""),
+                        ("angle", "From broadside; to the right is positive"),
+                        ("range", "From the centre of the array"),
+                        ("dB", "Power of the echo, relative to the strongest"),
+                    ] {
+                        ui.strong(heading).on_hover_text(tooltip);
+                    }
+                    ui.end_row();
+                }
+                found.iter().take(LINES).enumerate().for_each(|(i, d)| line(ui, i + 1, d, input.has_ranges));
+            });
+            if more > 0 {
+                ui.weak(format!("and {more} weaker ones"));
+            }
+        });
+    });
+    Vec::new()
+}
+
+fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
+    ui.weak(number.to_string());
+    let range = if has_ranges { format!("{:.2} m", found.range_metres) } else { "–".to_owned() };
+    let degrees = found.cos_theta.clamp(-1.0, 1.0).asin().to_degrees();
+    for text in [format!("{degrees:+.2}°"), range, format!("{:.1}", found.relative_power.0)] {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
+    }
+    ui.end_row();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Decibels;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn panel(found: Option<Vec<Detection>>, refusal: Option<&'static str>, has_ranges: bool) -> Harness<'static> {
+        let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
+            let asked = show(ui, Input { method: Some("iaa"), found: found.as_deref(), refusal, has_ranges });
+            assert!(asked.is_empty());
+        });
+        panel.run();
+        panel
+    }
+
+    fn detection(degrees: f64, range_metres: f64, db: f64) -> Detection {
+        Detection { cos_theta: degrees.to_radians().sin(), range_metres, relative_power: Decibels(db) }
+    }
+
+    #[test]
+    fn angles_ranges_and_decibels_are_listed() {
+        let list = vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)];
+        let shown = panel(Some(list.clone()), None, true);
+        let _told = ["iaa found 2 echoes, the strongest first", "+6.96°", "15.00 m", "-3.50°", "7.25 m", "-2.0"]
+            .map(|text| shown.get_by_label(text));
+        let snapshot = panel(Some(list), None, false);
+        assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
+    }
+
+    #[test]
+    fn nothing_and_too_much_are_told() {
+        let _nothing = panel(Some(Vec::new()), None, true).get_by_label("iaa found nothing.");
+        let many = panel(Some((0..250).map(|i| detection(0.0, f64::from(i), -1.0)).collect()), None, true);
+        let _more = many.get_by_label("and 50 weaker ones");
+        let _refused = panel(None, Some("needs at least 4 samples"), true).get_by_label("needs at least 4 samples");
+    }
+}

@@ -1,0 +1,379 @@
+//! The radar: every constant of it, and what follows from each.
+
+use crate::app::state::Command;
+use crate::radar::{Carrier, Radar, WindowFunction, presets};
+use crate::theory::Consequences;
+use eframe::egui;
+use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Ui};
+
+/// What is shown.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// What was recorded with it, where something was: then its constants are what they were.
+    pub measured: Option<Measured>,
+}
+
+/// A recording made with the radar.
+#[derive(Debug, Clone, Copy)]
+pub struct Measured {
+    /// Whether all its elements were recorded: then its ends can be chosen.
+    pub by_all_elements: bool,
+}
+
+impl Measured {
+    fn told(self) -> &'static str {
+        match self.by_all_elements {
+            true => "Measured with this radar: how many elements an end has, and the windows, are yours to choose.",
+            false => "Measured with this radar by its two ends: the windows are yours to choose.",
+        }
+    }
+}
+
+/// Which fields can be edited.
+#[derive(Clone, Copy)]
+struct Free {
+    constants: bool,
+    ends: bool,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            match input.measured {
+                Some(measured) => _ = ui.weak(measured.told()),
+                None => preset(ui, input.radar, &mut asked),
+            }
+            ui.add_space(4.0);
+            let mut radar = input.radar.clone();
+            let follows = Consequences::of(&radar);
+            let constants = input.measured.is_none();
+            let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
+            Grid::new("radar").num_columns(3).spacing([12.0, 5.0]).striped(true).show(ui, |ui| {
+                for heading in ["Constant", "Value", "Consequence"] {
+                    ui.strong(heading);
+                }
+                ui.end_row();
+                rows(ui, &mut radar, &follows, free);
+            });
+            radar.end_elements = radar.end_elements.min(radar.elements / 2);
+            if radar != *input.radar {
+                asked.push(Command::SetRadar(Box::new(radar)));
+            }
+        });
+    });
+    asked
+}
+
+/// Radars to start from.
+fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
+    let chosen = presets::ALL.iter().find(|p| p.radar == *radar);
+    ui.horizontal(|ui| {
+        let label =
+            ui.label("Start from").on_hover_text("Radars that are built, and radars that show what a constant does");
+        let name = chosen.map_or("a radar of your own", |p| p.name);
+        let combo = ComboBox::from_id_salt("radar preset").width(230.0).selected_text(name).show_ui(ui, |ui| {
+            for (index, preset) in presets::ALL.iter().enumerate() {
+                let is_chosen = chosen.is_some_and(|c| c.id == preset.id);
+                if ui.selectable_label(is_chosen, preset.name).on_hover_text(preset.about).clicked() && !is_chosen {
+                    asked.push(Command::RadarPreset(index));
+                }
+            }
+        });
+        combo.response.labelled_by(label.id);
+    });
+    if let Some(preset) = chosen {
+        ui.weak(preset.about);
+    }
+}
+
+/// A number of the radar.
+struct Number {
+    name: &'static str,
+    tooltip: &'static str,
+    unit: &'static str,
+    speed: f64,
+    low: f64,
+    high: f64,
+    decimals: usize,
+}
+
+/// A row: name, the number in its unit, what follows. The number as it is after an edit, where there was one.
+fn number(ui: &mut Ui, field: &Number, value: f64, consequence: &str, is_free: bool) -> Option<f64> {
+    let label = ui.label(field.name).on_hover_text(field.tooltip);
+    let mut edited = value;
+    let drag = DragValue::new(&mut edited)
+        .range(field.low..=field.high)
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .speed(field.speed)
+        .max_decimals(field.decimals)
+        .suffix(field.unit);
+    let changed = ui.add_enabled(is_free, drag).labelled_by(label.id).on_hover_text(field.tooltip).changed();
+    ui.label(consequence);
+    ui.end_row();
+    // A field that the focus only passes through writes back what it shows, rounded.
+    let step = 10f64.powi(-(field.decimals as i32));
+    (changed && (edited - value).abs() >= 0.5 * step).then_some(edited)
+}
+
+const CARRIER: Number = Number {
+    name: "carrier",
+    tooltip: "Frequency that the chirps are centred on: with the spacing it decides how wide beams are",
+    unit: " GHz",
+    speed: 0.05,
+    low: 0.1,
+    high: 1000.0,
+    decimals: 3,
+};
+const BANDWIDTH: Number = Number {
+    name: "bandwidth",
+    tooltip: "How far a chirp sweeps: a range bin is the speed of light over twice of it",
+    unit: " MHz",
+    speed: 2.0,
+    low: 1.0,
+    high: 20_000.0,
+    decimals: 1,
+};
+const SAMPLES: Number = Number {
+    name: "samples",
+    tooltip: "Samples of a chirp, and range bins of a map",
+    unit: "",
+    speed: 1.0,
+    low: 1.0,
+    high: 4096.0,
+    decimals: 0,
+};
+const ELEMENTS: Number = Number {
+    name: "elements",
+    tooltip: "Elements of the whole array, and columns of a map",
+    unit: "",
+    speed: 1.0,
+    low: 6.0,
+    high: 4096.0,
+    decimals: 0,
+};
+const END_ELEMENTS: Number = Number {
+    name: "elements of an end",
+    tooltip: "Elements of each of the two ends that a reconstruction may look at",
+    unit: "",
+    speed: 0.1,
+    low: 3.0,
+    high: 2048.0,
+    decimals: 0,
+};
+const SPACING_MILLIMETRES: Number = Number {
+    name: "spacing",
+    tooltip: "Distance between neighbouring elements",
+    unit: " mm",
+    speed: 0.01,
+    low: 0.01,
+    high: 1000.0,
+    decimals: 3,
+};
+const SPACING_WAVELENGTHS: Number = Number {
+    name: "the same in wavelengths",
+    tooltip: "Above half a wavelength (a quarter, for the two-way carrier) a direction has grating lobes",
+    unit: " λ",
+    speed: 0.005,
+    low: 0.01,
+    high: 10.0,
+    decimals: 3,
+};
+const POWER: Number = Number {
+    name: "power",
+    tooltip: "Transmit power: with reflectivity and range it decides how strong an echo is",
+    unit: " W",
+    speed: 0.5,
+    low: 0.001,
+    high: 100_000.0,
+    decimals: 3,
+};
+
+fn rows(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, free: Free) {
+    let is_free = free.constants;
+    let wavelength = radar.wavelength_metres();
+    let text = format!("wavelength {:.3} mm", wavelength * 1e3);
+    if let Some(ghz) = number(ui, &CARRIER, radar.carrier_hz * 1e-9, &text, is_free) {
+        radar.carrier_hz = ghz * 1e9;
+    }
+    let text = format!("range bin {}", metres(follows.range_bin_metres));
+    if let Some(mhz) = number(ui, &BANDWIDTH, radar.bandwidth_hz * 1e-6, &text, is_free) {
+        radar.bandwidth_hz = mhz * 1e6;
+    }
+    let text = format!("maximum range {}", metres(follows.max_range_metres));
+    if let Some(samples) = number(ui, &SAMPLES, radar.samples as f64, &text, is_free) {
+        radar.samples = samples as usize;
+    }
+    let beam = follows.full_beam;
+    let text = format!("beam {:.2}°, {:.2} columns", beam.radians.to_degrees(), beam.columns);
+    if let Some(elements) = number(ui, &ELEMENTS, radar.elements as f64, &text, is_free) {
+        radar.elements = elements as usize;
+    }
+    let beam = follows.end_beam;
+    let text = format!("beam of an end {:.1}°, {:.0} columns", beam.radians.to_degrees(), beam.columns);
+    if let Some(elements) = number(ui, &END_ELEMENTS, radar.end_elements as f64, &text, free.ends) {
+        radar.end_elements = elements as usize;
+    }
+    let far = metres(follows.full_far_field_metres);
+    let text = format!("far field beyond {far}; of an end, {}", metres(follows.end_far_field_metres));
+    if let Some(mm) = number(ui, &SPACING_MILLIMETRES, radar.element_spacing_metres * 1e3, &text, is_free) {
+        radar.element_spacing_metres = mm * 1e-3;
+    }
+    let spacing = radar.element_spacing_metres / wavelength;
+    if let Some(wavelengths) = number(ui, &SPACING_WAVELENGTHS, spacing, &grating(follows), is_free) {
+        radar.element_spacing_metres = wavelengths * wavelength;
+    }
+    let text = format!("an echo from 10 m has amplitude {:.3}", radar.transmit_power_watts / 100.0);
+    if let Some(watts) = number(ui, &POWER, radar.transmit_power_watts, &text, is_free) {
+        radar.transmit_power_watts = watts;
+    }
+    choices(ui, radar, follows, is_free);
+}
+
+/// How many columns lie between a blob and its first grating lobe, and whether that is within sight.
+fn grating(follows: &Consequences) -> String {
+    let columns = follows.grating_columns;
+    if follows.grating_cos < 2.0 {
+        let cos = follows.grating_cos;
+        format!("{columns:.0} columns, cos θ {cos:.2}, to the first grating lobe: some directions look alike")
+    } else {
+        let seen = follows.visible_columns;
+        format!("{columns:.0} columns to the first grating lobe: out of sight, the map shows {seen:.0}")
+    }
+}
+
+fn choices(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, is_free: bool) {
+    let label = ui.label("phase").on_hover_text("How the carrier's phase follows the distance");
+    ui.add_enabled_ui(is_free, |ui| {
+        ui.horizontal(|ui| {
+            let first = ui.selectable_value(&mut radar.carrier, Carrier::OneWay, "one-way");
+            first.labelled_by(label.id);
+            ui.selectable_value(&mut radar.carrier, Carrier::TwoWay, "two-way");
+        });
+    });
+    ui.label(match radar.carrier {
+        Carrier::OneWay => "a turn for each wavelength of distance".to_owned(),
+        Carrier::TwoWay => format!("two turns for each wavelength: cos θ repeats after {:.2}", follows.grating_cos),
+    });
+    ui.end_row();
+    let label = ui.label("windows").on_hover_text("Weights of samples and elements in the two transforms");
+    ui.horizontal(|ui| {
+        for window in WindowFunction::ALL {
+            let choice = ui.selectable_value(&mut radar.window, window, window.name());
+            if window == WindowFunction::ALL[0] {
+                choice.labelled_by(label.id);
+            }
+        }
+    });
+    ui.label(match follows.range_width_metres {
+        Some(width) => format!("a blob is {} long", metres(width)),
+        None => "no range is told from another".to_owned(),
+    });
+    ui.end_row();
+    let label =
+        ui.label("range migration").on_hover_text("How much a range differs between both sides of the array, at most");
+    ui.label("").labelled_by(label.id);
+    ui.label(format!("up to {:.1} bins from side to side", follows.migration_bins));
+    ui.end_row();
+}
+
+/// A length in the unit that reads best.
+fn metres(metres: f64) -> String {
+    match metres {
+        m if m < 1.0 => format!("{:.2} cm", m * 100.0),
+        m if m < 1000.0 => format!("{m:.2} m"),
+        m => format!("{:.2} km", m / 1000.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// A panel that does what it asks for, as the app would.
+    fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, Vec<Command>)> {
+        let draw = move |ui: &mut Ui, state: &mut (Radar, Vec<Command>)| {
+            let asked = show(ui, Input { radar: &state.0, measured });
+            for command in &asked {
+                match command {
+                    Command::SetRadar(radar) => state.0 = (**radar).clone(),
+                    Command::RadarPreset(index) => state.0 = presets::ALL[*index].radar.clone(),
+                    other => panic!("{other:?}"),
+                }
+            }
+            state.1.extend(asked);
+        };
+        Harness::builder().with_size([640.0, 420.0]).build_ui_state(draw, (radar, Vec::new()))
+    }
+
+    fn type_into(panel: &mut Harness<'_, (Radar, Vec<Command>)>, label: &str, text: &str) {
+        let field =
+            panel.get_by(|n| n.label().as_deref() == Some(label) && n.role() == egui::accesskit::Role::SpinButton);
+        field.focus();
+        panel.run();
+        panel.event(egui::Event::Text(text.to_owned()));
+        panel.run();
+        panel.key_press(egui::Key::Enter);
+        panel.run();
+    }
+
+    #[test]
+    fn a_bandwidth_changes_its_consequence() {
+        let mut panel = panel(Radar::default(), None);
+        let _told = panel.get_by_label("range bin 7.49 cm");
+        type_into(&mut panel, "bandwidth", "150");
+        let _told = (panel.get_by_label("range bin 99.93 cm"), panel.get_by_label("maximum range 511.65 m"));
+        assert!((panel.state().0.bandwidth_hz - 150e6).abs() < 1.0);
+        assert_eq!(panel.state().1.len(), 1, "one edit is one command");
+    }
+
+    #[test]
+    fn fewer_elements_take_their_ends_along_and_spacings_are_one_number() {
+        let mut panel = panel(Radar::default(), None);
+        type_into(&mut panel, "elements", "16");
+        assert_eq!((panel.state().0.elements, panel.state().0.end_elements), (16, 8));
+        type_into(&mut panel, "the same in wavelengths", "1");
+        let spacing = panel.state().0.element_spacing_metres;
+        assert!((spacing - panel.state().0.wavelength_metres()).abs() < 1e-12);
+        let _told = panel.get_by_label_contains("some directions look alike");
+        panel.state().0.validate().unwrap();
+    }
+
+    #[test]
+    fn the_focus_passes_through_and_changes_nothing() {
+        let odd = Radar { carrier_hz: 76.123_456_789e9, element_spacing_metres: 1.234_567e-3, ..Radar::default() };
+        let mut panel = panel(odd, None);
+        for _ in 0..30 {
+            panel.key_press(egui::Key::Tab);
+            panel.run();
+        }
+        assert!(panel.state().1.is_empty(), "{:?}", panel.state().1);
+    }
+
+    #[test]
+    fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
+        let mut free = panel(Radar::default(), None);
+        free.get_by_label("Start from").click();
+        free.run();
+        free.get_by_label("24 GHz, 256 elements").click();
+        free.run();
+        assert_eq!(free.state().1, [Command::RadarPreset(3)]);
+        let _told = free.get_by_label_contains("range bins of 60 cm");
+        let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
+        measured.run();
+        assert!(measured.query_by_label("Start from").is_none());
+        measured.get_by_label("two-way").click();
+        measured.run();
+        assert!(measured.state().1.is_empty());
+        type_into(&mut measured, "elements of an end", "20");
+        assert_eq!(measured.state().0.end_elements, 20);
+        measured.get_by_label("hamming").click();
+        measured.run();
+        assert_eq!(measured.state().0.window, WindowFunction::Hamming, "windows are no part of a measurement");
+    }
+}

@@ -1,0 +1,207 @@
+//! What is not as the formulas assume: elements as they are built, somebody else's radar, a wall that mirrors.
+
+use super::{MIN_ELEMENT_DISTANCE_METRES, Reflector, SceneError};
+use crate::radar::{BuiltArray, Radar};
+use serde::{Deserialize, Serialize};
+
+/// Everything that disturbs a scene; nothing by default.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Disturbances {
+    /// Elements as they are built.
+    #[serde(skip_serializing_if = "BuiltArray::is_ideal")]
+    pub elements: BuiltArray,
+    /// Another radar that sends at the same time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interferer: Option<Interferer>,
+    /// A plane that mirrors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mirror: Option<Mirror>,
+}
+
+/// A radar whose chirps are not synchronised with ours: for a part of a chirp its frequency is so near ours that the receiver lets the
+/// difference pass, itself a chirp. It comes straight, so that it falls with the distance, not with its square.
+///
+/// After G. M. Brooker, "Mutual interference of millimeter-wave radar systems" (2007).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Interferer {
+    /// Position along the array's axis, metres.
+    pub x_metres: f64,
+    /// Position ahead of the array, metres.
+    pub y_metres: f64,
+    /// Its amplitude at the array: the radar's power times this over the distance in metres.
+    pub strength: f64,
+    /// When its frequency crosses ours, as a part of our chirp: 0 at the first sample, 1 after the last.
+    pub crossing: f64,
+    /// For which part of our chirp it is heard.
+    pub duration: f64,
+}
+
+impl Default for Interferer {
+    /// A car ahead, heard for a tenth of the chirp.
+    fn default() -> Self {
+        Interferer { x_metres: 6.0, y_metres: 25.0, strength: 0.1, crossing: 0.6, duration: 0.1 }
+    }
+}
+
+/// A straight wall that mirrors what stands on the radar's side of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Mirror {
+    /// A point of the plane, along the array's axis, metres.
+    pub x_metres: f64,
+    /// The same point ahead of the array, metres.
+    pub y_metres: f64,
+    /// Where the plane leads from there: 0 along the array, 90 straight ahead.
+    pub direction_degrees: f64,
+    /// Part of an amplitude that it reflects.
+    pub reflection: f64,
+}
+
+impl Default for Mirror {
+    /// A guard rail at the left, along the road.
+    fn default() -> Self {
+        Mirror { x_metres: -5.0, y_metres: 0.0, direction_degrees: 90.0, reflection: 0.5 }
+    }
+}
+
+impl Mirror {
+    /// Signed distance of a place from the plane, metres.
+    fn distance_metres(&self, x_metres: f64, y_metres: f64) -> f64 {
+        let (sin, cos) = self.direction_degrees.to_radians().sin_cos();
+        (y_metres - self.y_metres) * cos - (x_metres - self.x_metres) * sin
+    }
+
+    /// Where the mirror image of a place stands, (x, y) in metres.
+    pub fn image_metres(&self, x_metres: f64, y_metres: f64) -> [f64; 2] {
+        let (sin, cos) = self.direction_degrees.to_radians().sin_cos();
+        let twice = 2.0 * self.distance_metres(x_metres, y_metres);
+        [x_metres + twice * sin, y_metres - twice * cos]
+    }
+
+    /// The ghosts of a reflector, as reflectors that sound like them: its mirror image, heard over the wall both ways, and two at the mean
+    /// range, heard over the wall one way, in the directions of image and reflector. None where the wall stands between it and the
+    /// array's centre.
+    ///
+    /// As F. Kraus, N. Scheiner, W. Ritter and K. Dietmayer sort them in "Using machine learning to detect ghost images in automotive
+    /// radar" (2020), by which of reflector and wall the echo leaves last.
+    pub fn ghosts(&self, radar: &Radar, of: &Reflector) -> Vec<Reflector> {
+        let [own, side] = [self.distance_metres(0.0, 0.0), self.distance_metres(of.x_metres, of.y_metres)];
+        if own * side <= 0.0 {
+            return Vec::new();
+        }
+        let [x, y] = self.image_metres(of.x_metres, of.y_metres);
+        let (there, image) = (radar.polar_of(of.x_metres, of.y_metres), radar.polar_of(x, y));
+        let mean = (there.range_metres + image.range_metres) / 2.0;
+        // An echo over one way each falls with the product of both ranges.
+        let one_way = of.reflectivity * self.reflection * mean * mean / (there.range_metres * image.range_metres);
+        let towards = |x: f64, y: f64, range: f64| Reflector {
+            x_metres: x * mean / range,
+            y_metres: y * mean / range,
+            reflectivity: one_way,
+        };
+        vec![
+            Reflector { x_metres: x, y_metres: y, reflectivity: of.reflectivity * self.reflection.powi(2) },
+            towards(x, y, image.range_metres),
+            towards(of.x_metres, of.y_metres, there.range_metres),
+        ]
+    }
+}
+
+impl Disturbances {
+    /// Whether there is nothing of the kind.
+    pub fn is_none(&self) -> bool {
+        self.elements.is_ideal() && self.interferer.is_none() && self.mirror.is_none()
+    }
+
+    /// Checks that every number is usable and that the elements are those of `radar`.
+    ///
+    /// # Errors
+    /// [`SceneError`] names what is wrong.
+    pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {
+        self.elements.validate(radar)?;
+        let check = |what, field, value: f64, low: f64, high: f64| {
+            let usable = (low..=high).contains(&value);
+            usable.then_some(()).ok_or(SceneError::Disturbance { what, field, value, low, high })
+        };
+        if let Some(i) = &self.interferer {
+            for (field, value, low, high) in [
+                ("x_metres", i.x_metres, -1e6, 1e6),
+                ("y_metres", i.y_metres, -1e6, 1e6),
+                ("strength", i.strength, 0.0, 1e6),
+                ("crossing", i.crossing, -10.0, 10.0),
+                ("duration", i.duration, 1e-6, 1e3),
+            ] {
+                check("interferer", field, value, low, high)?;
+            }
+            let at = Reflector { x_metres: i.x_metres, y_metres: i.y_metres, reflectivity: 1.0 };
+            if super::touched_element(radar, &at).is_some() {
+                check("interferer", "y_metres", i.y_metres, MIN_ELEMENT_DISTANCE_METRES, 1e6)?;
+            }
+        }
+        if let Some(m) = &self.mirror {
+            for (field, value, low, high) in [
+                ("x_metres", m.x_metres, -1e6, 1e6),
+                ("y_metres", m.y_metres, -1e6, 1e6),
+                ("direction_degrees", m.direction_degrees, -3600.0, 3600.0),
+                ("reflection", m.reflection, 0.0, 1.0),
+            ] {
+                check("mirror", field, value, low, high)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x_metres: f64, y_metres: f64) -> Reflector {
+        Reflector { x_metres, y_metres, reflectivity: 2.0 }
+    }
+
+    #[test]
+    fn a_wall_along_the_road_mirrors_across_it_and_ghosts_stand_where_geometry_says() {
+        let mirror = Mirror { x_metres: -5.0, reflection: 0.5, ..Mirror::default() };
+        let [x, y] = mirror.image_metres(3.0, 20.0);
+        assert!((x + 13.0).abs() < 1e-12 && (y - 20.0).abs() < 1e-12);
+        let radar = Radar::default();
+        let ghosts = mirror.ghosts(&radar, &at(3.0, 20.0));
+        let [image, first, second] = ghosts[..] else { panic!("{ghosts:?}") };
+        assert_eq!((image.x_metres, image.reflectivity), (x, 0.5));
+        let mean = (3f64.hypot(20.0) + 13f64.hypot(20.0)) / 2.0;
+        for (ghost, cos) in [(first, -13.0 / 13f64.hypot(20.0)), (second, 3.0 / 3f64.hypot(20.0))] {
+            let place = radar.polar_of(ghost.x_metres, ghost.y_metres);
+            assert!((place.range_metres - mean).abs() < 1e-9 && (place.cos_theta - cos).abs() < 1e-12);
+            // Power over both ranges: sigma rho / (R R').
+            let amplitude = ghost.reflectivity / place.range_metres.powi(2);
+            assert!((amplitude * 3f64.hypot(20.0) * 13f64.hypot(20.0) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn behind_the_wall_there_are_no_ghosts() {
+        let mirror = Mirror { x_metres: 0.0, y_metres: 10.0, direction_degrees: 0.0, reflection: 1.0 };
+        assert_eq!(mirror.ghosts(&Radar::default(), &at(1.0, 12.0)), []);
+        let before = mirror.ghosts(&Radar::default(), &at(1.0, 8.0));
+        assert!((before[0].y_metres - 12.0).abs() < 1e-12 && (before[0].x_metres - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn unusable_numbers_are_named() {
+        let radar = Radar::default();
+        let told = |d: Disturbances| d.validate(&radar).unwrap_err().to_string();
+        let mirror = Some(Mirror { reflection: 1.5, ..Mirror::default() });
+        let error = told(Disturbances { mirror, ..Disturbances::default() });
+        assert!(error.contains("mirror: reflection is 1.5"), "{error}");
+        let on = Interferer { x_metres: radar.element_x_metres(3), y_metres: 0.0, ..Interferer::default() };
+        let error = told(Disturbances { interferer: Some(on), ..Disturbances::default() });
+        assert!(error.contains("interferer: y_metres is 0"), "{error}");
+        let nan = Interferer { duration: f64::NAN, ..Interferer::default() };
+        let error = told(Disturbances { interferer: Some(nan), ..Disturbances::default() });
+        assert!(error.contains("duration is NaN"), "{error}");
+        assert!(Disturbances::default().validate(&radar).is_ok() && Disturbances::default().is_none());
+    }
+}

@@ -1,0 +1,44 @@
+//! Echoes over a floor: what every simulation of a scene comes down to.
+
+use super::floor::{self, Floor};
+use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
+use super::run::beat_signal;
+use super::samples::BeatSignal;
+use crate::radar::Radar;
+use crate::scene::Reflector;
+
+/// The echoes of reflectors that the radar can see, over a floor; `heard` does to the echoes what the array does before its receivers add
+/// their noise.
+pub(super) fn simulate_echoes(
+    radar: &Radar,
+    reflectors: &[Reflector],
+    floor: Floor,
+    seed: u64,
+    heard: impl FnOnce(&mut BeatSignal),
+) -> BeatSignal {
+    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, reflectors), tolerance(floor));
+    let mut signal = beat_signal(radar, reflectors, &plan);
+    heard(&mut signal);
+    if let Some(variance) = noise_variance(radar, reflectors, floor) {
+        floor::add_noise(&mut signal, &variance, seed);
+    }
+    signal
+}
+
+/// Variance of the noise that is the floor, for each element, if there is any.
+pub(super) fn noise_variance(radar: &Radar, reflectors: &[Reflector], floor: Floor) -> Option<Vec<f64>> {
+    match floor {
+        Floor::Exact => None,
+        Floor::Thesis => Some(floor::thesis_noise_variance(radar, reflectors)),
+        Floor::Snr(snr) => Some(floor::snr_noise_variance(radar, reflectors, snr)),
+    }
+}
+
+/// Samples are for any use and kept in f64: no error may show however they are normalised, over a loud floor none above 1e-12.
+pub(super) fn tolerance(floor: Floor) -> f64 {
+    match floor {
+        Floor::Exact => BEST_TOLERANCE,
+        Floor::Snr(snr) if snr.0 <= 40.0 => 1e-12,
+        Floor::Thesis | Floor::Snr(_) => FLOOR_TOLERANCE,
+    }
+}

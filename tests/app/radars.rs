@@ -1,0 +1,97 @@
+//! Radars that the thesis never had, in the app: maps, every model-based method, lists.
+
+use crate::session::Session;
+use apertura::app::{Command, MapKind, Panel};
+use apertura::maps::Normalisation;
+use apertura::methods;
+use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT};
+use apertura::recording::{FLOOR, Recording};
+use apertura::scene::Scene;
+use apertura::signal::simulate;
+use std::path::PathBuf;
+
+/// Methods that know one radar only.
+const NETWORKS: [&str; 4] = ["live", "thesis", "thesis-1", "unet"];
+
+fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64) -> Radar {
+    let element_spacing_metres = wavelengths * SPEED_OF_LIGHT / carrier_hz;
+    Radar { elements, end_elements, carrier_hz, element_spacing_metres, samples: 32, ..Radar::default() }
+}
+
+fn radars() -> [(&'static str, Radar); 5] {
+    [
+        ("86 elements", array(86, 12, 77e9, 0.5)),
+        ("8 elements, 3 of them an end", array(8, 3, 77e9, 0.5)),
+        ("256 elements at 24 GHz", array(256, 12, 24e9, 0.5)),
+        ("two-way carrier", Radar { carrier: Carrier::TwoWay, ..array(64, 12, 77e9, 0.5) }),
+        ("one wavelength spacing", array(64, 8, 77e9, 1.0)),
+    ]
+}
+
+/// Files of a recording that `radar` made of one point; the path of its TOML.
+fn recorded(s: &Session, radar: &Radar) -> PathBuf {
+    let range = 0.5 * radar.max_range_metres();
+    let scene = Scene::of_points([(0.28 * range, 0.96 * range)]);
+    let recording = Recording::of_signal(radar.clone(), simulate(radar, &scene, FLOOR, 1).unwrap());
+    ndarray_npy::write_npy(s.folder.path().join("samples.npy"), &recording.signal().unwrap().samples).unwrap();
+    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, carrier, .. } =
+        radar;
+    let carrier = if *carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
+    let text = format!(
+        "[radar]\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
+         element_spacing_metres = {element_spacing_metres:?}\nelements = {elements}\nend_elements = {end_elements}\n\
+         samples = {samples}\ncarrier = \"{carrier}\"\n\
+         [recording]\nfile = \"samples.npy\"\naxes = [\"element\", \"sample\"]\n"
+    );
+    let path = s.folder.path().join("recorded.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn five_radars_are_recorded_opened_and_seen_by_every_model_based_method() {
+    let model_based = methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name()));
+    let mut s = Session::with_methods(model_based.collect());
+    s.ask(Command::Normalise(Normalisation::DynamicRange(Decibels(40.0))));
+    for (what, radar) in radars() {
+        s.ask(Command::OpenPath(recorded(&s, &radar)));
+        assert_eq!(s.state().messages(), 0, "{what}");
+        assert_eq!(s.state().radar(), &radar, "{what}");
+        s.ask(Command::OpenPanel(Panel::Map(MapKind::Unexplained)));
+        let mut works = 0;
+        for method in methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name())) {
+            let name = method.name();
+            s.ask(Command::Method(name));
+            let shown = s.state().pictures();
+            assert!(shown.contains(&MapKind::Target) && shown.contains(&MapKind::Input0), "{name} on {what}");
+            match s.state().refusal() {
+                Some(reason) => {
+                    let may_refuse = name.contains("nomp") || name == "hybrid";
+                    assert!(may_refuse && !reason.is_empty(), "{name} on {what}: {reason}");
+                }
+                None => {
+                    assert_eq!(s.state().shown_method(), Some(name), "{what}");
+                    assert!(s.state().metrics().is_some() && s.state().found().is_some(), "{name} on {what}");
+                    works += 1;
+                }
+            }
+        }
+        assert!(works >= 10, "{what}: {works} methods");
+    }
+}
+
+#[test]
+fn the_same_radars_are_chosen_in_the_panel_and_every_map_follows() {
+    let mut s = Session::start();
+    for (what, radar) in radars() {
+        s.ask(Command::SetRadar(Box::new(radar.clone())));
+        assert_eq!((s.state().radar(), s.state().messages()), (&radar, 0), "{what}");
+        assert_eq!(s.state().shown_method(), Some("baseline"));
+        assert!(s.state().refusal().is_none(), "{what}: {:?}", s.state().refusal());
+    }
+    for preset in 0..apertura::radar::presets::ALL.len() {
+        s.ask(Command::RadarPreset(preset));
+        assert_eq!(s.state().radar(), &apertura::radar::presets::ALL[preset].radar);
+        assert!(s.state().refusal().is_none() && s.state().metrics().is_some());
+    }
+}

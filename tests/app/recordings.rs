@@ -1,0 +1,199 @@
+//! Recordings in the place of a scene: opened, looked at, explained, exported, and undone.
+
+use crate::session::{Session, harness, step_until};
+use apertura::app::{Command, MapKind, NewObject, Panel};
+use apertura::interact::Place;
+use apertura::maps::Normalisation;
+use apertura::radar::{BuiltArray, Carrier, Decibels, ElementError, Radar, Tolerances, WindowFunction};
+use apertura::reconstruct::{Baseline, CAPON, IAA, Reconstructor};
+use apertura::scene::{Interferer, Mirror};
+use apertura::signal::Floor;
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const CASCADE: usize = 0;
+const CHIP: usize = 1;
+
+fn with_iaa() -> Session {
+    let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(IAA), Arc::new(Baseline)];
+    Session::with_methods(methods)
+}
+
+fn undo(s: &mut Session) {
+    s.press(Modifiers::COMMAND, Key::Z);
+}
+
+/// A recording's files in the session's folder; its path.
+fn copied(s: &Session, name: &str) -> PathBuf {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings");
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, s.folder.path().join(path.file_name().unwrap())).unwrap();
+    }
+    s.folder.path().join(name)
+}
+
+#[test]
+fn a_snapshot_shows_target_and_output_and_lists_both_directions() {
+    let mut s = with_iaa();
+    s.ask(Command::Recording(CASCADE));
+    assert_eq!((s.state().radar().elements, s.state().radar().samples), (86, 1));
+    assert!(s.state().pictures().contains(&MapKind::Target) && s.state().pictures().contains(&MapKind::Output));
+    let found = s.state().found().expect("the list is in front");
+    let degrees: Vec<f64> = found.iter().take(2).map(|d| d.cos_theta.asin().to_degrees()).collect();
+    for expected in [0.0, 6.96] {
+        assert!(degrees.iter().any(|d| (d - expected).abs() < 0.1), "{degrees:?}");
+    }
+    assert!(s.state().metrics().is_some(), "the output is compared with what all elements see");
+}
+
+#[test]
+fn the_scene_before_a_recording_is_one_undo_away_and_nothing_is_unsaved() {
+    let mut s = with_iaa();
+    s.ask(Command::Add(NewObject::Point, None));
+    let path = copied(&s, "chip-8.toml");
+    s.ask(Command::OpenPath(path));
+    assert_eq!(s.state().editor().document().title(), "chip-8.toml");
+    assert_eq!(s.state().editor().left().len(), 1, "the unsaved scene is kept");
+    undo(&mut s);
+    assert_eq!(s.state().editor().document().title(), "scene.toml •");
+    assert_eq!((s.state().radar().elements, s.state().editor().scene().objects.len()), (128, 3));
+    assert!(s.state().editor().document().recording().is_none());
+    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert!(s.state().editor().document().recording().is_some());
+}
+
+#[test]
+fn reflectors_laid_over_a_recording_explain_part_of_it_and_are_saved_as_a_scene() {
+    let mut s = with_iaa();
+    s.ask(Command::Recording(CHIP));
+    s.ask(Command::OpenPanel(Panel::Map(MapKind::Unexplained)));
+    assert_eq!(s.state().explained(), Some(0.0));
+    let strongest = s.state().found().unwrap()[0];
+    let at = strongest.reflector();
+    s.ask(Command::Add(NewObject::Point, Some(Place::new(at.x_metres, at.y_metres))));
+    let one = s.state().explained().unwrap();
+    assert!(one > 1e-3 && one < 1.0, "{one}");
+    undo(&mut s);
+    assert_eq!(s.state().explained(), Some(0.0));
+    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    let path = s.folder.path().join("post.toml");
+    s.ask(Command::SaveTo(path.clone()));
+    assert_eq!(apertura::interact::Document::read(&path).unwrap().scene().objects.len(), 1);
+    assert!(s.state().editor().document().recording().is_some(), "it stays on screen");
+}
+
+#[test]
+fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
+    let mut s = with_iaa();
+    s.ask(Command::Recording(CASCADE));
+    let measured = s.state().radar().clone();
+    s.ask(Command::SetCarrier(Carrier::TwoWay));
+    s.ask(Command::SetRadar(Box::new(Radar { elements: 64, ..measured.clone() })));
+    assert_eq!((s.state().radar(), s.state().messages()), (&measured, 1));
+    s.ask(Command::SetRadar(Box::new(Radar { end_elements: 20, ..measured.clone() })));
+    s.ask(Command::SetWindow(WindowFunction::Hamming));
+    assert_eq!((s.state().radar().end_elements, s.state().radar().window), (20, WindowFunction::Hamming));
+    assert_eq!(s.state().shown_method(), Some("iaa"));
+    undo(&mut s);
+    undo(&mut s);
+    assert_eq!(s.state().radar(), &measured);
+}
+
+#[test]
+fn maps_and_drawing_of_a_recording_are_exported() {
+    let mut s = with_iaa();
+    s.ask(Command::Recording(CHIP));
+    s.ask(Command::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
+    let (maps, drawing) = (s.folder.path().join("maps.npz"), s.folder.path().join("maps.svg"));
+    s.ask(Command::ExportMapsTo(maps.clone()));
+    s.ask(Command::ExportPictureTo(drawing.clone()));
+    step_until(&mut s, "no export", |_| maps.exists() && drawing.exists());
+    assert!(std::fs::read_to_string(&drawing).unwrap().contains("Target: all 8 elements"));
+    let mut archive = ndarray_npy::NpzReader::new(std::fs::File::open(&maps).unwrap()).unwrap();
+    let output: ndarray::Array3<f32> = archive.by_name("output").unwrap();
+    assert_eq!(output.dim(), (1, 128, 8));
+}
+
+#[test]
+fn an_overlay_comes_back_over_its_recording_after_a_kill() {
+    let mut s = with_iaa();
+    let path = copied(&s, "chip-8.toml");
+    s.ask(Command::OpenPath(path));
+    s.ask(Command::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
+    let copy = s.folder.path().join("data/autosave.toml");
+    step_until(&mut s, "no autosave", |_| copy.exists());
+    let Session { app, folder } = s;
+    drop(app);
+    let app = harness(folder.path(), None, vec![Arc::new(CAPON)]);
+    let mut s = Session { app, folder };
+    s.settle();
+    assert_eq!(s.state().editor().scene().objects.len(), 1);
+    assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
+}
+
+#[test]
+fn a_recording_is_opened_at_the_start_and_a_broken_one_keeps_the_scene() {
+    let mut s = with_iaa();
+    let path = copied(&s, "cascade-86.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(s.folder.path().join("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
+    s.ask(Command::OpenPath(s.folder.path().join("broken.toml")));
+    assert_eq!((s.state().messages(), s.state().radar().elements), (1, 128));
+    let Session { app, folder } = s;
+    drop(app);
+    let app = harness(folder.path(), Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
+    let mut s = Session { app, folder };
+    s.settle();
+    assert_eq!(s.state().radar().elements, 86);
+    let found = s.state().arrangement().is_open(Panel::Found);
+    assert!(found, "what was found is in sight");
+}
+
+#[test]
+fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
+    let mut s = with_iaa();
+    let before = s.state().metrics();
+    let mut elements = BuiltArray { elements: vec![ElementError::default(); 128] };
+    elements.elements[3].dead = true;
+    s.ask(Command::SetElements(Arc::new(elements)));
+    s.ask(Command::SetInterferer(Some(Interferer::default())));
+    s.ask(Command::SetMirror(Some(Mirror::default())));
+    assert_ne!(s.state().metrics(), before);
+    let path = s.folder.path().join("disturbed.toml");
+    s.ask(Command::SaveTo(path.clone()));
+    let saved = apertura::interact::Document::read(&path).unwrap();
+    assert_eq!(saved.scene(), s.state().editor().scene());
+    assert!(saved.scene().disturbances.elements.elements[3].dead);
+    // Fewer elements keep what is wrong with those that stay.
+    let radar = Radar { elements: 64, ..s.state().radar().clone() };
+    s.ask(Command::SetRadar(Box::new(radar)));
+    assert_eq!(s.state().editor().scene().disturbances.elements.elements.len(), 64);
+    for _ in 0..4 {
+        undo(&mut s);
+    }
+    assert!(s.state().editor().scene().disturbances.is_none());
+    assert_eq!(s.state().metrics(), before);
+}
+
+#[test]
+fn a_selected_point_calibrates_the_elements() {
+    let mut s = with_iaa();
+    s.ask(Command::SetFloor(Floor::Exact));
+    s.ask(Command::Delete);
+    let drawn = Tolerances { gain: Decibels(1.0), phase_degrees: 15.0, position_millimetres: 0.0 };
+    let built = drawn.build(s.state().radar(), 1);
+    s.ask(Command::SetElements(Arc::new(built)));
+    s.ask(Command::SelectAll);
+    s.ask(Command::Delete);
+    s.ask(Command::Add(NewObject::Point, Some(Place::new(1.0, 12.0))));
+    s.ask(Command::OpenPanel(Panel::Elements));
+    s.app.get_by_label("Calibrate on this reflector").scroll_to_me();
+    s.settle();
+    s.app.get_by_label("Calibrate on this reflector").click();
+    s.settle();
+    let left = s.state().editor().scene().disturbances.elements.spread();
+    assert!(left.gain.0 < 0.01 && left.phase_degrees < 0.5, "{left:?}");
+}
