@@ -143,7 +143,7 @@ const SAMPLES: Number = Number {
     unit: "",
     speed: 1.0,
     low: 1.0,
-    high: 4096.0,
+    high: 2048.0,
     decimals: 0,
 };
 const ELEMENTS: Number = Number {
@@ -152,7 +152,7 @@ const ELEMENTS: Number = Number {
     unit: "",
     speed: 1.0,
     low: 6.0,
-    high: 4096.0,
+    high: 2048.0,
     decimals: 0,
 };
 const END_ELEMENTS: Number = Number {
@@ -161,7 +161,7 @@ const END_ELEMENTS: Number = Number {
     unit: "",
     speed: 0.1,
     low: 3.0,
-    high: 2048.0,
+    high: 1024.0,
     decimals: 0,
 };
 const SPACING_MILLIMETRES: Number = Number {
