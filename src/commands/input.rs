@@ -10,7 +10,7 @@ use std::path::Path;
 #[derive(Debug, Clone)]
 pub enum Input {
     /// A scene and the radar that looks at it.
-    Scene(SceneFile),
+    Scene(Box<SceneFile>),
     /// Samples and the radar that measured them.
     Recording(Box<Recording>),
 }
@@ -19,12 +19,12 @@ impl Input {
     /// Reads what another copy of the program shared as text, a `.toml` with a table `[recording]` as a recording, anything else as a scene.
     pub fn load(path: &Path) -> Result<Input, CommandError> {
         if let Some(text) = shared_text(path) {
-            return Ok(Input::Scene(Shared::from_text(text).map_err(CommandError::failed)?.file));
+            return Ok(Input::Scene(Box::new(Shared::from_text(text).map_err(CommandError::failed)?.file)));
         }
         if recording::file::is_recording_at(path) {
             return Ok(Input::Recording(Box::new(recording::file::load(path).map_err(CommandError::failed)?)));
         }
-        Ok(Input::Scene(file::load(path).map_err(CommandError::failed)?))
+        Ok(Input::Scene(Box::new(file::load(path).map_err(CommandError::failed)?)))
     }
 }
 

@@ -70,7 +70,7 @@ impl Args {
                     "--explain takes reflectors off a recording; expected one as input".into(),
                 ));
             }
-            Input::Scene(file) => self.of_scene(file, output)?,
+            Input::Scene(file) => self.of_scene(*file, output)?,
             Input::Recording(recording) => self.of_recording(*recording, output)?,
         }
         print(&format!("wrote {}", self.output.display()))

@@ -36,7 +36,7 @@ impl Args {
         let started = Instant::now();
         let input = match &self.scene {
             Some(path) => Input::load(path)?,
-            None => Input::Scene(presets::default_scene()),
+            None => Input::Scene(Box::new(presets::default_scene())),
         };
         self.method.as_deref().map(methods::by_name).transpose().map_err(CommandError::failed)?;
         let reason = match self.open_window(started) {
@@ -97,7 +97,8 @@ enum WindowError {
 fn draw_instead(input: &Input) -> Result<(), CommandError> {
     let style = Style::default();
     let bytes = match input {
-        Input::Scene(SceneFile { scene, radar }) => {
+        Input::Scene(file) => {
+            let SceneFile { scene, radar } = &**file;
             let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
             compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
         }

@@ -20,6 +20,13 @@ pub struct Unexplained {
     pub explained: f64,
 }
 
+/// What one scene leaves of the recording.
+struct Left {
+    of: Arc<Scene>,
+    /// The map of it and the part that the scene explains, or why it can't be fitted.
+    map: Result<(LogMap, f64), String>,
+}
+
 /// The maps of one recording, kept until another radar looks at it.
 pub struct RecordedMaps {
     recording: Arc<Recording>,
@@ -30,8 +37,7 @@ pub struct RecordedMaps {
     logs: [Option<LogMap>; 3],
     normalisation: Option<Normalisation>,
     ready: [Option<ReadyMap>; 3],
-    /// Of which scene, what it leaves, and the part that it explains.
-    left: Option<(Arc<Scene>, Result<(LogMap, f64), String>)>,
+    left: Option<Left>,
     shown: Option<Result<Unexplained, String>>,
     took: Duration,
 }
@@ -119,18 +125,18 @@ impl RecordedMaps {
     /// # Errors
     /// Why they can't be fitted.
     pub fn unexplained(&mut self, scene: &Arc<Scene>) -> Result<Unexplained, String> {
-        if !self.left.as_ref().is_some_and(|(of, _)| Arc::ptr_eq(of, scene)) {
-            let left = explain(&self.seen, scene).map_err(|e| e.to_string()).map(|found| {
+        if !self.left.as_ref().is_some_and(|left| Arc::ptr_eq(&left.of, scene)) {
+            let map = explain(&self.seen, scene).map_err(|e| e.to_string()).map(|found| {
                 let ([first, _], full) = maps_of(&found.residual);
                 (full.unwrap_or(first), found.explained)
             });
-            (self.left, self.shown) = (Some((scene.clone(), left)), None);
+            (self.left, self.shown) = (Some(Left { of: scene.clone(), map }), None);
         }
         if self.shown.is_none() {
             let whole = self.logs[2].as_ref().or(self.logs[0].as_ref());
             let scale = whole.zip(self.normalisation).map(|(log, normalisation)| log.scale(normalisation));
-            self.shown = self.left.as_ref().map(|(_, left)| {
-                let (log, explained) = left.as_ref().map_err(String::clone)?;
+            self.shown = self.left.as_ref().map(|left| {
+                let (log, explained) = left.map.as_ref().map_err(String::clone)?;
                 let scale = scale.ok_or_else(|| "the recording has no map yet".to_owned())?;
                 Ok(Unexplained { map: ready(log, scale), explained: *explained })
             });

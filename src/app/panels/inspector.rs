@@ -32,20 +32,26 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
 
 fn nothing(ui: &mut Ui, scene: &Scene, asked: &mut Vec<Command>) {
     if scene.objects.is_empty() {
+        named(ui, scene);
         ui.weak("The scene is empty.");
         if ui.button("Add a point").clicked() {
             asked.push(Command::Add(NewObject::Point, None));
         }
         return;
     }
+    named(ui, scene);
+    ui.add_space(4.0);
+    ui.weak("Click an object to see and edit its numbers; drag a box around several.");
+}
+
+/// What the scene, or the recording under it, is called and meant to show.
+fn named(ui: &mut Ui, scene: &Scene) {
     if !scene.name.is_empty() {
         ui.strong(&scene.name);
     }
     if !scene.notes.is_empty() {
         ui.label(&scene.notes);
     }
-    ui.add_space(4.0);
-    ui.weak("Click an object to see and edit its numbers; drag a box around several.");
 }
 
 fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {

@@ -34,7 +34,7 @@ impl Methods {
             let method = self.all.iter().find(|m| m.name() == *other);
             *other != name && method.is_some_and(|m| m.check_radar(radar).is_ok())
         };
-        [preferred].into_iter().chain(ROBUST).find(|other| works(&other))
+        [preferred].into_iter().chain(ROBUST).find(|other| works(other))
     }
 
     /// The method after the one called `name`; the first after the last.
