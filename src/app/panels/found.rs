@@ -63,9 +63,11 @@ fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
     ui.weak(number.to_string());
     let range = if has_ranges { format!("{:.2} m", found.range_metres) } else { "–".to_owned() };
     let degrees = found.cos_theta.clamp(-1.0, 1.0).asin().to_degrees();
-    for text in [format!("{degrees:+.2}°"), range, format!("{:.1}", found.relative_power.0)] {
+    for text in [format!("{degrees:+.2}°"), range] {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
     }
+    // The last column takes all the room that is left: nothing is aligned to its end.
+    ui.monospace(format!("{:.1}", found.relative_power.0));
     ui.end_row();
 }
 

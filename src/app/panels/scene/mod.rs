@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     if input.numbers {
         canvas::scale_bar(&painter, canvas);
     }
-    say(ui, &painter, rect, editor.scene().objects.is_empty(), input.error);
+    say(ui, &painter, rect, editor.scene().objects.is_empty() && input.found.is_empty(), input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
             (Grip::Body, Some(_)) => CursorIcon::Grabbing,
