@@ -4,6 +4,7 @@ mod accuracy;
 mod baseline_tables;
 mod conventions;
 mod damage;
+mod disturbances;
 mod house;
 #[cfg(feature = "network")]
 mod live_network;
