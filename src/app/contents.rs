@@ -10,7 +10,7 @@ use super::panels::{
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::textures::Texture;
 use crate::engine::ReadyMap;
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Reflector, Scene};
 use eframe::egui::{TextureFilter, TextureOptions, Ui};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -426,6 +426,7 @@ mod tests {
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             let (method, run) = (&Baseline, Run::default());
             let input = Input {
+                is_recorded: false,
                 settings: &settings,
                 radar: &radar,
                 noise_seed: 0,
