@@ -29,8 +29,8 @@ pub fn value_at(points: &[[f64; 2]], place: f64) -> Option<f64> {
 }
 
 /// Width of the peak that is uphill of a place, in decibels over equidistant cells. The summit is that of the parabola through the three
-/// highest cells, as is what falls 3 dB within them: exact for a Gaussian lobe. `None` where there is no peak, or where it doesn't fall by
-/// 3 dB before something higher comes.
+/// highest cells, and so is the width where it is at most two cells: exact for a Gaussian lobe. Wider ones are measured along straight
+/// lines between cells. `None` where there is no peak, or where it doesn't fall by 3 dB before something higher comes.
 pub fn width_at(points: &[[f64; 2]], place: f64) -> Option<Width> {
     let distance = |i: &usize| (points[*i][0] - place).abs();
     let mut top = (0..points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
@@ -59,7 +59,7 @@ pub fn width_at(points: &[[f64; 2]], place: f64) -> Option<Width> {
     // Cells from the top to where the line falls below the threshold on one side.
     let side = |sign: f64| -> Option<f64> {
         let near = summit + sign * half;
-        if near.abs() <= 1.0 && near * sign >= 0.0 {
+        if half <= 1.0 {
             return Some(near);
         }
         let mut steps = 1;
