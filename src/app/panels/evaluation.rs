@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// The printed columns with their names.
 const PRINTED: [(&str, [Printed; 3]); 3] = [
     ("thesis: baseline", PRINTED_BASELINE),
-    ("thesis: experiment 1", PRINTED_EXPERIMENT_1),
-    ("thesis: experiment 2", PRINTED_EXPERIMENT_2),
+    ("thesis: exp. 1", PRINTED_EXPERIMENT_1),
+    ("thesis: exp. 2", PRINTED_EXPERIMENT_2),
 ];
 
 /// What the test sets hold.
@@ -149,9 +149,9 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
             continue;
         }
         ui.strong(format!("Table 4.{set}: {}", SETS[set - 1]));
-        Grid::new(("table", set)).num_columns(6).striped(true).spacing([10.0, 3.0]).show(ui, |ui| {
+        Grid::new(("table", set)).num_columns(6).striped(true).spacing([8.0, 3.0]).show(ui, |ui| {
             let at = format!("P_D % at\nP_FA {:.2} %", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
-            for title in ["", "SE", "P_D %", "P_FA %", &at, "ms a map"] {
+            for title in ["", "SE", "P_D %", "P_FA %", &at, "ms"] {
                 ui.weak(title);
             }
             ui.end_row();
