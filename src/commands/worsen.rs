@@ -37,13 +37,13 @@ pub struct Args {
     #[arg(long, value_name = "METRES", default_value_t = Search::default().within_metres)]
     within: f64,
 
-    /// Scenes to try
-    #[arg(long, value_name = "N", default_value_t = Search::default().tries, value_parser = clap::value_parser!(u32).range(1..))]
-    tries: u32,
+    /// Scenes to try; 256, or as many as there is time for where --minutes is given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    tries: Option<u32>,
 
-    /// Stop after so many minutes
-    #[arg(long, value_name = "T", default_value_t = 10.0)]
-    minutes: f64,
+    /// Stop after so many minutes; 10 where nothing is said
+    #[arg(long, value_name = "T")]
+    minutes: Option<f64>,
 
     /// Picks the scenes that are tried
     #[arg(long, value_name = "S", default_value_t = 0)]
@@ -64,8 +64,9 @@ impl Args {
     /// Searches, prints, and writes what was found.
     pub fn run(self) -> Result<(), CommandError> {
         file::Format::of_path(&self.output).map_err(CommandError::failed)?;
-        let Some(time) = Duration::try_from_secs_f64(60.0 * self.minutes).ok().filter(|t| !t.is_zero()) else {
-            return Err(CommandError::Usage(format!("--minutes {}: expected more than 0", self.minutes)));
+        let minutes = self.minutes.unwrap_or(10.0);
+        let Some(time) = Duration::try_from_secs_f64(60.0 * minutes).ok().filter(|t| !t.is_zero()) else {
+            return Err(CommandError::Usage(format!("--minutes {minutes}: expected more than 0")));
         };
         let SceneFile { scene, radar } = file::load(&self.scene).map_err(CommandError::failed)?;
         let methods = self.network.methods(std::slice::from_ref(&self.method))?;
@@ -76,14 +77,15 @@ impl Args {
             aim: if self.repair { Aim::Repair } else { Aim::Worsen },
             measure: self.measure,
             within_metres: self.within,
-            tries: self.tries,
+            tries: self.most_tries(),
             seed: self.seed,
             ..Search::default()
         };
         let begin = Instant::now();
-        let bar = indicatif::ProgressBar::new(u64::from(self.tries));
+        let by_clock = self.most_tries() == u32::MAX;
+        let bar = indicatif::ProgressBar::new(if by_clock { time.as_secs().max(1) } else { search.tries.into() });
         let on_try = |tries: u32, _: &[Finding]| {
-            bar.set_position(u64::from(tries));
+            bar.set_position(if by_clock { begin.elapsed().as_secs() } else { tries.into() });
             begin.elapsed() < time
         };
         let outcome =
@@ -102,6 +104,12 @@ impl Args {
         print(&format!("wrote {}", self.output.display()))
     }
 
+    /// Where only the time is said, it alone ends the search.
+    fn most_tries(&self) -> u32 {
+        let otherwise = if self.minutes.is_some() { u32::MAX } else { Search::default().tries };
+        self.tries.unwrap_or(otherwise)
+    }
+
     fn figures(&self, finding: &Finding) -> String {
         let m = &finding.metrics;
         let detection = m.detection.map_or("-".to_owned(), |d| format!("{:.2} %", 100.0 * d));
@@ -115,7 +123,7 @@ impl Args {
     fn print_end(&self, outcome: &Outcome, end: &Finding) -> Result<(), CommandError> {
         let Outcome { tries, .. } = outcome;
         print(&format!("try {} of {tries} with seed {}", end.tries, self.seed))?;
-        if *tries < self.tries {
+        if *tries < self.most_tries() {
             return print(&format!("ended by the clock; --tries {tries} repeats this search"));
         }
         Ok(())

@@ -88,7 +88,12 @@ pub struct Failures {
 impl Failures {
     /// Objects that are [`Fate::Missed`].
     pub fn missed(&self) -> usize {
-        self.objects.iter().filter(|f| **f == Fate::Missed).count()
+        self.count(|fate| fate == Fate::Missed)
+    }
+
+    /// Objects whose fate is of a kind.
+    pub fn count(&self, is: impl Fn(Fate) -> bool) -> usize {
+        self.objects.iter().filter(|fate| is(**fate)).count()
     }
 
     /// Whether every object is found and nothing else is.

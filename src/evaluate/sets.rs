@@ -86,6 +86,17 @@ pub struct Case {
 }
 
 impl SceneSet {
+    /// The set that rows call `name`: a kind of scenes, or else a folder.
+    ///
+    /// # Errors
+    /// [`FolderError`] for a folder that has no scene any more.
+    pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
+        match name.parse() {
+            Ok(kind) => Ok(SceneSet::Generated(kind)),
+            Err(_) => Folder::open(Path::new(name)).map(SceneSet::Folder),
+        }
+    }
+
     /// How many scenes there are, if not as many as one likes.
     pub fn len(&self) -> Option<u32> {
         match self {

@@ -1,6 +1,6 @@
 //! One scene as methods meet it, and how what they make of it is judged.
 
-use super::failure::{Failures, Footprints};
+use super::failure::{Failures, Fate, Footprints};
 use super::rows::Row;
 use super::{Metrics, Roc};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
@@ -111,6 +111,9 @@ impl Trial {
             nearest_pair_bins: facts.nearest_pair.map(|[_, bins]| bins),
             min_range_metres: facts.min_range_metres,
             strongest_over_weakest_db: facts.strongest_over_weakest_db,
+            found: Some(failures.count(|fate| fate == Fate::Found)),
+            merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
+            wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PictureError};
 use super::colour::{ColourMap, Rgb};
+use super::detections::Detection;
 use super::text::{self, Weight};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
@@ -28,8 +29,6 @@ pub(super) struct MapPanel<'a> {
 
 const NOTHING: Rgb = [22, 26, 34];
 const HIT: Rgb = [245, 245, 240];
-const FALSE_ALARM: Rgb = [232, 112, 38];
-const MISS: Rgb = [64, 138, 214];
 
 const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
@@ -101,13 +100,13 @@ impl Cells<'_> {
                 let column = if mirrored { width - 1 - column } else { column };
                 let cells = under(row, height, bins)
                     .flat_map(|bin| under(column, width, columns).map(move |column| [bin, column]));
-                pixels.extend(self.colour(cells));
+                pixels.extend(self.colour(cells, [column, row]));
             }
         }
         pixels
     }
 
-    fn colour(&self, cells: impl Iterator<Item = [usize; 2]>) -> Rgb {
+    fn colour(&self, cells: impl Iterator<Item = [usize; 2]>, [x, y]: [usize; 2]) -> Rgb {
         match self {
             Cells::Lambda(map, colours) => colours.colour(cells.map(|c| map.lambda[c]).fold(0.0, f32::max)),
             Cells::Above(map, eta) => {
@@ -115,13 +114,8 @@ impl Cells<'_> {
                 if cells.any(|c| map.lambda[c] > *eta) { HIT } else { NOTHING }
             }
             Cells::Detections { target, output, eta } => {
-                let rank = |c: [usize; 2]| match (target.lambda[c] > TARGET_ETA, output.lambda[c] > *eta) {
-                    (true, true) => 3,
-                    (false, true) => 2,
-                    (true, false) => 1,
-                    (false, false) => 0,
-                };
-                [NOTHING, MISS, FALSE_ALARM, HIT][cells.map(rank).max().unwrap_or(0)]
+                let of = |c: [usize; 2]| Detection::of(target.lambda[c] > TARGET_ETA, output.lambda[c] > *eta);
+                cells.map(of).max().unwrap_or(Detection::Nothing).colour(x, y)
             }
         }
     }
@@ -150,14 +144,18 @@ fn colour_bar<B: DrawingBackend>(
 fn legend<B: DrawingBackend>(area: &Area<B>) -> Result<(), PictureError> {
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - BAR_SPACE;
-    for (name, [r, g, b]) in [("miss", MISS), ("false alarm", FALSE_ALARM), ("hit", HIT)] {
+    for detection in Detection::SEEN.into_iter().rev() {
+        let name = detection.name();
         let style = text::style(15, Weight::Normal, &FAINT_INK);
         let (name_width, _) = area.estimate_text_size(name, &style).map_err(PictureError::new)?;
         x -= name_width as i32;
         area.draw(&Text::new(name, (x, 13), style)).map_err(PictureError::new)?;
         x -= 19;
         let square = [(x, 14), (x + 13, 27)];
-        area.draw(&Rectangle::new(square, RGBColor(r, g, b).filled())).map_err(PictureError::new)?;
+        let pixels = (0..13 * 13).flat_map(|i| detection.colour(i % 13, i / 13)).collect();
+        let swatch: BitMapElement<_> = BitMapElement::with_owned_buffer((x, 14), (13, 13), pixels)
+            .ok_or_else(|| PictureError::new("a legend has no room"))?;
+        area.draw(&swatch).map_err(PictureError::new)?;
         area.draw(&Rectangle::new(square, FAINT_INK)).map_err(PictureError::new)?;
         x -= 14;
     }

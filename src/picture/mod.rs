@@ -6,6 +6,7 @@
 mod canvas;
 pub mod colour;
 mod compose;
+mod detections;
 mod directions;
 mod map_panel;
 mod png;
@@ -18,6 +19,7 @@ pub(crate) use text::register_fonts;
 pub use canvas::{Drawing, PictureError};
 pub use colour::ColourMap;
 pub use compose::{ComposeError, Format, Style, compose};
+pub use detections::Detection;
 pub use directions::{Curve, Directions, Mark};
 pub use png::{encode_png, is_our_png};
 pub use recording::{compose_recording, maps_of};
@@ -202,7 +204,11 @@ mod tests {
         };
         let svg = render_svg(&panels).unwrap();
         assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
-        assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
+        assert_eq!(
+            svg.matches("<image").count(),
+            10,
+            "six maps, the one seen from above and three swatches are one image each"
+        );
         let without = render_svg(&Panels { target: None, ..panels }).unwrap();
         assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");
         assert!(without.contains("Output, seen from above") && !without.contains("P_FA"));

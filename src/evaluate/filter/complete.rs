@@ -1,6 +1,6 @@
 //! What may stand where the cursor is.
 
-use super::parse::is_name;
+use super::tokens::is_name;
 use crate::evaluate::rows::Column;
 
 /// What may take the place of the word before the cursor.

@@ -16,9 +16,10 @@
 mod complete;
 mod expression;
 mod parse;
+mod tokens;
 
 pub use complete::{Completion, complete};
-pub use parse::FilterError;
+pub use tokens::FilterError;
 
 use super::rows::Row;
 use expression::{Scenes, Truth};

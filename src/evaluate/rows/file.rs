@@ -5,8 +5,8 @@ use std::io::{self, Read, Write};
 
 impl Row {
     /// The cells as they are written: every figure with all its digits, so that it is read back as it was.
-    fn cells(&self) -> [String; 18] {
-        fn maybe(v: Option<f64>) -> String {
+    fn cells(&self) -> [String; 21] {
+        fn maybe<V: std::fmt::Debug>(v: Option<V>) -> String {
             v.map(|v| format!("{v:?}")).unwrap_or_default()
         }
         [
@@ -28,6 +28,9 @@ impl Row {
             maybe(self.nearest_pair_bins),
             maybe(self.min_range_metres),
             maybe(self.strongest_over_weakest_db),
+            maybe(self.found),
+            maybe(self.merged),
+            maybe(self.wrong_tooth),
         ]
     }
 }
@@ -118,7 +121,8 @@ pub enum RowError {
     TooMany,
 }
 
-/// Reads what [`write_rows`] wrote. Columns may stand in any order, and others beside them.
+/// Reads what [`write_rows`] wrote. Columns may stand in any order, and others beside them; those that are
+/// [optional](Column::is_optional) may be missing.
 ///
 /// # Errors
 /// [`RowError`] names the line and the column.
@@ -126,10 +130,12 @@ pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
     let lines = ShortLines { input, line: 1, bytes: 0 };
     let mut reader = csv::Reader::from_reader(lines);
     let header = reader.headers().map_err(of_csv)?;
-    let mut places = [0; Column::ALL.len()];
+    let mut places = [None; Column::ALL.len()];
     for (place, column) in places.iter_mut().zip(Column::ALL) {
-        let found = header.iter().position(|name| name.trim() == column.name());
-        *place = found.ok_or(RowError::Header { missing: column.name() })?;
+        *place = header.iter().position(|name| name.trim() == column.name());
+        if place.is_none() && !column.is_optional() {
+            return Err(RowError::Header { missing: column.name() });
+        }
     }
     let mut rows = Vec::new();
     let mut record = csv::StringRecord::new();
@@ -146,13 +152,13 @@ pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
 /// One line, and where its columns stand.
 struct Cells<'a> {
     record: &'a csv::StringRecord,
-    places: &'a [usize; Column::ALL.len()],
+    places: &'a [Option<usize>; Column::ALL.len()],
     line: u64,
 }
 
 impl Cells<'_> {
     fn text(&self, column: Column) -> &str {
-        self.record.get(self.places[column as usize]).unwrap_or_default().trim()
+        self.places[column as usize].and_then(|place| self.record.get(place)).unwrap_or_default().trim()
     }
 
     fn parse<T: std::str::FromStr>(&self, column: Column, expected: &'static str) -> Result<T, RowError> {
@@ -176,6 +182,10 @@ impl Cells<'_> {
 
     fn count(&self, column: Column) -> Result<usize, RowError> {
         self.parse(column, "a whole number from 0")
+    }
+
+    fn maybe_count(&self, column: Column) -> Result<Option<usize>, RowError> {
+        if self.text(column).is_empty() { Ok(None) } else { self.count(column).map(Some) }
     }
 
     fn name(&self, column: Column) -> Result<String, RowError> {
@@ -206,6 +216,9 @@ impl Cells<'_> {
             nearest_pair_bins: self.maybe(Column::NearestPairBins)?,
             min_range_metres: self.maybe(Column::MinRangeMetres)?,
             strongest_over_weakest_db: self.maybe(Column::StrongestOverWeakestDb)?,
+            found: self.maybe_count(Column::Found)?,
+            merged: self.maybe_count(Column::Merged)?,
+            wrong_tooth: self.maybe_count(Column::WrongTooth)?,
         })
     }
 }
@@ -278,7 +291,8 @@ mod tests {
         assert_eq!(read_rows(text(&rows).as_bytes()).unwrap(), rows);
         assert!(text(&rows).starts_with(
             "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,\
-             reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db\n"
+             reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,\
+             found,merged,wrong_tooth\n"
         ));
     }
 
@@ -293,6 +307,16 @@ mod tests {
     }
 
     #[test]
+    fn tables_from_before_the_kinds_were_counted_are_read() {
+        let old = |line: &str| line.rsplitn(4, ',').last().unwrap().to_owned();
+        let table = text(&[row("1", 0, "live")]);
+        let table: String = table.lines().map(|line| old(line) + "\n").collect();
+        assert!(table.lines().next().unwrap().ends_with("strongest_over_weakest_db"));
+        let without = Row { found: None, merged: None, ..row("1", 0, "live") };
+        assert_eq!(read_rows(table.as_bytes()).unwrap(), [without]);
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_line_and_column() {
         let good = text(&[row("1", 0, "live"), row("1", 1, "live")]);
         assert_eq!(
@@ -301,7 +325,7 @@ mod tests {
         );
         assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\""));
         assert!(error(&good.replace("ghosts", "spirits")).contains("no column \"ghosts\""));
-        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 18"));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 21"));
         assert!(error("").contains("no column \"set\""));
         let long = format!("{good}{}", "x".repeat(1 << 20));
         assert_eq!(error(&long), "line 4: is longer than 65536 bytes; expected a row");

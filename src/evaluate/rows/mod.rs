@@ -45,6 +45,12 @@ pub struct Row {
     pub min_range_metres: Option<f64>,
     /// The strongest echo over the weakest, dB of amplitude; `None` for an empty scene.
     pub strongest_over_weakest_db: Option<f64>,
+    /// Objects found, with nothing wrong; `None` in tables that were written before the kinds of failure were counted.
+    pub found: Option<usize>,
+    /// Objects that share a blob with a neighbour.
+    pub merged: Option<usize>,
+    /// Objects on the wrong tooth of the comb.
+    pub wrong_tooth: Option<usize>,
 }
 
 /// A column of the table.
@@ -69,6 +75,9 @@ pub enum Column {
     NearestPairBins,
     MinRangeMetres,
     StrongestOverWeakestDb,
+    Found,
+    Merged,
+    WrongTooth,
 }
 
 /// What stands in a cell of the table.
@@ -84,7 +93,7 @@ pub enum Value<'a> {
 
 impl Column {
     /// Every column, in the file's order.
-    pub const ALL: [Column; 18] = [
+    pub const ALL: [Column; 21] = [
         Column::Set,
         Column::Index,
         Column::Seed,
@@ -103,6 +112,9 @@ impl Column {
         Column::NearestPairBins,
         Column::MinRangeMetres,
         Column::StrongestOverWeakestDb,
+        Column::Found,
+        Column::Merged,
+        Column::WrongTooth,
     ];
 
     /// Name in the file's first line and in filters.
@@ -126,7 +138,15 @@ impl Column {
             Column::NearestPairBins => "nearest_pair_bins",
             Column::MinRangeMetres => "min_range_metres",
             Column::StrongestOverWeakestDb => "strongest_over_weakest_db",
+            Column::Found => "found",
+            Column::Merged => "merged",
+            Column::WrongTooth => "wrong_tooth",
         }
+    }
+
+    /// Whether a table may lack it: older ones do.
+    pub fn is_optional(self) -> bool {
+        matches!(self, Column::Found | Column::Merged | Column::WrongTooth)
     }
 
     /// The column called `name`.
@@ -137,6 +157,7 @@ impl Column {
     /// What stands in this column of `row`. A set that is a number is one.
     pub fn of(self, row: &Row) -> Value<'_> {
         let maybe = |v: Option<f64>| v.map_or(Value::Missing, Value::Number);
+        let count = |v: Option<usize>| maybe(v.map(|v| v as f64));
         match self {
             Column::Set => row.set.parse().map_or(Value::Text(&row.set), Value::Number),
             Column::Index => Value::Number(f64::from(row.index)),
@@ -156,6 +177,9 @@ impl Column {
             Column::NearestPairBins => maybe(row.nearest_pair_bins),
             Column::MinRangeMetres => maybe(row.min_range_metres),
             Column::StrongestOverWeakestDb => maybe(row.strongest_over_weakest_db),
+            Column::Found => count(row.found),
+            Column::Merged => count(row.merged),
+            Column::WrongTooth => count(row.wrong_tooth),
         }
     }
 }
@@ -185,6 +209,9 @@ pub(super) mod tests {
             nearest_pair_bins: None,
             min_range_metres: Some(5.0),
             strongest_over_weakest_db: Some(0.0),
+            found: Some(1),
+            merged: Some(0),
+            wrong_tooth: None,
         }
     }
 }

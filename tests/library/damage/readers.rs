@@ -259,6 +259,9 @@ fn tables_of_rows() -> Reader {
         nearest_pair_bins: figure,
         min_range_metres: figure,
         strongest_over_weakest_db: figure,
+        found: figure.map(|_| 2),
+        merged: None,
+        wrong_tooth: figure.map(|_| 1),
     };
     let mut file = Vec::new();
     write_rows(&mut file, &[row(0, None), row(1, Some(1e-3)), row(2, Some(0.75))]).unwrap();

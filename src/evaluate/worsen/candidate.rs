@@ -1,0 +1,131 @@
+//! What is tried next: moves, echoes against each other, other noise.
+
+use super::wanted::{Aim, Finding, Search};
+use crate::scene::{Object, Scene};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::TAU;
+
+/// Candidates that don't know of each other.
+pub(super) const BATCH: u32 = 8;
+/// Part of the candidates that is drawn anywhere within reach.
+const ANYWHERE: f64 = 1.0 / 3.0;
+/// First steps, as a part of the reach.
+pub(super) const FIRST_STEP: f64 = 0.25;
+/// Smallest steps, as a part of the reach.
+pub(super) const LEAST_STEP: f64 = 1e-3;
+/// Echoes of an object change by at most this, dB of amplitude, either way.
+const MOST_LOUDER_DB: f64 = 6.0;
+/// A repair has reached its whole reach after half of so many tries, however many are left.
+const GROWS: u32 = 256;
+/// How often other noise is drawn.
+const OTHER_NOISE: f64 = 0.25;
+
+/// Where a search stands.
+pub(super) struct State {
+    /// Scale of steps, as a part of the reach.
+    pub step: f64,
+    pub path: Vec<Finding>,
+    pub tries: u32,
+}
+
+impl Search {
+    /// Candidate `n`, from the state before its batch.
+    pub(super) fn candidate(&self, start: &Scene, state: &State, n: u32) -> Scene {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+        rng.set_stream(u64::from(n) + 1);
+        match self.aim {
+            Aim::Worsen => self.worse_candidate(start, state, &mut rng),
+            Aim::Repair => self.repair_candidate(start, state, &mut rng),
+        }
+    }
+
+    fn worse_candidate(&self, start: &Scene, state: &State, rng: &mut ChaCha8Rng) -> Scene {
+        let anywhere = rng.random::<f64>() < ANYWHERE || state.path.len() == 1;
+        let (from, reach) = match state.path.last() {
+            Some(worst) if !anywhere => (&worst.scene, state.step * self.within_metres),
+            _ => (start, self.within_metres),
+        };
+        let mut scene = from.clone();
+        for (object, home) in scene.objects.iter_mut().zip(&start.objects) {
+            let [dx, dy] = if anywhere { in_disc(rng, reach) } else { [0, 1].map(|_| reach * normal(rng)) };
+            object.translate(dx, dy);
+            keep_within(object, home, self.within_metres);
+        }
+        // All louder together changes nothing.
+        if scene.objects.len() > 1 {
+            for (object, home) in scene.objects.iter_mut().zip(&start.objects) {
+                let db = MOST_LOUDER_DB * rng.random_range(-1.0..=1.0);
+                let part = if anywhere { 1.0 } else { state.step };
+                let (now, at_home) = (reflectivity(object), *reflectivity(&mut home.clone()));
+                *now *= 10f64.powf(part * db / 20.0);
+                let most = 10f64.powf(MOST_LOUDER_DB / 20.0);
+                let (low, high) = (at_home.abs() / most, at_home.abs() * most);
+                *now = now.abs().clamp(low, high).copysign(at_home);
+            }
+        }
+        if rng.random::<f64>() < OTHER_NOISE {
+            scene.noise_seed = rng.random::<u64>() >> 11;
+        }
+        scene
+    }
+
+    fn repair_candidate(&self, start: &Scene, state: &State, rng: &mut ChaCha8Rng) -> Scene {
+        let best = state.path.get(1..).and_then(<[Finding]>::last);
+        let mut scene = start.clone();
+        if let Some(best) = best.filter(|_| rng.random::<f64>() < 0.5) {
+            // Part of the way that is known to help.
+            let part = rng.random_range(0.2..1.0);
+            for (object, end) in scene.objects.iter_mut().zip(&best.scene.objects) {
+                let ([x, y], [to_x, to_y]) = (object.centre_metres(), end.centre_metres());
+                object.translate(part * (to_x - x), part * (to_y - y));
+            }
+            return scene;
+        }
+        // Small moves first; never farther than what is known to help.
+        let growing = f64::from(state.tries + BATCH) / f64::from(self.tries.clamp(1, GROWS)) * 2.0;
+        let reach = best.map_or(self.within_metres * growing.min(1.0), |b| b.moved_metres);
+        let alone = (rng.random::<f64>() < 0.5).then(|| rng.random_range(0..scene.objects.len()));
+        for (i, object) in scene.objects.iter_mut().enumerate() {
+            let [dx, dy] = in_disc(rng, reach);
+            if alone.is_none_or(|a| a == i) {
+                object.translate(dx, dy);
+            }
+        }
+        scene
+    }
+}
+
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+/// A place in a disc, all parts of it alike.
+fn in_disc(rng: &mut ChaCha8Rng, radius: f64) -> [f64; 2] {
+    let (angle, part) = (TAU * rng.random::<f64>(), rng.random::<f64>().sqrt());
+    [radius * part * angle.cos(), radius * part * angle.sin()]
+}
+
+/// How far two objects' centres lie apart, metres.
+pub(super) fn distance(a: &Object, b: &Object) -> f64 {
+    let ([ax, ay], [bx, by]) = (a.centre_metres(), b.centre_metres());
+    (bx - ax).hypot(by - ay)
+}
+
+fn keep_within(object: &mut Object, home: &Object, within_metres: f64) {
+    let away = distance(home, object);
+    if away > within_metres {
+        let ([x, y], [home_x, home_y]) = (object.centre_metres(), home.centre_metres());
+        let back = 1.0 - within_metres / away;
+        object.translate(back * (home_x - x), back * (home_y - y));
+    }
+}
+
+fn reflectivity(object: &mut Object) -> &mut f64 {
+    match object {
+        Object::Point(p) => &mut p.reflectivity,
+        Object::Line(l) => &mut l.reflectivity,
+        Object::Gaussian(g) => &mut g.reflectivity,
+    }
+}

@@ -1,0 +1,136 @@
+//! The search for trouble: near a scene, another on which a method does worse; or the smallest move after which it is right.
+//!
+//! Candidates move objects, change their echoes against each other and draw other noise. The search draws a third of them anywhere within
+//! reach, the others around the worst so far, in steps that grow with success and shrink without, and begin anew when they are small. Candidate `n` of a search depends on the
+//! seed and on what the candidates of earlier batches came to, so that a search of so many tries repeats itself.
+
+mod candidate;
+mod wanted;
+
+pub use wanted::{Aim, Finding, Measure, Outcome, Search, WorsenError, summary};
+
+use super::failure::Failures;
+use super::trial::Trial;
+use crate::reconstruct::{Reconstructor, Request};
+use crate::scene::{Scene, SceneError};
+use crate::task::Task;
+use candidate::{BATCH, FIRST_STEP, LEAST_STEP, State, distance};
+use rayon::prelude::*;
+
+/// A repaired squared error is at most this part of the one at the start.
+const REPAIRED: f64 = 0.2;
+
+impl Search {
+    /// Searches near `scene` for `method`. `on_try` is called after every batch with the tries made and the path so far; when it answers false,
+    /// the search ends there.
+    ///
+    /// # Errors
+    /// [`WorsenError`] when the start itself can't be tried. Candidates that can't be simulated are passed over.
+    pub fn run(
+        &self,
+        scene: &Scene,
+        method: &dyn Reconstructor,
+        task: &Task,
+        mut on_try: impl FnMut(u32, &[Finding]) -> bool,
+    ) -> Result<Outcome, WorsenError> {
+        if scene.objects.is_empty() {
+            return Err(WorsenError::Empty);
+        }
+        if !(self.within_metres > 0.0 && self.within_metres <= 1000.0) {
+            return Err(WorsenError::Reach(self.within_metres));
+        }
+        let request =
+            Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
+        let trial = self.trial(scene)?;
+        let start = self.finding(scene, scene, &trial, method, &request, 0)?;
+        let mut state = State { step: FIRST_STEP, path: vec![start], tries: 0 };
+        while state.tries < self.tries && !self.is_reached(&state) && on_try(state.tries, &state.path) {
+            let batch = state.tries..(state.tries + BATCH).min(self.tries);
+            state.tries = batch.end;
+            let trials: Vec<(u32, Scene, Trial)> = batch
+                .into_par_iter()
+                .filter_map(|n| {
+                    let candidate = self.candidate(scene, &state, n);
+                    let trial = self.trial(&candidate).ok()?;
+                    Some((n, candidate, trial))
+                })
+                .collect();
+            let mut better = false;
+            for (n, candidate, trial) in trials {
+                match self.finding(&candidate, scene, &trial, method, &request, n + 1) {
+                    Ok(found) if self.is_better(&found, &state.path) => {
+                        state.path.push(found);
+                        better = true;
+                    }
+                    Ok(_) => {}
+                    // Stopped: what was found stays.
+                    Err(_) if task.is_cancelled() => return Ok(Outcome { path: state.path, tries: n }),
+                    Err(error) => return Err(error),
+                }
+            }
+            let factor = if better { 1.6 } else { 0.8 };
+            // So near the worst there is nothing worse: look farther around it again.
+            let next = state.step * factor;
+            state.step = if next < LEAST_STEP { FIRST_STEP } else { next.min(FIRST_STEP) };
+        }
+        on_try(state.tries, &state.path);
+        Ok(Outcome { path: state.path, tries: state.tries })
+    }
+
+    /// Nothing is left to repair.
+    fn is_reached(&self, state: &State) -> bool {
+        self.aim == Aim::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
+    }
+
+    fn trial(&self, scene: &Scene) -> Result<Trial, SceneError> {
+        let trial = Trial::new(&self.radar, scene, self.floor, self.normalisation)?;
+        if self.measure != Measure::SquaredError {
+            trial.footprints();
+        }
+        Ok(trial)
+    }
+
+    fn finding(
+        &self,
+        scene: &Scene,
+        start: &Scene,
+        trial: &Trial,
+        method: &dyn Reconstructor,
+        request: &Request,
+        tries: u32,
+    ) -> Result<Finding, WorsenError> {
+        let failed = |source| WorsenError::Method { method: method.name(), source };
+        let answer = trial.ask(method, request).map_err(failed)?;
+        let failures = match self.measure {
+            Measure::SquaredError => Failures::default(),
+            _ => trial.failures(&answer),
+        };
+        let moves = start.objects.iter().zip(&scene.objects).map(|(a, b)| distance(a, b));
+        let moved_metres = moves.fold(0.0, f64::max);
+        Ok(Finding { scene: scene.clone(), metrics: answer.metrics, failures, moved_metres, tries })
+    }
+
+    fn is_better(&self, found: &Finding, path: &[Finding]) -> bool {
+        let [start, .., last] = path else {
+            let start = &path[0];
+            return match self.aim {
+                Aim::Worsen => self.measure.of(found) > self.measure.of(start),
+                Aim::Repair => self.is_right(found, start),
+            };
+        };
+        match self.aim {
+            Aim::Worsen => self.measure.of(found) > self.measure.of(last),
+            Aim::Repair => self.is_right(found, start) && found.moved_metres < last.moved_metres,
+        }
+    }
+
+    fn is_right(&self, found: &Finding, start: &Finding) -> bool {
+        match self.measure {
+            Measure::SquaredError => found.metrics.squared_error <= REPAIRED * start.metrics.squared_error,
+            _ => self.measure.of(found).0 == 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+use super::*;
+use crate::maps::Normalisation;
+use crate::maps::RangeAngleMap;
+use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
+use crate::reconstruct::{About, Reconstruction};
+use crate::signal::TwoEnds;
+
+fn radar() -> Radar {
+    Radar { elements: 64, samples: 64, end_elements: 8, ..Radar::default() }
+}
+
+/// Answers with nothing where the strongest echo comes from beyond half the range, and with one end's map else.
+struct ShortSighted;
+
+impl Reconstructor for ShortSighted {
+    fn about(&self) -> About {
+        About { name: "short-sighted", description: "sees near objects only", told: "nothing", eta: 0.8 }
+    }
+
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
+        let map = crate::maps::channels_map(radar, ends.first.view()).log_magnitude();
+        let (peak, _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let mut lambda = map.normalise(Normalisation::MinMax);
+        if peak.0 > 32 {
+            lambda = RangeAngleMap { lambda: lambda.lambda.mapv(|_| 0.0) };
+        }
+        Ok(Reconstruction { lambda, reflectors: Vec::new() })
+    }
+}
+
+fn search(aim: Aim, measure: Measure) -> Search {
+    Search { radar: radar(), aim, measure, tries: 80, seed: 4, ..Search::default() }
+}
+
+fn run(search: &Search, y_metres: f64) -> Outcome {
+    let scene = Scene::of_points([(0.0, y_metres)]);
+    search.run(&scene, &ShortSighted, &Task::default(), |_, _| true).unwrap()
+}
+
+/// Half the range is at 2.4 m.
+#[test]
+fn a_search_finds_where_the_method_stops_seeing() {
+    for measure in Measure::ALL.into_iter().take(2) {
+        let search = search(Aim::Worsen, measure);
+        let found = run(&search, 1.7);
+        let (start, worst) = found.ends().unwrap();
+        let worst = worst.unwrap();
+        assert!(worst.metrics.squared_error > start.metrics.squared_error);
+        assert!(worst.scene.objects[0].centre_metres()[1] > 2.3 && worst.moved_metres <= 2.0 + 1e-9);
+        assert!(found.path.is_sorted_by(|a, b| measure.of(a) < measure.of(b)));
+        assert_eq!((found.tries, &found), (80, &run(&search, 1.7)), "the same seed gives the same search");
+    }
+}
+
+#[test]
+fn a_repair_is_the_smallest_move_that_helps() {
+    let found = run(&search(Aim::Repair, Measure::Missed), 3.0);
+    let (start, end) = found.ends().unwrap();
+    let end = end.unwrap();
+    assert_eq!((start.failures.missed(), end.failures.missed()), (1, 0));
+    // From 3.0 m to where the bin's middle is nearer than that of half the range, 2.44 m.
+    assert!((0.5..0.75).contains(&end.moved_metres), "{}", end.moved_metres);
+    assert!(found.path[1..].is_sorted_by(|a, b| a.moved_metres > b.moved_metres));
+    assert_eq!(run(&search(Aim::Repair, Measure::Missed), 1.7).tries, 0, "nothing to repair");
+}
+
+#[test]
+fn a_search_that_makes_no_sense_is_refused_and_one_that_is_stopped_keeps_what_it_has() {
+    let refuse =
+        |search: &Search, scene: &Scene| search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err();
+    let worsen = search(Aim::Worsen, Measure::SquaredError);
+    assert_eq!(refuse(&worsen, &Scene::default()), WorsenError::Empty);
+    let far = Search { within_metres: f64::NAN, ..worsen.clone() };
+    assert!(matches!(refuse(&far, &Scene::of_points([(0.0, 2.0)])), WorsenError::Reach(_)));
+    let scene = Scene::of_points([(0.0, 1.7)]);
+    let stopped = worsen.run(&scene, &ShortSighted, &Task::default(), |tries, _| tries < 16).unwrap();
+    assert_eq!(stopped.tries, 16);
+    assert_eq!(stopped.path, run(&Search { tries: 16, ..worsen }, 1.7).path);
+}

@@ -1,0 +1,172 @@
+//! What a search is for, and what comes of it.
+
+use crate::evaluate::Metrics;
+use crate::evaluate::failure::{Failures, Fate};
+use crate::maps::Normalisation;
+use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
+use crate::scene::{Scene, SceneError};
+use crate::signal::Floor;
+use std::fmt;
+use std::str::FromStr;
+
+/// What "worse" means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Measure {
+    /// A larger SE.
+    #[default]
+    SquaredError,
+    /// More objects missed; among as many, a larger SE.
+    Missed,
+    /// More ghosts; among as many, a larger SE.
+    Ghosts,
+}
+
+impl Measure {
+    /// Every measure.
+    pub const ALL: [Measure; 3] = [Measure::SquaredError, Measure::Missed, Measure::Ghosts];
+}
+
+impl fmt::Display for Measure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Measure::SquaredError => "squared-error",
+            Measure::Missed => "missed",
+            Measure::Ghosts => "ghosts",
+        })
+    }
+}
+
+impl FromStr for Measure {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        Measure::ALL
+            .into_iter()
+            .find(|m| m.to_string() == s)
+            .ok_or_else(|| format!("unknown measure \"{s}\"; expected squared-error, missed or ghosts"))
+    }
+}
+
+/// What is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Aim {
+    /// The worst scene.
+    #[default]
+    Worsen,
+    /// The smallest move, of objects alone, after which nothing is missed, or no ghost seen, or a fifth of the SE is left.
+    Repair,
+}
+
+/// How a search goes.
+#[derive(Debug, Clone)]
+pub struct Search {
+    /// The radar.
+    pub radar: Radar,
+    /// What lies beneath the reflectors.
+    pub floor: Floor,
+    /// How maps are normalised.
+    pub normalisation: Normalisation,
+    /// What is looked for.
+    pub aim: Aim,
+    /// What it is judged by.
+    pub measure: Measure,
+    /// How far any object may move, metres.
+    pub within_metres: f64,
+    /// Scenes to try.
+    pub tries: u32,
+    /// Picks the scenes.
+    pub seed: u64,
+}
+
+impl Default for Search {
+    /// 256 scenes in the tables' conventions, objects moved by up to 2 m.
+    fn default() -> Self {
+        Search {
+            radar: Radar::default(),
+            floor: Floor::Thesis,
+            normalisation: Normalisation::MinMax,
+            aim: Aim::default(),
+            measure: Measure::default(),
+            within_metres: 2.0,
+            tries: 256,
+            seed: 0,
+        }
+    }
+}
+
+/// A scene that was tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The scene.
+    pub scene: Scene,
+    /// What the method made of it.
+    pub metrics: Metrics,
+    /// What kind of failure.
+    pub failures: Failures,
+    /// How far the object moved that moved farthest, metres.
+    pub moved_metres: f64,
+    /// After how many tries it was found; 0 for the start.
+    pub tries: u32,
+}
+
+/// What came of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The start, and every scene that was better for the aim than all before it.
+    pub path: Vec<Finding>,
+    /// Scenes tried.
+    pub tries: u32,
+}
+
+impl Outcome {
+    /// The start, and the last of the path where there is one after it.
+    pub fn ends(&self) -> Option<(&Finding, Option<&Finding>)> {
+        let (start, rest) = self.path.split_first()?;
+        Some((start, rest.last()))
+    }
+}
+
+/// Why a search ended with nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WorsenError {
+    /// The start can't be simulated.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// The method failed.
+    #[error("{method}: {source}")]
+    Method {
+        /// Its name.
+        method: &'static str,
+        /// Why.
+        source: ReconstructError,
+    },
+    /// Nothing to move.
+    #[error("the scene is empty; expected an object to move")]
+    Empty,
+    /// The reach makes no sense.
+    #[error("a reach of {0} m; expected more than 0 and at most 1000 m")]
+    Reach(f64),
+}
+
+impl Measure {
+    /// What is to be as large, or for a repair as small, as can be.
+    pub(super) fn of(self, finding: &Finding) -> (usize, f64) {
+        let count = match self {
+            Measure::SquaredError => 0,
+            Measure::Missed => finding.failures.objects.iter().filter(|f| !f.is_right()).count(),
+            Measure::Ghosts => finding.failures.ghosts.len(),
+        };
+        (count, finding.metrics.squared_error)
+    }
+}
+
+/// How often each fate befell, in words: "2 found, 1 missed".
+pub fn summary(failures: &Failures) -> String {
+    let count = |name: &str| failures.objects.iter().filter(|f| f.name() == name).count();
+    let fates = [Fate::Found, Fate::Missed, Fate::Merged { with: 0 }, Fate::WrongTooth { columns: 0 }, Fate::Hidden];
+    let objects = fates.into_iter().map(|f| (count(f.name()), f.name().to_owned()));
+    let ghosts = (failures.ghosts.len(), if failures.ghosts.len() == 1 { "ghost" } else { "ghosts" }.to_owned());
+    let parts = objects.chain([ghosts]).filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} {name}"));
+    parts.collect::<Vec<_>>().join(", ")
+}
