@@ -120,8 +120,11 @@ mod tests {
 
     #[test]
     fn more_tones_widen_the_projection_and_too_many_are_refused() {
-        let comb =
-            |count: usize| -> Vec<[f64; 2]> { (0..count).map(|i| [i as f64 * 512.0 / count as f64, 1.0]).collect() };
+        // Of unlike sizes: a comb of equal tones is a few pulses, which have no tone at all.
+        let size = |i: usize| 1.0 + 0.5 * (1.7 * (i * i) as f64).sin();
+        let comb = |count: usize| -> Vec<[f64; 2]> {
+            (0..count).map(|i| [i as f64 * 512.0 / count as f64, size(i)]).collect()
+        };
         assert_eq!(tones_bins(&chirp(&comb(100), 1e-12), 1e-24).unwrap().len(), 100);
         assert_eq!(tones_bins(&chirp(&comb(300), 1e-12), 1e-24), None);
         assert_eq!(tones_bins(&chirp(&[], 1e-3), 1e-6), Some(Vec::new()));
