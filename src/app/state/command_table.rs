@@ -224,7 +224,7 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Evaluation, Key::F9),
     (Panel::RunTime, Key::F10),
     (Panel::Several, Key::S),
-    (Panel::Radar, Key::F11),
+    (Panel::Radar, Key::W),
     (Panel::Training, Key::F12),
 ];
 
