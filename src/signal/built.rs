@@ -217,7 +217,7 @@ mod tests {
                 .collect(),
             ..Scene::default()
         };
-        assert_eq!(explicit.objects.len(), 8);
+        assert_eq!(explicit.objects.len(), 5, "three ghosts of the point before the wall, none of that behind it");
         assert_eq!(simulate(&radar, &explicit, Floor::Exact, 3).unwrap(), mirrored);
         scene.disturbances.elements.elements[5].dead = true;
         let ends = crate::signal::simulate_ends(&radar, &scene, Floor::Thesis, 3).unwrap();

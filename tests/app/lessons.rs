@@ -77,6 +77,8 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
         step_until(s, &format!("{place}: a way is offered"), |s| shows(s, "Show a way"));
         step_until(s, &format!("{place}: it is measured"), |s| !shows(s, "measuring…"));
         assert!(!shows(s, "Done. "), "{place}: met before anything is done");
+        s.app.get_by_label("Show a way").scroll_to_me();
+        (0..3).for_each(|_| s.app.step());
         s.app.get_by_label("Show a way").click();
         step_until(s, &format!("{place}: met"), |s| shows(s, "Done. "));
     }

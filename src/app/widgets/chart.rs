@@ -131,9 +131,10 @@ impl Span {
     }
 
     fn within(self, whole: Span) -> Span {
-        let all = whole.high - whole.low;
+        // What has no cells yet spans nothing.
+        let all = (whole.high - whole.low).max(0.0);
         let size = (self.high - self.low).clamp(1e-3 * all, all);
-        let low = self.low.clamp(whole.low, whole.high - size);
+        let low = self.low.clamp(whole.low, whole.low + (all - size));
         Span { low, high: low + size }
     }
 }

@@ -1,4 +1,5 @@
-//! The search as a whole: both ends' tones paired, walls through them, long lines, then points until nothing stands out.
+//! The search as a whole: long lines, both ends' tones paired, walls through them, few points sample by sample, then more until nothing
+//! stands out.
 
 use super::atom::Atom;
 use super::echoes::Samples;
@@ -93,38 +94,41 @@ impl Search<'_> {
         }
     }
 
-    /// Points that both ends' tones lead to and walls through them, then lines where the echo is long, then whatever still stands out.
+    /// Lines where the echo is long. Elsewhere, and beside them, points that both ends' tones lead to and walls through them, told apart
+    /// sample by sample where they are few; then whatever still stands out.
     fn run(&self) -> Result<Answer, ReconstructError> {
         let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
-        let mut answer = Answer { fit: nothing, is_sure: false };
         let is_long = self.longest_run() >= LONG_RUN_BINS;
+        let mut few = if is_long { Some(self.with_few()?) } else { None };
+        if let Some(sure) = few.take_if(|few| few.is_sure) {
+            return Ok(sure);
+        }
+        let mut answer = Answer { fit: nothing, is_sure: false };
         for _ in 0..MOST_ROUNDS {
             let before = answer.fit.cost();
             answer.fit = self.grower().with_walls(self.samples, self.paired(answer.fit, !is_long)?)?;
             tracing::debug!(atoms = answer.fit.atoms.len(), before, cost = answer.fit.cost(), "paired");
             answer.is_sure = self.is_explained(&answer.fit);
-            if answer.is_sure {
-                return Ok(answer);
-            }
-            if answer.fit.cost() > WORTH_ANOTHER * before {
+            if answer.is_sure || answer.fit.cost() > WORTH_ANOTHER * before {
                 break;
             }
         }
-        if is_long {
-            let lines = self.with_long_lines()?;
-            if lines.is_sure {
-                return Ok(lines);
-            }
-            if lines.fit.cost() < answer.fit.cost() {
-                answer = lines;
-            }
+        if few.is_none() && answer.fit.atoms.len() <= FEW {
+            few = Some(self.with_few()?);
+        }
+        match few {
+            Some(few) if few.is_sure || !answer.is_sure && few.fit.cost() < answer.fit.cost() => answer = few,
+            _ => {}
+        }
+        if answer.is_sure {
+            return Ok(answer);
         }
         let fit = self.completed(answer.fit)?;
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
     }
 
-    /// What a search for a few long vertical lines finds, and the points beside them.
-    fn with_long_lines(&self) -> Result<Answer, ReconstructError> {
+    /// What a search for a few points and long vertical lines finds, every sample of each written out.
+    fn with_few(&self) -> Result<Answer, ReconstructError> {
         let found = few::find(self.radar, self.flat, self.request, self.settings.most_line_work)?;
         let atoms: Vec<Atom> = found.atoms.iter().map(few::atom::Atom::outside).collect();
         let left = self.bench.without(self.samples, &atoms, &found.gains);
@@ -187,9 +191,14 @@ impl Search<'_> {
         if fit.cost() > MOST_CHANGED * (all[0] + all[1]) {
             return Ok(None);
         }
-        fit = grower.refined_where_needed(fit)?;
+        // What vanished leaves an atom that the rest can do without.
+        fit = grower.pruned(grower.refined_where_needed(fit)?)?;
         if !self.is_explained(&fit) {
-            fit = self.completed(grower.pruned(fit)?)?;
+            fit = self.completed(fit)?;
+        }
+        // Many new atoms make up for old ones that went astray.
+        if fit.atoms.len() > previous.atoms.len() + MOST_APPEARING {
+            return Ok(None);
         }
         let unexplained = fit.cost() / (all[0] + all[1]);
         let is_sure = self.is_explained(&fit);
@@ -223,6 +232,12 @@ impl Search<'_> {
         End::BOTH.map(run_of).into_iter().max().unwrap_or(0)
     }
 }
+
+/// Most atoms that are told apart sample by sample.
+const FEW: usize = 12;
+
+/// Most atoms that appear from one answer to the next.
+const MOST_APPEARING: usize = 2;
 
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;

@@ -60,7 +60,10 @@ pub fn width_at(points: &[[f64; 2]], place: f64) -> Option<Width> {
     let side = |sign: f64| -> Option<f64> {
         let near = summit + sign * half;
         if half <= 1.0 {
-            return Some(near);
+            // The line must fall as far as the parabola says before it rises again.
+            let beyond = top as f64 + near.signum() * near.abs().ceil().max(1.0);
+            return (beyond >= 0.0 && beyond < points.len() as f64 && level(beyond as usize) <= threshold)
+                .then_some(near);
         }
         let mut steps = 1;
         loop {
