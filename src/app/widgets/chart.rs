@@ -130,6 +130,11 @@ impl Span {
         Span { low, high }.within(whole)
     }
 
+    /// The place in the span that is nearest to `x`; where nothing is spanned, its beginning.
+    pub fn nearest(self, x: f64) -> f64 {
+        x.min(self.high).max(self.low)
+    }
+
     fn within(self, whole: Span) -> Span {
         // What has no cells yet spans nothing.
         let all = (whole.high - whole.low).max(0.0);

@@ -57,9 +57,9 @@ impl Markers {
             self.held = ui.input(|i| i.pointer.press_origin()).and_then(|pos| under(pos.x));
         }
         if let Some((index, pos)) = self.held.zip(response.interact_pointer_pos()) {
-            self.places[index] = Some(drawn.x_at(pos).clamp(whole.low, whole.high));
+            self.places[index] = Some(whole.nearest(drawn.x_at(pos)));
         } else if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked()) {
-            self.place(drawn.x_at(pos).clamp(whole.low, whole.high));
+            self.place(whole.nearest(drawn.x_at(pos)));
         }
         if response.drag_stopped() {
             self.held = None;
