@@ -143,16 +143,22 @@ class Live(nn.Module):
         y2 = self.dec2(x2 + up2(self.up2(x3)))
         y1 = self.dec1(x1 + up2(self.up1(y2)))
         y0 = F.relu(self.dec0(x0 + up2(self.up0(y1))))
-        pooled = torch.cat([x3.mean((2, 3)), x3.amax((2, 3))], 1).float()
-        s = self.scalar2(F.relu(self.scalar1(torch.cat([pooled, scalars_n], 1)))).float()
         f = torch.cat([shuffle_cols(self.widen(y0), 4), fine_n], 1)
         f = self.fine2(F.relu(self.fine1(f)))
-        heads = shuffle_cols(f, 4).float() * 3 - 3
+        with torch.autocast("cpu", enabled=False):
+            return self.sources(scalars, scalars_n, x3.float(), y0.float(), f.float())
+
+    def sources(self, scalars, scalars_n, x3, y0, f):
+        """What the features make of every cell, in f32 whatever the convolutions were in: sums over many decades follow."""
+        b = f.shape[0]
+        pooled = torch.cat([x3.mean((2, 3)), x3.amax((2, 3))], 1)
+        s = self.scalar2(F.relu(self.scalar1(torch.cat([pooled, scalars_n], 1))))
+        heads = shuffle_cols(f, 4) * 3 - 3
         a = heads.clamp(-18, 4)
         local = torch.exp(LN10 * a[:, 0])
         column = circulant(self.col_kernel, ROWS) @ torch.exp(LN10 * a[:, 1])
         sharp = local + column
-        src = shuffle_cols(self.row_sources(y0), 2)[:, 0].float() * 3 - 3
+        src = shuffle_cols(self.row_sources(y0), 2)[:, 0] * 3 - 3
         wide = torch.exp(LN10 * src.clamp(-18, 4)) + sharp.view(b, ROWS, 128, 8).mean(3)
         row = (wide @ circulant(self.row_kernel, 128)).repeat_interleave(8, 2)
         floor = scalars[:, 0] + s[:, 0]

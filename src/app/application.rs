@@ -109,6 +109,7 @@ impl App {
             pins: Default::default(),
             guided: Default::default(),
             lossy_save: None,
+            failures: Default::default(),
             lesson: None,
             before_presenting: None,
             without_numbers: false,
@@ -318,6 +319,9 @@ impl eframe::App for App {
             && let Err(error) = autosave.keep_now(&state.editor)
         {
             tracing::warn!("the scene could not be autosaved: {error}");
+        }
+        if let Err(error) = self.jobs.failures.keep_now() {
+            tracing::warn!("the rows could not be kept: {error}");
         }
     }
 }

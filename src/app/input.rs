@@ -53,7 +53,7 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
     let mut commands = Vec::new();
     let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
     commands.extend(dropped.map(|path| match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
-        true => Command::WatchLog(path),
+        true => Command::OpenTable(path),
         false => Command::OpenPath(path),
     }));
     if ctx.input(|i| i.pointer.any_released()) {

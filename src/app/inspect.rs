@@ -2,11 +2,15 @@
 
 use super::application::App;
 use super::apply;
-use super::state::{Arrangement, Command, MapKind, Settings};
+use super::state::{Arrangement, Command, MapKind, MethodSlot, Settings};
 use crate::bounds::PositionBound;
 use crate::engine::Report;
 use crate::evaluate::Metrics;
+use crate::evaluate::failure::Failures;
+use crate::evaluate::rows::Row;
+use crate::evaluate::worsen::Finding;
 use crate::interact::Editor;
+use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
 
@@ -96,6 +100,22 @@ impl App {
         self.jobs.pipeline.scores().map(|s| s.metrics)
     }
 
+    /// Lambda of what the second method of the panel "Compare" made, if it made something.
+    pub fn second_output(&self) -> Option<&RangeAngleMap> {
+        self.jobs.pipeline.method(MethodSlot::Second).output().map(|output| output.pair.output.as_ref())
+    }
+
+    /// Its figures, if there are any.
+    pub fn second_metrics(&self) -> Option<Metrics> {
+        self.jobs.pipeline.scores_in(MethodSlot::Second).map(|s| s.metrics)
+    }
+
+    /// What became of every object in the output on screen, where that is marked and up to date.
+    pub fn failures(&self) -> Option<&Failures> {
+        let (fates, current) = self.jobs.kinds.of(MethodSlot::First, &self.jobs.pipeline)?;
+        (current && self.state.settings.show_kinds).then_some(&fates.failures)
+    }
+
     /// Whether the maps on screen are those of a scene at rest, as every command computes them.
     pub fn is_settled(&self) -> bool {
         self.jobs.pipeline.is_settled()
@@ -114,12 +134,36 @@ impl App {
     /// Whether something runs that was started in a tool's panel.
     pub fn is_at_work(&self) -> bool {
         let jobs = &self.jobs;
-        jobs.evaluation.progress().is_some() || jobs.run_time.progress().is_some() || jobs.training.is_running()
+        jobs.evaluation.progress().is_some()
+            || jobs.failures.progress().is_some()
+            || jobs.failures.search.progress().is_some()
+            || jobs.run_time.progress().is_some()
+            || jobs.training.is_running()
     }
 
     /// What the evaluation has found, as CSV.
     pub fn evaluation_csv(&self) -> String {
         self.jobs.evaluation.to_csv()
+    }
+
+    /// The rows of the panel Failures.
+    pub fn rows(&self) -> &[Row] {
+        self.jobs.failures.table().rows()
+    }
+
+    /// Whether the file that rows are kept in from start to start holds all of them.
+    pub fn rows_are_kept(&self) -> bool {
+        self.jobs.failures.is_kept()
+    }
+
+    /// Index of the row that was opened last.
+    pub fn opened_row(&self) -> Option<usize> {
+        self.state.failures.opened.as_ref().map(|opened| opened.index)
+    }
+
+    /// Scenes on the path of the search near the scene on screen, its start included.
+    pub fn search_path(&self) -> &[Finding] {
+        self.jobs.failures.search.path()
     }
 
     /// What is on screen as a line of text, where it can be one ([`crate::share`]).

@@ -26,8 +26,8 @@ mod widgets;
 
 pub use application::{APP_ID, App, Options};
 pub use state::{
-    Arrangement, BoundsSettings, Brightness, Command, Cursor, DifferenceView, Elements, EvaluationChoice, MapKind,
-    NewObject, Panel, Projection, Settings, Units,
+    Arrangement, BoundsSettings, Brightness, Command, Compare, Cursor, DifferenceView, Elements, EvaluationChoice,
+    FailureChoice, Layout, MapKind, NewObject, Panel, Projection, SearchChoice, Settings, Units,
 };
 
 /// Why the app did not open.

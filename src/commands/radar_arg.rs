@@ -1,7 +1,9 @@
 //! `--radar RADAR.toml`: the radar of samples that come without one.
 
 use super::CommandError;
+use crate::files::read_bounded;
 use crate::radar::Radar;
+use crate::scene::file::MAX_FILE_BYTES;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -14,23 +16,39 @@ pub struct RadarArg {
 }
 
 impl RadarArg {
-    /// The radar: what the file leaves out is table 3.1's.
-    pub fn load(&self) -> Result<Radar, CommandError> {
-        self.radar.as_deref().map_or_else(|| Ok(Radar::default()), load)
+    /// Whether a file was named.
+    pub fn is_given(&self) -> bool {
+        self.radar.is_some()
+    }
+
+    /// The radar, and where a recording's file tells it, the range of its snapshot. What the file leaves out is table 3.1's.
+    pub fn load(&self) -> Result<(Radar, Option<f64>), CommandError> {
+        self.radar.as_deref().map_or_else(|| Ok((Radar::default(), None)), load)
     }
 }
 
-fn load(path: &Path) -> Result<Radar, CommandError> {
+fn load(path: &Path) -> Result<(Radar, Option<f64>), CommandError> {
     #[derive(Deserialize)]
     struct Head {
-        radar: Radar,
+        radar: Option<Radar>,
+        #[serde(default)]
+        recording: Told,
     }
-    let text = std::fs::read_to_string(path).map_err(|source| CommandError::File { path: path.to_owned(), source })?;
+    #[derive(Deserialize, Default)]
+    struct Told {
+        range_metres: Option<f64>,
+    }
+    let bytes =
+        read_bounded(path, MAX_FILE_BYTES).map_err(|source| CommandError::File { path: path.to_owned(), source })?;
+    let wrong = |what: String| {
+        CommandError::Usage(format!("{}: {what}; expected a TOML file with a table [radar]", path.display()))
+    };
+    let text = String::from_utf8(bytes).map_err(|_| wrong("is not text".to_owned()))?;
     let head: Head = toml::from_str(&text).map_err(|e| {
         let place = e.span().map_or(0, |s| text[..s.start].matches('\n').count() + 1);
-        let message = e.message().lines().collect::<Vec<_>>().join(", ");
-        CommandError::Usage(format!("{}: line {place}: {message}; expected a table [radar]", path.display()))
+        wrong(format!("line {place}: {}", e.message().lines().collect::<Vec<_>>().join(", ")))
     })?;
-    head.radar.validate().map_err(CommandError::on(path))?;
-    Ok(head.radar)
+    let radar = head.radar.ok_or_else(|| wrong("has no table [radar]".to_owned()))?;
+    radar.validate().map_err(CommandError::on(path))?;
+    Ok((radar, head.recording.range_metres))
 }

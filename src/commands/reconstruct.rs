@@ -5,12 +5,15 @@ use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::files::npz::{Npz, NpzError, write_npz};
+use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
 use crate::reconstruct::{Detection, ReconstructError, Reconstructor, Request};
-use crate::signal::TwoEnds;
-use ndarray::{Array1, Array2, Ix2, arr0};
+use crate::recording;
+use crate::signal::{Floor, TwoEnds};
+use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Estimate the whole array's map from the samples of the two ends
@@ -18,20 +21,21 @@ use std::time::Instant;
 /// IN holds sub0 and sub1 (complex128 [512, 12], any gain, or [samples, elements of an end] of another radar); for the thesis'
 /// networks it may hold polar_partial_mag_phase (f64 [4, 512, 1024]) instead. OUT gets net_output (f32 [512, 1024] or
 /// [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and milliseconds; and of what the method
-/// found, the strongest first, found_cos_theta, found_range_metres and found_db (relative to the strongest): its reflectors, or the
-/// peaks of its map within 20 dB.
+/// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told) and found_db
+/// (relative to the strongest): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in place of IN.npz brings
+/// its radar along.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Archive with the samples (.npz)
+    /// Archive with the samples (.npz), or a recording (.toml)
     input: PathBuf,
 
     /// Archive to write (.npz)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
-    /// Reconstruction method
-    #[arg(long, value_name = "NAME", default_value = "live")]
-    method: String,
+    /// Reconstruction method [default: live for table 3.1, iaa for any other radar]
+    #[arg(long, value_name = "NAME")]
+    method: Option<String>,
 
     #[command(flatten)]
     radar: RadarArg,
@@ -46,38 +50,82 @@ pub struct Args {
 impl Args {
     /// Reconstructs and writes.
     pub fn run(self) -> Result<(), CommandError> {
-        let radar = self.radar.load()?;
-        let mut archive = Npz::open(&self.input).map_err(CommandError::on(&self.input))?;
-        let methods = self.network.methods(std::slice::from_ref(&self.method))?;
-        let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
-        let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
-        let answer = if ready_made {
-            let input =
-                archive.reals::<ndarray::Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
-            let started = Instant::now();
-            let map = method.reconstruct_mag_phase(&radar, &input).map_err(CommandError::on(&self.input))?;
-            Answer { map: map.lambda, milliseconds: started.elapsed().as_secs_f64() * 1e3, found: Vec::new() }
-        } else {
-            let ends = self.two_ends(&mut archive)?;
-            self.answer(method.as_ref(), &radar, &ends).map_err(CommandError::on(&self.input))?
+        if self.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("npz")) {
+            let name = self.output.display();
+            return Err(CommandError::Usage(format!("{name}: an archive is written; expected a name ending in .npz")));
+        }
+        // A name that is wrong is told before anything is read.
+        let asked = self.method.as_ref().map(|name| self.method(name)).transpose()?;
+        let input = self.input()?;
+        let radar = &input.radar;
+        let method = asked.map_or_else(|| self.method(methods::preferred_for(radar).name()), Ok)?;
+        let answer = match &input.samples {
+            Samples::MagPhase(array) => {
+                let started = Instant::now();
+                let map = method.reconstruct_mag_phase(radar, array).map_err(CommandError::on(&self.input))?;
+                Answer { map: map.lambda, milliseconds: started.elapsed().as_secs_f64() * 1e3, found: Vec::new() }
+            }
+            Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
         };
         self.write(&answer, method.eta()).map_err(CommandError::on(&self.output))?;
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
     }
 
-    fn two_ends(&self, archive: &mut Npz) -> Result<TwoEnds, CommandError> {
-        let [first, last] = ["sub0", "sub1"]
-            .map(|key| archive.complexes::<Ix2>(key).map(|a| a.reversed_axes().as_standard_layout().into_owned()));
+    fn method(&self, name: &str) -> Result<Arc<dyn Reconstructor>, CommandError> {
+        let found = self.network.methods(&[name.to_owned()])?;
+        found.into_iter().next().ok_or_else(|| CommandError::Usage("--method takes one name".into()))
+    }
+
+    fn input(&self) -> Result<Input, CommandError> {
+        if recording::file::is_recording_at(&self.input) {
+            if self.radar.is_given() {
+                let message = "a recording says which radar made it; leave --radar out";
+                return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+            }
+            let recording = recording::file::load(&self.input).map_err(CommandError::failed)?;
+            let samples = Samples::Ends(recording.two_ends());
+            let (radar, range_metres) = (recording.radar, recording.range_metres);
+            return Ok(Input { radar, range_metres, floor: recording::FLOOR, samples });
+        }
+        let (radar, range_metres) = self.radar.load()?;
+        let mut archive = Npz::open(&self.input).map_err(CommandError::on(&self.input))?;
+        let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
+        let samples = if ready_made {
+            let array = archive.reals::<Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
+            Samples::MagPhase(array)
+        } else {
+            Samples::Ends(self.two_ends(&mut archive, &radar)?)
+        };
+        Ok(Input { radar, range_metres, floor: self.floor.floor, samples })
+    }
+
+    fn two_ends(&self, archive: &mut Npz, radar: &Radar) -> Result<TwoEnds, CommandError> {
+        let Radar { samples, end_elements, .. } = radar;
+        let [first, last] = ["sub0", "sub1"].map(|key| {
+            let array = archive.complexes::<Ix2>(key)?;
+            if array.dim() != (*samples, *end_elements) {
+                let whose =
+                    if self.radar.is_given() { "--radar says" } else { "table 3.1 has; --radar FILE names another" };
+                let expected = format!("[{samples}, {end_elements}]: the samples and elements of an end that {whose}");
+                return Err(NpzError::Shape { key: key.to_owned(), found: format!("{:?}", array.shape()), expected });
+            }
+            Ok(array.reversed_axes().as_standard_layout().into_owned())
+        });
         let first = first.map_err(CommandError::on(&self.input))?;
         Ok(TwoEnds { first, last: last.map_err(CommandError::on(&self.input))? })
     }
 
-    fn answer(&self, method: &dyn Reconstructor, radar: &Radar, ends: &TwoEnds) -> Result<Answer, ReconstructError> {
-        let request = Request { floor: self.floor.floor, ..Request::default() };
+    fn answer(&self, method: &dyn Reconstructor, input: &Input, ends: &TwoEnds) -> Result<Answer, ReconstructError> {
+        let Input { radar, range_metres, floor, .. } = input;
+        let request = Request { floor: *floor, snapshot_range_metres: *range_metres, ..Request::default() };
         let started = Instant::now();
         let answer = method.reconstruct(radar, ends, &request)?;
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
-        let found = find(method, radar, ends, &request, &answer)?;
+        let mut found = find(method, radar, ends, &request, &answer)?;
+        if radar.samples == 1 {
+            // Where a single sample's echoes come from is only known from elsewhere.
+            found.iter_mut().for_each(|f| f.range_metres = range_metres.unwrap_or(f64::NAN));
+        }
         Ok(Answer { map: answer.lambda.lambda, milliseconds, found })
     }
 
@@ -92,6 +140,21 @@ impl Args {
             out.add("found_db", &list(|f| f.relative_power.0))
         })
     }
+}
+
+/// What is read.
+struct Input {
+    radar: Radar,
+    /// Of a snapshot, where anybody knows it.
+    range_metres: Option<f64>,
+    floor: Floor,
+    samples: Samples,
+}
+
+enum Samples {
+    Ends(TwoEnds),
+    /// The thesis networks' own input, ready-made.
+    MagPhase(Array3<f64>),
 }
 
 /// What is written.

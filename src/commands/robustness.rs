@@ -81,7 +81,7 @@ impl Args {
         let methods: Vec<Arc<dyn Reconstructor>> = self
             .method
             .iter()
-            .map(|name| methods::by_name(name).map_err(CommandError::failed))
+            .map(|name| methods::by_name(name.trim()).map_err(CommandError::failed))
             .collect::<Result<_, _>>()?;
         let robustness = Robustness {
             radar: Radar::default(),
@@ -103,7 +103,7 @@ impl Args {
         bar.finish_and_clear();
         let csv = csv(&rows);
         if let Some(folder) = &self.output {
-            save(&RobustnessFigure { rows: &rows, methods: &self.method }, folder, "robustness")?;
+            save(&RobustnessFigure { rows: &rows, methods: &methods }, folder, "robustness")?;
             let path = folder.join("robustness.csv");
             write_bytes(&path, csv.as_bytes()).map_err(|source| CommandError::File { path, source })?;
         }
@@ -139,7 +139,7 @@ fn csv(rows: &[RobustnessRow]) -> String {
 /// Squared error over the scale of the elements' errors, a line a method.
 struct RobustnessFigure<'a> {
     rows: &'a [RobustnessRow],
-    methods: &'a [String],
+    methods: &'a [Arc<dyn Reconstructor>],
 }
 
 impl Figure for RobustnessFigure<'_> {
@@ -174,16 +174,17 @@ impl Figure for RobustnessFigure<'_> {
             .draw()?;
         for (i, method) in self.methods.iter().enumerate() {
             let colour = Palette99::pick(i).to_rgba();
-            let points =
-                || self.rows.iter().filter(|r| r.method == method).map(|r| (r.scale, r.squared_error.mean.max(1.0)));
+            let points = || {
+                self.rows.iter().filter(|r| r.method == method.name()).map(|r| (r.scale, r.squared_error.mean.max(1.0)))
+            };
             chart
                 .draw_series(LineSeries::new(points(), colour.stroke_width(2)).point_size(4))?
-                .label(method)
+                .label(method.name())
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
+            .position(SeriesLabelPosition::LowerRight)
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
             .draw()

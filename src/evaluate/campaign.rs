@@ -2,7 +2,7 @@
 
 use super::rows::Row;
 use super::sets::{Case, SceneSet};
-use super::trial::{RowPlace, Trial};
+use super::trial::{Answer, RowPlace, Trial};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
@@ -163,6 +163,20 @@ impl Campaign {
         task: &Task,
         mut on_row: impl FnMut(&Row),
     ) -> Result<Vec<Row>, CampaignError> {
+        self.run_watched(sets, methods, task, |row, _, _| on_row(row))
+    }
+
+    /// [`Campaign::run`], with what each row was made of.
+    ///
+    /// # Errors
+    /// As [`Campaign::run`].
+    pub fn run_watched(
+        &self,
+        sets: &[SceneSet],
+        methods: &[&dyn Reconstructor],
+        task: &Task,
+        mut on_row: impl FnMut(&Row, &Trial, &Answer),
+    ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
         let request =
             Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
@@ -216,7 +230,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn answer(&self, method: &dyn Reconstructor) -> Result<super::trial::Answer, CampaignError> {
+    fn answer(&self, method: &dyn Reconstructor) -> Result<Answer, CampaignError> {
         self.trial.ask(method, self.request).map_err(|source| CampaignError::Method {
             method: method.name(),
             set: set_name(self.set),
@@ -226,7 +240,11 @@ impl Job<'_> {
     }
 
     /// One row a method, in their order.
-    fn rows(&self, methods: &[&dyn Reconstructor], on_row: &mut impl FnMut(&Row)) -> Result<Vec<Row>, CampaignError> {
+    fn rows(
+        &self,
+        methods: &[&dyn Reconstructor],
+        on_row: &mut impl FnMut(&Row, &Trial, &Answer),
+    ) -> Result<Vec<Row>, CampaignError> {
         let set = self.set.to_string();
         let seed = if matches!(self.set, SceneSet::Generated(_)) { self.campaign.seed } else { 0 };
         let place = RowPlace { set: &set, index: self.index, seed };
@@ -236,7 +254,7 @@ impl Job<'_> {
         for i in order {
             let answer = self.answer(methods[i])?;
             let row = self.trial.row(place, methods[i].name(), &answer, self.set.false_alarm());
-            on_row(&row);
+            on_row(&row, self.trial, &answer);
             found.push((i, row));
         }
         found.sort_by_key(|(i, _)| *i);

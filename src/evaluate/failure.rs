@@ -81,6 +81,8 @@ pub struct Ghost {
 pub struct Failures {
     /// In the scene's order.
     pub objects: Vec<Fate>,
+    /// Part of each object's footprint that is detected where the object stands, 0 to 1; 0 for one without a footprint.
+    pub covered: Vec<f64>,
     /// Blobs far from every object and from what the target shows.
     pub ghosts: Vec<Ghost>,
 }
@@ -127,7 +129,8 @@ impl Footprints {
     /// Judges `output`, thresholded at `eta`, against `target`.
     pub fn judge(&self, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Failures {
         let found = Blobs::of(&output.above(eta));
-        let mut objects: Vec<Fate> = self.objects.iter().map(|cells| alone(cells, target, output, &found)).collect();
+        let alone = self.objects.iter().map(|cells| alone(cells, target, output, &found));
+        let (mut objects, covered): (Vec<Fate>, Vec<f64>) = alone.unzip();
         for i in 0..objects.len() {
             if objects[i] == Fate::Found
                 && let Some(with) = self.merged(i, &objects, &found)
@@ -136,7 +139,7 @@ impl Footprints {
             }
         }
         let ghosts = self.ghosts(&found, &objects);
-        Failures { objects, ghosts }
+        Failures { objects, covered, ghosts }
     }
 
     /// The first object that shares a blob of the output with object `i`, but not one of the target.
@@ -173,10 +176,10 @@ impl Footprints {
     }
 }
 
-/// The fate of one object, whatever its neighbours'.
-fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> Fate {
+/// The fate of one object, whatever its neighbours', and the part of its footprint that is detected.
+fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> (Fate, f64) {
     if cells.is_empty() {
-        return Fate::Hidden;
+        return (Fate::Hidden, 0.0);
     }
     let columns = target.lambda.ncols();
     let at = |[row, column]: Cell, shift: i32| [row, moved(column, shift, columns)];
@@ -189,16 +192,17 @@ fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: 
         let edges = cells.iter().flat_map(|&cell| [-MOST_TEETH, 0, MOST_TEETH].map(|edge| at(cell, edge)));
         edges.map(|cell| f64::from(output.lambda[at(cell, shift)] - target.lambda[cell]).powi(2)).sum()
     };
-    let here = error(0);
+    let (here, part) = (error(0), covered(0));
     let best = (-MOST_TEETH..=MOST_TEETH)
         .map(|shift| (shift, error(shift)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .filter(|(shift, error)| *shift != 0 && *error <= EXPLAINED * here && covered(*shift) >= FOUND);
-    match best {
+    let fate = match best {
         Some((columns, _)) => Fate::WrongTooth { columns },
-        None if covered(0) >= FOUND => Fate::Found,
+        None if part >= FOUND => Fate::Found,
         None => Fate::Missed,
-    }
+    };
+    (fate, part)
 }
 
 fn moved(column: usize, by: i32, columns: usize) -> usize {
@@ -274,6 +278,7 @@ mod tests {
         let found = footprints.judge(&target, &output, TARGET_ETA);
         assert_eq!((&found.objects[..], found.missed()), (&[Fate::Found, Fate::Missed][..], 1));
         assert!(found.ghosts.is_empty());
+        assert!(found.covered[0] == 1.0 && found.covered[1] == 0.0, "{:?}", found.covered);
     }
 
     #[test]

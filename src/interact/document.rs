@@ -5,7 +5,8 @@
 use crate::radar::Radar;
 use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
-use crate::scene::file::{self, SceneFile, SceneFileError};
+use crate::scene::file::{self, Format, Loss, SceneFile, SceneFileError};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -39,6 +40,24 @@ pub struct Document {
     /// What is on disk, or can be had again as easily; `None` where it is nowhere.
     saved: Option<Content>,
     measured: Option<Measured>,
+}
+
+/// Name of the table of a scene file that says what the scene is laid over.
+const OVER: &str = "over";
+
+/// What a scene is laid over.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Over {
+    /// A recording's TOML, beside the scene's file or by its whole path; or the name of a preset.
+    recording: String,
+}
+
+/// Where the recording is that the scene file `path` names.
+fn recording_source(path: &Path, name: &str) -> String {
+    let is_shipped = presets::Preset::by_id(name).is_some();
+    let beside = || path.parent().map(|folder| folder.join(name).to_string_lossy().into_owned());
+    if is_shipped { name.to_owned() } else { beside().unwrap_or_else(|| name.to_owned()) }
 }
 
 /// A recording that stands where the echoes of the scene would: the scene is what is laid over it.
@@ -89,7 +108,54 @@ impl Document {
     /// # Errors
     /// [`SceneFileError`] names the file, the line or key, and what was expected.
     pub fn read(path: &Path) -> Result<Self, SceneFileError> {
-        Ok(Document::opened(&whole_path(path), file::load(path)?))
+        let (file, over) = file::load_beside::<Over>(path, OVER)?;
+        let path = whole_path(path);
+        let mut document = Document::opened(&path, file);
+        if let Some(Over { recording }) = over {
+            let unlike = "its radar is another than the scene's".to_owned();
+            let laid = document.lay_over(&recording_source(&path, &recording)).map_err(|e| e.to_string());
+            let fits = |d: &Document| d.recording().is_some_and(|r| r.fits(d.radar()));
+            laid.and_then(|()| if fits(&document) { Ok(()) } else { Err(format!("{recording}: {unlike}")) })
+                .map_err(|message| SceneFileError::Over { path, message })?;
+        }
+        Ok(document)
+    }
+
+    /// Writes it to `path`, a whole path, as a scene; the name of the recording it is laid over with it, where the format has room.
+    ///
+    /// # Errors
+    /// [`SceneFileError`]; the file is then as it was. A recording is never replaced.
+    pub(super) fn write(&self, path: &Path) -> Result<(), SceneFileError> {
+        let own = self.recording_source().map(Path::new);
+        let is_data = own.is_some_and(|own| recording::file::data_path(own).is_some_and(|d| whole_path(&d) == path));
+        if is_data || recording::file::is_recording_at(path) {
+            return Err(SceneFileError::Recording { path: path.to_owned() });
+        }
+        match own.filter(|_| Format::of_path(path).is_ok_and(|f| f == Format::Toml)) {
+            None => file::save(path, &self.to_file()),
+            Some(own) => {
+                let name = own.file_name().filter(|_| own.parent() == path.parent()).map_or(own, Path::new);
+                let over = Over { recording: name.to_string_lossy().into_owned() };
+                file::save_beside(path, &self.to_file(), OVER, &over)
+            }
+        }
+    }
+
+    /// What a file of `format` would not give back of it.
+    pub(super) fn losses(&self, format: Format) -> Vec<Loss> {
+        let mut losses = format.losses(&self.to_file());
+        losses.extend((format == Format::Npz && self.measured.is_some()).then_some(Loss::Recording));
+        losses
+    }
+
+    /// Where it is kept, or where its user would look for it: beside the recording that it is laid over.
+    pub fn likely_path(&self) -> Option<PathBuf> {
+        let beside = |recording: &str| {
+            let recording = Path::new(recording);
+            let stem = recording.file_stem().unwrap_or_default().to_string_lossy();
+            recording.with_file_name(format!("{stem}-overlay.toml"))
+        };
+        self.path().map(Path::to_path_buf).or_else(|| self.recording_source().map(beside))
     }
 
     /// What was read from `path`, a whole path without links.

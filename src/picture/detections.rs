@@ -39,15 +39,29 @@ impl Detection {
         }
     }
 
-    /// Its colour in pixel (x, y) of a picture: hits are plain, misses hatched closely, false alarms widely.
-    pub fn colour(self, x: usize, y: usize) -> Rgb {
-        match self {
-            Detection::Nothing => [22, 26, 34],
-            Detection::Hit => [245, 245, 240],
-            Detection::Miss if (x + y) % 4 < 2 => [86, 164, 240],
-            Detection::Miss => [30, 70, 120],
-            Detection::FalseAlarm if (x + 9 * y) % 10 < 7 => [240, 130, 50],
-            Detection::FalseAlarm => [110, 44, 10],
+    /// Its colour in pixel (x, y) of a picture on a dark ground or a light one: hits are plain, misses hatched closely, false alarms
+    /// widely.
+    pub fn colour(self, x: usize, y: usize, dark: bool) -> Rgb {
+        let [stripe, gap] = self.inks(dark);
+        let is_gap = match self {
+            Detection::Miss => (x + y) % 4 >= 2,
+            Detection::FalseAlarm => (x + 9 * y) % 10 >= 7,
+            Detection::Nothing | Detection::Hit => false,
+        };
+        if is_gap { gap } else { stripe }
+    }
+
+    /// Colours of its stripes and of what is between them: the farther from the ground, the more of both maps has the cell.
+    fn inks(self, dark: bool) -> [Rgb; 2] {
+        match (self, dark) {
+            (Detection::Nothing, true) => [[22, 26, 34]; 2],
+            (Detection::Hit, true) => [[245, 245, 240]; 2],
+            (Detection::Miss, true) => [[86, 164, 240], [30, 70, 120]],
+            (Detection::FalseAlarm, true) => [[240, 130, 50], [110, 44, 10]],
+            (Detection::Nothing, false) => [[252, 253, 255]; 2],
+            (Detection::Hit, false) => [[24, 28, 36]; 2],
+            (Detection::Miss, false) => [[52, 128, 210], [176, 212, 246]],
+            (Detection::FalseAlarm, false) => [[186, 92, 12], [246, 206, 160]],
         }
     }
 }
@@ -63,18 +77,21 @@ mod tests {
 
     #[test]
     fn kinds_differ_without_their_hue() {
-        let pixels = |d: Detection| -> Vec<f64> { (0..400).map(|i| luminance(d.colour(i % 20, i / 20))).collect() };
-        let dark = |d: Detection| {
-            let all = pixels(d);
-            let most = all.iter().copied().fold(0.0, f64::max);
-            all.iter().filter(|v| **v < 0.7 * most).count() as f64 / all.len() as f64
-        };
-        assert_eq!(dark(Detection::Hit), 0.0, "plain");
-        assert!((dark(Detection::Miss) - 0.5).abs() < 0.05 && (dark(Detection::FalseAlarm) - 0.3).abs() < 0.05);
-        let mean = |d: Detection| pixels(d).iter().sum::<f64>() / 400.0;
-        assert!(
-            mean(Detection::Hit) > 1.5 * mean(Detection::FalseAlarm)
-                && mean(Detection::Miss) > 2.0 * mean(Detection::Nothing)
-        );
+        for dark in [true, false] {
+            // How far from the ground, 0 to 1.
+            let away = |colour| if dark { luminance(colour) } else { 1.0 - luminance(colour) };
+            let pixels =
+                |d: Detection| -> Vec<f64> { (0..400).map(|i| away(d.colour(i % 20, i / 20, dark))).collect() };
+            let gaps = |d: Detection| {
+                let all = pixels(d);
+                let most = all.iter().copied().fold(0.0, f64::max);
+                all.iter().filter(|v| **v < 0.7 * most).count() as f64 / all.len() as f64
+            };
+            assert_eq!(gaps(Detection::Hit), 0.0, "plain");
+            assert!((gaps(Detection::Miss) - 0.5).abs() < 0.05 && (gaps(Detection::FalseAlarm) - 0.3).abs() < 0.05);
+            let mean = |d: Detection| pixels(d).iter().sum::<f64>() / 400.0;
+            assert!(mean(Detection::Hit) > 1.5 * mean(Detection::FalseAlarm), "dark: {dark}");
+            assert!(mean(Detection::Miss) > 2.0 * mean(Detection::Nothing), "dark: {dark}");
+        }
     }
 }

@@ -115,7 +115,7 @@ impl Cells<'_> {
             }
             Cells::Detections { target, output, eta } => {
                 let of = |c: [usize; 2]| Detection::of(target.lambda[c] > TARGET_ETA, output.lambda[c] > *eta);
-                cells.map(of).max().unwrap_or(Detection::Nothing).colour(x, y)
+                cells.map(of).max().unwrap_or(Detection::Nothing).colour(x, y, true)
             }
         }
     }
@@ -152,7 +152,7 @@ fn legend<B: DrawingBackend>(area: &Area<B>) -> Result<(), PictureError> {
         area.draw(&Text::new(name, (x, 13), style)).map_err(PictureError::new)?;
         x -= 19;
         let square = [(x, 14), (x + 13, 27)];
-        let pixels = (0..13 * 13).flat_map(|i| detection.colour(i % 13, i / 13)).collect();
+        let pixels = (0..13 * 13).flat_map(|i| detection.colour(i % 13, i / 13, true)).collect();
         let swatch: BitMapElement<_> = BitMapElement::with_owned_buffer((x, 14), (13, 13), pixels)
             .ok_or_else(|| PictureError::new("a legend has no room"))?;
         area.draw(&swatch).map_err(PictureError::new)?;

@@ -6,10 +6,15 @@ use crate::maps::{Aperture, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scene::Reflector;
 use crate::signal::BeatSignal;
-use crate::signal::echo::add_echo;
 use crate::signal::phase::EchoModel;
+use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
+use crate::signal::split::{CHUNK, Factors, STRIDE, add_product, fill_factors};
+use ndarray::Axis;
 use num_complex::Complex64;
 use rayon::prelude::*;
+
+/// Elements side by side.
+const W: usize = LANES_F64;
 
 /// A place and the complex gain found for it.
 #[derive(Debug, Clone, Copy)]
@@ -22,14 +27,46 @@ pub(super) struct Gained {
 pub(super) fn of_echoes(radar: &Radar, found: &[Gained], noise_variance: f64, request: &Request) -> Reconstruction {
     let model = EchoModel::new(radar);
     let mut signal = BeatSignal::silence(radar);
-    signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
-        let Some(samples) = row.as_slice_mut() else { return };
-        for f in found {
-            add_echo(&model, radar.element_x_metres(n), &f.reflector, f.gain, samples);
+    signal.samples.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each(|(block, mut rows)| {
+        let element = |lane: usize| (block * W + lane).min(radar.elements - 1);
+        let element_x = Lanes(std::array::from_fn(|lane| radar.element_x_metres(element(lane))));
+        let sum = Simd::chosen().run(Sum { model: &model, element_x, found, samples: radar.samples });
+        for (lane, mut row) in rows.outer_iter_mut().enumerate() {
+            for (out, v) in row.iter_mut().zip(&sum) {
+                *out = Complex64::new(v.re.0[lane], v.im.0[lane]);
+            }
         }
     });
     let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full);
     let power = map.cells.mapv(|v| v.norm_sqr());
     let reflectors = found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
     Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors }
+}
+
+/// Echoes added up at neighbouring elements.
+struct Sum<'a> {
+    model: &'a EchoModel,
+    element_x: Lanes<f64, W>,
+    found: &'a [Gained],
+    samples: usize,
+}
+
+impl Kernel for Sum<'_> {
+    type Output = Vec<ComplexLanes<f64, W>>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let mut factors = vec![Factors::<f64, W>::new(self.samples); CHUNK.min(self.found.len())];
+        let rows = Factors::<f64, W>::new(self.samples).rows.len();
+        let mut sum = vec![ComplexLanes::zero(); rows * STRIDE];
+        for chunk in self.found.chunks(CHUNK) {
+            for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
+                fill_factors::<f64, W, FMA>(self.model, self.element_x, reflector, f);
+                let gain = ComplexLanes { re: Lanes::splat(gain.re), im: Lanes::splat(gain.im) };
+                f.rows.iter_mut().for_each(|row| *row = row.times::<FMA>(gain));
+            }
+            add_product::<f64, W, FMA>(&factors[..chunk.len()], &mut sum);
+        }
+        sum
+    }
 }

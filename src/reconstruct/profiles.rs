@@ -2,6 +2,7 @@
 
 use crate::maps::Spectrum;
 use crate::radar::{Radar, hann};
+use crate::signal::simd::{ComplexLanes, Lanes, Real, phasor};
 use ndarray::ArrayView1;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -47,6 +48,36 @@ impl Profiles {
         }
     }
 
+    /// What the channels from `first` on heard from `distances_metres`, one a lane, as [`Profiles::at`]; as many as `heard` has room for.
+    #[inline(always)]
+    pub fn lanes_at<const W: usize, const FMA: bool>(
+        &self,
+        first: usize,
+        distances_metres: Lanes<f64, W>,
+        heard: &mut [Complex64],
+    ) {
+        let rows = (self.profiles[first].len() - 1) as f64;
+        let row = distances_metres * Lanes::splat(self.rows_per_metre);
+        let row = row - (row * Lanes::splat(1.0 / rows)).map(f64::floor) * Lanes::splat(rows);
+        let phase = self.phases::<f64, W, FMA>(-distances_metres);
+        for (lane, (heard, profile)) in heard.iter_mut().zip(&self.profiles[first..]).enumerate() {
+            let (low, part) = (row.0[lane] as usize, row.0[lane].fract());
+            // Rounding may put a row on the last one, which is the first once more.
+            let next = profile[(low + 1).min(profile.len() - 1)];
+            let value = profile[low] * (1.0 - part) + next * part;
+            *heard = value * Complex64::new(phase.re.0[lane], phase.im.0[lane]);
+        }
+    }
+
+    /// [`Profiles::phase`] of several distances.
+    #[inline(always)]
+    pub fn phases<T: Real, const W: usize, const FMA: bool>(
+        &self,
+        distances_metres: Lanes<f64, W>,
+    ) -> ComplexLanes<T, W> {
+        phasor::<T, W, FMA>(distances_metres * Lanes::splat(self.turns_per_metre))
+    }
+
     /// What `channel` heard from `distance_metres`, linear between rows; the phase of that distance is taken off. 1 for a reflector
     /// there whose samples have amplitude 1.
     pub fn at(&self, channel: usize, distance_metres: f64) -> Complex64 {
@@ -77,6 +108,29 @@ pub(super) fn range_response(bins: f64) -> f64 {
     turn.sin() / (turn * (1.0 - x * x))
 }
 
+/// Power series of [`range_response`] in the square of the bins: partial sums of that of `sin(pi x) / (pi x)`.
+const NEAR_SERIES: [f64; 9] = {
+    let (mut sums, mut term, mut sum, mut m) = ([0.0; 9], 1.0, 0.0, 0);
+    while m < sums.len() {
+        sum += term;
+        sums[m] = sum;
+        term *= -std::f64::consts::PI * std::f64::consts::PI / ((2 * m + 2) * (2 * m + 3)) as f64;
+        m += 1;
+    }
+    sums
+};
+
+/// [`range_response`] of several lanes, up to one bin off.
+#[inline(always)]
+pub(super) fn range_response_near<const W: usize, const FMA: bool>(bins: Lanes<f64, W>) -> Lanes<f64, W> {
+    let square = bins * bins;
+    let mut value = Lanes::splat(0.0);
+    for term in NEAR_SERIES.iter().rev() {
+        value = value.mul_add::<FMA>(square, Lanes::splat(*term));
+    }
+    value
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,6 +151,25 @@ mod tests {
             let off = profiles.at(0, distance + bins * radar.range_resolution_metres());
             let part = off.norm() * distance * distance / radar.transmit_power_watts;
             assert!((part - range_response(bins)).abs() < 0.01, "{bins}: {part}");
+        }
+    }
+
+    #[test]
+    fn lanes_hear_what_one_channel_hears() {
+        let radar = Radar { samples: 64, ..Radar::default() };
+        let signal = simulate(&radar, &Scene::of_points([(1.0, 3.0)]), Floor::Thesis, 0).unwrap();
+        let profiles = Profiles::new(&radar, &[signal.samples.row(0), signal.samples.row(5)], 16);
+        // Beyond the last bin ranges wrap.
+        for distances in [[3.1, 0.0], [4.7999, 4.8], [5.3, 14.9]] {
+            let mut heard = [Complex64::default(); 2];
+            profiles.lanes_at::<2, false>(0, Lanes(distances), &mut heard);
+            for (channel, (heard, distance)) in heard.iter().zip(distances).enumerate() {
+                assert!((heard - profiles.at(channel, distance)).norm() < 1e-9, "{distance} m");
+            }
+        }
+        for bins in [-1.0, -0.3, 0.0, 0.7, 1.0] {
+            let near = range_response_near::<1, false>(Lanes([bins])).0[0];
+            assert!((near - range_response(bins)).abs() < 1e-8, "{bins}: {near}");
         }
     }
 }

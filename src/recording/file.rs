@@ -48,7 +48,7 @@ use num_complex::Complex64;
 use serde::Deserialize;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Longest text that is read, bytes.
 const MAX_TEXT_BYTES: u64 = 1 << 20;
@@ -113,6 +113,14 @@ pub fn is_recording(text: &str) -> bool {
 pub fn is_recording_at(path: &Path) -> bool {
     let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     is_toml && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
+}
+
+/// The file that holds the samples of the recording whose TOML is `path`; `None` where that is no such TOML.
+pub fn data_path(path: &Path) -> Option<PathBuf> {
+    let text = read_text(open_file(path).ok()?).ok()?;
+    let table: toml::Table = text.parse().ok()?;
+    let name = table.get("recording")?.get("file")?.as_str()?;
+    Some(path.parent().unwrap_or(Path::new("")).join(name))
 }
 
 /// Reads a recording: the TOML `path`, and what it names beside it.

@@ -1,4 +1,4 @@
-//! Scenes the thesis talks about, ready to open: each has a name, and notes that say what to look for.
+//! Scenes the thesis talks about, and some on which a method fails, ready to open: each has a name, and notes that say what to look for.
 //!
 //! They are the files of `assets/scenes`, embedded in the program.
 
@@ -34,6 +34,15 @@ pub const ALL: &[Preset] = presets![
     "test-set-2",
     "test-set-3",
     "empty",
+    "failure-live-missed",
+    "failure-live-merged",
+    "failure-live-ghost",
+    "failure-wrong-tooth",
+    "failure-hybrid-merged",
+    "failure-hybrid-ghosts",
+    "failure-thesis-missed",
+    "failure-thesis-merged",
+    "failure-thesis-ghost",
 ];
 
 impl Preset {
@@ -43,6 +52,11 @@ impl Preset {
     /// None for the presets of [`ALL`]: a test reads each of them.
     pub fn load(&self) -> Result<SceneFile, SceneTextError> {
         from_toml(self.toml)
+    }
+
+    /// Whether a method fails on it, as its notes explain.
+    pub fn is_failure(&self) -> bool {
+        self.id.starts_with("failure-")
     }
 
     /// The preset called `id`.

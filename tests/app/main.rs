@@ -1,7 +1,9 @@
 //! Drives the whole app without a display: pointer, keys, files; asserts on state and on what was computed and what was not.
 #![cfg(feature = "app")]
 
+mod compare;
 mod documents;
+mod failures;
 mod figures;
 mod keyboard;
 mod lessons;

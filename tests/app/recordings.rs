@@ -2,7 +2,7 @@
 
 use crate::session::{Session, harness, step_until};
 use apertura::app::{Command, MapKind, NewObject, Panel};
-use apertura::interact::Place;
+use apertura::interact::{Document, Editor, Place};
 use apertura::maps::Normalisation;
 use apertura::radar::{BuiltArray, Carrier, Decibels, ElementError, Radar, Tolerances, WindowFunction};
 use apertura::reconstruct::{Baseline, CAPON, IAA, Reconstructor};
@@ -81,8 +81,47 @@ fn reflectors_laid_over_a_recording_explain_part_of_it_and_are_saved_as_a_scene(
     s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     let path = s.folder.path().join("post.toml");
     s.ask(Command::SaveTo(path.clone()));
-    assert_eq!(apertura::interact::Document::read(&path).unwrap().scene().objects.len(), 1);
+    assert_eq!(Document::read(&path).unwrap().scene().objects.len(), 1);
     assert!(s.state().editor().document().recording().is_some(), "it stays on screen");
+}
+
+#[test]
+fn what_is_laid_over_a_recording_is_saved_beside_it_and_never_in_its_place() {
+    let mut s = Session::start();
+    let path = copied(&s, "chip-8.toml");
+    let data = path.with_extension("npz");
+    let kept = || [&path, &data].map(|p| std::fs::read(p).unwrap());
+    let before = kept();
+    s.ask(Command::OpenPath(path.clone()));
+    s.press(Modifiers::COMMAND, Key::S);
+    assert_eq!(s.state().messages(), 1, "told that there is nothing to save, and not asked for a file");
+    s.ask(Command::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
+    s.ask(Command::SaveTo(path.clone()));
+    assert!(s.state().messages() == 2 && s.state().editor().is_modified());
+    let refused = Editor::of(Document::read_recording(&path).unwrap()).save(&data).unwrap_err().to_string();
+    assert!(refused.contains("chip-8.npz: holds a recording"), "{refused}");
+    assert_eq!(kept(), before);
+    let post = s.folder.path().join("post.toml");
+    s.ask(Command::SaveTo(post.clone()));
+    assert_eq!(s.state().editor().document().title(), "post.toml");
+    s.ask(Command::Add(NewObject::Point, Some(Place::new(-0.5, 4.0))));
+    s.press(Modifiers::COMMAND, Key::S);
+    assert_eq!(s.state().editor().document().title(), "post.toml");
+    let text = std::fs::read_to_string(&post).unwrap();
+    assert!(text.contains("recording = \"chip-8.toml\""), "{text}");
+    s.ask(Command::New);
+    s.ask(Command::OpenPath(post.clone()));
+    assert_eq!(s.state().editor().scene().objects.len(), 2);
+    assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
+    assert_eq!(apertura::scene::file::load(&post).unwrap().radar.elements, 8, "commands see a scene");
+    // Another radar's recording explains nothing, and one that is gone is missed.
+    std::fs::write(&post, text.replace("chip-8.toml", "cascade-86.toml")).unwrap();
+    let error = Document::read(&post).unwrap_err().to_string();
+    assert!(error.contains("its radar is another"), "{error}");
+    std::fs::write(&post, text.replace("chip-8.toml", "gone.toml")).unwrap();
+    let error = Document::read(&post).unwrap_err().to_string();
+    assert!(error.contains("post.toml") && error.contains("gone.toml"), "{error}");
+    assert_eq!(kept(), before);
 }
 
 #[test]
@@ -164,7 +203,7 @@ fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
     assert_ne!(s.state().metrics(), before);
     let path = s.folder.path().join("disturbed.toml");
     s.ask(Command::SaveTo(path.clone()));
-    let saved = apertura::interact::Document::read(&path).unwrap();
+    let saved = Document::read(&path).unwrap();
     assert_eq!(saved.scene(), s.state().editor().scene());
     assert!(saved.scene().disturbances.elements.elements[3].dead);
     // Fewer elements keep what is wrong with those that stay.

@@ -201,8 +201,41 @@ fn samples_of_another_radar_are_told() {
         let mut command = apertura(&folder);
         command.args(["reconstruct", "in.npz", "--radar", "radar.toml", "-o", "o.npz", "--method", "bartlett"]).assert()
     };
-    run("[radar]\nsamples = 128\n").failure().stderr(contains("[12, 64]").and(contains("[12, 128]")));
+    let shapes = contains("\"sub0\" has shape [64, 12]; expected [128, 12]").and(contains("--radar says"));
+    run("[radar]\nsamples = 128\n").failure().stderr(shapes);
     run("[radar]\nsamples = 0\n").failure().stderr(contains("radar.toml: radar.samples is 0"));
-    run("name = \"no radar\"\n").failure().stderr(contains("expected a table [radar]"));
+    run("name = \"no radar\"\n").failure().stderr(contains("has no table [radar]"));
+    run("[radar]\nsamples = \"many\"\n").failure().stderr(contains("radar.toml: line 2"));
     assert!(!folder.path().join("o.npz").exists());
+}
+
+#[test]
+fn shipped_recordings_are_reconstructed_without_a_word_about_their_radar() {
+    let folder = folder();
+    let run = |input: &str, more: &[&str]| {
+        apertura(&folder).arg("reconstruct").arg(input).args(["-o", "o.npz"]).args(more).assert()
+    };
+    let cascade = format!("{SHIPPED}/cascade-86.toml");
+    run(&cascade, &[]).success().stdout(contains("iaa"));
+    let (cos, range, db) = lists(&folder.path().join("o.npz"));
+    let degrees: Vec<f64> = cos.iter().take(2).map(|c| c.asin().to_degrees()).collect();
+    assert!(degrees.iter().all(|d| (d - 6.96).abs() < 0.1 || d.abs() < 0.1), "{degrees:?}");
+    assert!(
+        range.iter().all(|r| *r == 15.0) && db[1] > -8.0 && db[2..].iter().all(|db| *db < -8.0),
+        "{range:?} {db:?}"
+    );
+    run(&cascade, &["--radar", &cascade]).failure().stderr(contains("leave --radar out"));
+    run(&format!("{SHIPPED}/chip-8.toml"), &["--method", "capon"]).success();
+    assert!(!lists(&folder.path().join("o.npz")).0.is_empty());
+    // Its data file alone is no archive of two ends.
+    run(&format!("{SHIPPED}/chip-8.npz"), &[])
+        .failure()
+        .stderr(contains("has no array \"sub0\"").and(contains("samples")));
+    // The ends of a snapshot whose range nobody told.
+    apertura(&folder).args(["maps", &cascade, "-o", "maps.npz"]).assert().success();
+    std::fs::write(folder.path().join("r.toml"), "[radar]\nelements = 86\nsamples = 1\n").unwrap();
+    run("maps.npz", &["--radar", "r.toml", "--method", "sbl"]).success();
+    let mut npz = NpzReader::new(File::open(folder.path().join("o.npz")).unwrap()).unwrap();
+    let range: ndarray::Array1<f64> = npz.by_name("found_range_metres").unwrap();
+    assert!(!range.is_empty() && range.iter().all(|r| r.is_nan()), "{range}");
 }

@@ -5,6 +5,7 @@ mod baseline_tables;
 mod conventions;
 mod damage;
 mod disturbances;
+mod failures;
 mod house;
 #[cfg(feature = "network")]
 mod live_network;

@@ -2,7 +2,6 @@
 
 use crate::app::state::{Command, State};
 use crate::radar::{BuiltArray, Radar, presets};
-use crate::recording::Recording;
 use crate::scene::Disturbances;
 
 /// Does those commands, and hands others on.
@@ -53,18 +52,12 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
     changes.into_iter().find(|(_, changed)| *changed).map_or("radar", |(name, _)| name)
 }
 
-/// Whether a recording made with `before` can be looked at with `after`: its constants are what they were.
-fn fits_recording(recording: &Recording, before: &Radar, after: &Radar) -> bool {
-    let end_elements = if recording.signal().is_some() { after.end_elements } else { before.end_elements };
-    Radar { window: after.window, end_elements, ..before.clone() } == *after
-}
-
 /// Changes the radar, as a step that can be undone.
 fn edit(state: &mut State, label: &str, merge_key: Option<&str>, change: impl FnOnce(&mut Radar)) {
     let mut changed = state.radar().clone();
     change(&mut changed);
     let recording = state.editor.document().recording();
-    if recording.is_some_and(|r| !fits_recording(r, state.radar(), &changed)) {
+    if recording.is_some_and(|r| !r.fits(&changed)) {
         let advice = "Open a scene to look with another.";
         return state
             .notices

@@ -3,7 +3,21 @@
 use crate::app::jobs::{Jobs, Purpose};
 use crate::app::state::{LossyAnswer, LossySave, State};
 use crate::interact::Saved;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+/// Writes the scene to its own file, or asks for one. A recording that nothing is laid over has nothing to be saved.
+pub fn save_again(state: &mut State, jobs: &mut Jobs) {
+    let document = state.editor.document();
+    let is_bare = document.recording().is_some() && !document.is_modified();
+    match document.path().map(Path::to_owned) {
+        Some(path) => save(state, path),
+        None if is_bare => {
+            let advice = "What you draw over it is saved as a scene of its own.";
+            state.notices.info(format!("Nothing to save: {} stays as it was measured. {advice}", document.name()));
+        }
+        None => jobs.choose_file(state, Purpose::SaveScene),
+    }
+}
 
 /// Writes the scene to `path`, or asks first where that would lose something.
 pub fn save(state: &mut State, mut path: PathBuf) {

@@ -41,6 +41,7 @@ pub struct Input<'a> {
 /// A preset as the menu lists it.
 struct Listed {
     name: String,
+    is_failure: bool,
     notes: String,
 }
 
@@ -54,7 +55,7 @@ impl Default for Memory {
         let listed = |preset: &presets::Preset| {
             let scene = preset.load().map(|f| f.scene).unwrap_or_default();
             let name = if scene.name.is_empty() { preset.id.to_owned() } else { scene.name };
-            Listed { name, notes: scene.notes }
+            Listed { name, is_failure: preset.is_failure(), notes: scene.notes }
         };
         Memory { presets: presets::ALL.iter().map(listed).collect() }
     }
@@ -95,6 +96,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
 }
 
 fn right(ui: &mut Ui, shown: Projection, asked: &mut Vec<Command>) {
+    // In a narrow window it would stand over the others; its key stays.
+    if ui.available_width() < 90.0 {
+        return;
+    }
     button(ui, "Commands", Command::Palette, true, asked);
     if ui.available_width() < 180.0 {
         return;
@@ -166,14 +171,8 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Comma
     ui.set_min_width(260.0);
     entries(ui, [NewObject::Point, NewObject::Line, NewObject::Cluster].map(|kind| Command::Add(kind, None)), asked);
     ui.separator();
-    ui.menu_button("Presets", |ui| {
-        for (index, preset) in memory.presets.iter().enumerate() {
-            if ui.button(&preset.name).on_hover_text(&preset.notes).clicked() {
-                asked.push(Command::Preset(index));
-                ui.close();
-            }
-        }
-    });
+    ui.menu_button("Presets", |ui| presets_of(ui, memory, false, asked));
+    ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
     ui.menu_button("Recordings", |ui| {
         entries(ui, (0..recordings::ALL.len()).map(Command::Recording), asked);
     });
@@ -194,6 +193,17 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Comma
     });
     ui.separator();
     entry(ui, Command::FitScene, true, asked);
+}
+
+/// The presets on which a method fails, or the others.
+fn presets_of(ui: &mut Ui, memory: &Memory, failures: bool, asked: &mut Vec<Command>) {
+    let listed = memory.presets.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
+    for (index, preset) in listed {
+        if ui.button(&preset.name).on_hover_text(&preset.notes).clicked() {
+            asked.push(Command::Preset(index));
+            ui.close();
+        }
+    }
 }
 
 fn panels(ui: &mut Ui, panels: &[Panel], is_open: &dyn Fn(Panel) -> bool, asked: &mut Vec<Command>) {
@@ -225,7 +235,9 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         Command::ToggleFound,
         Command::ToggleFieldsOfView,
         Command::ToggleTheory,
+        Command::ToggleKinds,
         Command::NextMethod,
+        Command::Flip,
     ];
     entries(ui, of_maps, asked);
     ui.separator();
@@ -246,8 +258,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    #[test]
-    fn menus_ask_for_what_they_list() {
+    fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {
         let draw = |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
             let input = Input {
                 presents: false,
@@ -265,7 +276,12 @@ mod tests {
             let commands = show(ui, input, &mut asked.0);
             asked.1.extend(commands);
         };
-        let mut menu = Harness::builder().with_size([900.0, 600.0]).build_ui_state(draw, (Memory::default(), vec![]));
+        Harness::builder().with_size([width, 600.0]).build_ui_state(draw, (Memory::default(), vec![]))
+    }
+
+    #[test]
+    fn menus_ask_for_what_they_list() {
+        let mut menu = bar(900.0);
         menu.get_by_label("+ Line").click();
         menu.step();
         menu.get_by_label("Cartesian").click();
@@ -279,5 +295,18 @@ mod tests {
         let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
         let projection = Command::SetProjection(Projection::Cartesian);
         assert_eq!(menu.state().1, [Command::Add(NewObject::Line, None), projection, Command::Preset(preset)]);
+    }
+
+    #[test]
+    fn no_button_stands_over_another_at_any_width() {
+        for width in (520..1000).step_by(20) {
+            let menu = bar(width as f32);
+            let right = |label| menu.query_by_label(label).map(|node| node.rect().right());
+            let Some(lessons) = right("Lessons") else { panic!("no lessons at {width}") };
+            for label in ["Commands", "Cartesian", "Range–angle"] {
+                let Some(node) = menu.query_by_label(label) else { continue };
+                assert!(node.rect().left() >= lessons, "{label} at {width}");
+            }
+        }
     }
 }

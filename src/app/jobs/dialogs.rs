@@ -32,6 +32,12 @@ pub enum Purpose {
     DrawLesson,
     /// Where the figures are to be written.
     ExportMetrics,
+    /// Rows of an evaluation to show.
+    OpenRows,
+    /// Where the rows are to be saved.
+    SaveRows,
+    /// A scene of the folder of one's own.
+    OwnScenes,
 }
 
 impl Purpose {
@@ -47,12 +53,16 @@ impl Purpose {
             Purpose::RecordDrag => Command::RecordDragTo(path),
             Purpose::DrawLesson => Command::DrawLessonTo(path),
             Purpose::ExportMetrics => Command::ExportMetricsTo(path),
+            Purpose::OpenRows => Command::OpenRowsFile(path),
+            Purpose::SaveRows => Command::SaveRowsTo(path),
+            Purpose::OwnScenes => Command::SetOwnScenes(path),
         }
     }
 
     /// Whether the file is read, not written.
     pub fn reads(self) -> bool {
-        matches!(self, Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson)
+        use Purpose::{Open, OpenLesson, OpenLog, OpenRows, OwnScenes};
+        matches!(self, Open | OpenLog | OpenLesson | OpenRows | OwnScenes)
     }
 
     /// Title of the dialog.
@@ -67,6 +77,9 @@ impl Purpose {
             Purpose::RecordDrag => "Record the next drag",
             Purpose::DrawLesson => "Draw the steps of the lesson",
             Purpose::ExportMetrics => "Export the metrics",
+            Purpose::OpenRows => "Open rows of an evaluation",
+            Purpose::SaveRows => "Save the rows",
+            Purpose::OwnScenes => "Open any scene of your folder",
         }
     }
 
@@ -74,9 +87,9 @@ impl Purpose {
     pub fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Purpose::Open => ("Scenes and recordings", &["toml", "npz"]),
-            Purpose::SaveScene => ("Scenes", &["toml", "npz"]),
+            Purpose::SaveScene | Purpose::OwnScenes => ("Scenes", &["toml", "npz"]),
             Purpose::OpenLesson => ("Lessons", &["toml"]),
-            Purpose::OpenLog | Purpose::ExportMetrics => ("Table", &["csv"]),
+            Purpose::OpenLog | Purpose::ExportMetrics | Purpose::OpenRows | Purpose::SaveRows => ("Table", &["csv"]),
             Purpose::ExportPicture => ("Picture", &["png", "svg"]),
             Purpose::ExportMaps => ("NumPy arrays", &["npz"]),
             Purpose::RecordDrag => ("Animation", &["gif"]),
@@ -87,13 +100,14 @@ impl Purpose {
     /// Name of the file where nobody chooses another.
     pub fn name(self) -> &'static str {
         match self {
-            Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson => "",
+            Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson | Purpose::OpenRows | Purpose::OwnScenes => "",
             Purpose::SaveScene => "scene.toml",
             Purpose::ExportPicture => "apertura.png",
             Purpose::ExportMaps => "maps.npz",
             Purpose::RecordDrag => "drag.gif",
             Purpose::DrawLesson => "lesson.png",
             Purpose::ExportMetrics => "metrics.csv",
+            Purpose::SaveRows => "rows.csv",
         }
     }
 }
@@ -117,7 +131,8 @@ impl Question {
             Some(stem) => format!("{}.toml", stem.to_string_lossy()),
             None => purpose.name().to_owned(),
         };
-        Question { purpose, folder: document.and_then(Path::parent).map(Path::to_path_buf), name }
+        let folder = document.and_then(Path::parent).filter(|p| !p.as_os_str().is_empty()).map(Path::to_path_buf);
+        Question { purpose, folder, name }
     }
 }
 
@@ -262,6 +277,8 @@ mod tests {
         assert_eq!(named(Purpose::SaveScene, Some(path)), "a.toml");
         assert_eq!(named(Purpose::ExportMaps, Some(path)), "maps.npz");
         assert_eq!(named(Purpose::SaveScene, None), "scene.toml");
+        let laid_over = Question::beside(Purpose::SaveScene, Some(Path::new("chip-8-overlay.toml")));
+        assert_eq!((laid_over.name.as_str(), laid_over.folder), ("chip-8-overlay.toml", None));
         assert_eq!(Question::beside(Purpose::Open, Some(path)).folder.as_deref(), Some(Path::new("/scenes")));
     }
 

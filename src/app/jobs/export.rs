@@ -1,5 +1,6 @@
 //! Pictures, arrays and figures for other programs, written on threads of their own.
 
+use super::failures::{RowTable, write_rows_to};
 use super::pipeline::Pipeline;
 use super::recorded::seen_by;
 use crate::app::state::State;
@@ -137,6 +138,19 @@ impl Exports {
     pub fn metrics(&self, state: &State, pipeline: &Pipeline, path: PathBuf) -> Result<String, String> {
         let text = metrics_csv(state, pipeline)?;
         self.begin(path, move |path| write_bytes(path, text.as_bytes()).map(|()| None).map_err(|e| e.to_string()))
+    }
+
+    /// Writes the rows of the panel Failures as CSV. Returns what to tell.
+    ///
+    /// # Errors
+    /// That there are none, or why it could not be begun.
+    pub fn rows(&self, table: &RowTable, mut path: PathBuf) -> Result<String, String> {
+        if table.rows().is_empty() {
+            return Err("There are no rows yet: try methods on scenes first.".to_owned());
+        }
+        path.set_extension("csv");
+        let (rows, conditions) = (table.rows().clone(), table.conditions().clone());
+        self.begin(path, move |path| write_rows_to(path, &rows, &conditions).map(|()| None))
     }
 
     /// Starts an export that takes a moment, and says so.

@@ -6,8 +6,11 @@ mod calibration;
 mod dialogs;
 mod evaluation;
 mod export;
+mod failures;
 mod frame_log;
+mod kinds;
 mod lessons;
+mod method;
 mod painter;
 mod pipeline;
 mod recorded;
@@ -27,9 +30,17 @@ pub use calibration::{Calibrated, Calibration};
 pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
+#[cfg(test)]
+pub use failures::some_row;
+pub use failures::{
+    Album, Failures, Plan as FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows,
+    keep,
+};
 pub use frame_log::FrameLog;
+pub use kinds::{Fates, Kinds, Verdict};
 pub use lessons::Lessons;
-pub use pipeline::{Pipeline, Refusal};
+pub use method::Refusal;
+pub use pipeline::Pipeline;
 pub use recording::Recorder;
 pub use run_time::RunTime;
 pub use scene_maps::Scores;
@@ -56,12 +67,16 @@ pub struct Jobs {
     pub calibration: Calibration,
     /// Methods on test sets.
     pub evaluation: Evaluation,
+    /// Methods on many scenes, row by row.
+    pub failures: Failures,
     /// Run time against error.
     pub run_time: RunTime,
     /// A training that is watched.
     pub training: Training,
     /// One map for several values.
     pub several: SeveralMaps,
+    /// What became of every object in the outputs.
+    pub kinds: Kinds,
     /// What the formulas say of one reflector.
     pub theory: Theory,
     /// Answers being judged.
@@ -94,9 +109,11 @@ impl Jobs {
             bounds: Bounds::start(wake.clone())?,
             calibration: Calibration::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
+            failures: Failures::start(folder, wake.clone())?,
             run_time: RunTime::start(wake.clone())?,
             training: Training::start(wake.clone())?,
             several: SeveralMaps::start(wake.clone())?,
+            kinds: Kinds::start(wake.clone())?,
             theory: Theory::start(wake.clone())?,
             lessons: Lessons::start(wake)?,
             exports: Exports::new(ctx.clone()),
@@ -114,9 +131,13 @@ impl Jobs {
         errors.extend(self.bounds.poll());
         errors.extend(self.calibration.poll());
         errors.extend(self.evaluation.poll());
+        errors.extend(self.failures.poll());
+        let (found, failed) = self.failures.search.poll();
+        errors.extend(failed);
         errors.extend(self.run_time.poll());
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
+        errors.extend(self.kinds.poll());
         errors.extend(self.theory.poll());
         errors.extend(self.lessons.poll(state));
         errors.into_iter().for_each(|e| state.notices.error(e));
@@ -126,8 +147,12 @@ impl Jobs {
         for said in self.recorder.poll() {
             tell(state, said);
         }
-        let (chosen, told) = self.dialogs.poll();
+        let (mut chosen, told) = self.dialogs.poll();
         told.into_iter().for_each(|t| state.notices.info(t));
+        // What was found takes the place of what it was looked for near, but not of what somebody made of that meanwhile.
+        if found && self.failures.search.is_about(state.editor.scene()) {
+            chosen.push(Command::TakeFinding);
+        }
         chosen
     }
 
@@ -136,8 +161,12 @@ impl Jobs {
         self.pipeline.ask(state);
         self.lessons.ask(state);
         self.several.ask(state);
+        self.kinds.ask(state, &self.pipeline);
         self.theory.ask(state);
         let shown = state.arrangement.shown();
+        if let Some(later) = self.failures.ask(state, shown.contains(&Panel::Failures)) {
+            self.wake.request_repaint_after(later);
+        }
         if shown.contains(&Panel::Bounds) {
             self.bounds.ask(state);
         }
@@ -175,11 +204,17 @@ impl Jobs {
     /// Opens a file dialog; what is chosen comes back as a command.
     pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
         let ctx = self.wake.clone();
-        let question = Question::beside(purpose, state.editor.document().path());
+        let question = Question::beside(purpose, state.editor.document().likely_path().as_deref());
         if let Err(error) = self.dialogs.ask(question, move || ctx.request_repaint()) {
             let advice = "Drop a file on the window instead.";
             state.notices.error(format!("The file dialog could not be opened: {error}. {advice}"));
         }
+    }
+
+    /// The folder of one's own scenes: the one chosen, or else one beside the app's other files.
+    pub fn own_scenes(&self, state: &State) -> Option<PathBuf> {
+        let usual = || self.folder.as_ref().map(|folder| folder.join("scenes"));
+        state.settings.own_scenes.clone().or_else(usual)
     }
 
     /// A folder of its own for a training by the recipe called `name`; `None` where the app keeps no files.
@@ -194,7 +229,9 @@ impl Jobs {
             || self.bounds.is_busy()
             || self.theory.is_busy()
             || self.several.is_busy()
+            || self.kinds.is_busy()
             || self.calibration.is_busy()
+            || self.failures.is_busy()
             || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }

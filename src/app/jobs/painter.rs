@@ -2,9 +2,10 @@
 
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::app::widgets::textures::colour_table;
+use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian;
-use crate::picture::ColourMap;
+use crate::picture::{ColourMap, Detection};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
 use std::collections::BTreeMap;
@@ -17,6 +18,13 @@ pub enum Paint {
     Lambda(ColourMap),
     /// Cells above a threshold, in two colours.
     Above {
+        /// The threshold.
+        eta: f32,
+        /// Whether the window is dark.
+        dark: bool,
+    },
+    /// Cells above a threshold, told apart by whether the target has them too: in colours and hatches.
+    Detections {
         /// The threshold.
         eta: f32,
         /// Whether the window is dark.
@@ -36,7 +44,7 @@ pub enum Paint {
 pub struct Subject {
     /// What is shown.
     pub map: Arc<RangeAngleMap>,
-    /// Subtracted by [`Paint::Difference`].
+    /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
     pub minus: Option<Arc<RangeAngleMap>>,
     /// How.
     pub paint: Paint,
@@ -80,6 +88,9 @@ const OUTSIDE: Color32 = Color32::TRANSPARENT;
 /// Cells below a threshold and above it, in a dark window and in a light one.
 const DARK_MASK: [Color32; 2] = [Color32::from_rgb(18, 22, 30), Color32::from_rgb(255, 214, 90)];
 const LIGHT_MASK: [Color32; 2] = [Color32::from_rgb(252, 253, 255), Color32::from_rgb(176, 84, 0)];
+
+/// Columns and rows that a map on screen has room for, about.
+const HATCHED: [usize; 2] = [340, 128];
 
 impl Painter {
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
@@ -145,6 +156,18 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>,
             let mask = if dark { DARK_MASK } else { LIGHT_MASK };
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
+        (Paint::Detections { eta, dark }, Some(target)) => {
+            let ((rows, columns), target) = (map.lambda.dim(), &target.lambda);
+            // A map of many cells is shrunk on screen: its hatches are of blocks of cells.
+            let block = [(columns / HATCHED[0]).max(1), (rows / HATCHED[1]).max(1)];
+            let cell = |((row, column), (&v, &t)): ((usize, usize), (&f32, &f32))| {
+                let kind = Detection::of(t > TARGET_ETA, v > eta);
+                let [r, g, b] = kind.colour(column / block[0], row / block[1], dark);
+                shown(v, Color32::from_rgb(r, g, b))
+            };
+            let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+            places.zip(cells.zip(target)).map(cell).collect()
+        }
         (Paint::Difference { view, colours }, Some(minus)) if view.absolute => {
             let table = colour_table(colours);
             let part = |v: f32, m: f32| 255.0 * (v - m).abs() / end + 0.5;
@@ -157,7 +180,7 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>,
                 .map(|(&v, &m)| shown(v, table[(127.5 * (1.0 + (v - m) / end) + 0.5) as u8 as usize]))
                 .collect()
         }
-        (Paint::Difference { .. }, None) => vec![OUTSIDE; map.lambda.len()],
+        (Paint::Difference { .. } | Paint::Detections { .. }, None) => vec![OUTSIDE; map.lambda.len()],
     }
 }
 
@@ -190,6 +213,32 @@ mod tests {
             let mask = painter.paint(&radar, MapKind::TargetAbove, &subject);
             assert_eq!(mask.image.pixels, [below, above, below, above]);
             assert_eq!(below.intensity() < 0.5, dark);
+        }
+    }
+
+    #[test]
+    fn hits_misses_and_false_alarms_are_told_apart_by_the_target() {
+        let (mut painter, radar) = (Painter::default(), Radar::default());
+        let lambda = |cells| Arc::new(RangeAngleMap { lambda: cells });
+        for dark in [true, false] {
+            let subject = Subject {
+                map: lambda(array![[0.0f32, 0.0], [0.8, 0.8]]),
+                minus: Some(lambda(array![[0.0f32, 0.95], [0.89, 0.95]])),
+                paint: Paint::Detections { eta: 0.5, dark },
+                projection: Projection::RangeAngle,
+            };
+            let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
+            let expected = [
+                (Detection::Nothing, 0, 0),
+                (Detection::Miss, 1, 0),
+                (Detection::FalseAlarm, 0, 1),
+                (Detection::Hit, 1, 1),
+            ];
+            let colour = |(kind, x, y): (Detection, usize, usize)| {
+                let [r, g, b] = kind.colour(x, y, dark);
+                Color32::from_rgb(r, g, b)
+            };
+            assert_eq!(painted, expected.map(colour));
         }
     }
 

@@ -1,137 +1,41 @@
-//! What to compute, and what came of it: the UI's side of the two workers.
+//! What to compute, and what came of it: the UI's side of the workers.
 //!
 //! ```text
 //!   scene, what is shown ──► maps worker (engine, pictures, scores) ──► MapsResult
 //!                               ▲                                          │ ends, target
-//!                               └── pair of maps ◄── method worker ◄───────┘
+//!                               └── pairs of maps ◄── method workers ◄─────┘
 //! ```
+//!
+//! The second method works only while the panel that compares it with the first is in sight.
 
+use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
 use super::recorded::Unexplained;
 use super::rest::{Motion, Rest};
-use super::scene_maps::{MapsRequest, MapsResult, MapsState, Pair, Scores};
-use crate::app::state::{CutMap, MapKind, Panel, State};
+use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
+use crate::app::state::{CutMap, MapKind, MethodSlot, Panel, State};
 use crate::engine::{Stage, Wanted};
-use crate::maps::{Normalisation, RangeAngleMap};
-use crate::radar::Radar;
-use crate::reconstruct::found::find;
-use crate::reconstruct::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::recording;
-use crate::scene::Reflector;
-use crate::signal::{Floor, TwoEnds};
+use crate::evaluate::TARGET_ETA;
 use crate::task::{Reply, Task, Worker};
-use std::sync::Arc;
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
-
-/// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
-/// finishes, so that something is seen.
-const PATIENCE: Duration = Duration::from_millis(400);
 
 /// What is older than this on screen is marked as old: less would flicker.
 const STALE: Duration = Duration::from_millis(400);
 
-/// What a method works on.
-#[derive(Clone)]
-struct Basis {
-    radar: Radar,
-    ends: Arc<TwoEnds>,
-    floor: Floor,
-    normalisation: Normalisation,
-    snapshot_range_metres: Option<f64>,
-}
-
-impl Basis {
-    /// What the method gets of a scene; `None` where nobody wanted its ends.
-    fn of(result: &MapsResult) -> Option<Basis> {
-        let MapsRequest { radar, wanted, recording, .. } = &result.request;
-        Some(Basis {
-            radar: radar.clone(),
-            ends: result.frame.ends.clone()?,
-            floor: if recording.is_some() { recording::FLOOR } else { wanted.floor },
-            normalisation: wanted.normalisation,
-            snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
-        })
-    }
-
-    fn same(&self, other: &Basis) -> bool {
-        Arc::ptr_eq(&self.ends, &other.ends)
-            && (self.floor, self.normalisation) == (other.floor, other.normalisation)
-            && self.snapshot_range_metres == other.snapshot_range_metres
-            && self.radar == other.radar
-    }
-}
-
-/// What the method worker is asked for.
-#[derive(Clone)]
-struct MethodRequest {
-    basis: Basis,
-    /// What it aims for; `None` where a recording has the two ends alone.
-    target: Option<Arc<RangeAngleMap>>,
-    method: Arc<dyn Reconstructor>,
-    /// Whether what was found is to be listed.
-    listed: bool,
-}
-
-impl MethodRequest {
-    fn same(&self, other: &MethodRequest) -> bool {
-        self.basis.same(&other.basis) && self.method.name() == other.method.name() && self.listed == other.listed
-    }
-}
-
-/// What a method made.
-#[derive(Clone)]
-pub struct MethodResult {
-    /// Its name.
-    pub method: &'static str,
-    /// Its map, and the one it aimed for.
-    pub pair: Pair,
-    /// What it found, the strongest first, where a list was asked for.
-    pub found: Option<Vec<Detection>>,
-    /// Where it found reflectors.
-    pub reflectors: Vec<Reflector>,
-    /// Time it took.
-    pub took: Duration,
-    basis: Basis,
-}
-
-impl MethodResult {
-    /// The radar that it reconstructed for.
-    pub fn radar(&self) -> &Radar {
-        &self.basis.radar
-    }
-}
-
-/// Why a method gave nothing.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refusal {
-    /// Its name.
-    pub method: &'static str,
-    /// Why.
-    pub reason: String,
-}
-
-/// What a method made of the samples, and the list of what it found where one was asked for.
-type Answer = (Reconstruction, Option<Vec<Detection>>);
-
-type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
-
 /// The workers, what they were asked last, and what they made last.
 pub struct Pipeline {
     maps: Worker<MapsRequest, Result<MapsResult, String>>,
-    method: Worker<MethodRequest, MethodReply>,
+    /// The first method and the second.
+    methods: [MethodJob; 2],
     asked: Option<MapsRequest>,
     rest: Rest,
     motion: Motion,
     /// When the maps worker was asked for what it hasn't answered yet.
     waiting: Option<Instant>,
-    method_asked: Option<MethodRequest>,
-    /// Since when the output belongs to something else than the maps.
-    outdated: Option<Instant>,
     result: Option<MapsResult>,
     /// Time of the last maps that followed a change.
     took: Option<Duration>,
-    output: Option<MethodResult>,
     scene_error: Option<String>,
-    refusal: Option<Refusal>,
     requests: u64,
 }
 
@@ -143,38 +47,17 @@ impl Pipeline {
     pub fn start(wake: impl Fn() + Clone + Send + 'static) -> std::io::Result<Pipeline> {
         let work = |state: &mut MapsState, request: MapsRequest, _: &Task| state.work(request);
         let maps = Worker::spawn("maps", MapsState::default, work, wake.clone())?;
-        // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
-        let threads = || rayon::ThreadPoolBuilder::new().thread_name(|i| format!("reconstruction {i}")).build().ok();
-        let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
-            let Basis { floor, normalisation, snapshot_range_metres, .. } = q.basis;
-            let request = Request { floor, normalisation, snapshot_range_metres, task: task.clone() };
-            let reconstruct = || {
-                let answer = q.method.reconstruct(&q.basis.radar, &q.basis.ends, &request)?;
-                let list = || find(q.method.as_ref(), &q.basis.radar, &q.basis.ends, &request, &answer);
-                let found = q.listed.then(list).transpose()?;
-                Ok((answer, found))
-            };
-            let result = match threads {
-                Some(threads) => threads.install(reconstruct),
-                None => reconstruct(),
-            };
-            (q, result)
-        };
-        let method = Worker::spawn("reconstruction", threads, work, wake)?;
+        let methods = [MethodJob::start("reconstruction", wake.clone())?, MethodJob::start("second method", wake)?];
         Ok(Pipeline {
             maps,
-            method,
+            methods,
             asked: None,
             rest: Rest::default(),
             motion: Motion::default(),
             waiting: None,
-            method_asked: None,
-            outdated: None,
             result: None,
             took: None,
-            output: None,
             scene_error: None,
-            refusal: None,
             requests: 0,
         })
     }
@@ -195,22 +78,8 @@ impl Pipeline {
                 )),
             }
         }
-        for reply in self.method.replies() {
-            match reply {
-                Reply::Done { result: (request, Ok(answer)), elapsed, .. } => self.take_in(request, answer, elapsed),
-                // Cancelled by the user, or because the scene moved on and the next request waits.
-                Reply::Done { result: (_, Err(ReconstructError::Cancelled)), .. } => {}
-                Reply::Done { result: (request, Err(error)), .. } => {
-                    self.refuse(request.method.name(), error.to_string());
-                }
-                Reply::Panicked { message, .. } => {
-                    let method = self.method_asked.as_ref().map_or("", |q| q.method.name());
-                    self.refuse(method, format!("failed: {message}"));
-                    messages.push(format!(
-                        "The reconstruction failed ({message}). It was started afresh; choose another method, or change the scene to try again."
-                    ));
-                }
-            }
+        for method in &mut self.methods {
+            messages.extend(method.poll(self.result.as_ref()));
         }
         messages
     }
@@ -224,11 +93,7 @@ impl Pipeline {
         {
             *ends = before.clone();
         }
-        if let (Some(target), Some(output)) = (target_of(&result), &mut self.output)
-            && Basis::of(&result).is_some_and(|basis| basis.same(&output.basis))
-        {
-            output.pair.target = Some(target);
-        }
+        self.methods.iter_mut().for_each(|method| method.aim(&result));
         let only_settled = result.request.at_rest && result.frame.report.ran(Stage::Signal);
         if !only_settled || self.took.is_none() {
             self.took = Some(result.took);
@@ -237,63 +102,59 @@ impl Pipeline {
         self.scene_error = None;
     }
 
-    fn take_in(&mut self, request: MethodRequest, (answer, found): Answer, took: Duration) {
-        let MethodRequest { basis, target, method, .. } = request;
-        let Reconstruction { lambda, mut reflectors } = answer;
-        if reflectors.is_empty() {
-            reflectors = found.iter().flatten().map(Detection::reflector).collect();
-        }
-        let latest = self.result.as_ref().filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
-        let pair = Pair { target: latest.and_then(target_of).or(target), output: Arc::new(lambda) };
-        self.refusal = None;
-        self.output = Some(MethodResult { method: method.name(), pair, found, reflectors, took, basis });
-    }
-
-    /// There is no output, and the last one is not its own: nothing of it stays.
-    fn refuse(&mut self, method: &'static str, reason: String) {
-        self.output = None;
-        self.refusal = Some(Refusal { method, reason });
-    }
-
     /// Asks the workers for what the panels of this frame need, if that changed.
     pub fn ask(&mut self, state: &State) {
-        let shown = state.arrangement.shown();
-        let map = |kind| shown.contains(&Panel::Map(kind));
-        let (cuts, roc) = (shown.contains(&Panel::Cuts), shown.contains(&Panel::Roc));
-        let listed = shown.contains(&Panel::Found);
-        let output = MapKind::ALL.into_iter().any(|k| k.needs_output() && map(k)) || cuts || roc || listed;
+        let looked_at = LookedAt::of(state);
+        let request = self.maps_request(state, &looked_at);
+        let is_recorded = request.recording.is_some();
+        self.ask_maps(request);
+        for slot in MethodSlot::BOTH {
+            match looked_at.outputs[slot as usize] {
+                true => self.ask_method(state, slot, slot == MethodSlot::First && (looked_at.listed || is_recorded)),
+                false if slot == MethodSlot::Second => self.methods[slot as usize].rest(),
+                false => {}
+            }
+        }
+    }
+
+    fn maps_request(&mut self, state: &State, looked_at: &LookedAt) -> MapsRequest {
+        let map = |kind| looked_at.pictures.contains(&kind);
+        let all = looked_at.every_map;
+        let output = looked_at.outputs.contains(&true);
         let recording = state.editor.document().recording().cloned();
         let settings = &state.settings;
         let wanted = Wanted {
             floor: settings.floor,
             seed: state.editor.scene().noise_seed,
             normalisation: settings.normalisation,
-            first: map(MapKind::Input0) || cuts,
-            last: map(MapKind::Input1) || cuts,
+            first: map(MapKind::Input0) || all,
+            last: map(MapKind::Input1) || all,
             full: map(MapKind::Target) || map(MapKind::TargetAbove) || output || map(MapKind::Unexplained),
             ends: output,
         };
         let (scene, held) = (state.editor.scene(), state.editor.dragged().is_some());
         self.motion = self.rest.look(scene, state.radar(), settings.floor, held, Instant::now());
-        self.ask_maps(MapsRequest {
+        let is_read = |slot: MethodSlot| looked_at.outputs[slot as usize];
+        let pair = |slot: MethodSlot| {
+            let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
+            output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
+        };
+        MapsRequest {
             radar: state.radar().clone(),
             scene: scene.clone(),
-            recording: recording.clone(),
             wanted,
             at_rest: self.motion == Motion::AtRest,
-            pictures: MapKind::ALL.into_iter().filter(|k| map(*k)).collect(),
-            pair: self.output.as_ref().filter(|o| output && o.radar() == state.radar()).map(|o| o.pair.clone()),
+            pictures: looked_at.pictures.clone(),
+            pairs: MethodSlot::BOTH.map(pair),
             colours: settings.colours,
             projection: settings.projection,
             difference: settings.difference,
             dark: state.dark,
             target_eta: settings.target_eta,
-            output_eta: state.output_eta(),
+            etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { state.eta_in(slot) } else { TARGET_ETA }),
             scores: output && (recording.is_some() || !scene.objects.is_empty()),
-            roc,
-        });
-        if output {
-            self.ask_method(state, listed || recording.is_some());
+            roc: looked_at.roc,
+            recording,
         }
     }
 
@@ -310,32 +171,20 @@ impl Pipeline {
     }
 
     /// Asks for an output of the latest maps, unless it was asked for just that.
-    fn ask_method(&mut self, state: &State, listed: bool) {
+    fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.result.as_ref().and_then(|r| {
-            let target = target_of(r);
+            let target = r.target();
             // A recording of the two ends has none; a scene has one as soon as somebody wants it.
             (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target))
         });
-        let Some(((basis, target), method)) = latest.zip(state.method().cloned()) else { return };
+        let Some(((basis, target), method)) = latest.zip(state.method_in(slot).cloned()) else { return };
         let request = MethodRequest { basis, target, method, listed };
-        let current =
-            self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
-        self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
-        if !self.method_asked.as_ref().is_some_and(|a| a.same(&request)) {
-            if state.editor.dragged().is_none() {
-                self.method.cancel_older_than(PATIENCE);
-            }
-            self.method.request(request.clone());
-            self.method_asked = Some(request);
-        }
+        self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
-    /// Stops the reconstruction that runs.
-    pub fn cancel_method(&mut self) {
-        self.method.cancel();
-        let method = self.method_asked.as_ref().map_or("", |q| q.method.name());
-        let reason = "cancelled; change the scene or the method to start again".to_owned();
-        self.refusal = Some(Refusal { method, reason });
+    /// Stops a reconstruction that runs.
+    pub fn cancel_method(&mut self, slot: MethodSlot) {
+        self.methods[slot as usize].cancel();
     }
 
     /// The latest maps.
@@ -343,9 +192,21 @@ impl Pipeline {
         self.result.as_ref()
     }
 
-    /// The latest output.
+    /// Either method: its latest output, or why it has none.
+    pub fn method(&self, slot: MethodSlot) -> &MethodJob {
+        &self.methods[slot as usize]
+    }
+
+    /// The latest output of the first method.
     pub fn output(&self) -> Option<&MethodResult> {
-        self.output.as_ref()
+        self.method(MethodSlot::First).output()
+    }
+
+    /// The scene of the latest maps and its target, where it is one of reflectors and not a recording.
+    pub fn truth(&self) -> Option<Truth> {
+        let MapsResult { request, frame, .. } = self.result.as_ref()?;
+        let target = frame.full.clone().filter(|_| request.recording.is_none())?;
+        Some(Truth { radar: request.radar.clone(), scene: request.scene.clone(), target })
     }
 
     /// The maps that can be cut.
@@ -362,7 +223,7 @@ impl Pipeline {
             Some(CutMap { kind, map: map.lambda.clone(), scale: Some(map.scale) })
         });
         // A method aims for the target's Lambda, so its decibels are the target's.
-        let output = self.output.as_ref().map(|o| CutMap { kind: MapKind::Output, map: o.pair.output.clone(), scale });
+        let output = self.output().map(|o| CutMap { kind: MapKind::Output, map: o.pair.output.clone(), scale });
         ready.chain(output).collect()
     }
 
@@ -376,10 +237,15 @@ impl Pipeline {
         self.result.as_ref()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
-    /// Figures of that output, against the target of the same scene.
+    /// Figures of the first method's output, against the target of the same scene.
     pub fn scores(&self) -> Option<Scores> {
-        self.output.as_ref()?;
-        self.result.as_ref()?.scores
+        self.scores_in(MethodSlot::First)
+    }
+
+    /// Figures of either method's output, against the target of the same scene.
+    pub fn scores_in(&self, slot: MethodSlot) -> Option<Scores> {
+        self.method(slot).output()?;
+        self.result.as_ref()?.scores[slot as usize]
     }
 
     /// Why the scene on screen can't be computed.
@@ -387,14 +253,14 @@ impl Pipeline {
         self.scene_error.as_deref()
     }
 
-    /// Why the method has no output for the scene on screen.
+    /// Why the first method has no output for the scene on screen.
     pub fn refusal(&self) -> Option<&Refusal> {
-        self.refusal.as_ref()
+        self.method(MethodSlot::First).refusal()
     }
 
-    /// Progress of the reconstruction, 0 to 1; `None` when none runs.
+    /// Progress of its reconstruction, 0 to 1; `None` when none runs.
     pub fn method_progress(&self) -> Option<f32> {
-        self.method.progress()
+        self.method(MethodSlot::First).progress()
     }
 
     /// Requests sent to the maps worker: a test asks that an idle app sends none.
@@ -402,9 +268,9 @@ impl Pipeline {
         self.requests
     }
 
-    /// Whether either worker has something to do, or will as soon as the scene rests.
+    /// Whether any worker has something to do, or will as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
-        self.maps.is_busy() || self.method.is_busy() || self.rests_in().is_some()
+        self.maps.is_busy() || self.methods.iter().any(MethodJob::is_busy) || self.rests_in().is_some()
     }
 
     /// How long until the scene on screen rests; `None` where it does, or is held.
@@ -433,17 +299,44 @@ impl Pipeline {
 
     /// Whether the shown output belongs to something else than the shown maps.
     pub fn output_is_outdated(&self) -> bool {
-        self.outdated.is_some()
+        self.method(MethodSlot::First).outdated().is_some()
     }
 
     /// Whether a map has belonged to an earlier scene for so long that it must be told.
     pub fn is_stale(&self, kind: MapKind) -> bool {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
-        old(self.waiting) || (kind.needs_output() && old(self.outdated))
+        old(self.waiting) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
     }
 }
 
-/// The map that a method aims for.
-fn target_of(result: &MapsResult) -> Option<Arc<RangeAngleMap>> {
-    result.frame.full.as_ref().map(|full| full.lambda.clone())
+/// What the panels in sight need.
+struct LookedAt {
+    /// Maps whose pictures are drawn.
+    pictures: BTreeSet<MapKind>,
+    /// Whether the numbers of every map are read.
+    every_map: bool,
+    /// Whether each method's output is.
+    outputs: [bool; 2],
+    /// Whether what was found is listed.
+    listed: bool,
+    /// Whether the ROC is looked at.
+    roc: bool,
+}
+
+impl LookedAt {
+    fn of(state: &State) -> LookedAt {
+        let shown = state.arrangement.shown();
+        let pictures = state.pictured();
+        let (compares, listed, roc) =
+            (shown.contains(&Panel::Compare), shown.contains(&Panel::Found), shown.contains(&Panel::Roc));
+        let every_map = shown.contains(&Panel::Cuts) || shown.contains(&Panel::Values);
+        let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First));
+        LookedAt {
+            outputs: [drawn || every_map || roc || listed || compares, compares],
+            pictures,
+            every_map,
+            listed,
+            roc,
+        }
+    }
 }

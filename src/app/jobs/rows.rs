@@ -92,6 +92,11 @@ impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R
         &self.rows
     }
 
+    /// Hands over what was found since the last time; it is not among [`RowJob::rows`] any more.
+    pub fn take_rows(&mut self) -> Vec<R> {
+        std::mem::take(&mut self.rows)
+    }
+
     /// What the whole run came to, once it has ended well.
     pub fn end(&self) -> Option<&E> {
         self.end.as_ref()

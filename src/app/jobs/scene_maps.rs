@@ -53,8 +53,8 @@ pub struct MapsRequest {
     pub at_rest: bool,
     /// Maps that somebody looks at.
     pub pictures: BTreeSet<MapKind>,
-    /// The latest output, if there is one, with its target.
-    pub pair: Option<Pair>,
+    /// The latest output of either method, if there is one, with its target.
+    pub pairs: [Option<Pair>; 2],
     /// Colours of Lambda.
     pub colours: ColourMap,
     /// Coordinates.
@@ -65,8 +65,8 @@ pub struct MapsRequest {
     pub dark: bool,
     /// eta'.
     pub target_eta: f32,
-    /// eta.
-    pub output_eta: f32,
+    /// eta of either method.
+    pub etas: [f32; 2],
     /// Whether P_D, P_FA, SE and blobs are looked at.
     pub scores: bool,
     /// Whether the ROC is looked at.
@@ -76,24 +76,25 @@ pub struct MapsRequest {
 impl MapsRequest {
     /// Whether both would give the same result.
     pub fn same(&self, other: &MapsRequest) -> bool {
-        let pair = match (&self.pair, &other.pair) {
+        let pairs = self.pairs.iter().zip(&other.pairs).all(|pair| match pair {
             (Some(a), Some(b)) => a.same(b),
             (None, None) => true,
             _ => false,
-        };
+        });
         let recording = match (&self.recording, &other.recording) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             (None, None) => true,
             _ => false,
         };
-        pair && recording
+        pairs
+            && recording
             && Arc::ptr_eq(&self.scene, &other.scene)
             && self.radar == other.radar
             && (self.wanted, self.at_rest) == (other.wanted, other.at_rest)
             && self.pictures == other.pictures
             && (self.colours, self.projection) == (other.colours, other.projection)
             && (self.difference, self.dark) == (other.difference, other.dark)
-            && (self.target_eta, self.output_eta) == (other.target_eta, other.output_eta)
+            && (self.target_eta, self.etas) == (other.target_eta, other.etas)
             && (self.scores, self.roc) == (other.scores, other.roc)
     }
 }
@@ -120,14 +121,32 @@ pub struct MapsResult {
     pub unexplained: Option<Result<Unexplained, String>>,
     /// Their pictures.
     pub pictures: BTreeMap<MapKind, Picture>,
-    /// Figures of the pair that was asked about.
-    pub scores: Option<Scores>,
-    /// P_D against P_FA of that pair.
+    /// Figures of the pairs that were asked about.
+    pub scores: [Option<Scores>; 2],
+    /// P_D against P_FA of the first pair.
     pub roc: Option<Arc<Vec<RocPoint>>>,
     /// Pictures painted since the start.
     pub painted: u64,
     /// Time of it all.
     pub took: Duration,
+}
+
+/// What outputs are judged by.
+#[derive(Clone)]
+pub struct Truth {
+    /// The radar.
+    pub radar: Radar,
+    /// What stands before it.
+    pub scene: Arc<Scene>,
+    /// What all of its elements see.
+    pub target: ReadyMap,
+}
+
+impl MapsResult {
+    /// The map that a method aims for.
+    pub fn target(&self) -> Option<Arc<RangeAngleMap>> {
+        self.frame.full.as_ref().map(|full| full.lambda.clone())
+    }
 }
 
 /// State that the maps worker keeps.
@@ -136,7 +155,7 @@ pub struct MapsState {
     engine: Option<Engine>,
     recorded: Option<RecordedMaps>,
     painter: Painter,
-    scores: Option<ScoresOf>,
+    scores: [Option<ScoresOf>; 2],
     roc: Option<RocOf>,
 }
 
@@ -167,9 +186,12 @@ impl MapsState {
             }
         }
         self.painter.keep(|kind| request.pictures.contains(&kind));
-        let scored = request.pair.as_ref().filter(|_| request.scores);
-        let scores = scored.and_then(|pair| self.scores(pair, [request.target_eta, request.output_eta]));
-        let roc = request.pair.as_ref().filter(|_| request.roc).and_then(|pair| self.roc(pair));
+        let mut scores = [None, None];
+        for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
+            let etas = [request.target_eta, request.etas[slot]];
+            scores[slot] = pair.as_ref().and_then(|pair| scored(&mut self.scores[slot], pair, etas));
+        }
+        let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(pair));
         let painted = self.painter.painted;
         Ok(MapsResult { request, frame, unexplained, pictures, scores, roc, painted, took: Duration::ZERO })
     }
@@ -197,22 +219,6 @@ impl MapsState {
         Ok((frame.map_err(|e| e.to_string())?, None))
     }
 
-    /// Figures of a pair; `None` where there is nothing to compare the output with.
-    fn scores(&mut self, pair: &Pair, etas: [f32; 2]) -> Option<Scores> {
-        if let Some(last) = self.scores.as_ref().filter(|s| s.pair.same(pair) && s.etas == etas) {
-            return Some(last.scores);
-        }
-        let target = pair.target.as_ref()?;
-        let [target_eta, output_eta] = etas;
-        let scores = Scores {
-            metrics: Metrics::of(target, &pair.output, output_eta),
-            target_blobs: blobs(target, target_eta),
-            output_blobs: blobs(&pair.output, output_eta),
-        };
-        self.scores = Some(ScoresOf { pair: pair.clone(), etas, scores });
-        Some(scores)
-    }
-
     fn roc(&mut self, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {
         if let Some(last) = self.roc.as_ref().filter(|r| r.pair.same(pair)) {
             return Some(last.points.clone());
@@ -223,6 +229,22 @@ impl MapsState {
     }
 }
 
+/// Figures of a pair, which are kept; `None` where there is nothing to compare the output with.
+fn scored(kept: &mut Option<ScoresOf>, pair: &Pair, etas: [f32; 2]) -> Option<Scores> {
+    if let Some(last) = kept.as_ref().filter(|s| s.pair.same(pair) && s.etas == etas) {
+        return Some(last.scores);
+    }
+    let target = pair.target.as_ref()?;
+    let [target_eta, output_eta] = etas;
+    let scores = Scores {
+        metrics: Metrics::of(target, &pair.output, output_eta),
+        target_blobs: blobs(target, target_eta),
+        output_blobs: blobs(&pair.output, output_eta),
+    };
+    *kept = Some(ScoresOf { pair: pair.clone(), etas, scores });
+    Some(scores)
+}
+
 /// What the picture of one map shows; `None` where there is no such map.
 fn subject(
     frame: &Frame,
@@ -231,18 +253,25 @@ fn subject(
     kind: MapKind,
 ) -> Option<Subject> {
     let lambda = |map: &Option<ReadyMap>| map.as_ref().map(|m| m.lambda.clone());
-    let pair = request.pair.as_ref();
+    let slot = kind.slot().map(|slot| slot as usize);
+    let pair = slot.and_then(|slot| request.pairs[slot].as_ref());
     let output = pair.map(|p| p.output.clone());
     let colours = Paint::Lambda(request.colours);
-    let above = |eta| Paint::Above { eta, dark: request.dark };
+    let dark = request.dark;
     let (map, minus, paint) = match kind {
         MapKind::Input0 => (lambda(&frame.first), None, colours),
         MapKind::Input1 => (lambda(&frame.last), None, colours),
         MapKind::Target => (lambda(&frame.full), None, colours),
-        MapKind::Output => (output, None, colours),
-        MapKind::TargetAbove => (lambda(&frame.full), None, above(request.target_eta)),
-        MapKind::OutputAbove => (output, None, above(request.output_eta)),
-        MapKind::Difference => (
+        MapKind::Output | MapKind::Second => (output, None, colours),
+        MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above { eta: request.target_eta, dark }),
+        MapKind::OutputAbove | MapKind::SecondAbove => {
+            let eta = request.etas[slot?];
+            match &pair?.target {
+                Some(target) => (output, Some(target.clone()), Paint::Detections { eta, dark }),
+                None => (output, None, Paint::Above { eta, dark }),
+            }
+        }
+        MapKind::Difference | MapKind::SecondDifference => (
             output,
             Some(pair?.target.clone()?),
             Paint::Difference { view: request.difference, colours: request.colours },

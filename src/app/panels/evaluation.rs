@@ -2,6 +2,7 @@
 
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice};
+use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
 use crate::radar::Radar;
@@ -94,20 +95,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
     }
     ui.add_enabled_ui(input.progress.is_none(), |ui| {
         ui.horizontal_wrapped(|ui| {
-            let names = memory.methods.iter().copied().collect::<Vec<_>>().join(", ");
-            let title = if memory.methods.len() > 3 { format!("{} methods", memory.methods.len()) } else { names };
-            let menu = ui.menu_button(format!("Methods: {title}"), |ui| {
-                for method in input.methods {
-                    let mut chosen = memory.methods.contains(method.name());
-                    if ui.checkbox(&mut chosen, method.name()).on_hover_text(method.description()).changed() {
-                        match chosen {
-                            true => memory.methods.insert(method.name()),
-                            false => memory.methods.remove(method.name()),
-                        };
-                    }
-                }
-            });
-            menu.response.on_hover_text("Methods to evaluate");
+            method_menu(ui, input.methods, &mut memory.methods, "Methods to evaluate");
             for ((chosen, what), number) in memory.sets.iter_mut().zip(SETS).zip(1..) {
                 ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
             }

@@ -1,6 +1,7 @@
 //! What the method found, as a list: angle, range, strength.
 
 use crate::app::state::Command;
+use crate::app::widgets::numbers::{plain, signed};
 use crate::reconstruct::Detection;
 use eframe::egui;
 use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
@@ -63,11 +64,11 @@ fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
     ui.weak(number.to_string());
     let range = if has_ranges { format!("{:.2} m", found.range_metres) } else { "–".to_owned() };
     let degrees = found.cos_theta.clamp(-1.0, 1.0).asin().to_degrees();
-    for text in [format!("{degrees:+.2}°"), range] {
+    for text in [format!("{}°", signed(degrees, 2)), range] {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
     }
     // The last column takes all the room that is left: nothing is aligned to its end.
-    ui.monospace(format!("{:.1}", found.relative_power.0));
+    ui.monospace(plain(found.relative_power.0, 1));
     ui.end_row();
 }
 
@@ -95,7 +96,7 @@ mod tests {
     fn angles_ranges_and_decibels_are_listed() {
         let list = vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)];
         let shown = panel(Some(list.clone()), None, true);
-        let _told = ["iaa found 2 echoes, the strongest first", "+6.96°", "15.00 m", "-3.50°", "7.25 m", "-2.0"]
+        let _told = ["iaa found 2 echoes, the strongest first", "+6.96°", "15.00 m", "−3.50°", "7.25 m", "−2.0"]
             .map(|text| shown.get_by_label(text));
         let snapshot = panel(Some(list), None, false);
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");

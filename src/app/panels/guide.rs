@@ -73,12 +73,34 @@ const CHAPTERS: &[&[Step]] = &[
         Step { label: "The live network", commands: || output_by("live") },
         Step { label: "A search for reflectors", commands: || output_by("hybrid") },
     ],
+    &[
+        Step { label: "Failures", commands: || vec![Command::OpenPanel(Panel::Failures)] },
+        Step { label: "live: missed", commands: || failure("live-missed", "live") },
+        Step { label: "live: merged", commands: || failure("live-merged", "live") },
+        Step { label: "live: ghost", commands: || failure("live-ghost", "live") },
+        Step { label: "live: wrong tooth", commands: || failure("wrong-tooth", "live") },
+        Step { label: "hybrid: merged", commands: || failure("hybrid-merged", "hybrid") },
+        Step { label: "hybrid: ghosts", commands: || failure("hybrid-ghosts", "hybrid") },
+        Step { label: "hybrid: wrong tooth", commands: || failure("wrong-tooth", "hybrid") },
+        Step { label: "thesis: missed", commands: || failure("thesis-missed", "thesis") },
+        Step { label: "thesis: merged", commands: || failure("thesis-merged", "thesis") },
+        Step { label: "thesis: ghost", commands: || failure("thesis-ghost", "thesis") },
+        Step { label: "Compare two methods", commands: || vec![Command::OpenPanel(Panel::Compare)] },
+    ],
 ];
 
 /// Opens a preset, then does the rest.
 fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
     let preset = presets::ALL.iter().position(|p| p.id == id).map(Command::Preset);
     preset.into_iter().chain(then).collect()
+}
+
+/// A scene on which a method fails, its output in sight and marked.
+fn failure(which: &str, method: &'static str) -> Vec<Command> {
+    let mut then = thesis();
+    then.extend(output_by(method));
+    then.extend([Command::SetMethodEta(method, None), Command::MarkKinds]);
+    scene(&format!("failure-{which}"), then)
 }
 
 /// A method, its map in sight.

@@ -28,6 +28,8 @@ pub struct Memory {
     number: String,
     eta: f32,
     learner: String,
+    /// Whether the judgement was brought into sight.
+    told: bool,
     /// Lesson and step these belong to.
     of: Option<(String, usize)>,
 }
@@ -35,12 +37,16 @@ pub struct Memory {
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
+    if input.presenting {
+        // Read from the last row of a lecture hall.
+        ui.style_mut().text_styles.values_mut().for_each(|font| font.size *= 1.4);
+    }
+    if let Some(run) = input.run {
+        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
+        egui::Panel::bottom("steps").frame(frame).show(ui, |ui| steps(ui, run, input.presenting, &mut asked));
+    }
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            if input.presenting {
-                // Read from the last row of a lecture hall.
-                ui.style_mut().text_styles.values_mut().for_each(|font| font.size *= 1.4);
-            }
             ui.set_max_width(ui.available_width().min(if input.presenting { 900.0 } else { 620.0 }));
             match input.run {
                 None => {
@@ -50,12 +56,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
                 Some(run) => {
                     let of = Some((run.id.clone(), run.step));
                     if memory.of != of {
-                        *memory = Memory {
-                            of,
-                            eta: 0.5,
-                            learner: std::mem::take(&mut memory.learner),
-                            number: String::new(),
-                        };
+                        *memory =
+                            Memory { of, eta: 0.5, learner: std::mem::take(&mut memory.learner), ..Memory::default() };
                     }
                     step(ui, run, &input, memory, &mut asked);
                 }
@@ -127,15 +129,17 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
         ui.label(large(ui, &question.ask).strong());
         match run.guess {
             None => answer(ui, question, memory, asked),
-            Some(_) => judgement(ui, run),
+            Some(_) => judgement(ui, run, &mut memory.told),
         }
     }
     if let Some(challenge) = step.challenge.as_ref().filter(|_| !run.is_predicting()) {
         ui.add_space(8.0);
         requirements(ui, run, challenge, input.hidden, asked);
     }
-    ui.add_space(12.0);
-    ui.separator();
+}
+
+/// The way through the lesson: always in sight, however long the text is.
+fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if ui.add_enabled(run.step > 0, egui::Button::new("Previous")).clicked() {
             asked.push(Command::LessonStep(run.step - 1));
@@ -148,7 +152,7 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
         if ui.button(leave).on_hover_text("Your scene and your settings come back").clicked() {
             asked.push(Command::LeaveLesson);
         }
-        whole_screen(ui, input.presenting, asked);
+        whole_screen(ui, presenting, asked);
     });
 }
 
@@ -203,14 +207,17 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
     }
 }
 
-fn judgement(ui: &mut Ui, run: &LessonRun) {
+fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
     match &run.judgement {
         None => _ = ui.weak("looking…"),
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
             let verdict = if judged.is_right { "Right" } else { "Not quite" };
             ui.label(large(ui, format!("{verdict}: {}", judged.distance)).strong());
-            ui.label(inline(ui, &judged.sentence, LARGE));
+            let sentence = ui.label(inline(ui, &judged.sentence, LARGE));
+            if !std::mem::replace(told, true) {
+                sentence.scroll_to_me(None);
+            }
         }
     }
 }

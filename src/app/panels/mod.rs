@@ -1,11 +1,13 @@
 //! The panels, one a file: each a function of what it shows, which answers with what was asked for.
 
 pub mod bounds;
+pub mod compare;
 pub mod controls;
 pub mod cuts;
 pub mod disturbances;
 pub mod elements;
 pub mod evaluation;
+pub mod failures;
 pub mod found;
 pub mod guide;
 pub mod inspector;
@@ -19,3 +21,4 @@ pub mod scene;
 pub mod several;
 pub mod timing;
 pub mod training;
+pub mod values;

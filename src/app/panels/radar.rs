@@ -41,7 +41,7 @@ struct Free {
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             match input.measured {
                 Some(measured) => _ = ui.weak(measured.told()),
                 None => preset(ui, input.radar, &mut asked),
@@ -112,11 +112,19 @@ fn number(ui: &mut Ui, field: &Number, value: f64, consequence: &str, is_free: b
         .max_decimals(field.decimals)
         .suffix(field.unit);
     let changed = ui.add_enabled(is_free, drag).labelled_by(label.id).on_hover_text(field.tooltip).changed();
-    ui.label(consequence);
-    ui.end_row();
+    last_cell(ui, consequence);
     // A field that the focus only passes through writes back what it shows, rounded.
     let step = 10f64.powi(-(field.decimals as i32));
     (changed && (edited - value).abs() >= 0.5 * step).then_some(edited)
+}
+
+/// The last cell of a row, as wide as what is left of the panel.
+fn last_cell(ui: &mut Ui, consequence: &str) {
+    ui.vertical(|ui| {
+        ui.set_max_width(ui.available_width().max(100.0));
+        ui.add(egui::Label::new(consequence).wrap());
+    });
+    ui.end_row();
 }
 
 const CARRIER: Number = Number {
@@ -254,30 +262,34 @@ fn choices(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, is_free: bool
             ui.selectable_value(&mut radar.carrier, Carrier::TwoWay, "two-way");
         });
     });
-    ui.label(match radar.carrier {
+    let text = match radar.carrier {
         Carrier::OneWay => "a turn for each wavelength of distance".to_owned(),
         Carrier::TwoWay => format!("two turns for each wavelength: cos θ repeats after {:.2}", follows.grating_cos),
-    });
-    ui.end_row();
+    };
+    last_cell(ui, &text);
     let label = ui.label("windows").on_hover_text("Weights of samples and elements in the two transforms");
-    ui.horizontal(|ui| {
-        for window in WindowFunction::ALL {
-            let choice = ui.selectable_value(&mut radar.window, window, window.name());
-            if window == WindowFunction::ALL[0] {
-                choice.labelled_by(label.id);
-            }
+    // In pairs: all in one row would push the consequences out of a narrow panel.
+    ui.vertical(|ui| {
+        for pair in WindowFunction::ALL.chunks(2) {
+            ui.horizontal(|ui| {
+                for &window in pair {
+                    let choice = ui.selectable_value(&mut radar.window, window, window.name());
+                    if window == WindowFunction::ALL[0] {
+                        choice.labelled_by(label.id);
+                    }
+                }
+            });
         }
     });
-    ui.label(match follows.range_width_metres {
+    let text = match follows.range_width_metres {
         Some(width) => format!("a blob is {} long", metres(width)),
         None => "no range is told from another".to_owned(),
-    });
-    ui.end_row();
+    };
+    last_cell(ui, &text);
     let label =
         ui.label("range migration").on_hover_text("How much a range differs between both sides of the array, at most");
     ui.label("").labelled_by(label.id);
-    ui.label(format!("up to {:.1} bins from side to side", follows.migration_bins));
-    ui.end_row();
+    last_cell(ui, &format!("up to {:.1} bins from side to side", follows.migration_bins));
 }
 
 /// A length in the unit that reads best.
@@ -290,90 +302,4 @@ fn metres(metres: f64) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    /// A panel that does what it asks for, as the app would.
-    fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, Vec<Command>)> {
-        let draw = move |ui: &mut Ui, state: &mut (Radar, Vec<Command>)| {
-            let asked = show(ui, Input { radar: &state.0, measured });
-            for command in &asked {
-                match command {
-                    Command::SetRadar(radar) => state.0 = (**radar).clone(),
-                    Command::RadarPreset(index) => state.0 = presets::ALL[*index].radar.clone(),
-                    other => panic!("{other:?}"),
-                }
-            }
-            state.1.extend(asked);
-        };
-        Harness::builder().with_size([640.0, 420.0]).build_ui_state(draw, (radar, Vec::new()))
-    }
-
-    fn type_into(panel: &mut Harness<'_, (Radar, Vec<Command>)>, label: &str, text: &str) {
-        let field =
-            panel.get_by(|n| n.label().as_deref() == Some(label) && n.role() == egui::accesskit::Role::SpinButton);
-        field.focus();
-        panel.run();
-        panel.event(egui::Event::Text(text.to_owned()));
-        panel.run();
-        panel.key_press(egui::Key::Enter);
-        panel.run();
-    }
-
-    #[test]
-    fn a_bandwidth_changes_its_consequence() {
-        let mut panel = panel(Radar::default(), None);
-        let _told = panel.get_by_label("range bin 7.49 cm");
-        type_into(&mut panel, "bandwidth", "150");
-        let _told = (panel.get_by_label("range bin 99.93 cm"), panel.get_by_label("maximum range 511.65 m"));
-        assert!((panel.state().0.bandwidth_hz - 150e6).abs() < 1.0);
-        assert_eq!(panel.state().1.len(), 1, "one edit is one command");
-    }
-
-    #[test]
-    fn fewer_elements_take_their_ends_along_and_spacings_are_one_number() {
-        let mut panel = panel(Radar::default(), None);
-        type_into(&mut panel, "elements", "16");
-        assert_eq!((panel.state().0.elements, panel.state().0.end_elements), (16, 8));
-        type_into(&mut panel, "the same in wavelengths", "1");
-        let spacing = panel.state().0.element_spacing_metres;
-        assert!((spacing - panel.state().0.wavelength_metres()).abs() < 1e-12);
-        let _told = panel.get_by_label_contains("some directions look alike");
-        panel.state().0.validate().unwrap();
-    }
-
-    #[test]
-    fn the_focus_passes_through_and_changes_nothing() {
-        let odd = Radar { carrier_hz: 76.123_456_789e9, element_spacing_metres: 1.234_567e-3, ..Radar::default() };
-        let mut panel = panel(odd, None);
-        for _ in 0..30 {
-            panel.key_press(egui::Key::Tab);
-            panel.run();
-        }
-        assert!(panel.state().1.is_empty(), "{:?}", panel.state().1);
-    }
-
-    #[test]
-    fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
-        let mut free = panel(Radar::default(), None);
-        free.get_by_label("Start from").click();
-        free.run();
-        free.get_by_label("24 GHz, 256 elements").click();
-        free.run();
-        assert_eq!(free.state().1, [Command::RadarPreset(3)]);
-        let _told = free.get_by_label_contains("range bins of 60 cm");
-        let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
-        measured.run();
-        assert!(measured.query_by_label("Start from").is_none());
-        measured.get_by_label("two-way").click();
-        measured.run();
-        assert!(measured.state().1.is_empty());
-        type_into(&mut measured, "elements of an end", "20");
-        assert_eq!(measured.state().0.end_elements, 20);
-        measured.get_by_label("hamming").click();
-        measured.run();
-        assert_eq!(measured.state().0.window, WindowFunction::Hamming, "windows are no part of a measurement");
-    }
-}
+mod tests;

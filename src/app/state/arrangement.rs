@@ -16,6 +16,9 @@ pub struct Arrangement {
     shown: BTreeSet<Panel>,
 }
 
+/// Heights of what stands above a panel that has the whole width, and of that panel.
+const BELOW: [f32; 2] = [1.0, 0.8];
+
 impl Default for Arrangement {
     fn default() -> Self {
         let mut tiles = Tiles::default();
@@ -25,8 +28,9 @@ impl Default for Arrangement {
         let [in0, in1, target, output, target_above, output_above, difference, unexplained] =
             MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
         let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-        let [guide, lesson, radar, elements, disturbances, tools @ ..] = Panel::TOOLS.map(pane);
-        for closed in [timing, guide, lesson, radar, elements, disturbances, unexplained].iter().chain(&tools) {
+        let [guide, lesson, failures, radar, elements, disturbances, tools @ ..] = Panel::TOOLS.map(pane);
+        for closed in [timing, guide, lesson, failures, radar, elements, disturbances, unexplained].iter().chain(&tools)
+        {
             tiles.set_visible(*closed, false);
         }
         let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
@@ -44,8 +48,11 @@ impl Default for Arrangement {
         let second = tabs(&mut tiles, vec![output, difference, unexplained]);
         let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
         let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
-        let root =
+        let columns =
             linear(&mut tiles, LinearDir::Horizontal, vec![left, beside, left_maps, right_maps], &[1.1, 0.9, 1.0, 1.0]);
+        // Rows are long, and the maps are looked at while one walks through them.
+        let below = tabs(&mut tiles, vec![failures]);
+        let root = column(&mut tiles, vec![columns, below], &BELOW);
         Arrangement {
             tree: Tree::new(egui::Id::unique("panels"), root, tiles),
             maximised: None,
@@ -166,6 +173,7 @@ impl Arrangement {
                     self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
                 }
             }
+            None if open && panel == Panel::Failures => self.insert_below(panel),
             // A layout kept from an older version may lack a panel.
             None if open => {
                 let id = self.tree.tiles.insert_pane(panel);
@@ -177,18 +185,39 @@ impl Arrangement {
         }
     }
 
+    /// Gives a panel the whole width below all others.
+    fn insert_below(&mut self, panel: Panel) {
+        let tiles = &mut self.tree.tiles;
+        let pane = tiles.insert_pane(panel);
+        let tab = tiles.insert_tab_tile(vec![pane]);
+        let children = self.tree.root.into_iter().chain([tab]).collect();
+        self.tree.root = Some(column(tiles, children, &BELOW));
+    }
+
+    /// The container of the columns, one of which holds the settings.
+    fn columns(&self) -> Option<TileId> {
+        let tiles = &self.tree.tiles;
+        let of = |id: TileId| tiles.parent_of(id);
+        let across = |id: &TileId| {
+            let tile = tiles.get(*id);
+            matches!(tile, Some(Tile::Container(Container::Linear(l))) if l.dir == LinearDir::Horizontal)
+        };
+        let controls = tiles.find_pane(&Panel::Controls);
+        std::iter::successors(controls, |id| of(*id)).find(across).or(self.tree.root())
+    }
+
     /// Moves a panel that is read while settings change from the settings' tabs to a place beside them: that is where layouts kept from
     /// older versions have it.
     fn take_from_over_settings(&mut self, panel: Panel) {
         let tiles = &self.tree.tiles;
         let [of_panel, of_settings] =
             [panel, Panel::Controls].map(|p| tiles.find_pane(&p).and_then(|id| tiles.parent_of(id)));
-        if let (Some(id), Some(root)) = (tiles.find_pane(&panel), self.tree.root())
+        if let (Some(id), Some(columns)) = (tiles.find_pane(&panel), self.columns())
             && of_panel.is_some()
             && of_panel == of_settings
-            && of_panel != Some(root)
+            && of_panel != Some(columns)
         {
-            self.tree.move_tile_to_container(id, root, 1, false);
+            self.tree.move_tile_to_container(id, columns, 1, false);
         }
     }
 }
@@ -219,6 +248,23 @@ mod tests {
     fn tabs_of(arrangement: &Arrangement, panel: Panel) -> Option<TileId> {
         let tiles = &arrangement.tree.tiles;
         tiles.parent_of(tiles.find_pane(&panel)?)
+    }
+
+    #[test]
+    fn rows_have_the_whole_width_below_the_maps_even_where_an_older_layout_lacks_them() {
+        let mut old = Arrangement::default();
+        let id = old.tree.tiles.find_pane(&Panel::Failures).unwrap();
+        let below = tabs_of(&old, Panel::Failures).unwrap();
+        old.tree.root = old.columns();
+        old.tree.tiles.remove(id);
+        old.tree.tiles.remove(below);
+        for mut arrangement in [old, Arrangement::default()] {
+            arrangement.set_open(Panel::Failures, true);
+            let tabs = tabs_of(&arrangement, Panel::Failures).unwrap();
+            assert_eq!(arrangement.tree.tiles.parent_of(tabs), arrangement.tree.root());
+            assert_ne!(arrangement.columns(), arrangement.tree.root(), "the columns stand above");
+            assert!(arrangement.is_open(Panel::Failures) && arrangement.is_open(Panel::Controls));
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Everything a button, a menu entry, a shortcut, the palette or a panel can ask for.
 
 use super::bounds_settings::BoundsSettings;
+use super::compare::Compare;
+use super::failures::{FailureChoice, SearchChoice};
 use super::lossy_save::LossyAnswer;
 use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
@@ -235,8 +237,20 @@ pub enum Command {
     ToggleFieldsOfView,
     /// Draw over the maps what the formulas say of the selected reflector, or not.
     ToggleTheory,
+    /// Mark every object by what became of it in the output.
+    MarkKinds,
+    /// Mark every object by what became of it in the output, or not.
+    ToggleKinds,
     /// Which map is shown several times, and what differs.
     SetSeveral(Box<Several>),
+    /// Which two methods and maps are compared, and how.
+    SetCompare(Box<Compare>),
+    /// Put the other of two compared maps in the place of the one on screen.
+    Flip,
+    /// Move the edge between two compared maps to this part of their width.
+    Swipe(f32),
+    /// Stop the second method's reconstruction.
+    CancelSecond,
     /// Reconstruct with the method of this name.
     Method(&'static str),
     /// The next reconstruction method.
@@ -249,6 +263,40 @@ pub enum Command {
     CancelEvaluation,
     /// Copy what the evaluation found, as CSV.
     CopyEvaluation,
+    /// Try methods on scenes, row by row.
+    TryMethods(FailureChoice),
+    /// Stop trying; the rows stay.
+    CancelTrying,
+    /// Ask for a table of rows and show it.
+    OpenRows,
+    /// Show the rows of this file.
+    OpenRowsFile(PathBuf),
+    /// Show what this CSV file holds: rows, or the log of a training.
+    OpenTable(PathBuf),
+    /// Ask where to save the rows as CSV.
+    SaveRows,
+    /// Save the rows in this file.
+    SaveRowsTo(PathBuf),
+    /// Forget every row.
+    ClearRows,
+    /// Bring the rows back that others took the place of.
+    BringRowsBack,
+    /// Put the scene of this row on screen, with its floor and method.
+    OpenRow(usize),
+    /// Look for a worse scene near the one on screen, or for its repair.
+    Search(SearchChoice),
+    /// Stop looking; what was found stays.
+    CancelSearch,
+    /// Put what the search found on screen.
+    TakeFinding,
+    /// Forget the search and its path.
+    ForgetSearch,
+    /// Keep the scene on screen among one's own, with this note.
+    KeepScene(String),
+    /// Ask for the folder of one's own scenes.
+    ChooseOwnScenes,
+    /// The folder of one's own scenes is the one that this file lies in.
+    SetOwnScenes(PathBuf),
     /// Measure run time against error.
     Measure {
         /// Every algorithm and more reflectors, for about a minute.

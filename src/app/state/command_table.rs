@@ -61,6 +61,14 @@ const TABLE: &[Entry] = {
         entry(Save, "Save", "Save the scene as TOML", command(Key::S)),
         entry(SaveAs, "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S)),
         entry(OpenLog, "Open training log…", "Watch the loss of a training (its log.csv)", None),
+        entry(OpenRows, "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None),
+        entry(SaveRows, "Save rows…", "Save the rows of the panel Failures as CSV", None),
+        entry(
+            ChooseOwnScenes,
+            "Folder of own scenes…",
+            "Choose where Keep puts scenes: pick any scene of the folder",
+            None,
+        ),
         entry(ExportPicture, "Export picture…", "Save the window as PNG, or all panels as SVG", command(Key::E)),
         entry(ExportMaps, "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),
         entry(RecordDrag, "Record a drag…", "Record the next drag as an animation (.gif) for slides", None),
@@ -193,6 +201,18 @@ const TABLE: &[Entry] = {
             "Draw what the formulas say of the selected reflector: beam, lobes, streak, comb, bound, what wraps and folds",
             key(Key::T),
         ),
+        entry(
+            ToggleKinds,
+            "Mark kinds of failure",
+            "Mark in the maps which objects are found, missed, merged or on the wrong tooth, and ghosts",
+            key(Key::H),
+        ),
+        entry(
+            Flip,
+            "Flip two maps",
+            "Put the other of the two maps of the panel Compare in the place of the one on screen",
+            key(Key::X),
+        ),
         entry(NextMethod, "Next method", "Reconstruct with the next method", key(Key::N)),
         entry(CancelMethod, "Cancel reconstruction", "Stop the reconstruction that runs", None),
         entry(
@@ -222,8 +242,11 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Timing, Key::F7),
     (Panel::Bounds, Key::F8),
     (Panel::Evaluation, Key::F9),
+    (Panel::Failures, Key::E),
     (Panel::RunTime, Key::F10),
     (Panel::Several, Key::S),
+    (Panel::Compare, Key::J),
+    (Panel::Values, Key::I),
     (Panel::Radar, Key::W),
     (Panel::Training, Key::F12),
 ];
@@ -244,7 +267,11 @@ pub fn listed() -> &'static [Entry] {
         };
         let preset = |(index, preset): (usize, &presets::Preset)| {
             let name = format!("Preset: {}", preset.id.replace('-', " "));
-            named(Command::Preset(index), name, "Open a scene the thesis talks about", None)
+            let tooltip = match preset.is_failure() {
+                true => "Open a scene on which a method fails, with the reason in its notes",
+                false => "Open a scene the thesis talks about",
+            };
+            named(Command::Preset(index), name, tooltip, None)
         };
         let random = |kind: Kind| {
             let keys = [Key::Num1, Key::Num2, Key::Num3];

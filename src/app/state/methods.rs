@@ -37,6 +37,14 @@ impl Methods {
         [preferred].into_iter().chain(ROBUST).find(|other| works(other))
     }
 
+    /// The method to set beside the one called `first`: the one called `name`, or else a plain one, or else any other.
+    pub fn second_to(&self, first: Option<&str>, name: &str) -> Option<&Arc<dyn Reconstructor>> {
+        let named = |name: &str| self.all.iter().find(|m| m.name() == name);
+        let other = |m: &&Arc<dyn Reconstructor>| Some(m.name()) != first;
+        let plain = || ROBUST.iter().rev().find_map(|name| named(name).filter(other));
+        named(name).or_else(plain).or_else(|| self.all.iter().find(other)).or_else(|| self.all.first())
+    }
+
     /// The method after the one called `name`; the first after the last.
     pub fn after(&self, name: &str) -> Option<&'static str> {
         let index = self.all.iter().position(|m| m.name() == name).unwrap_or(0);

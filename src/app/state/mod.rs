@@ -5,7 +5,9 @@ mod arrangement;
 mod bounds_settings;
 mod command;
 mod command_table;
+mod compare;
 mod cuts;
+mod failures;
 mod guided;
 mod lesson_run;
 mod lossy_save;
@@ -20,13 +22,15 @@ pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
 pub use command::{Command, EvaluationChoice, NewObject};
 pub use command_table::{listed, shortcuts};
+pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, Pins};
+pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
 pub use guided::{Guided, Setup};
 pub use lesson_run::LessonRun;
 pub use lossy_save::{LossyAnswer, LossySave};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
-pub use panel::{MapKind, Panel};
+pub use panel::{MapKind, MethodSlot, Panel};
 pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
@@ -35,6 +39,7 @@ use crate::interact::{Document, Editor};
 use crate::lesson::Progress;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -65,6 +70,8 @@ pub struct State {
     pub guided: Guided,
     /// A file that can't hold all of the scene, if it is to be written.
     pub lossy_save: Option<LossySave>,
+    /// Rows: which is open, which are in sight.
+    pub failures: Failures,
     /// The lesson being taken.
     pub lesson: Option<LessonRun>,
     /// Where the panels were before a lesson or a presentation took the whole screen.
@@ -84,6 +91,11 @@ impl State {
     pub fn set_document(&mut self, label: &str, document: Document) {
         self.editor.open(label, document);
         self.scene_view.fit = true;
+    }
+
+    /// The row whose scene is on screen, edited or not.
+    pub fn row_on_screen(&self) -> Option<&OpenedRow> {
+        self.failures.opened.as_ref().filter(|opened| opened.document == self.editor.document().id())
     }
 
     /// Whether maps are hidden, since a lesson asks for a prediction.
@@ -195,10 +207,37 @@ impl State {
         self.methods.named(&self.settings.method)
     }
 
+    /// The method that the panel "Compare" sets beside it: the one that was chosen, or a plain one, or any other.
+    pub fn second_method(&self) -> Option<&Arc<dyn Reconstructor>> {
+        let first = self.method().map(|m| m.name());
+        self.methods.second_to(first, &self.settings.compare.second)
+    }
+
+    /// Either of the two.
+    pub fn method_in(&self, slot: MethodSlot) -> Option<&Arc<dyn Reconstructor>> {
+        match slot {
+            MethodSlot::First => self.method(),
+            MethodSlot::Second => self.second_method(),
+        }
+    }
+
     /// eta of the method in use: the user's, or the method's own.
     pub fn output_eta(&self) -> f32 {
-        let Some(method) = self.method() else { return crate::evaluate::TARGET_ETA };
+        self.eta_in(MethodSlot::First)
+    }
+
+    /// eta of either of the two methods: the user's, or the method's own.
+    pub fn eta_in(&self, slot: MethodSlot) -> f32 {
+        let Some(method) = self.method_in(slot) else { return crate::evaluate::TARGET_ETA };
         self.settings.method_eta.get(method.name()).copied().unwrap_or_else(|| method.eta())
+    }
+
+    /// The maps that a panel in sight draws.
+    pub fn pictured(&self) -> BTreeSet<MapKind> {
+        let shown = self.arrangement.shown();
+        let own = shown.iter().filter_map(|panel| if let Panel::Map(kind) = panel { Some(*kind) } else { None });
+        let compared = shown.contains(&Panel::Compare).then(|| self.settings.compare.maps());
+        own.chain(compared.into_iter().flatten()).collect()
     }
 
     /// Where cuts are taken: under the pointer, where it was last, or through the first object.

@@ -33,6 +33,8 @@ pub enum Panel {
     Bounds,
     /// Methods on the tables' test sets.
     Evaluation,
+    /// Scenes on which methods fail, row by row.
+    Failures,
     /// Run time against error.
     #[serde(alias = "Front")]
     RunTime,
@@ -44,13 +46,18 @@ pub enum Panel {
     Lesson,
     /// One map for several values of a constant.
     Several,
+    /// Two methods on the scene on screen.
+    Compare,
+    /// What every map has under the pointer.
+    Values,
 }
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 11] = [
+    pub const TOOLS: [Panel; 14] = [
         Panel::Guide,
         Panel::Lesson,
+        Panel::Failures,
         Panel::Radar,
         Panel::Elements,
         Panel::Disturbances,
@@ -60,6 +67,8 @@ impl Panel {
         Panel::RunTime,
         Panel::Training,
         Panel::Several,
+        Panel::Compare,
+        Panel::Values,
     ];
 
     /// All panels, in the order menus list them.
@@ -88,11 +97,14 @@ impl Panel {
             Panel::Timing => "Timing",
             Panel::Bounds => "Bounds",
             Panel::Evaluation => "Evaluation",
+            Panel::Failures => "Failures",
             Panel::RunTime => "Run time",
             Panel::Training => "Training",
             Panel::Guide => "Guide",
             Panel::Lesson => "Lessons",
             Panel::Several => "Several at once",
+            Panel::Compare => "Compare",
+            Panel::Values => "Values",
         }
     }
 
@@ -113,12 +125,17 @@ impl Panel {
             Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
             Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
             Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
+            Panel::Failures => {
+                "Every scene that methods were tried on, row by row: sort, filter, open, make worse, keep"
+            }
             Panel::RunTime => "Run time against error of the simulation on this machine",
             Panel::Training => "The loss of a network while it is trained",
             Panel::Guide => "What the maps show and why, with something to try",
             Panel::Several => {
                 "One map for several values of a constant: window, bandwidth, elements, spacing, SNR, method"
             }
+            Panel::Compare => "Two methods on this scene: side by side, flipped in place, or parted by an edge",
+            Panel::Values => "What every map has under the pointer",
             Panel::Lesson => "Questions to answer before the maps are shown, and things to bring about",
         }
     }
@@ -143,10 +160,30 @@ pub enum MapKind {
     Difference,
     /// A recording minus the reflectors laid over it.
     Unexplained,
+    /// What the second method of the panel "Compare" makes of the two ends.
+    Second,
+    /// Second output > its eta.
+    SecondAbove,
+    /// Second output minus target.
+    SecondDifference,
+}
+
+/// Which of the two methods on screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MethodSlot {
+    /// The one that was chosen for the whole window.
+    First,
+    /// The one that the panel "Compare" sets beside it.
+    Second,
+}
+
+impl MethodSlot {
+    /// Both.
+    pub const BOTH: [MethodSlot; 2] = [MethodSlot::First, MethodSlot::Second];
 }
 
 impl MapKind {
-    /// All of them, in reading order.
+    /// All that have a panel of their own, in reading order.
     pub const ALL: [MapKind; 8] = [
         MapKind::Input0,
         MapKind::Input1,
@@ -169,6 +206,9 @@ impl MapKind {
             MapKind::OutputAbove => "Output > η",
             MapKind::Difference => "Difference",
             MapKind::Unexplained => "Unexplained",
+            MapKind::Second => "Second output",
+            MapKind::SecondAbove => "Second output > η",
+            MapKind::SecondDifference => "Second difference",
         }
     }
 
@@ -180,16 +220,40 @@ impl MapKind {
             MapKind::Target => "What all elements see: the map that a reconstruction aims for",
             MapKind::Output => "What the chosen method makes of the two ends",
             MapKind::TargetAbove => "Cells where the target exceeds η'",
-            MapKind::OutputAbove => "Cells where the output exceeds η: the detections",
+            MapKind::OutputAbove => {
+                "Cells where the output exceeds η: hits, false alarms, and what it misses of the target"
+            }
             MapKind::Difference => "Output minus target: red where the output is too bright, blue where it is too dark",
             MapKind::Unexplained => {
                 "What reflectors laid over a recording leave of it: their echoes are fitted and taken off"
             }
+            MapKind::Second => "What the second method makes of the two ends",
+            MapKind::SecondAbove => "Cells where the second output exceeds its η",
+            MapKind::SecondDifference => "Second output minus target",
         }
     }
 
-    /// Whether it is made of the method's output.
+    /// The method of whose output it is made, if it is made of one.
+    pub fn slot(self) -> Option<MethodSlot> {
+        match self {
+            MapKind::Output | MapKind::OutputAbove | MapKind::Difference => Some(MethodSlot::First),
+            MapKind::Second | MapKind::SecondAbove | MapKind::SecondDifference => Some(MethodSlot::Second),
+            _ => None,
+        }
+    }
+
+    /// Whether it is made of a method's output.
     pub fn needs_output(self) -> bool {
-        matches!(self, MapKind::Output | MapKind::OutputAbove | MapKind::Difference)
+        self.slot().is_some()
+    }
+
+    /// Whether it shows a difference.
+    pub fn is_difference(self) -> bool {
+        matches!(self, MapKind::Difference | MapKind::SecondDifference)
+    }
+
+    /// Whether it shows cells above a threshold.
+    pub fn is_above(self) -> bool {
+        matches!(self, MapKind::TargetAbove | MapKind::OutputAbove | MapKind::SecondAbove)
     }
 }

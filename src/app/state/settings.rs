@@ -1,6 +1,7 @@
 //! What the user chose: kept from one start to the next. What the radar is belongs to the scene's file instead.
 
 use super::bounds_settings::BoundsSettings;
+use super::compare::Compare;
 use super::several::Several;
 use crate::interact::{Coordinates, Snap};
 use crate::maps::Normalisation;
@@ -9,6 +10,7 @@ use crate::radar::Decibels;
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Coordinates of the maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -84,6 +86,8 @@ pub struct Settings {
     pub show_fields_of_view: bool,
     /// Whether what the formulas say of the selected reflector is drawn over the maps.
     pub show_theory: bool,
+    /// Whether every object is marked by what became of it in the output.
+    pub show_kinds: bool,
     /// Where dragged objects come to rest.
     pub snap: Snap,
     /// In which numbers places are told and entered.
@@ -94,6 +98,10 @@ pub struct Settings {
     pub bounds: BoundsSettings,
     /// Which map is shown several times, and what differs.
     pub several: Several,
+    /// Two methods side by side.
+    pub compare: Compare,
+    /// Folder of one's own scenes, where another than the usual one was chosen.
+    pub own_scenes: Option<PathBuf>,
     /// Seed of the next random scene.
     pub random_seed: u64,
     /// Its number among the scenes of that seed.
@@ -110,7 +118,7 @@ impl Settings {
                 })*
             };
         }
-        take_back!(floor, target_eta, method_eta, normalisation, snr, projection, method, show_reflectors);
+        take_back!(floor, target_eta, method_eta, normalisation, snr, projection, method, show_reflectors, show_kinds);
     }
 }
 
@@ -131,11 +139,14 @@ impl Default for Settings {
             show_found: false,
             show_fields_of_view: false,
             show_theory: false,
+            show_kinds: false,
             snap: Snap::Off,
             coordinates: Coordinates::default(),
             theme: Brightness::System,
             bounds: BoundsSettings::default(),
             several: Several::default(),
+            compare: Compare::default(),
+            own_scenes: None,
             random_seed: 0,
             random_number: 0,
         }

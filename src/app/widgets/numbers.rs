@@ -15,6 +15,15 @@ pub fn signed(value: f64, digits: usize) -> String {
     }
 }
 
+/// With a minus as wide as a plus, and none before nothing.
+pub fn plain(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.chars().any(|c| c.is_ascii_digit() && c != '0') {
+        true => text.replace('-', "−"),
+        false => text.replace('-', ""),
+    }
+}
+
 /// Three significant digits.
 pub fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -32,6 +41,7 @@ mod tests {
     fn numbers_of_a_kind_look_alike() {
         assert_eq!((percent(0.9935), percent(1.0)), ("99.35 %".into(), "100.00 %".into()));
         assert_eq!([signed(1.25, 1), signed(-0.5, 1), signed(-0.01, 1)], ["+1.2", "−0.5", "±0.0"]);
+        assert_eq!([plain(1.25, 1), plain(-0.5, 1), plain(-0.01, 1)], ["1.2", "−0.5", "0.0"]);
         assert_eq!([12345.6, 12.3456, 0.0012345, -0.5].map(significant), ["12346", "12.3", "0.00123", "−0.500"]);
     }
 }

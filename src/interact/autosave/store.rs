@@ -1,6 +1,6 @@
 //! The files of one slot: which there are, and how they become what a plan says.
 
-use crate::files::{read_bounded, write_bytes};
+use crate::files::read_bounded;
 use crate::interact::Editor;
 use crate::interact::document::{Document, Restored};
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
@@ -159,9 +159,7 @@ fn write(path: &Path, document: &Document) -> Result<(), SceneFileError> {
         path: document.path().and_then(Path::to_str).map(str::to_owned),
         recording: document.recording_source().map(str::to_owned),
     };
-    let text = file::to_toml_beside(&document.to_file(), TABLE, &kept)
-        .map_err(|source| SceneFileError::Unwritable { path: path.to_owned(), source })?;
-    write_bytes(path, text.as_bytes()).map_err(|source| SceneFileError::Io { path: path.to_owned(), source })
+    file::save_beside(path, &document.to_file(), TABLE, &kept)
 }
 
 fn read(path: &Path) -> Result<Document, SceneFileError> {

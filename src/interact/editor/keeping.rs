@@ -3,7 +3,7 @@
 use super::Editor;
 use crate::interact::Selection;
 use crate::interact::document::{self, Document, Restored};
-use crate::scene::file::{self, Format, Loss, SceneFileError};
+use crate::scene::file::{Format, Loss, SceneFileError};
 use std::path::Path;
 
 /// Unsaved documents that are kept after another took their place; the oldest make room.
@@ -50,10 +50,11 @@ impl Editor {
     /// # Errors
     /// [`SceneFileError::Extension`] for a name that says no format.
     pub fn losses(&self, path: &Path) -> Result<Vec<Loss>, SceneFileError> {
-        Ok(Format::of_path(path)?.losses(&self.document.to_file()))
+        Ok(self.document.losses(Format::of_path(path)?))
     }
 
-    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only.
+    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only. What is
+    /// laid over a recording is a scene of its own: the recording stays as it is.
     ///
     /// Not a step of the history: undo changes the document, not where it is kept.
     ///
@@ -61,7 +62,7 @@ impl Editor {
     /// [`SceneFileError`]; the file is then as it was, and the document too.
     pub fn save(&mut self, path: &Path) -> Result<Saved, SceneFileError> {
         let losses = self.losses(path)?;
-        file::save(path, &self.document.to_file())?;
+        self.document.write(&document::whole_path(path))?;
         if !losses.is_empty() {
             // Documents of that path must learn that it holds something else now.
             self.note_kept(&Document::read(path)?, &document::whole_path(path));

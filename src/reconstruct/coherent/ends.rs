@@ -2,12 +2,15 @@
 
 use crate::radar::{End, Radar};
 use crate::reconstruct::profiles::Profiles;
-use crate::reconstruct::seen::seen_from;
 use crate::signal::TwoEnds;
+use crate::signal::simd::{LANES_F64, Lanes};
 use num_complex::Complex64;
 
 /// Rows of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
 const ROWS_PER_BIN: usize = 16;
+
+/// Elements side by side.
+const W: usize = LANES_F64;
 
 /// Elements that heard something, those of the first end first; dead ones are missing samples.
 pub(super) struct Ends {
@@ -17,6 +20,8 @@ pub(super) struct Ends {
     pub first_count: usize,
     /// Range profiles, one an element.
     pub profiles: Profiles,
+    /// The positions once more, the last one repeated.
+    x_lanes: Vec<Lanes<f64, W>>,
 }
 
 impl Ends {
@@ -34,7 +39,9 @@ impl Ends {
                 }
             }
         }
-        Ends { profiles: Profiles::new(radar, &channels, ROWS_PER_BIN), x_metres, first_count }
+        let lanes = |x: &[f64]| Lanes(std::array::from_fn(|i| x[i.min(x.len() - 1)]));
+        let x_lanes = x_metres.chunks(W).map(lanes).collect();
+        Ends { profiles: Profiles::new(radar, &channels, ROWS_PER_BIN), x_metres, first_count, x_lanes }
     }
 
     /// Number of elements.
@@ -42,16 +49,27 @@ impl Ends {
         self.x_metres.len()
     }
 
-    /// Distances of the elements from a place in the centre's polar grid, metres.
-    pub fn distances_metres(&self, range_metres: f64, cos_theta: f64) -> impl Iterator<Item = f64> + '_ {
-        self.x_metres.iter().map(move |x| seen_from(*x, range_metres, cos_theta).range_metres)
+    /// What each element heard from a place in the centre's polar grid, the phase of its distance taken off: alike in every element but
+    /// for the distance for a reflector there. `heard` has an entry an element.
+    #[inline(always)]
+    pub fn listen<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, heard: &mut [Complex64]) {
+        for (i, (x, heard)) in self.x_lanes.iter().zip(heard.chunks_mut(W)).enumerate() {
+            let distances = distances_metres::<W, FMA>(*x, range_metres, Lanes::splat(cos_theta));
+            self.profiles.lanes_at::<W, FMA>(i * W, distances, heard);
+        }
     }
+}
 
-    /// What each element heard from that place, the phase of its distance taken off: alike in every element but for the distance for
-    /// a reflector there.
-    pub fn heard_from(&self, range_metres: f64, cos_theta: f64) -> impl Iterator<Item = Complex64> + '_ {
-        self.distances_metres(range_metres, cos_theta)
-            .enumerate()
-            .map(move |(channel, distance)| self.profiles.at(channel, distance))
-    }
+/// Distances between points of the array's axis and places in the centre's polar grid, metres.
+#[inline(always)]
+pub(super) fn distances_metres<const W: usize, const FMA: bool>(
+    x_metres: Lanes<f64, W>,
+    range_metres: f64,
+    cos_theta: Lanes<f64, W>,
+) -> Lanes<f64, W> {
+    let range = Lanes::splat(range_metres);
+    let along = x_metres - range * cos_theta;
+    // The place's distance from the axis, squared.
+    let off_axis = (Lanes::splat(1.0) - cos_theta * cos_theta) * range * range;
+    along.mul_add::<FMA>(along, off_axis).map(|square| square.max(1e-12)).sqrt()
 }

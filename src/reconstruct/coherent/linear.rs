@@ -1,57 +1,82 @@
-//! The linear algebra of one iteration, laid out so that it can be compiled for wide vectors: element after element, one lane a
-//! steering vector.
+//! The linear algebra of one iteration, for wide vectors: one lane a steering vector, element after element.
+//!
+//! In f32, the covariance's factor in f64: the least noise that is reckoned with lies far above the rounding of either.
 
-use crate::signal::simd::{Kernel, Simd};
+use crate::signal::simd::{ComplexLanes, Kernel, LANES_F32, Lanes, Simd};
 use num_complex::Complex64;
 
-/// Sums that run side by side.
-const LANES: usize = 8;
+/// Steering vectors in one lane group.
+pub(super) const W: usize = LANES_F32;
 
-/// Steering vectors as the rows of elements: `[elements, vectors]`, vectors padded to whole lanes by vectors of zeros.
+/// Lanes that are worked on together: as many as hide how long an addition takes.
+const TOGETHER: usize = 4;
+
+/// Rows and columns of the covariance kept in registers.
+const TILE: (usize, usize) = (2, 4);
+
+/// One element of `W` steering vectors.
+pub(super) type Lane = ComplexLanes<f32, W>;
+
+/// One element of neighbouring steering vectors.
+type Group = [Lane; TOGETHER];
+
+/// Steering vectors, padded to whole groups by vectors of zeros.
 #[derive(Debug, Clone)]
 pub(super) struct Steering {
     elements: usize,
-    padded: usize,
-    re: Vec<f64>,
-    im: Vec<f64>,
+    /// `[group][element]`.
+    values: Vec<Group>,
 }
 
 impl Steering {
-    /// From the value of vector `k` in element `n`.
-    pub fn new(elements: usize, vectors: usize, value: impl Fn(usize, usize) -> Complex64) -> Self {
-        let padded = vectors.div_ceil(LANES) * LANES;
-        let mut steering =
-            Steering { elements, padded, re: vec![0.0; elements * padded], im: vec![0.0; elements * padded] };
-        for n in 0..elements {
-            for k in 0..vectors {
-                let v = value(n, k);
-                steering.re[n * padded + k] = v.re;
-                steering.im[n * padded + k] = v.im;
+    /// Room for `lanes` times `W` vectors of `elements` elements; zeros so far.
+    pub fn zero(elements: usize, lanes: usize) -> Self {
+        Steering { elements, values: vec![[Lane::zero(); TOGETHER]; elements * lanes.div_ceil(TOGETHER)] }
+    }
+
+    /// Number of vectors, the padding included.
+    pub fn vectors(&self) -> usize {
+        self.values.len() / self.elements.max(1) * TOGETHER * W
+    }
+
+    /// `element` of the vectors from `lane * W` on.
+    #[inline(always)]
+    pub fn lane_mut(&mut self, element: usize, lane: usize) -> &mut Lane {
+        &mut self.values[lane / TOGETHER * self.elements + element][lane % TOGETHER]
+    }
+
+    /// Squared norms of the vectors.
+    pub fn squares(&self) -> Vec<f32> {
+        let mut squares = vec![0.0; self.vectors()];
+        for (group, squares) in self.values.chunks_exact(self.elements).zip(squares.chunks_exact_mut(TOGETHER * W)) {
+            for element in group {
+                for (lane, squares) in element.iter().zip(squares.chunks_exact_mut(W)) {
+                    let power = lane.re * lane.re + lane.im * lane.im;
+                    squares.iter_mut().zip(power.0).for_each(|(sum, p)| *sum += p);
+                }
             }
         }
-        steering
+        squares
     }
 }
 
-/// What the covariance `R = sum_k power_k a_k a_k^H + noise` makes of the samples z.
+/// What the covariance `R = sum_k power_k a_k a_k^H + noise` makes of the samples z; one number a vector.
 #[derive(Debug, Clone)]
 pub(super) struct Explained {
-    /// `|a_k^H R^-1 z|^2`, one a vector; zeros behind them.
-    pub matched: Vec<f64>,
+    /// `|a_k^H R^-1 z|^2`.
+    pub matched: Vec<f32>,
     /// `a_k^H R^-1 a_k`.
-    pub held: Vec<f64>,
+    pub held: Vec<f32>,
 }
 
-/// One iteration's work; `None` where the covariance is not positive definite.
-pub(super) fn explained(steering: &Steering, powers: &[f64], noise: f64, z: &[Complex64]) -> Option<Explained> {
-    let mut padded = powers.to_vec();
-    padded.resize(steering.padded, 0.0);
-    Simd::best().run(Iteration { steering, powers: &padded, noise, z })
+/// One iteration's work; `None` where the covariance is not positive definite. `powers` are one a vector, the padding included.
+pub(super) fn explained(steering: &Steering, powers: &[f32], noise: f64, z: &[Complex64]) -> Option<Explained> {
+    Simd::chosen().run(Iteration { steering, powers, noise, z })
 }
 
 struct Iteration<'a> {
     steering: &'a Steering,
-    powers: &'a [f64],
+    powers: &'a [f32],
     noise: f64,
     z: &'a [Complex64],
 }
@@ -61,81 +86,104 @@ impl Kernel for Iteration<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let mut factor = self.covariance();
+        let mut factor = self.covariance::<FMA>();
         cholesky(&mut factor, self.steering.elements)?;
-        Some(self.whitened(&factor))
+        Some(self.whitened::<FMA>(&factor))
     }
 }
 
 impl Iteration<'_> {
     /// The covariance's lower triangle, row after row of a full matrix.
     #[inline(always)]
-    fn covariance(&self) -> Vec<Complex64> {
-        let Steering { elements, padded, re, im } = self.steering;
-        let (elements, padded) = (*elements, *padded);
-        let mut out = vec![Complex64::default(); elements * elements];
-        let (mut weighted_re, mut weighted_im) = (vec![0.0; padded], vec![0.0; padded]);
-        for i in 0..elements {
-            let own = i * padded..(i + 1) * padded;
-            for (k, (a, b)) in re[own.clone()].iter().zip(&im[own]).enumerate() {
-                weighted_re[k] = a * self.powers[k];
-                weighted_im[k] = b * self.powers[k];
-            }
-            for j in 0..=i {
-                let other = j * padded..(j + 1) * padded;
-                let (c, d) = (&re[other.clone()], &im[other]);
-                let (mut sum_re, mut sum_im) = ([0.0; LANES], [0.0; LANES]);
-                let chunks = weighted_re.chunks_exact(LANES).zip(weighted_im.chunks_exact(LANES));
-                for ((a, b), (c, d)) in chunks.zip(c.chunks_exact(LANES).zip(d.chunks_exact(LANES))) {
-                    for l in 0..LANES {
-                        sum_re[l] += a[l] * c[l] + b[l] * d[l];
-                        sum_im[l] += b[l] * c[l] - a[l] * d[l];
+    fn covariance<const FMA: bool>(&self) -> Vec<Complex64> {
+        let n = self.steering.elements;
+        let powers: Vec<Lanes<f32, W>> =
+            self.powers.chunks_exact(W).map(|p| Lanes(std::array::from_fn(|i| p[i]))).collect();
+        let mut out = vec![Complex64::default(); n * n];
+        for i in (0..n).step_by(TILE.0) {
+            for j in (0..n.min(i + TILE.0)).step_by(TILE.1) {
+                let sums = self.tile::<FMA>(&powers, i, j);
+                for (a, sums) in sums.iter().enumerate() {
+                    for (b, sum) in sums.iter().enumerate() {
+                        if i + a < n && j + b <= i + a {
+                            let total = |lanes: &[f32; W]| lanes.iter().map(|v| f64::from(*v)).sum::<f64>();
+                            out[(i + a) * n + j + b] = Complex64::new(total(&sum.re.0), total(&sum.im.0));
+                        }
                     }
                 }
-                out[i * elements + j] = Complex64::new(sum_re.iter().sum(), sum_im.iter().sum());
             }
-            out[i * elements + i] += self.noise;
+            for k in i..n.min(i + TILE.0) {
+                out[k * n + k] += self.noise;
+            }
         }
         out
     }
 
-    /// `L^-1` applied to all steering vectors and to the samples, and what follows from them.
+    /// Rows from `i` and columns from `j` of the covariance without noise, before lanes are added up.
     #[inline(always)]
-    fn whitened(&self, factor: &[Complex64]) -> Explained {
-        let Steering { elements, padded, re, im } = self.steering;
-        let (elements, padded) = (*elements, *padded);
-        let (mut re, mut im) = (re.clone(), im.clone());
-        let mut z = self.z.to_vec();
-        let mut held = vec![0.0; padded];
-        let (mut matched_re, mut matched_im) = (vec![0.0; padded], vec![0.0; padded]);
-        for i in 0..elements {
-            let (done_re, rest_re) = re.split_at_mut(i * padded);
-            let (done_im, rest_im) = im.split_at_mut(i * padded);
-            let (row_re, row_im) = (&mut rest_re[..padded], &mut rest_im[..padded]);
-            for j in 0..i {
-                let l = factor[i * elements + j];
-                let (other_re, other_im) =
-                    (&done_re[j * padded..(j + 1) * padded], &done_im[j * padded..(j + 1) * padded]);
-                for k in 0..padded {
-                    row_re[k] -= l.re * other_re[k] - l.im * other_im[k];
-                    row_im[k] -= l.re * other_im[k] + l.im * other_re[k];
+    #[allow(clippy::needless_range_loop)] // constant bounds keep the tile in registers
+    fn tile<const FMA: bool>(&self, powers: &[Lanes<f32, W>], i: usize, j: usize) -> [[Lane; TILE.1]; TILE.0] {
+        let n = self.steering.elements;
+        let rows: [usize; TILE.0] = std::array::from_fn(|a| (i + a).min(n - 1));
+        let columns: [usize; TILE.1] = std::array::from_fn(|b| (j + b).min(n - 1));
+        let mut sums = [[Lane::zero(); TILE.1]; TILE.0];
+        for (group, powers) in self.steering.values.chunks_exact(n).zip(powers.chunks_exact(TOGETHER)) {
+            for l in 0..TOGETHER {
+                let left: [Lane; TILE.0] = std::array::from_fn(|a| group[rows[a]][l].scaled(powers[l]));
+                for b in 0..TILE.1 {
+                    let right = group[columns[b]][l];
+                    let right = Lane { re: right.re, im: -right.im };
+                    for a in 0..TILE.0 {
+                        sums[a][b] = sums[a][b].plus_product::<FMA>(left[a], right);
+                    }
                 }
-                let other = z[j];
-                z[i] -= l * other;
-            }
-            let scale = 1.0 / factor[i * elements + i].re;
-            z[i] *= scale;
-            let y = z[i];
-            for k in 0..padded {
-                let (a, b) = (row_re[k] * scale, row_im[k] * scale);
-                (row_re[k], row_im[k]) = (a, b);
-                held[k] += a * a + b * b;
-                matched_re[k] += a * y.re + b * y.im;
-                matched_im[k] += a * y.im - b * y.re;
             }
         }
-        let matched = matched_re.iter().zip(&matched_im).map(|(a, b)| a * a + b * b).collect();
-        Explained { matched, held }
+        sums
+    }
+
+    /// `L^-1` applied to all steering vectors and to the samples, and what follows from them.
+    #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // constant bounds keep the rows in registers
+    fn whitened<const FMA: bool>(&self, factor: &[Complex64]) -> Explained {
+        let n = self.steering.elements;
+        let mut z = self.z.to_vec();
+        for i in 0..n {
+            let known: Complex64 = (0..i).map(|j| factor[i * n + j] * z[j]).sum();
+            z[i] = (z[i] - known) / factor[i * n + i].re;
+        }
+        let splat = |v: Complex64| Lane { re: Lanes::splat(v.re as f32), im: Lanes::splat(v.im as f32) };
+        let size = self.steering.vectors();
+        let mut explained = Explained { matched: Vec::with_capacity(size), held: Vec::with_capacity(size) };
+        let mut rows = vec![[Lane::zero(); TOGETHER]; n];
+        for group in self.steering.values.chunks_exact(n) {
+            let mut held = [Lanes::splat(0.0); TOGETHER];
+            let mut matched = [Lane::zero(); TOGETHER];
+            for i in 0..n {
+                let mut row = group[i];
+                for j in 0..i {
+                    let l = splat(-factor[i * n + j]);
+                    for b in 0..TOGETHER {
+                        row[b] = row[b].plus_product::<FMA>(l, rows[j][b]);
+                    }
+                }
+                let scale = Lanes::splat((1.0 / factor[i * n + i].re) as f32);
+                let y = splat(z[i]);
+                for b in 0..TOGETHER {
+                    let value = row[b].scaled(scale);
+                    held[b] = value.re.mul_add::<FMA>(value.re, value.im.mul_add::<FMA>(value.im, held[b]));
+                    let conjugate = Lane { re: value.re, im: -value.im };
+                    matched[b] = matched[b].plus_product::<FMA>(conjugate, y);
+                    rows[i][b] = value;
+                }
+            }
+            for b in 0..TOGETHER {
+                let matched = matched[b];
+                explained.matched.extend((matched.re * matched.re + matched.im * matched.im).0);
+                explained.held.extend(held[b].0);
+            }
+        }
+        explained
     }
 }
 
@@ -168,25 +216,38 @@ mod tests {
 
     #[test]
     fn the_iteration_is_what_its_definition_says() {
-        let (elements, vectors) = (5, 11);
+        let (elements, vectors) = (5, 21);
         let value = |n: usize, k: usize| Complex64::from_polar(1.0 + 0.1 * n as f64, (n * k) as f64 * 0.7 + 0.3);
-        let steering = Steering::new(elements, vectors, value);
-        let powers: Vec<f64> = (0..vectors).map(|k| 0.2 + (k % 4) as f64).collect();
+        let mut steering = Steering::zero(elements, 2);
+        for n in 0..elements {
+            for k in 0..vectors {
+                let lane = steering.lane_mut(n, k / W);
+                (lane.re.0[k % W], lane.im.0[k % W]) = (value(n, k).re as f32, value(n, k).im as f32);
+            }
+        }
+        let mut powers: Vec<f32> = (0..vectors).map(|k| 0.2 + (k % 4) as f32).collect();
+        powers.resize(steering.vectors(), 0.0);
         let z: Vec<Complex64> = (0..elements).map(|n| Complex64::new(n as f64 - 1.0, 0.5 * n as f64)).collect();
         let noise = 0.3;
         let got = explained(&steering, &powers, noise, &z).unwrap();
         let covariance = Mat::from_fn(elements, elements, |i, j| {
-            let sum: Complex64 = (0..vectors).map(|k| value(i, k) * value(j, k).conj() * powers[k]).sum();
+            let sum: Complex64 = (0..vectors).map(|k| value(i, k) * value(j, k).conj() * f64::from(powers[k])).sum();
             sum + if i == j { noise } else { 0.0 }
         });
         let right = Mat::from_fn(elements, vectors + 1, |n, k| if k < vectors { value(n, k) } else { z[n] });
         let solved = covariance.partial_piv_lu().solve(&right);
-        for k in 0..vectors {
+        let squares = steering.squares();
+        for (k, square) in squares.iter().enumerate().take(vectors) {
             let with =
                 |column: usize| -> Complex64 { (0..elements).map(|n| value(n, k).conj() * solved[(n, column)]).sum() };
-            assert!((got.held[k] / with(k).re - 1.0).abs() < 1e-12, "{k}");
-            assert!((got.matched[k] / with(vectors).norm_sqr() - 1.0).abs() < 1e-11, "{k}");
+            assert!((f64::from(got.held[k]) / with(k).re - 1.0).abs() < 1e-4, "{k}");
+            let matched = with(vectors).norm_sqr();
+            assert!((f64::from(got.matched[k]) - matched).abs() < 1e-4 * (matched + 1.0), "{k}");
+            let expected: f64 = (0..elements).map(|n| value(n, k).norm_sqr()).sum();
+            assert!((f64::from(*square) / expected - 1.0).abs() < 1e-5, "{k}");
         }
-        assert!(explained(&steering, &vec![0.0; vectors], 0.0, &z).is_none(), "nothing explains anything");
+        assert_eq!((squares[vectors], got.held[vectors], got.matched[vectors]), (0.0, 0.0, 0.0), "padding");
+        let nothing = vec![0.0; steering.vectors()];
+        assert!(explained(&steering, &nothing, 0.0, &z).is_none(), "nothing explains anything");
     }
 }

@@ -5,6 +5,7 @@ use super::model::{Model, Update};
 use super::peaks::{Peak, apart, gains, peaks};
 use super::places::places;
 use super::sectors::Sectors;
+use super::settle::Settled;
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::of_echoes;
@@ -12,10 +13,14 @@ use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::noise::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::signal::TwoEnds;
+use crate::task::Task;
 use rayon::prelude::*;
 
 /// Most elements of an end: a model's work grows with the cube of their number.
 const MOST_END_ELEMENTS: usize = 48;
+
+/// Looks at what the reflectors found so far leave of the samples.
+const LOOKS: usize = 4;
 
 /// Most sectors: of an array that is thousands of range bins long.
 const MOST_SECTORS: f64 = 1000.0;
@@ -56,12 +61,31 @@ impl Reconstructor for CoherentMethod {
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let task = &request.task;
         let noise_variance = ends_noise_variance(radar, ends);
+        let found = if radar.samples == 1 {
+            // A single sample tells no range to move reflectors along.
+            gains(radar, &self.peaks(radar, ends, task)?, ends, task)?
+        } else {
+            let mut settled = Settled::new(radar, ends, task);
+            for look in 0..LOOKS {
+                task.set_progress(0.9 * look as f32 / LOOKS as f32);
+                if !settled.take(&self.peaks(radar, &settled.left(), task)?)? {
+                    break;
+                }
+            }
+            settled.found(ends)?
+        };
+        Ok(of_echoes(radar, &found, noise_variance, request))
+    }
+}
+
+impl CoherentMethod {
+    /// What stands out of the samples of both ends, the strongest first.
+    fn peaks(&self, radar: &Radar, ends: &TwoEnds, task: &Task) -> Result<Vec<Peak>, ReconstructError> {
         let heard = Ends::new(radar, ends);
         let sectors = Sectors::new(radar, &heard);
         // The window's mean weight squared over its mean square, for each sample.
-        let noise_power = noise_variance * 1.5 / radar.samples as f64;
+        let noise_power = ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
         let places = places(radar, &heard, &sectors, noise_power, task)?;
-        task.set_progress(0.2);
         let found: Vec<Vec<Peak>> = places
             .par_iter()
             .map(|place| {
@@ -69,9 +93,6 @@ impl Reconstructor for CoherentMethod {
                 Ok(peaks(&sectors, place, &powers, self.least_part))
             })
             .collect::<Result<_, ReconstructError>>()?;
-        task.set_progress(0.8);
-        let peaks = apart(radar, found.concat(), sectors.fringe_cos);
-        let found = gains(radar, &peaks, ends, task)?;
-        Ok(of_echoes(radar, &found, noise_variance, request))
+        Ok(apart(radar, found.concat(), sectors.fringe_cos))
     }
 }

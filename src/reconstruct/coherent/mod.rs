@@ -7,8 +7,11 @@
 //! Where the array is small against a range bin, one model holds a whole range row and nothing is lost. Where the ranges that the
 //! elements see a reflector at differ by more than half a bin over the directions (table 3.1: up to 13 bins to either side), directions
 //! are cut into sectors, and each model is registered for its own: exact at its middle, half a bin off at the edges. Lost is what
-//! other sectors' echoes would tell: in a model they are plane waves that one end alone hears. Lost too are reflectors at
-//! ranges between those of two stronger ones less than two bins apart in the same sector: a model stands where the echo is strongest.
+//! other sectors' echoes would tell: in a model they are plane waves that one end alone hears. Reflectors at ranges between those of
+//! two stronger ones less than two bins apart in the same sector have no model of their own, which stand where the echo is strongest;
+//! they show once the stronger ones' exact echoes have been taken off, and a few such looks are taken. Where rows of reflectors stand
+//! closer than that over hundreds of bins, looks run out: the map then shows fewer of them.
+//! Lost as well is what stands right before the array's middle, too near for the ends to vouch for it.
 //!
 //! | file | what it is |
 //! |---|---|
@@ -18,6 +21,7 @@
 //! | `model` | steering vectors of one place, and the iteration that gives their powers |
 //! | `linear` | that iteration's linear algebra, for wide vectors |
 //! | `peaks` | reflectors from powers, and their gains |
+//! | `settle` | those moved off the grid, and those that are needless taken away |
 //! | `method` | all of these in order |
 
 mod ends;
@@ -29,6 +33,7 @@ mod peaks;
 mod places;
 mod sbl;
 mod sectors;
+mod settle;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;

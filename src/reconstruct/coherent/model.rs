@@ -1,12 +1,13 @@
 //! The linear model of one place: steering vectors of both ends together, and the powers that explain what was heard.
 
-use super::ends::Ends;
-use super::linear::{Steering, explained};
+use super::ends::{Ends, distances_metres};
+use super::linear::{Lane, Steering, W, explained};
 use super::places::Place;
 use super::sectors::Sectors;
 use crate::radar::Radar;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::profiles::range_response;
+use crate::reconstruct::profiles::range_response_near;
+use crate::signal::simd::{Kernel, Lanes, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
 
@@ -16,34 +17,41 @@ const BEAMS_PER_WIDTH: f64 = 2.0;
 /// Beam widths around the sector from which no such waves are taken: both ends' own vectors account for them.
 const CLEAR_WIDTHS: f64 = 0.2;
 
+/// Change of all powers, as a part of the largest, at which they are settled.
+const SETTLED: f32 = 1e-3;
+
+/// Powers beneath this part of the mean power heard are none: so small a number would only slow the processor down.
+const NO_POWER: f32 = 1e-20;
+
 /// What both ends heard from a place, and the vectors that may explain it.
 pub(super) struct Model {
+    /// First the sector's directions, then one end's plane waves; zeros beside and behind them.
     steering: Steering,
     /// What each element heard.
     heard: Vec<Complex64>,
-    /// Squared norms of the vectors: first those of the sector's directions, then of one end's plane waves.
-    squares: Vec<f64>,
+    /// Directions of the sector.
+    directions: usize,
     /// Power of the noise in an element.
     noise: f64,
 }
 
-/// What one steering vector has to do with the samples.
+/// What one steering vector has to do with the samples, whose mean power is 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Share {
     /// Power so far.
-    pub power: f64,
+    pub power: f32,
     /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the samples z.
-    pub matched: f64,
+    pub matched: f32,
     /// `a^H R^-1 a`.
-    pub held: f64,
+    pub held: f32,
 }
 
 /// How powers are found.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Update {
     /// The next power of a vector.
-    pub next: fn(Share) -> f64,
-    /// How often all powers are updated.
+    pub next: fn(Share) -> f32,
+    /// How often all powers are updated at most.
     pub iterations: usize,
     /// Least noise that is reckoned with, as a part of the mean power heard: what steering vectors leave of a real echo.
     pub least_noise: f64,
@@ -52,69 +60,129 @@ pub(super) struct Update {
 impl Model {
     /// The model of `place`; `noise_power` is that of one element's profile.
     pub fn new(radar: &Radar, ends: &Ends, sectors: &Sectors, place: &Place, noise_power: f64) -> Self {
-        let (range, middle) = (place.range_metres, place.sector.middle_cos);
-        let own: Vec<f64> = ends.distances_metres(range, middle).collect();
-        // Amplitudes fall with the square of the distance: as if all elements stood equally far.
-        let nearer: Vec<f64> = own.iter().map(|distance| (distance / range).powi(2)).collect();
-        let heard: Vec<Complex64> = ends.heard_from(range, middle).zip(&nearer).map(|(h, n)| h * n).collect();
-        let noise = noise_power * nearer.iter().map(|n| n * n).sum::<f64>() / nearer.len() as f64;
-        let resolution = radar.range_resolution_metres();
-        let mut vectors: Vec<Vec<Complex64>> = sectors
-            .steps_cos
-            .iter()
-            .map(|step| {
-                let further =
-                    ends.distances_metres(range, (middle + step).clamp(-1.0, 1.0)).zip(&own).map(|(d, own)| d - own);
-                let response = |metres: f64| if radar.samples == 1 { 1.0 } else { range_response(metres / resolution) };
-                further.map(|metres| ends.profiles.phase(metres) * response(metres)).collect()
-            })
-            .collect();
-        if sectors.all.len() > 1 {
-            vectors.extend(one_end_waves(radar, ends, place));
-        }
-        let squares = vectors.iter().map(|v| v.iter().map(Complex64::norm_sqr).sum()).collect();
-        let steering = Steering::new(ends.len(), vectors.len(), |n, k| vectors[k][n]);
-        Model { steering, heard, squares, noise }
+        Simd::chosen().run(Make { radar, ends, sectors, place, noise_power })
     }
 
-    /// Powers of all vectors, the sector's directions first, by `update` from those of the matched filter.
+    /// Powers of the sector's directions by `update` from those of the matched filter.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn powers(&self, update: &Update, task: &Task) -> Result<Vec<f64>, ReconstructError> {
         let mean = self.heard.iter().map(Complex64::norm_sqr).sum::<f64>() / self.heard.len() as f64;
-        let noise = self.noise.max(mean * update.least_noise);
-        let count = self.squares.len();
+        let noise = (self.noise / mean).max(update.least_noise);
+        let scale = 1.0 / mean.sqrt();
+        if !scale.is_finite() {
+            return Ok(vec![0.0; self.directions]);
+        }
+        let heard: Vec<Complex64> = self.heard.iter().map(|h| h * scale).collect();
+        let mut powers = vec![0.0; self.steering.vectors()];
         // Without any power the covariance is the noise alone: the matched filter.
-        let Some(start) = explained(&self.steering, &vec![0.0; count], noise, &self.heard) else {
-            return Ok(vec![0.0; count]);
-        };
-        let mut powers: Vec<f64> = (0..count).map(|k| start.matched[k] * (noise / self.squares[k]).powi(2)).collect();
-        for _ in 0..update.iterations {
-            task.check()?;
-            let Some(now) = explained(&self.steering, &powers, noise, &self.heard) else { break };
-            for (k, power) in powers.iter_mut().enumerate() {
-                let next = (update.next)(Share { power: *power, matched: now.matched[k], held: now.held[k] });
-                *power = if next.is_finite() { next } else { 0.0 };
+        if let Some(start) = explained(&self.steering, &powers, noise, &heard) {
+            for ((power, matched), square) in powers.iter_mut().zip(start.matched).zip(self.steering.squares()) {
+                *power = if square > 0.0 { matched * (noise as f32 / square).powi(2) } else { 0.0 };
             }
         }
-        Ok(powers)
+        for _ in 0..update.iterations {
+            task.check()?;
+            let Some(now) = explained(&self.steering, &powers, noise, &heard) else { break };
+            let (mut change, mut largest) = (0.0f32, 0.0f32);
+            for ((power, matched), held) in powers.iter_mut().zip(now.matched).zip(now.held) {
+                let next = (update.next)(Share { power: *power, matched, held });
+                let next = if next.is_finite() && next > NO_POWER { next } else { 0.0 };
+                change = change.max((next - *power).abs());
+                largest = largest.max(next);
+                *power = next;
+            }
+            if change <= SETTLED * largest {
+                break;
+            }
+        }
+        Ok(powers[..self.directions].iter().map(|p| f64::from(*p) * mean).collect())
     }
 }
 
-/// Plane waves from beside the sector that only one end hears at the place's range.
-fn one_end_waves(radar: &Radar, ends: &Ends, place: &Place) -> Vec<Vec<Complex64>> {
+/// The making of a model.
+struct Make<'a> {
+    radar: &'a Radar,
+    ends: &'a Ends,
+    sectors: &'a Sectors,
+    place: &'a Place,
+    noise_power: f64,
+}
+
+impl Kernel for Make<'_> {
+    type Output = Model;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Model {
+        let Make { ends, place, .. } = self;
+        let range = place.range_metres;
+        let middle = Lanes([place.sector.middle_cos]);
+        let own = |x: &f64| distances_metres::<1, FMA>(Lanes([*x]), range, middle).0[0];
+        let own: Vec<f64> = ends.x_metres.iter().map(own).collect();
+        let mut heard = vec![Complex64::default(); ends.len()];
+        ends.listen::<FMA>(range, place.sector.middle_cos, &mut heard);
+        let mut noise = 0.0;
+        for (heard, own) in heard.iter_mut().zip(&own) {
+            // Amplitudes fall with the square of the distance: as if all elements stood equally far.
+            let nearer = (own / range).powi(2);
+            *heard *= nearer;
+            noise += self.noise_power * nearer * nearer / ends.len() as f64;
+        }
+        let directions = self.sectors.steps_cos.len();
+        let waves = if self.sectors.all.len() > 1 { beside(self.radar, place) } else { Vec::new() };
+        let (own_lanes, wave_lanes) = (directions.div_ceil(W), waves.len().div_ceil(W));
+        let mut steering = Steering::zero(ends.len(), own_lanes + 2 * wave_lanes);
+        for (lane, steps) in self.sectors.steps_cos.chunks(W).enumerate() {
+            self.add_directions::<FMA>(steps, &own, lane, &mut steering);
+        }
+        for (lane, steps) in waves.chunks(W).enumerate() {
+            let turns: Lanes<f64, W> = Lanes(std::array::from_fn(|i| steps.get(i).copied().unwrap_or(0.0)));
+            for (n, x) in ends.x_metres.iter().enumerate() {
+                let wave = ends.profiles.phases::<f32, W, FMA>(turns * Lanes::splat(-x));
+                let end = if n < ends.first_count { 0 } else { wave_lanes };
+                *steering.lane_mut(n, own_lanes + end + lane) = only(wave, |i| i < steps.len());
+            }
+        }
+        Model { steering, heard, directions, noise }
+    }
+}
+
+impl Make<'_> {
+    /// The vectors of directions that are `steps` off the sector's middle; `own` are the elements' distances from there.
+    #[inline(always)]
+    fn add_directions<const FMA: bool>(&self, steps: &[f64], own: &[f64], lane: usize, steering: &mut Steering) {
+        let Make { radar, ends, place, .. } = self;
+        let middle = place.sector.middle_cos;
+        let cosines: Lanes<f64, W> = Lanes(std::array::from_fn(|i| middle + steps.get(i).unwrap_or(&0.0)));
+        let exists = |i: usize| i < steps.len() && cosines.0[i].abs() <= 1.0;
+        let inside = cosines.map(|cos| cos.clamp(-1.0, 1.0));
+        let per_bin = if radar.samples == 1 { 0.0 } else { 1.0 / radar.range_resolution_metres() };
+        for (n, (x, own)) in ends.x_metres.iter().zip(own).enumerate() {
+            let distances = distances_metres::<W, FMA>(Lanes::splat(*x), place.range_metres, inside);
+            let further = distances - Lanes::splat(*own);
+            let response = range_response_near::<W, FMA>(further * Lanes::splat(per_bin)).round_to();
+            let wave = ends.profiles.phases::<f32, W, FMA>(further).scaled(response);
+            *steering.lane_mut(n, lane) = only(wave, exists);
+        }
+    }
+}
+
+/// The lanes of `wave` that exist, zeros in the others.
+#[inline(always)]
+fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
+    for i in (0..W).filter(|i| !exists(*i)) {
+        (wave.re.0[i], wave.im.0[i]) = (0.0, 0.0);
+    }
+    wave
+}
+
+/// Directions beside the sector, relative to its middle, from which one end may hear a plane wave at the place's range.
+fn beside(radar: &Radar, place: &Place) -> Vec<f64> {
     let turns_per_metre = radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
     let width_cos = 1.0 / (turns_per_metre * radar.end_elements as f64 * radar.element_spacing_metres);
     let clear_cos = place.sector.half_width_cos + CLEAR_WIDTHS * width_cos;
     let count = (2.0 * BEAMS_PER_WIDTH / width_cos).ceil() as usize;
     let cosines = (0..count).map(|i| (2 * i + 1) as f64 / count as f64 - 1.0);
-    let beside = cosines.map(|cos| cos - place.sector.middle_cos).filter(|step| step.abs() > clear_cos);
-    let wave = |step: f64, first: bool| {
-        let value = |(n, x): (usize, &f64)| {
-            if (n < ends.first_count) == first { ends.profiles.phase(-x * step) } else { Complex64::default() }
-        };
-        ends.x_metres.iter().enumerate().map(value).collect::<Vec<_>>()
-    };
-    beside.flat_map(|step| [wave(step, true), wave(step, false)]).collect()
+    cosines.map(|cos| cos - place.sector.middle_cos).filter(|step| step.abs() > clear_cos).collect()
 }

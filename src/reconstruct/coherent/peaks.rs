@@ -15,6 +15,9 @@ use rayon::prelude::*;
 /// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
 const SAME: (f64, f64) = (1.0, 0.75);
 
+/// Most peaks of one model: two ends of a dozen elements tell no more apart.
+const MOST_A_PLACE: usize = 8;
+
 /// Most reflectors: the time for their gains grows with the square of their number, and faster.
 const MOST_REFLECTORS: usize = 400;
 
@@ -35,14 +38,19 @@ pub(super) struct Peak {
     pub power: f64,
 }
 
-/// Maxima of `powers` over the sector's directions, the first of them, that are at least `least_part` of the largest of all.
+/// The largest maxima of `powers` over the sector's directions that are at least `least_part` of the largest of all.
 pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part: f64) -> Vec<Peak> {
     let largest = powers.iter().copied().fold(0.0, f64::max);
     let powers = &powers[..sectors.steps_cos.len().min(powers.len())];
     let at = |i: usize| powers[i];
     // What rises up to the edge belongs to a neighbour, whose own directions reach over it.
-    (1..powers.len().saturating_sub(1))
+    let mut maxima: Vec<usize> = (1..powers.len().saturating_sub(1))
         .filter(|&i| at(i) > 0.0 && at(i) >= least_part * largest && at(i) > at(i - 1) && at(i) >= at(i + 1))
+        .collect();
+    maxima.sort_by(|a, b| at(*b).total_cmp(&at(*a)));
+    maxima.truncate(MOST_A_PLACE);
+    maxima
+        .into_iter()
         .map(|i| {
             let around = i - 1..i + 2;
             let power: f64 = around.clone().map(at).sum();

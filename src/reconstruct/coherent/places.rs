@@ -6,6 +6,7 @@ use crate::radar::Radar;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::profiles::range_response;
 use crate::reconstruct::seen::row_ranges_metres;
+use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -26,7 +27,7 @@ const LEAST_BESIDE: f64 = 0.05;
 const SIDE_LOBE_ROOM: f64 = 8.0;
 
 /// Most places that are looked into; the strongest.
-const MOST_PLACES: usize = 4096;
+const MOST_PLACES: usize = 512;
 
 /// A range and a sector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,6 +71,30 @@ impl Beams {
     }
 }
 
+/// Powers that the weaker end hears from one direction, over range.
+struct Listen<'a> {
+    radar: &'a Radar,
+    ends: &'a Ends,
+    beams: &'a Beams,
+    middle_cos: f64,
+}
+
+impl Kernel for Listen<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Vec<f64> {
+        let mut powers = vec![0.0; PER_BIN * self.radar.samples];
+        let mut heard = vec![Complex64::default(); self.ends.len()];
+        for (i, power) in powers.iter_mut().enumerate().skip(NEAREST_BIN * PER_BIN) {
+            let range = self.radar.range_of_bin_metres(i as f64 / PER_BIN as f64);
+            self.ends.listen::<FMA>(range, self.middle_cos, &mut heard);
+            *power = self.beams.power(&heard, self.ends.first_count);
+        }
+        powers
+    }
+}
+
 /// Every place that is no side lobe of another, strongest first. `noise_power` is that of one element's profile.
 ///
 /// # Errors
@@ -96,11 +121,7 @@ pub(super) fn places(
         .par_iter()
         .map(|sector| {
             task.check()?;
-            let power = |i: usize| {
-                let heard: Vec<Complex64> = ends.heard_from(range(i as f64), sector.middle_cos).collect();
-                beams.power(&heard, ends.first_count)
-            };
-            Ok((0..count).map(|i| if i < NEAREST_BIN * PER_BIN { 0.0 } else { power(i) }).collect())
+            Ok(Simd::chosen().run(Listen { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
         })
         .collect::<Result<_, ReconstructError>>()?;
     let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();

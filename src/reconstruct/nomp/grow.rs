@@ -93,7 +93,22 @@ impl Grower<'_> {
         let samples = self.radar.samples;
         let channels = flat.chunks_exact(samples).map(ArrayView1::from);
         let noise = beam_noise_power(self.radar, noise_variance(self.radar, channels));
-        self.detector.peaks(self.radar, flat, noise * self.settings.least_prominence, most, closed)
+        let least = (noise * self.settings.least_prominence).max(self.rounding_power());
+        self.detector.peaks(self.radar, flat, least, most, closed)
+    }
+
+    /// Amplitude of what rounding to f64 makes of a reflector's place, if its samples are 1: many reflectors of one wall are each off
+    /// by that.
+    pub fn rounding_amplitude(&self) -> f64 {
+        let [radians_per_metre, _] = self.bench.sensor.radians_per_metre_over_chirp();
+        radians_per_metre * f64::EPSILON * self.radar.max_range_metres()
+    }
+
+    /// The power of that in a beam.
+    fn rounding_power(&self) -> f64 {
+        let radar = self.radar;
+        let window: f64 = radar.window.weights(radar.samples).iter().sum();
+        (self.rounding_amplitude() * radar.end_elements as f64 * window).powi(2) / radar.samples as f64
     }
 
     /// Adds points to `fit` until nothing stands out, nothing helps or there are too many.
@@ -116,7 +131,8 @@ impl Grower<'_> {
             for c in &candidates {
                 trials.add(self.radar, c, &profile);
             }
-            fit = self.with_candidates(fit, &candidates)?;
+            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
+            fit = self.with_points(fit, &points)?;
             fit = self.settled(fit)?;
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
         }
@@ -124,7 +140,7 @@ impl Grower<'_> {
     }
 
     /// Cyclic refinement: all atoms with their neighbours, as long as the energy falls fast. What one group leaves blinds the others.
-    fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+    pub fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_SWEEPS {
             let before = fit.cost();
             let all = vec![true; fit.atoms.len()];
@@ -136,20 +152,13 @@ impl Grower<'_> {
         Ok(fit)
     }
 
-    /// Energy that noise gives to one gain under the search's window.
-    pub fn gain_noise(&self, fit: &Fit) -> f64 {
-        let flat = fit.residual.flat(&self.bench.sensor);
-        let variance = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
-        let [square, fourth] = self.bench.squared.iter().fold([0.0; 2], |[s, f], w| [s + w, f + w * w]);
-        variance * fourth / square
-    }
-
-    /// `fit` with one more point for every candidate, each refined alone, then with its neighbours.
+    /// `fit` with one more atom for every one of `points` (x and y, metres; the strongest first), each refined alone, then with its
+    /// neighbours.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn with_candidates(&self, mut fit: Fit, candidates: &[Candidate]) -> Result<Fit, ReconstructError> {
-        let mut placed: Vec<(Atom, Gains)> = candidates.par_iter().map(|c| self.placed(&fit, c)).collect();
+    pub fn with_points(&self, mut fit: Fit, points: &[[f64; 2]]) -> Result<Fit, ReconstructError> {
+        let mut placed: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.placed(&fit, *p)).collect();
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
         placed.retain(|(_, gains)| {
@@ -168,14 +177,14 @@ impl Grower<'_> {
         self.refined(fit, &marked, LINK_BINS, GROWING)
     }
 
-    /// The candidate moved to its best place, at its own range or one wrap nearer or further out: ranges repeat, curvature does not.
-    fn placed(&self, fit: &Fit, candidate: &Candidate) -> (Atom, Gains) {
-        let own = Atom::Point { x_metres: candidate.x_metres, y_metres: candidate.y_metres };
+    /// A point moved to its best place, at its own range or one wrap nearer or further out: ranges repeat, curvature does not.
+    fn placed(&self, fit: &Fit, [x_metres, y_metres]: [f64; 2]) -> (Atom, Gains) {
+        let own = Atom::Point { x_metres, y_metres };
         let wrap = self.radar.max_range_metres();
-        let is_near = candidate.x_metres.hypot(candidate.y_metres) <= wrap;
+        let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone =
             |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ALONE);
-        let (own, other) = rayon::join(|| alone(own), || alone(wrapped(candidate, wrap)));
+        let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
         let better = if far.cost() < 0.5 * near.cost() { far } else { near };
@@ -266,9 +275,9 @@ impl Grower<'_> {
 }
 
 /// The place one wrap of the range further out, or nearer if it lies beyond the maximum range.
-fn wrapped(place: &Candidate, max_range_metres: f64) -> Atom {
-    let range = place.x_metres.hypot(place.y_metres).max(1e-3);
+fn wrapped([x_metres, y_metres]: [f64; 2], max_range_metres: f64) -> Atom {
+    let range = x_metres.hypot(y_metres).max(1e-3);
     let other = if range > max_range_metres { -1.0 } else { 1.0 };
     let far = 1.0 + other * max_range_metres / range;
-    Atom::Point { x_metres: place.x_metres * far, y_metres: place.y_metres * far }
+    Atom::Point { x_metres: x_metres * far, y_metres: y_metres * far }
 }

@@ -16,6 +16,8 @@
 //! | `tones` | ranges from one element's chirp |
 //! | `pairs` | both ends' tones paired: points to start from |
 //! | `chains` | points that stand in a row at equal steps |
+//! | `phased` | each end's beams with their phases, and rows of reflectors looked up in them |
+//! | `strides` | rows of reflectors from their first two |
 //! | `walls` | rows of points followed to where they end |
 //! | `end_beams` | each end's plain beams |
 //! | `peaks` | where a residual stands out, both ends registered |
@@ -44,6 +46,7 @@ mod grow;
 mod moments;
 mod pairs;
 mod peaks;
+mod phased;
 mod profile;
 mod prune;
 mod refine;
@@ -51,6 +54,7 @@ mod search;
 mod sensor;
 mod settings;
 mod solver;
+mod strides;
 #[cfg(test)]
 mod tests;
 mod tones;
@@ -60,7 +64,12 @@ mod walls;
 mod work;
 
 pub use atom::Atom;
+pub(super) use echoes::Samples;
 pub use finish::Found;
+pub(super) use groups::{Rows, distance_bins, rows_of};
+pub(super) use grow::Grower;
+pub(super) use peaks::Detector;
+pub(super) use refine::{Fit, Limits, Tie, Workbench};
 pub use search::{find, find_from};
 pub use settings::Settings;
 

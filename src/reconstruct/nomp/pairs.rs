@@ -2,7 +2,7 @@
 //! it is, and each end's phases say in which direction, so that true pairs agree and others don't.
 
 use super::atom::Atom;
-use super::tones::{gains_of_tones, tones_bins};
+use super::tones::{Tone, gains_of_tones, tones};
 use crate::radar::{End, Radar};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -17,10 +17,19 @@ const LOG_GAIN: f64 = 0.1;
 const MOST_APART: f64 = 3.0;
 
 /// Range bins within which the last end is searched for what the first end's direction predicts.
-const SEARCH_BINS: f64 = 1.5;
+const SEARCH_BINS: f64 = 2.0;
 
 /// Standard deviations of noise that are allowed.
 const DEVIATIONS: f64 = 4.0;
+
+/// A tone is alone where no other is heard within this many range bins.
+const ALONE_BINS: f64 = 3.0;
+
+/// Where tones are hardly told apart, directions and gains may be off by this many times what is allowed; what they lead to is a guess.
+const GUESS: f64 = 6.0;
+
+/// Guesses that one tone takes part in.
+const MOST_GUESSES: usize = 2;
 
 /// Rounds in which directions and the tones of the neighbouring element are brought together.
 const ROUNDS: usize = 4;
@@ -33,6 +42,19 @@ struct Heard {
     amplitude: f64,
     /// How far noise may have turned the direction.
     cos_tolerance: f64,
+    /// Whether no other tone is near.
+    is_alone: bool,
+}
+
+/// A point that both ends hear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paired {
+    /// The point.
+    pub atom: Atom,
+    /// How far the ends are from agreeing, as a part of what is allowed: directions and gains together.
+    pub apart: f64,
+    /// Whether neither end hears another tone near its own.
+    pub is_alone: bool,
 }
 
 /// A tone at each end that may be one reflector.
@@ -40,8 +62,7 @@ struct Heard {
 struct Pair {
     first: usize,
     last: usize,
-    atom: Atom,
-    apart: f64,
+    point: Paired,
 }
 
 /// An end's element nearest to its middle, and the tones heard there.
@@ -50,32 +71,58 @@ struct Listener {
     heard: Vec<Heard>,
 }
 
+/// What both ends' tones lead to.
+#[derive(Debug, Clone, Default)]
+pub struct Pairs {
+    /// Points, each of tones of its own, those first on which the ends agree best.
+    pub points: Vec<Paired>,
+    /// Places (x, y), metres, where points may be: those and others that take part in the same tones.
+    pub guesses_metres: Vec<[f64; 2]>,
+}
+
 /// Points whose tones both ends hear, from samples laid out channel by channel over white noise of `noise_variance`. None where an end
 /// hears more tones than it can tell apart, or where neighbouring elements are too far apart to tell directions.
-pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> Vec<Atom> {
+pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> Pairs {
     let listen = |end: End| {
         let at = if end == End::First { 0 } else { radar.end_elements };
         let channels: Vec<&[Complex64]> = flat.chunks_exact(radar.samples).skip(at).take(radar.end_elements).collect();
         listener(radar, end, &channels, noise_variance)
     };
     let (first, last) = rayon::join(|| listen(End::First), || listen(End::Last));
-    let (Some(first), Some(last)) = (first, last) else { return Vec::new() };
+    let (Some(first), Some(last)) = (first, last) else { return Pairs::default() };
     let mut pairs: Vec<Pair> = Vec::new();
     for i in 0..first.heard.len() {
         for wraps in 0..2 {
             pairs.extend(candidates(radar, &first, &last, i, wraps));
         }
     }
-    pairs.sort_by(|a, b| a.apart.total_cmp(&b.apart));
-    let (mut first_taken, mut last_taken) = (vec![false; first.heard.len()], vec![false; last.heard.len()]);
-    pairs.retain(|p| {
-        let free = !first_taken[p.first] && !last_taken[p.last];
-        if free {
-            (first_taken[p.first], last_taken[p.last]) = (true, true);
+    pairs.sort_by(|a, b| a.point.apart.total_cmp(&b.point.apart));
+    let guesses = matched(&pairs, &first, &last, MOST_GUESSES);
+    let guesses_metres = guesses.iter().map(|pair| pair.point.atom.position_metres(0.0)).collect();
+    pairs.retain(|pair| pair.point.apart < MOST_APART);
+    let points: Vec<Paired> = matched(&pairs, &first, &last, 1).iter().map(|pair| pair.point).collect();
+    tracing::debug!(
+        first = first.heard.len(),
+        last = last.heard.len(),
+        points = points.len(),
+        guesses = guesses.len(),
+        "tones"
+    );
+    Pairs { points, guesses_metres }
+}
+
+/// The best of `pairs`, each tone in `most` of them.
+fn matched(pairs: &[Pair], first: &Listener, last: &Listener, most: usize) -> Vec<Pair> {
+    let (mut first_taken, mut last_taken) = (vec![0; first.heard.len()], vec![0; last.heard.len()]);
+    let mut free = |pair: &&Pair| {
+        let is_free = first_taken[pair.first] < most && last_taken[pair.last] < most;
+        if is_free {
+            first_taken[pair.first] += 1;
+            last_taken[pair.last] += 1;
         }
-        free
-    });
-    pairs.into_iter().map(|p| p.atom).collect()
+        is_free
+    };
+    pairs.iter().filter(|pair| free(pair)).copied().collect()
 }
 
 /// Tones of an end's middle element, with directions from the element beside it.
@@ -93,23 +140,32 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
     if (radians_per_metre * step_metres).abs() > 1.05 * TAU / 2.0 {
         return None;
     }
-    let bins = tones_bins(own, noise_variance)?;
-    let gains = gains_of_tones(own, &bins);
-    let mut cosines = vec![0.0f64; bins.len()];
+    let tones = tones(own, noise_variance)?;
+    let gains = gains_of_tones(own, &tones);
+    let mut cosines = vec![0.0f64; tones.len()];
     for _ in 0..ROUNDS {
-        let moved: Vec<f64> =
-            bins.iter().zip(&cosines).map(|(b, c)| b - step_metres * c / radar.range_resolution_metres()).collect();
+        let nearer = |cos: &f64| step_metres * cos / radar.range_resolution_metres();
+        let moved: Vec<Tone> =
+            tones.iter().zip(&cosines).map(|(tone, cos)| Tone { bins: tone.bins - nearer(cos), ..*tone }).collect();
         for ((cos, own), beside) in cosines.iter_mut().zip(&gains).zip(gains_of_tones(beside, &moved)) {
             let nearer_metres = -(beside * own.conj()).arg() / radians_per_metre;
             *cos = (nearer_metres / step_metres).clamp(-1.0, 1.0);
         }
     }
     let deviation = (noise_variance / radar.samples as f64).sqrt() / (radians_per_metre * step_metres).abs();
-    let heard = bins.iter().zip(&gains).zip(&cosines).map(|((bins, gain), cos)| Heard {
-        bins: *bins,
+    let is_alone = |i: usize| {
+        let apart = |j: usize| {
+            let off = (tones[i].bins - tones[j].bins).abs();
+            off.min(radar.samples as f64 - off)
+        };
+        (0..tones.len()).all(|j| j == i || apart(j) > ALONE_BINS)
+    };
+    let heard = gains.iter().zip(&cosines).enumerate().map(|(i, (gain, cos))| Heard {
+        bins: tones[i].bins,
         cos: *cos,
         amplitude: gain.norm(),
         cos_tolerance: COS + DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
+        is_alone: is_alone(i),
     });
     Some(Listener { x_metres, heard: heard.collect() })
 }
@@ -140,9 +196,10 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         ];
         let gain = (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / LOG_GAIN;
         let apart = cosines[0].abs() + cosines[1].abs() + gain.abs();
-        if apart < MOST_APART {
+        if apart < GUESS * MOST_APART {
             let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
-            pairs.push(Pair { first: i, last: j, atom, apart });
+            let is_alone = own.is_alone && other.is_alone;
+            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart, is_alone } });
         }
     }
     pairs
@@ -162,10 +219,10 @@ mod tests {
         let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 3);
         let scene: Scene = generator.scene(Kind::Crowd, 0);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let found = paired_points(&radar, &ends.flat(), ends_noise_variance(&radar, &ends));
+        let found = paired_points(&radar, &ends.flat(), ends_noise_variance(&radar, &ends)).points;
         let near = |x: f64, y: f64| {
-            let distance = |a: &Atom| {
-                let [fx, fy] = a.position_metres(0.0);
+            let distance = |a: &Paired| {
+                let [fx, fy] = a.atom.position_metres(0.0);
                 (fx - x).hypot(fy - y)
             };
             found.iter().map(distance).fold(f64::INFINITY, f64::min)

@@ -19,7 +19,8 @@ const APART_BINS: f64 = 4.0;
 const AFTER: Limits = Limits { iterations: 20, least_gain: 1e-2, ridge: 0.0 };
 
 impl Grower<'_> {
-    /// `fit` without the atoms whose absence noise could hide, those whose place ran away, and those that only one end believes in.
+    /// `fit` without the atoms whose absence noise could hide or the rounding of the others' places, those whose place ran away, and
+    /// those that only one end believes in.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -29,7 +30,8 @@ impl Grower<'_> {
             if self.bench.is_spent() {
                 break;
             }
-            let least = LEAST_WORTH * self.gain_noise(&fit);
+            let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);
+            let least = rounding.max(LEAST_WORTH * self.bench.gain_noise(self.radar, &fit));
             let worth = self.bench.worths(&fit);
             let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
             let mut order: Vec<usize> =

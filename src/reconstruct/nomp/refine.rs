@@ -12,9 +12,11 @@ use super::sensor::Sensor;
 use super::solver::{Ridge, damped_step};
 use super::work::Work;
 use crate::radar::Radar;
+use crate::reconstruct::noise::noise_variance;
 use crate::scene::Reflector;
 use crate::task::Task;
 use faer::Mat;
+use ndarray::ArrayView1;
 use num_complex::Complex64;
 
 /// Which samples share one gain for each atom.
@@ -62,7 +64,7 @@ pub struct Workbench<'a> {
 const MOST_IN_PARALLEL: usize = 16;
 
 /// Inner products of two echoes that take as long as one echo at all channels.
-const PRODUCTS_AN_ECHO: usize = 16;
+const PRODUCTS_AN_ECHO: usize = 64;
 
 /// Atoms with their gains, and what they leave of the samples.
 #[derive(Debug, Clone)]
@@ -118,6 +120,11 @@ impl<'a> Workbench<'a> {
     /// Counts what took as long as this many echoes.
     pub fn spend(&self, echoes: usize) {
         self.work.spend(echoes);
+    }
+
+    /// Part of the work granted that is done.
+    pub fn spent(&self) -> f64 {
+        self.work.spent()
     }
 
     /// Whether the work that the search was granted is done; to be asked where nothing runs in parallel.
@@ -212,6 +219,19 @@ impl<'a> Workbench<'a> {
         worths
     }
 
+    /// Energy under the window, at both ends, of a point whose samples have this amplitude.
+    pub fn worth_of(&self, amplitude: f64, radar: &Radar) -> f64 {
+        2.0 * radar.end_elements as f64 * amplitude * amplitude * self.squared.iter().sum::<f64>()
+    }
+
+    /// Energy that the noise heard in what `fit` leaves gives to one gain under the window.
+    pub fn gain_noise(&self, radar: &Radar, fit: &Fit) -> f64 {
+        let flat = fit.residual.flat(&self.sensor);
+        let variance = noise_variance(radar, flat.chunks_exact(radar.samples).map(ArrayView1::from));
+        let [square, fourth] = self.squared.iter().fold([0.0; 2], |[s, f], w| [s + w, f + w * w]);
+        variance * fourth / square
+    }
+
     /// `fit` without the atoms numbered `gone`, which go back into its residual.
     pub fn less(&self, fit: Fit, gone: &[usize]) -> Fit {
         let atoms: Vec<Atom> = gone.iter().map(|&i| fit.atoms[i]).collect();
@@ -229,6 +249,10 @@ impl<'a> Workbench<'a> {
     /// All about `atoms`; gains start at `gains` and end at their best.
     fn state(&self, samples: &Samples, atoms: Vec<Atom>, mut gains: Vec<Gains>, terms: Terms) -> State {
         let Terms { tie, ridge, derivatives } = terms;
+        if tie == Tie::Both {
+            // Gains that differ would go on differing: every step is the same at both ends.
+            gains.iter_mut().for_each(|g| *g = [(g[0] + g[1]) / 2.0; 2]);
+        }
         let dictionary = Dictionary::new(&self.sensor, &self.moments, &atoms, derivatives);
         let [first, last] = dictionary.grams();
         let grams = match tie {

@@ -1,15 +1,16 @@
-//! The search as a whole: long lines, both ends' tones paired, walls through them, few points sample by sample, then more until nothing
-//! stands out.
+//! The search as a whole: both ends' tones paired, walls from them, long lines sample by sample, then more points until nothing stands
+//! out.
 
 use super::atom::Atom;
 use super::echoes::Samples;
 use super::few;
 use super::finish::{Found, finish};
 use super::grow::Grower;
-use super::pairs::paired_points;
+use super::pairs::{Pairs, paired_points};
 use super::peaks::Detector;
-use super::refine::{Fit, Gains, Tie, Workbench};
+use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use super::settings::Settings;
+use super::walls::is_on;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::noise::noise_variance;
@@ -94,31 +95,23 @@ impl Search<'_> {
         }
     }
 
-    /// Lines where the echo is long. Elsewhere, and beside them, points that both ends' tones lead to and walls through them, told apart
-    /// sample by sample where they are few; then whatever still stands out.
+    /// Points that both ends' tones lead to; where those are not all, walls from them, and what stands beside. Long vertical lines are
+    /// told apart sample by sample where that is not enough; then whatever still stands out.
     fn run(&self) -> Result<Answer, ReconstructError> {
         let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
+        let pairs = self.pairs(&nothing);
+        let fit = self.paired(nothing.clone(), &pairs, false)?;
+        if self.is_explained(&fit) {
+            return Ok(Answer { fit, is_sure: true });
+        }
+        let walls = self.walls(nothing, pairs)?;
         let is_long = self.longest_run() >= LONG_RUN_BINS;
-        let mut few = if is_long { Some(self.with_few()?) } else { None };
-        if let Some(sure) = few.take_if(|few| few.is_sure) {
-            return Ok(sure);
-        }
-        let mut answer = Answer { fit: nothing, is_sure: false };
-        for _ in 0..MOST_ROUNDS {
-            let before = answer.fit.cost();
-            answer.fit = self.grower().with_walls(self.samples, self.paired(answer.fit, !is_long)?)?;
-            tracing::debug!(atoms = answer.fit.atoms.len(), before, cost = answer.fit.cost(), "paired");
-            answer.is_sure = self.is_explained(&answer.fit);
-            if answer.is_sure || answer.fit.cost() > WORTH_ANOTHER * before {
-                break;
+        let mut answer = self.paired_again(walls, is_long)?;
+        if is_long && !answer.is_sure {
+            let few = self.with_few()?;
+            if few.is_sure || few.fit.cost() < answer.fit.cost() {
+                answer = few;
             }
-        }
-        if few.is_none() && answer.fit.atoms.len() <= FEW {
-            few = Some(self.with_few()?);
-        }
-        match few {
-            Some(few) if few.is_sure || !answer.is_sure && few.fit.cost() < answer.fit.cost() => answer = few,
-            _ => {}
         }
         if answer.is_sure {
             return Ok(answer);
@@ -127,7 +120,56 @@ impl Search<'_> {
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
     }
 
-    /// What a search for a few points and long vertical lines finds, every sample of each written out.
+    /// Walls that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found may have
+    /// hidden more. `pairs` are those of `fit`.
+    fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_ROUNDS {
+            let before = fit.atoms.len();
+            fit = self.grower().more_walls(self.samples, fit, pairs.guesses_metres)?;
+            let sure = pairs.points.iter().filter(|point| point.apart < SURELY_ONE && point.is_alone);
+            let more: Vec<Atom> =
+                sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
+            if fit.atoms.len() + more.len() == before {
+                break;
+            }
+            fit.gains.extend(vec![Gains::default(); more.len()]);
+            fit.atoms.extend(more);
+            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, WITH_POINTS);
+            if self.is_explained(&fit) {
+                break;
+            }
+            pairs = self.pairs(&fit);
+        }
+        Ok(fit)
+    }
+
+    /// `fit` and the points that the ends' tones lead to in what it leaves, time and again. Where an echo is long and no wall was found,
+    /// they are left where they are: lines are better found before.
+    fn paired_again(&self, mut fit: Fit, is_long: bool) -> Result<Answer, ReconstructError> {
+        let is_polished = !is_long || !fit.atoms.is_empty();
+        for _ in 0..MOST_ROUNDS {
+            if self.is_explained(&fit) {
+                return Ok(Answer { fit, is_sure: true });
+            }
+            let before = fit.cost();
+            let pairs = self.pairs(&fit);
+            fit = self.grower().with_walls(self.samples, self.paired(fit, &pairs, is_polished)?)?;
+            tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
+            if fit.cost() > WORTH_ANOTHER * before {
+                break;
+            }
+        }
+        Ok(Answer { is_sure: self.is_explained(&fit), fit })
+    }
+
+    /// Points whose tones both ends hear in what `fit` leaves.
+    fn pairs(&self, fit: &Fit) -> Pairs {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        let noise = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
+        paired_points(self.radar, &flat, noise)
+    }
+
+    /// What a search for long vertical lines and a few points finds, every sample of each written out.
     fn with_few(&self) -> Result<Answer, ReconstructError> {
         let found = few::find(self.radar, self.flat, self.request, self.settings.most_line_work)?;
         let atoms: Vec<Atom> = found.atoms.iter().map(few::atom::Atom::outside).collect();
@@ -136,13 +178,11 @@ impl Search<'_> {
         Ok(Answer { fit, is_sure: found.complete })
     }
 
-    /// `known` and the points whose tones both ends hear in what it leaves, less those whose gains the ends don't agree on.
-    /// They are moved to their best places only if that is asked for: long lines are better found before.
-    fn paired(&self, known: Fit, polished: bool) -> Result<Fit, ReconstructError> {
-        let flat = known.residual.flat(&self.bench.sensor);
-        let noise = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
+    /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
+    /// They are moved to their best places only if that is asked for.
+    fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
-        atoms.extend(paired_points(self.radar, &flat, noise));
+        atoms.extend(pairs.points.iter().map(|point| point.atom));
         if atoms.len() == known.atoms.len() {
             return Ok(known);
         }
@@ -233,11 +273,14 @@ impl Search<'_> {
     }
 }
 
-/// Most atoms that are told apart sample by sample.
-const FEW: usize = 12;
-
 /// Most atoms that appear from one answer to the next.
 const MOST_APPEARING: usize = 2;
+
+/// Pairs that agree within this part of what is allowed are points.
+const SURELY_ONE: f64 = 0.2;
+
+/// Of walls and points together.
+const WITH_POINTS: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;

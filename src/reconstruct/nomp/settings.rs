@@ -28,7 +28,7 @@ impl Default for Settings {
             rounds: 6,
             gain_price: 0.3,
             trials: 4,
-            most_work: 30_000,
+            most_work: 40_000,
             most_line_work: 100_000,
         }
     }

@@ -119,7 +119,6 @@ fn under_thermal_noise_it_finds_what_is_there_and_little_else() {
 }
 
 #[test]
-#[ignore = "68 points are found where 41 stand: the search for lines runs out of work before it is sure"]
 fn a_shorter_line_is_found() {
     let radar = Radar::default();
     let bin = radar.range_resolution_metres();
@@ -140,7 +139,6 @@ fn a_crowd_is_found_to_rounding() {
 }
 
 #[test]
-#[ignore = "its points are told apart one by one, and 72 are found where 45 stand"]
 fn a_slanted_wall_is_found_with_both_its_ends() {
     let radar = Radar::default();
     let wall = Line { direction_degrees: 70.0, ..Line::vertical(-2.0, 6.0, 0.14, 45) };

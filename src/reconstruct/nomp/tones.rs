@@ -27,15 +27,23 @@ const SPARE: usize = 4;
 /// A singular value above this many times the largest that noise has in the mean belongs to a tone.
 const ABOVE_NOISE: f64 = 1.6;
 
-/// A tone neither grows nor decays over a chirp by more than this part a sample.
-const STEADY: f64 = 2e-3;
+/// A tone neither grows nor decays by more than this part a sample: what does stands for several that are not told apart.
+const STEADY: f64 = 2e-2;
+
+/// A tone: `exp(j tau bins n / samples + growth n)` in sample n.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tone {
+    /// Frequency, range bins from 0 to the number of samples.
+    pub bins: f64,
+    /// Relative growth a sample. That of an echo is 0; several that are not told apart sound like one that grows or decays.
+    pub growth: f64,
+}
 
 /// Seed of the projection: the same samples have the same tones.
 const SEED: u64 = 0x70_6e_65_73;
 
-/// Frequencies of the tones of a chirp over white noise of `noise_variance` a sample, range bins from 0 to the number of samples; `None`
-/// where there are more than the chirp can tell apart.
-pub fn tones_bins(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<f64>> {
+/// The tones of a chirp over white noise of `noise_variance` a sample; `None` where there are more than the chirp can tell apart.
+pub fn tones(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<Tone>> {
     let samples = chirp.len();
     if samples < LEAST_SAMPLES {
         return None;
@@ -49,8 +57,8 @@ pub fn tones_bins(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<f64>> 
     let rotation = basis.subrows(0, rows - 1).qr().solve_lstsq(shifted);
     let rotation = Mat::from_fn(count, count, |i, j| rotation[(i, j)]);
     let phasors = rotation.eigenvalues().ok()?;
-    let steady = phasors.iter().filter(|z| (z.norm() - 1.0).abs() < STEADY);
-    Some(steady.map(|z| (z.arg() / TAU).rem_euclid(1.0) * samples as f64).collect())
+    let tone = |z: &Complex64| Tone { bins: (z.arg() / TAU).rem_euclid(1.0) * samples as f64, growth: z.norm().ln() };
+    Some(phasors.iter().map(tone).filter(|tone| tone.growth.abs() < STEADY).collect())
 }
 
 /// An orthonormal basis of what of the chirp's Hankel matrix stands out of the noise, a column for each tone.
@@ -78,18 +86,19 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
     }
 }
 
-/// Gains of tones at these frequencies in a chirp, their phases taken at its middle.
-pub fn gains_of_tones(chirp: &[Complex64], bins: &[f64]) -> Vec<Complex64> {
-    if bins.is_empty() {
+/// Gains of these tones in a chirp, taken at its middle.
+pub fn gains_of_tones(chirp: &[Complex64], tones: &[Tone]) -> Vec<Complex64> {
+    if tones.is_empty() {
         return Vec::new();
     }
     let samples = chirp.len() as f64;
     let middle = (samples - 1.0) / 2.0;
-    let tones = Mat::from_fn(chirp.len(), bins.len(), |n, l| {
-        Complex64::cis(TAU * (bins[l] * (n as f64 - middle) / samples).fract())
+    let columns = Mat::from_fn(chirp.len(), tones.len(), |n, l| {
+        let n = n as f64 - middle;
+        Complex64::from_polar((tones[l].growth * n).exp(), TAU * (tones[l].bins * n / samples).fract())
     });
-    let gains = tones.qr().solve_lstsq(Mat::from_fn(chirp.len(), 1, |n, _| chirp[n]));
-    (0..bins.len()).map(|l| gains[(l, 0)]).collect()
+    let gains = columns.qr().solve_lstsq(Mat::from_fn(chirp.len(), 1, |n, _| chirp[n]));
+    (0..tones.len()).map(|l| gains[(l, 0)]).collect()
 }
 
 #[cfg(test)]
@@ -105,15 +114,15 @@ mod tests {
 
     #[test]
     fn tones_far_below_a_bin_apart_and_ten_decades_below_the_strongest_are_told_apart() {
-        let tones = [[10.0, 1.0], [10.2, 0.5], [10.45, -0.7], [300.25, 1e-6], [511.9, 0.1]];
-        let found = tones_bins(&chirp(&tones, 1e-13), 1e-26).unwrap();
-        assert_eq!(found.len(), tones.len(), "{found:?}");
-        for [bins, _] in tones {
-            assert!(found.iter().any(|f| (f - bins).abs() < 1e-5), "{bins} in {found:?}");
+        let sizes = [[10.0, 1.0], [10.2, 0.5], [10.45, -0.7], [300.25, 1e-6], [511.9, 0.1]];
+        let found = tones(&chirp(&sizes, 1e-13), 1e-26).unwrap();
+        assert_eq!(found.len(), sizes.len(), "{found:?}");
+        for [bins, _] in sizes {
+            assert!(found.iter().any(|f| (f.bins - bins).abs() < 1e-5), "{bins} in {found:?}");
         }
-        let sorted: Vec<f64> = tones.iter().map(|t| t[0]).collect();
+        let exact: Vec<Tone> = sizes.iter().map(|t| Tone { bins: t[0], growth: 0.0 }).collect();
         let middle = 511.0 / 2.0 / 512.0;
-        for ([bins, size], gain) in tones.iter().zip(gains_of_tones(&chirp(&tones, 0.0), &sorted)) {
+        for ([bins, size], gain) in sizes.iter().zip(gains_of_tones(&chirp(&sizes, 0.0), &exact)) {
             assert!((gain - Complex64::cis(TAU * bins * middle) * size).norm() < 1e-9, "{bins}: {gain}");
         }
     }
@@ -125,8 +134,8 @@ mod tests {
         let comb = |count: usize| -> Vec<[f64; 2]> {
             (0..count).map(|i| [i as f64 * 512.0 / count as f64, size(i)]).collect()
         };
-        assert_eq!(tones_bins(&chirp(&comb(100), 1e-12), 1e-24).unwrap().len(), 100);
-        assert_eq!(tones_bins(&chirp(&comb(300), 1e-12), 1e-24), None);
-        assert_eq!(tones_bins(&chirp(&[], 1e-3), 1e-6), Some(Vec::new()));
+        assert_eq!(tones(&chirp(&comb(100), 1e-12), 1e-24).unwrap().len(), 100);
+        assert_eq!(tones(&chirp(&comb(300), 1e-12), 1e-24), None);
+        assert_eq!(tones(&chirp(&[], 1e-3), 1e-6), Some(Vec::new()));
     }
 }

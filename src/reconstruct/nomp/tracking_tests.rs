@@ -54,7 +54,6 @@ fn following_a_drag_gives_what_a_search_from_scratch_gives() {
 }
 
 #[test]
-#[ignore = "a follower keeps atoms that it should not; no method of the program follows yet"]
 fn what_appears_vanishes_or_jumps_is_followed_too() {
     let (radar, request, settings) = (Radar::default(), Request::default(), Settings::default());
     let before = scene(0);
@@ -73,7 +72,6 @@ fn what_appears_vanishes_or_jumps_is_followed_too() {
 }
 
 #[test]
-#[ignore = "a follower keeps atoms that it should not; no method of the program follows yet"]
 fn many_threads_may_ask_one_follower() {
     let (radar, request) = (Radar::default(), Request::default());
     let following = Hybrid::new(Arc::new(Baseline)).following();

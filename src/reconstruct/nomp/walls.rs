@@ -3,15 +3,26 @@
 use super::atom::Atom;
 use super::chains::rows_of_points;
 use super::echoes::Samples;
+use super::groups::rows_of;
 use super::grow::Grower;
+use super::phased::PhasedBeams;
+use super::profile::Profile;
 use super::refine::{Fit, Gains, Limits, Tie};
+use super::strides::{Stride, rows_over_pairs};
 use crate::reconstruct::ReconstructError;
+use rayon::prelude::*;
 
 /// Of a wall by itself.
 const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
 
 /// Reflectors beyond the best end of a wall that are tried.
 const BEYOND: usize = 8;
+
+/// Most times reflectors are taken from a wall's ends.
+const MOST_TRIMS: usize = 2;
+
+/// Fewest reflectors of a wall.
+const LEAST_REFLECTORS: usize = 8;
 
 /// Most reflectors of a wall.
 const MOST_REFLECTORS: usize = 250;
@@ -25,7 +36,130 @@ const BESIDE_METRES: f64 = 0.06;
 /// A wall must leave less than this part of what was left without it.
 const LEAST_GAINED: f64 = 0.98;
 
+/// Of all walls together.
+const TOGETHER: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 };
+
+/// Most walls of one scene.
+const MOST_WALLS: usize = 8;
+
+/// Rows that are held against the samples themselves, at each look.
+const MOST_TRIED: usize = 24;
+
+/// Part of the energy in its range bins that a row must explain to be followed to its ends.
+const LEAST_BEGUN: f64 = 0.3;
+
+/// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
+const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
+
+/// Part of the work granted that the search for walls may take.
+const MOST_SPENT: f64 = 0.5;
+
+/// Part of the energy in its range bins that may be left where a wall is known with all that stands beside it.
+const MOST_LEFT: f64 = 0.15;
+
+/// Most times all ends are followed and all walls moved together.
+const MOST_TURNS: usize = 4;
+
+/// Another turn needs that the last left this part of the energy at most.
+const WORTH_ANOTHER_TURN: f64 = 0.9;
+
+/// Echoes that the look for rows over one point takes as long as.
+const LOOK_A_POINT: usize = 20;
+
 impl Grower<'_> {
+    /// `fit` and the walls that lead from one of `points` (x, y; metres) over another, as long as each explains much of what there is in its range
+    /// bins; without those that have not explained nearly all of it in the end.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn more_walls(
+        &self,
+        samples: &Samples,
+        mut fit: Fit,
+        mut points: Vec<[f64; 2]>,
+    ) -> Result<Fit, ReconstructError> {
+        let known = fit.atoms.len();
+        while fit.atoms.len() < known + MOST_WALLS && self.bench.spent() < MOST_SPENT {
+            self.task.check()?;
+            points.retain(|&[x_metres, y_metres]| {
+                !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
+            });
+            let Some((begun, seed)) = self.begun_wall(&fit, &points) else { break };
+            let profile = Profile::new(self.radar, &fit.residual.flat(&self.bench.sensor));
+            let wall = self.followed_to_its_ends(&fit.residual, seed);
+            let explained = (fit.cost() - wall.cost()) / profile.at(&rows_of(self.radar, &wall.atoms[0]));
+            tracing::debug!(explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
+            if !is_wall(&wall.atoms[0], begun.max(explained)) {
+                break;
+            }
+            fit.atoms.push(wall.atoms[0]);
+            fit.gains.push(wall.gains[0]);
+            (fit.residual, fit.energy) = (wall.residual, wall.energy);
+        }
+        if fit.atoms.len() == known {
+            return Ok(fit);
+        }
+        let fit = self.with_settled_ends(samples, fit)?;
+        Ok(self.without_doubtful_walls(samples, fit, known))
+    }
+
+    /// Every wall followed to its ends once more, now that the others are known, and all moved together; by turns, as long as it helps.
+    fn with_settled_ends(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_TURNS {
+            self.task.check()?;
+            let before = fit.cost();
+            fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, TOGETHER);
+            let joined = fit.cost();
+            for i in 0..fit.atoms.len() {
+                if self.bench.is_spent() || !matches!(fit.atoms[i], Atom::Segment { .. }) {
+                    continue;
+                }
+                let back = fit.gains[i].map(|g| -g);
+                let base = self.bench.without(&fit.residual, &fit.atoms[i..=i], &[back]).residual;
+                let wall = self.followed_to_its_ends(&base, fit.atoms[i]);
+                if wall.cost() < fit.cost() {
+                    (fit.atoms[i], fit.gains[i]) = (wall.atoms[0], wall.gains[0]);
+                    (fit.residual, fit.energy) = (wall.residual, wall.energy);
+                }
+            }
+            tracing::debug!(before, joined, cost = fit.cost(), "settled ends");
+            if fit.cost() > WORTH_ANOTHER_TURN * before {
+                break;
+            }
+        }
+        Ok(fit)
+    }
+
+    /// `fit` without those atoms from number `known` on that leave more than a little in their range bins.
+    fn without_doubtful_walls(&self, samples: &Samples, fit: Fit, known: usize) -> Fit {
+        let flat = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor));
+        let (all, left) = (flat(samples), flat(&fit.residual));
+        let is_doubtful = |i: &usize| {
+            let rows = rows_of(self.radar, &fit.atoms[*i]);
+            left.at(&rows) > MOST_LEFT * all.at(&rows)
+        };
+        let doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
+        tracing::debug!(doubtful = doubtful.len(), walls = fit.atoms.len() - known, "walls");
+        if doubtful.is_empty() { fit } else { self.bench.less(fit, &doubtful) }
+    }
+
+    /// The row from one of `points` over another that explains most of what `fit` leaves in its range bins, and the part that it explains.
+    fn begun_wall(&self, fit: &Fit, points: &[[f64; 2]]) -> Option<(f64, Atom)> {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        let profile = Profile::new(self.radar, &flat);
+        let beams = PhasedBeams::new(self.radar, &flat);
+        self.bench.spend(LOOK_A_POINT * points.len());
+        let strides = rows_over_pairs(&beams, points, self.task);
+        let tried = strides.par_iter().take(MOST_TRIED).map(|Stride { atom, .. }| {
+            let wall = self.bench.solve(&fit.residual, vec![*atom], Tie::PerEnd, 0.0);
+            let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
+            ((fit.cost() - wall.cost()) / all, *atom)
+        });
+        let best = tried.max_by(|a, b| a.0.total_cmp(&b.0));
+        tracing::debug!(points = points.len(), strides = strides.len(), ?best, "rows");
+        best.filter(|(part, _)| *part > LEAST_BEGUN)
+    }
+
     /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.
     ///
     /// # Errors
@@ -53,6 +187,7 @@ impl Grower<'_> {
 
     /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
     fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
+        let seed = self.trimmed(samples, seed);
         let mut wall = self.bench.refine(samples, vec![seed], vec![Gains::default()], Tie::PerEnd, ALONE);
         for _ in 0..MOST_WALKS {
             let [before, after] = [self.more_reflectors(&wall, false), self.more_reflectors(&wall, true)];
@@ -63,7 +198,48 @@ impl Grower<'_> {
             }
             wall = trial;
         }
-        wall
+        let Some(&atom) = wall.atoms.first() else { return wall };
+        let shorter = self.trimmed(samples, atom);
+        if shorter == atom {
+            return wall;
+        }
+        let trial = self.bench.refine(samples, vec![shorter], wall.gains.clone(), Tie::PerEnd, ALONE);
+        if trial.cost() < wall.cost() { trial } else { wall }
+    }
+
+    /// `seed` without the reflectors at its ends that the samples are better explained without.
+    fn trimmed(&self, samples: &Samples, mut seed: Atom) -> Atom {
+        for _ in 0..MOST_TRIMS {
+            let wall = self.bench.solve(samples, vec![seed], Tie::PerEnd, 0.0);
+            let fewer = [self.fewer_reflectors(&wall, false), self.fewer_reflectors(&wall, true)];
+            match shortened(seed, fewer) {
+                Some(shorter) if fewer != [0, 0] => seed = shorter,
+                _ => break,
+            }
+        }
+        seed
+    }
+
+    /// How many reflectors at the wall's last end, or at its first, leave less when they are taken away.
+    fn fewer_reflectors(&self, wall: &Fit, at_last: bool) -> usize {
+        let Some(atom) = wall.atoms.first() else { return 0 };
+        let count = atom.reflector_count();
+        let back: Vec<Gains> = wall.gains.iter().map(|g| g.map(|g| -g)).collect();
+        let (mut best, mut least) = (0, wall.cost());
+        let mut residual = wall.residual.clone();
+        for fewer in 1..=count / 2 {
+            let at = if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 };
+            let [x_metres, y_metres] = atom.position_metres(at);
+            let left = self.bench.without(&residual, &[Atom::Point { x_metres, y_metres }], &back);
+            residual = left.residual;
+            let cost = left.energy[0] + left.energy[1];
+            if cost < least {
+                (best, least) = (fewer, cost);
+            } else if fewer >= best + BEYOND {
+                break;
+            }
+        }
+        best
     }
 
     /// By how many reflectors the wall is too short at its last end, or at its first: as many more as leave least. No more than it
@@ -100,6 +276,19 @@ fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
     (count <= MOST_REFLECTORS).then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
 }
 
+/// Whether so many reflectors that explain this part of the energy in their range bins can be believed.
+fn is_wall(atom: &Atom, explained: f64) -> bool {
+    LEAST_EXPLAINED.iter().any(|&(count, part)| atom.reflector_count() >= count && explained >= part)
+}
+
+/// `wall` without this many reflectors at its first and at its last end.
+fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
+    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
+    let [x_metres, y_metres] = wall.position_metres(first as f64);
+    let count = count.checked_sub(first + last).filter(|count| *count >= LEAST_REFLECTORS)?;
+    Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+}
+
 /// Whether `atom` is a point on the axis of `wall`, not far beyond its ends.
 fn stands_on(wall: &Atom, atom: &Atom) -> bool {
     let (Atom::Segment { dx_metres: dx, dy_metres: dy, .. }, Atom::Point { .. }) = (*wall, *atom) else {
@@ -110,4 +299,12 @@ fn stands_on(wall: &Atom, atom: &Atom) -> bool {
     let along_steps = (to_x * dx + to_y * dy) / (step * step);
     let beside_metres = (to_x * dy - to_y * dx).abs() / step;
     beside_metres < BESIDE_METRES && along_steps.abs() < MOST_REFLECTORS as f64
+}
+
+/// Whether `atom` is a point on `wall`, between its ends or less than a step beyond.
+pub fn is_on(wall: &Atom, atom: &Atom) -> bool {
+    let Atom::Segment { dx_metres: dx, dy_metres: dy, count, .. } = *wall else { return false };
+    let ([x, y], [point_x, point_y]) = (wall.position_metres(0.0), atom.position_metres(0.0));
+    let along_steps = ((point_x - x) * dx + (point_y - y) * dy) / (dx * dx + dy * dy);
+    stands_on(wall, atom) && (-1.0..=count as f64).contains(&along_steps)
 }

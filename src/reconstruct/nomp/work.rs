@@ -20,6 +20,11 @@ impl Work {
         self.done.fetch_add(units, Ordering::Relaxed);
     }
 
+    /// Part of what was granted that is done; to be asked where nothing runs in parallel.
+    pub fn spent(&self) -> f64 {
+        self.done.load(Ordering::Relaxed) as f64 / self.most.max(1) as f64
+    }
+
     /// Whether what was granted is done. To be asked where nothing runs in parallel: only there is the answer the same every time.
     pub fn is_spent(&self) -> bool {
         self.done.load(Ordering::Relaxed) >= self.most

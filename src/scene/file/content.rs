@@ -61,6 +61,20 @@ pub enum SceneFileError {
         /// The value that TOML can't hold.
         source: toml::ser::Error,
     },
+    /// A recording, or what one keeps its samples in, where a scene was to be written.
+    #[error("{}: holds a recording, which a scene must not replace; choose another name", path.display())]
+    Recording {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The recording that the scene is laid over can't be had.
+    #[error("{}: is laid over a recording: {message}; without its table [over] the scene opens alone", path.display())]
+    Over {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        message: String,
+    },
     /// Neither kind of scene file.
     #[error("{}: not a scene file by its name; expected one ending in .toml or .npz", path.display())]
     Extension {

@@ -18,6 +18,8 @@ pub enum Loss {
     Radar,
     /// Elements as they are built, an interferer or a mirror: reopened, there are none.
     Disturbances,
+    /// The recording that the scene is laid over: reopened, it lies over none.
+    Recording,
     /// Reflectivities other than 1: reopened, they are 1.
     Reflectivity {
         /// Objects that have one.
@@ -40,6 +42,7 @@ impl fmt::Display for Loss {
             Loss::NoiseSeed => f.write_str("its noise seed"),
             Loss::Radar => f.write_str("its radar"),
             Loss::Disturbances => f.write_str("what disturbs it"),
+            Loss::Recording => f.write_str("the recording that it is laid over"),
             Loss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
             Loss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
             Loss::Structure { objects: 1, points } => write!(f, "one line or cluster, which becomes {points} points"),

@@ -33,6 +33,9 @@
 //! x_metres = -4.0
 //! y_metres = 12.5
 //! reflectivity = 0.5       # optional, 1 otherwise
+//!
+//! [over]                   # optional; what the app lays the objects over; commands look at the scene alone
+//! recording = "post.toml"  # beside this file, or the name of one that comes with the program
 //! ```
 //!
 //! Every error names the line and what was expected there.
@@ -43,6 +46,6 @@ mod losses;
 mod text;
 
 pub use content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError, SceneTextError};
-pub use disk::{load, save};
+pub use disk::{load, load_beside, save, save_beside};
 pub use losses::Loss;
 pub use text::{from_toml, from_toml_beside, to_toml, to_toml_beside};

@@ -55,7 +55,12 @@ pub fn to_toml_beside(file: &SceneFile, key: &str, value: &impl Serialize) -> Re
 /// # Errors
 /// [`SceneTextError`] names the line, the key or object, and what was expected.
 pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
-    let (file, _) = parse::<IgnoredAny>(text, None)?;
+    Ok(checked::<IgnoredAny>(text, None)?.0)
+}
+
+/// A scene that can be simulated, and somebody else's table where the text has it.
+fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
+    let (file, other) = parse(text, beside)?;
     file.scene.validate(&file.radar).map_err(|error| {
         let span = match &error {
             SceneError::Value { object, field, .. } => object_spans(text, *object).field(field),
@@ -65,7 +70,7 @@ pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
         };
         SceneTextError::at(text, span.start, error.to_string())
     })?;
-    Ok(file)
+    Ok((file, other))
 }
 
 /// Reads what [`to_toml_beside`] wrote; the second is `None` where the text has no `key`.
@@ -80,9 +85,12 @@ pub fn from_toml_beside<T: DeserializeOwned>(text: &str, key: &str) -> Result<(S
     Ok((file, other))
 }
 
-/// [`from_toml`] of a file's bytes.
-pub(super) fn from_bytes(bytes: &[u8]) -> Result<SceneFile, SceneTextError> {
-    utf8(bytes).and_then(from_toml)
+/// [`from_toml`] of a file's bytes, and the table called `beside`.
+pub(super) fn from_bytes<T: DeserializeOwned>(
+    bytes: &[u8],
+    beside: Option<&str>,
+) -> Result<(SceneFile, Option<T>), SceneTextError> {
+    checked(utf8(bytes)?, beside)
 }
 
 /// Text that is TOML and not too much of it, and its top-level table.
@@ -96,7 +104,8 @@ fn table(text: &str) -> Result<Spanned<DeTable<'_>>, SceneTextError> {
 }
 
 fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
-    /// All but the objects, which need a closer look; the field is there for the message about an unknown one.
+    /// All but the objects, which need a closer look; the field is there for the message about an unknown one. So is that of the
+    /// recording that a scene is laid over, which is the app's.
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Head {
@@ -112,6 +121,8 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
         disturbances: Disturbances,
         #[serde(default, rename = "object")]
         _objects: Option<IgnoredAny>,
+        #[serde(default, rename = "over")]
+        _over: Option<IgnoredAny>,
     }
 
     let document = table(text)?;

@@ -188,7 +188,6 @@ fn run(seed: u64, time: Duration) {
 }
 
 #[test]
-#[ignore = "what it finds is not all mended yet"]
 fn thirty_seconds_of_a_monkey_lose_nothing() {
     run(1, Duration::from_secs(30));
 }

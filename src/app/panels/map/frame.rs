@@ -1,6 +1,7 @@
 //! A map on screen: where its places are, and the numbers behind them.
 
 use crate::app::state::{Cursor, MapView, Projection};
+use crate::app::widgets::numbers::signed;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{Polar, Radar};
 use crate::scene::Reflector;
@@ -89,6 +90,46 @@ pub struct Cells<'a> {
     pub minus: Option<&'a RangeAngleMap>,
     /// From Lambda to decades of amplitude.
     pub scale: Option<LambdaScale>,
+}
+
+/// What a cell of a map says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Value {
+    /// Lambda, or a difference of it.
+    pub lambda: f64,
+    /// Decibels below the peak, or a difference of them, where the scale is known.
+    pub decibels: Option<f64>,
+}
+
+impl Cells<'_> {
+    /// What a cell says; `None` outside the map.
+    pub fn value(&self, bin: usize, column: usize) -> Option<Value> {
+        let lambda = *self.map.lambda.get((bin, column))?;
+        let range_db = self.scale.map(|s| 20.0 * (s.peak - s.floor));
+        Some(match self.minus {
+            Some(minus) => {
+                let difference = f64::from(lambda - minus.lambda.get((bin, column))?);
+                Value { lambda: difference, decibels: range_db.map(|range| range * difference) }
+            }
+            None => {
+                let lambda = f64::from(lambda);
+                Value { lambda, decibels: range_db.map(|range| range * (lambda - 1.0)) }
+            }
+        })
+    }
+}
+
+impl Value {
+    /// Its decibels in words: the peak itself, and silence, are 0 dB below the peak, not -0.
+    pub fn decibels_text(&self, is_difference: bool) -> Option<String> {
+        let db = self.decibels?;
+        Some(if db > -0.05 && !is_difference { "0.0".to_owned() } else { signed(db, 1) })
+    }
+
+    /// Its Lambda in words, with its sign where it is a difference.
+    pub fn lambda_text(&self, is_difference: bool) -> String {
+        if is_difference { signed(self.lambda, 3) } else { format!("{:.3}", self.lambda) }
+    }
 }
 
 /// The reflectors of an object.

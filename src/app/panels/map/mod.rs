@@ -1,31 +1,41 @@
 //! One map: picture, axes, colour bar, cursor, marks.
 
+mod blank;
+mod caption;
 mod frame;
 mod hand;
+mod kinds;
+mod legend;
 mod outline;
 mod overlay;
+mod plot;
 mod scale;
+mod swipe;
 mod theory;
 
+pub use blank::{Problem, Veil};
+pub use caption::{Caption, caption};
 pub use frame::{Cells, Marked, Marks};
 pub use hand::Memory;
+pub use kinds::Kinds;
+pub use swipe::Over;
 pub use theory::Theory;
 
 use crate::app::state::{Command, Cursor, DifferenceView, MapKind, MapView, Panel, Projection, Units};
-use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::entry::entry;
-use crate::app::widgets::nudge::{nudge, zoom_keys};
-use crate::app::widgets::numbers::percent;
+use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::Inks;
-use crate::evaluate::Metrics;
 use crate::interact::Selection;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, End, Radar};
+use crate::radar::{End, Radar};
 use crate::scene::Scene;
 use eframe::egui;
 use eframe::egui::{Align2, Color32, Painter, Rect, Sense, TextureId, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
+use legend::Legend;
+use plot::{draw_axes, navigate, rect_of};
 
 /// What a map shows.
 pub struct Input<'a> {
@@ -55,6 +65,12 @@ pub struct Input<'a> {
     pub cells: Option<Cells<'a>>,
     /// What is drawn over it.
     pub marks: Marks<'a>,
+    /// What became of every object, if that is marked.
+    pub kinds: Option<Kinds<'a>>,
+    /// Whether its cells are hits, misses and false alarms.
+    pub told_apart: bool,
+    /// Another map right of an edge.
+    pub over: Option<Over<'a>>,
     /// What the formulas say of a reflector, if that is drawn over it.
     pub theory: Option<Theory<'a>>,
     /// Where the pointer is, in whichever panel.
@@ -70,7 +86,7 @@ pub struct Input<'a> {
 #[cfg(test)]
 impl<'a> Input<'a> {
     /// A map without a picture.
-    fn bare(
+    pub fn bare(
         kind: MapKind,
         radar: &'a Radar,
         projection: Projection,
@@ -91,6 +107,9 @@ impl<'a> Input<'a> {
             stale: false,
             cells: None,
             marks: Marks { objects: &[], found: &[] },
+            kinds: None,
+            told_apart: false,
+            over: None,
             theory: None,
             cursor: None,
             error: None,
@@ -100,29 +119,15 @@ impl<'a> Input<'a> {
     }
 }
 
-/// A map that is hidden until somebody has predicted what it shows.
-#[derive(Clone, Copy)]
-pub struct Veil {
-    /// Whether the prediction is a click in this map.
-    pub is_clicked: bool,
-}
-
-/// Why there is no picture.
-pub struct Problem<'a> {
-    /// What is wrong.
-    pub reason: &'a str,
-    /// Name of a method that works instead.
-    pub instead: Option<&'static str>,
-}
-
 /// Draws a map.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let is_told = has_bar(input.kind) && input.numbers && area.width() > 200.0;
+    let is_told = !input.kind.is_above() && input.numbers && area.width() > 200.0;
     let bar = is_told.then(|| bar_of(&input));
-    let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection);
+    let legend = legend_of(ui.painter(), &input, area);
+    let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection, legend.height());
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
@@ -145,26 +150,53 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
     if input.numbers {
         draw_axes(ui, &painter, frame);
-    }
-    if input.veil.is_none() {
-        overlay::marks(&inner, frame, &input.marks, response.hover_pos().filter(|_| input.numbers));
-        overlay::selected(&inner, frame, input.scene, input.selection);
-        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(&inner, frame));
+        legend.draw(ui, &painter, rect.left_top() - vec2(0.0, legend.height() + 4.0));
     }
     point(&input, frame, &response, &mut asked);
-    if let Some(cursor) = &input.cursor {
-        let told = input.veil.is_none() && input.numbers;
-        overlay::cursor(&inner, frame, cursor, input.cells.as_ref().filter(|_| told));
-    }
-    if input.stale && is_drawn {
-        let corner = rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(&inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
-    }
+    draw_over(&inner, frame, &input, &response, is_drawn);
     if let Some(bar) = bar {
         bar.draw(ui, &painter, rect);
     }
+    if let Some(over) = input.over.as_ref().filter(|_| is_bare) {
+        over.handle(ui, &inner, rect, &mut asked);
+    }
     response.context_menu(|ui| menu(ui, input.kind, &mut asked));
     asked
+}
+
+/// What hatches and marks stand for, where there is room to say so.
+fn legend_of(painter: &Painter, input: &Input<'_>, area: Rect) -> Legend {
+    let has_room = input.numbers && input.veil.is_none() && area.height() > 150.0;
+    let told_apart = input.told_apart && has_room;
+    Legend::new(painter, told_apart, input.kinds.as_ref().filter(|_| has_room), area.width() - axes::LEFT - 12.0)
+}
+
+/// Marks, the cursor and what is said of an old picture.
+fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &egui::Response, is_drawn: bool) {
+    let rect = frame.rect;
+    let is_old = input.stale && is_drawn;
+    if input.veil.is_none() {
+        let pointer = response.hover_pos().filter(|_| input.numbers);
+        overlay::marks(inner, frame, &input.marks, pointer);
+        overlay::selected(inner, frame, input.scene, input.selection);
+        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame));
+        if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
+            kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
+        }
+    }
+    if let Some(cursor) = &input.cursor {
+        let told = input.veil.is_none() && input.numbers;
+        let beneath = input.cells.as_ref();
+        let cells = match &input.over {
+            Some(over) => over.cells_at(rect, frame.cursor(cursor).x, beneath),
+            None => beneath,
+        };
+        overlay::cursor(inner, frame, cursor, cells.filter(|_| told));
+    }
+    if is_old {
+        let corner = rect.left_bottom() + vec2(8.0, -8.0);
+        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
+    }
 }
 
 /// Draws the map itself, or says why there is none; whether there is one.
@@ -179,9 +211,12 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
             inner.image(texture, rect, uv, tint);
         }
         None if input.veil.is_some() => {
-            veil(inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
+            blank::veil(inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
         }
-        None => empty(ui, inner, rect, input.error.as_ref(), asked),
+        None => blank::empty(ui, inner, rect, input.error.as_ref(), asked),
+    }
+    if let Some(over) = input.over.as_ref().filter(|_| input.veil.is_none()) {
+        over.draw(ui, inner, frame);
     }
     texture.is_some()
 }
@@ -197,49 +232,6 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
     asked.push(Command::Hover(cursor));
 }
 
-/// Figures for a map's title bar.
-pub struct Caption {
-    /// Which map.
-    pub kind: MapKind,
-    /// The method whose output is shown.
-    pub method: Option<&'static str>,
-    /// Whether the map is of an earlier scene.
-    pub updating: bool,
-    /// Figures of the output that is shown, against the target of the same scene.
-    pub metrics: Option<Metrics>,
-    /// eta'.
-    pub target_eta: f32,
-    /// eta.
-    pub output_eta: f32,
-    /// Part of a recording's power that the reflectors laid over it explain.
-    pub explained: Option<f64>,
-}
-
-/// What stands in the title bar of a map's panel.
-pub fn caption(input: Caption) -> Option<String> {
-    let updating = if input.updating { "(updating) " } else { "" };
-    let text = match input.kind {
-        MapKind::TargetAbove => format!("η' = {:.2} {updating}", input.target_eta),
-        MapKind::OutputAbove => {
-            let figures = input.metrics.map_or_else(String::new, |m| {
-                let detection = m.detection.map_or("–".to_owned(), percent);
-                format!("P_D {detection} · P_FA {} · ", percent(m.false_alarm))
-            });
-            format!("{figures}η = {:.2} {updating}", input.output_eta)
-        }
-        MapKind::Output => format!("{} {updating}", input.method.unwrap_or_default()),
-        MapKind::Difference => {
-            let figures = input.metrics.map_or_else(String::new, |m| format!("SE {:.0} ", m.squared_error));
-            format!("{figures}{updating}")
-        }
-        MapKind::Unexplained => input.explained.map_or_else(String::new, |explained| {
-            format!("{:.1} % of the power explained {updating}", 100.0 * explained)
-        }),
-        _ => updating.to_owned(),
-    };
-    (!text.trim().is_empty()).then_some(text)
-}
-
 /// Middle of the elements that a map is of.
 fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
     match kind {
@@ -249,110 +241,10 @@ fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
     }
 }
 
-fn has_bar(kind: MapKind) -> bool {
-    !matches!(kind, MapKind::TargetAbove | MapKind::OutputAbove)
-}
-
 fn bar_of(input: &Input<'_>) -> Bar {
     let Input { kind, colours, units, difference, end, .. } = *input;
     let lambda = input.cells.as_ref().and_then(|cells| cells.scale);
     scale::Scale { kind, colours, units, lambda, difference, end }.bar()
-}
-
-/// Where the picture goes within the panel.
-fn rect_of(painter: &Painter, area: Rect, bar: Option<&Bar>, projection: Projection) -> Rect {
-    let height = area.height() - axes::BOTTOM - 8.0;
-    let right = bar.map_or(12.0, |bar| bar.width(painter, height));
-    let rect = Rect::from_min_max(
-        area.min + vec2(axes::LEFT, 8.0),
-        pos2((area.right() - right).max(area.left() + 60.0), (area.bottom() - axes::BOTTOM).max(area.top() + 30.0)),
-    );
-    if projection == Projection::RangeAngle {
-        return rect;
-    }
-    // Equal aspect: the map is twice as wide as high.
-    let size = vec2(rect.width().min(2.0 * rect.height()), rect.height().min(rect.width() / 2.0));
-    Align2::CENTER_CENTER.align_size_within_rect(size, rect)
-}
-
-fn navigate(ui: &Ui, rect: Rect, response: &egui::Response, view: &mut MapView, pans: bool) {
-    if let Some(pos) = response.hover_pos() {
-        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
-        let factor = pinch * (scroll / 200.0).exp();
-        if factor != 1.0 {
-            let fixed = view.at(rect, pos);
-            view.zoom(factor, fixed);
-        }
-    }
-    if let Some(factor) = zoom_keys(response) {
-        let middle = view.at(rect, rect.center());
-        view.zoom(factor, middle);
-    }
-    if pans && response.dragged() {
-        let before = view.at(rect, rect.min);
-        let after = view.at(rect, rect.min + response.drag_delta());
-        view.pan(before - after);
-    }
-    if response.double_clicked() {
-        *view = MapView::default();
-    }
-}
-
-fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
-    let Frame { rect, view, radar, projection, .. } = frame;
-    let (x, y) = match projection {
-        Projection::RangeAngle => {
-            let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);
-            let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
-            let title = match radar.carrier {
-                Carrier::OneWay => "cos θ",
-                Carrier::TwoWay => {
-                    let titles = ["cos θ, folded: each column stands for two directions", "cos θ, folded"];
-                    axes::fitting(painter, rect.width(), &titles)
-                }
-            };
-            let x = Axis::new(cos(view.low.x), cos(view.high.x), title);
-            (x, Axis::new(range(view.low.y), range(view.high.y), "range, m"))
-        }
-        Projection::Cartesian => {
-            let extent = radar.max_range_metres();
-            let x = |fraction: f32| (2.0 * f64::from(fraction) - 1.0) * extent;
-            let y = |fraction: f32| f64::from(fraction) * extent;
-            let across = Axis::new(x(view.low.x), x(view.high.x), "x, m");
-            (across, Axis::new(y(view.low.y), y(view.high.y), "y, m"))
-        }
-    };
-    axes::draw(ui, painter, rect, x, y);
-}
-
-/// What a map without a picture says, and the way out of it.
-fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<'_>>, asked: &mut Vec<Command>) {
-    painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-    let text = error.map_or("computing…", |e| e.reason);
-    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 16.0).max(40.0), 76.0));
-    ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
-        ui.vertical_centered(|ui| {
-            ui.add(egui::Label::new(egui::RichText::new(text).size(12.0).weak()).wrap().selectable(false));
-            if let Some(instead) = error.and_then(|e| e.instead)
-                && ui.button(format!("Use {instead}")).on_hover_text("A method that works here").clicked()
-            {
-                asked.push(Command::Method(instead));
-            }
-        });
-    });
-}
-
-/// What a hidden map says, at its top: the middle is where many a peak will be. The one that waits for a click stands out.
-fn veil(painter: &Painter, rect: Rect, is_clicked: bool, visuals: &egui::Visuals) {
-    let (text, ink, size) = match is_clicked {
-        true => ("Click where you expect it", Inks::of(visuals).selected, 16.0),
-        false => ("Hidden until you have predicted", visuals.weak_text_color(), 13.0),
-    };
-    let at = rect.center_top() + vec2(0.0, 10.0);
-    painter.text(at, Align2::CENTER_TOP, text, egui::FontId::proportional(size), ink);
-    if is_clicked {
-        painter.rect_stroke(rect.shrink(1.0), 0.0, egui::Stroke::new(2.0, ink), egui::StrokeKind::Inside);
-    }
 }
 
 fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
@@ -363,12 +255,13 @@ fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
         Command::ResetMaps,
         Command::ToggleReflectors,
         Command::ToggleTheory,
+        Command::ToggleKinds,
         Command::CopyMap(kind),
         Command::ClosePanel(Panel::Map(kind)),
     ] {
         entry(ui, command, true, asked);
     }
-    if kind == MapKind::Difference {
+    if kind.is_difference() {
         entry(ui, Command::ToggleAbsoluteDifference, true, asked);
         entry(ui, Command::ToggleWholeDifference, true, asked);
     }
@@ -462,5 +355,41 @@ mod tests {
         let texts = seen::texts(map.output());
         assert!(texts.iter().any(|t| t.text == "computing…"));
         assert!(!texts.iter().any(|t| t.text.contains("earlier scene")), "{texts:?}");
+    }
+    #[test]
+    fn what_became_of_objects_is_told_above_the_map_and_under_the_pointer() {
+        let radar = Radar::default();
+        let fates = kinds::tests::fates();
+        let map = |current: bool, size: [f32; 2]| {
+            let (radar, fates) = (radar.clone(), fates.clone());
+            let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
+                let kinds = Some(Kinds { fates: &fates, current });
+                let texture = Some(TextureId::default());
+                let input =
+                    Input { kinds, texture, told_apart: true, kind: MapKind::OutputAbove, ..input(&radar, None) };
+                _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+            });
+            map.step();
+            map
+        };
+        let mut large = map(true, [900.0, 500.0]);
+        let legend = "Legend: hit, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
+        let _told = large.get_by_label(legend);
+        seen::assert_readable(large.output());
+        let rect = large.get_by_label("Output > η map").rect();
+        let blob = crate::theory::blob_cell(&radar, -4.0, 16.0, crate::maps::Aperture::Full);
+        let at = pos2(
+            rect.left() + rect.width() * ((blob.column + 0.5) / 1024.0) as f32,
+            rect.bottom() - rect.height() * ((blob.bin + 0.5) / 512.0) as f32,
+        );
+        let said = |map: &Harness<'_>| seen::texts(map.output()).into_iter().find(|t| t.text.starts_with("point 2"));
+        assert!(said(&large).is_none());
+        large.hover_at(at);
+        large.run_steps(2);
+        assert!(said(&large).is_some_and(|t| t.text.contains("missed")));
+        // A small panel is left to the map.
+        let small = map(true, [260.0, 140.0]);
+        assert!(small.query_by_label_contains("Legend").is_none());
+        seen::assert_readable(small.output());
     }
 }

@@ -4,7 +4,6 @@ use super::frame::{Cells, Frame, Marked, Marks};
 use super::outline::outline;
 use crate::app::state::{Cursor, Projection};
 use crate::app::widgets::axes;
-use crate::app::widgets::numbers::signed;
 use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
 use crate::interact::Selection;
 use crate::scene::{Object, Reflector, Scene};
@@ -135,18 +134,12 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
 
 /// Value of a cell in Lambda and decibels below the peak.
 fn value_text(cells: &Cells<'_>, bin: usize, column: usize) -> Option<String> {
-    let lambda = *cells.map.lambda.get((bin, column))?;
-    let range_db = cells.scale.map(|s| 20.0 * (s.peak - s.floor));
-    if let Some(minus) = cells.minus {
-        let difference = f64::from(lambda - minus.lambda.get((bin, column))?);
-        let decibels = range_db.map_or_else(String::new, |range| format!("  {} dB", signed(range * difference, 1)));
-        return Some(format!("ΔΛ {}{decibels}", signed(difference, 3)));
-    }
-    Some(match range_db.map(|range| range * (f64::from(lambda) - 1.0)) {
-        // The peak itself, and silence, are 0 dB below the peak, not -0.
-        Some(db) if db > -0.05 => format!("Λ {lambda:.3}  {:>6} dB", "0.0"),
-        Some(db) => format!("Λ {lambda:.3}  {:>6} dB", signed(db, 1)),
-        None => format!("Λ {lambda:.3}"),
+    let (value, is_difference) = (cells.value(bin, column)?, cells.minus.is_some());
+    let lambda = value.lambda_text(is_difference);
+    let decibels = value.decibels_text(is_difference);
+    Some(match is_difference {
+        true => format!("ΔΛ {lambda}{}", decibels.map_or_else(String::new, |db| format!("  {db} dB"))),
+        false => format!("Λ {lambda}{}", decibels.map_or_else(String::new, |db| format!("  {db:>6} dB"))),
     })
 }
 

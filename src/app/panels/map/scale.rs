@@ -27,7 +27,7 @@ impl Scale {
     pub fn bar(&self) -> Bar {
         let range_db = self.lambda.map(|s| 20.0 * (s.peak - s.floor)).filter(|range| *range > 0.0);
         let range_db = range_db.filter(|_| self.units == Units::Decibels);
-        if self.kind != MapKind::Difference {
+        if !self.kind.is_difference() {
             let table = colour_table(self.colours);
             return match range_db {
                 Some(range) => Bar { table, low: -range, high: 0.0, title: "dB" },

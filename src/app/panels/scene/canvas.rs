@@ -22,6 +22,8 @@ pub struct Canvas<'a> {
     pub view: SceneView,
     /// The radar.
     pub radar: &'a Radar,
+    /// How far the radar is drawn to see.
+    pub extent_metres: f64,
     /// Colours.
     pub inks: Inks,
 }
@@ -35,21 +37,20 @@ impl Canvas<'_> {
 
 /// Everything that doesn't move: ground, rings, spokes, fields of view, array.
 pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbers: bool) {
-    let Canvas { rect, view, radar, mut inks } = canvas;
+    let Canvas { rect, view, radar, extent_metres: extent, mut inks } = canvas;
     painter.rect_filled(rect, 0.0, inks.beyond);
-    let extent = radar.max_range_metres();
     let origin = Place::new(0.0, 0.0);
     painter.add(Shape::convex_polygon(half_disc(view, rect, origin, extent), inks.ground, Stroke::NONE));
     if fields_of_view {
         for (end, colour) in End::BOTH.into_iter().zip(inks.ends) {
-            field_of_view(radar, view, painter, rect, end, colour);
+            field_of_view(painter, canvas, end, colour);
         }
     }
     let ink = inks.grid_text;
     if !numbers {
         inks.grid_text = Color32::TRANSPARENT;
     }
-    rings(radar, view, painter, rect, inks);
+    rings(painter, Canvas { inks, ..canvas });
     let edge = half_disc(view, rect, origin, extent);
     painter.add(Shape::line(edge, Stroke::new(1.5, ink)));
     array(radar, view, painter, rect, inks);
@@ -69,8 +70,8 @@ fn arc(view: SceneView, rect: Rect, centre: Place, radius: f64, from: f64, to: f
     (0..=steps).map(|i| view.to_screen(rect, at(i))).collect()
 }
 
-fn rings(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: Inks) {
-    let extent = radar.max_range_metres();
+fn rings(painter: &Painter, canvas: Canvas<'_>) {
+    let Canvas { rect, view, extent_metres: extent, inks, .. } = canvas;
     let thin = Stroke::new(1.0, inks.grid);
     let visible = f64::from(rect.width().min(2.0 * rect.height())) * view.metres_per_point;
     let spokes = [15, 30, 45, 60, 75, 90, 105, 120, 135, 150, 165];
@@ -103,10 +104,11 @@ fn rings(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: In
 }
 
 /// What one end can see: its unambiguous angles out to the maximum range (thesis figure 5-6).
-fn field_of_view(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, end: End, colour: Color32) {
+fn field_of_view(painter: &Painter, canvas: Canvas<'_>, end: End, colour: Color32) {
+    let Canvas { rect, view, radar, extent_metres, .. } = canvas;
     let centre = Place::new(radar.end_centre_metres(end), 0.0);
     let half = radar.end_field_of_view_radians();
-    let mut outline = arc(view, rect, centre, radar.max_range_metres(), PI / 2.0 - half, PI / 2.0 + half);
+    let mut outline = arc(view, rect, centre, extent_metres, PI / 2.0 - half, PI / 2.0 + half);
     outline.push(view.to_screen(rect, centre));
     painter.add(Shape::convex_polygon(outline.clone(), colour.gamma_multiply(0.07), Stroke::NONE));
     painter.add(Shape::closed_line(outline, Stroke::new(1.2, colour.gamma_multiply(0.7))));
@@ -223,7 +225,7 @@ pub fn found(painter: &Painter, canvas: Canvas<'_>, found: &[Reflector]) {
 pub fn cursor(painter: &Painter, canvas: Canvas<'_>, cursor: &Cursor) {
     let at = canvas.at(cursor.place);
     let stroke = Stroke::new(1.0, canvas.inks.selected.gamma_multiply(0.8));
-    if cursor.range_metres <= canvas.radar.max_range_metres() {
+    if cursor.range_metres <= canvas.extent_metres {
         let origin = Place::new(0.0, 0.0);
         painter.add(Shape::line(half_disc(canvas.view, canvas.rect, origin, cursor.range_metres), stroke));
         painter.line_segment([canvas.at(origin), at], stroke);

@@ -2,6 +2,7 @@
 
 mod canvas;
 mod disturbances;
+mod trail;
 
 use crate::app::state::{Command, Cursor, NewObject, SceneView};
 use crate::app::widgets::entry::entry;
@@ -18,12 +19,16 @@ use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, Response, Sense
 pub struct Input<'a> {
     /// The radar.
     pub radar: &'a Radar,
+    /// Range of what a single sample a chirp heard, metres: it tells none itself.
+    pub snapshot_range_metres: Option<f64>,
     /// Where dragged objects come to rest.
     pub snap: Snap,
     /// Whether the ends' fields of view are drawn.
     pub fields_of_view: bool,
     /// Reflectors that the method found, where they are drawn.
     pub found: &'a [Reflector],
+    /// Where a search moved each object, from place to place in metres.
+    pub trails: &'a [Vec<[f64; 2]>],
     /// Where the pointer is, in whichever panel.
     pub cursor: Option<Cursor>,
     /// Why the scene can't be computed.
@@ -36,7 +41,8 @@ pub struct Input<'a> {
 pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut SceneView) -> Vec<Command> {
     let mut asked = Vec::new();
     let rect = ui.available_rect_before_wrap();
-    fit(input.radar, editor, view, rect);
+    let extent_metres = extent_metres(input.radar, input.snapshot_range_metres);
+    fit(extent_metres, editor, view, rect);
     // `Sense::drag` alone: a drag starts with the first pixel.
     let response = ui.interact(rect, ui.scope_id().with("scene canvas"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
@@ -46,7 +52,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
     let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
-    let canvas = Canvas { rect, view: *view, radar: input.radar, inks: Inks::of(ui.visuals()) };
+    let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
     disturbances::draw(&painter, canvas, &editor.scene().disturbances);
     for (index, object) in editor.scene().objects.iter().enumerate() {
@@ -55,6 +61,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         canvas::object(&painter, canvas, object, look);
     }
     canvas::found(&painter, canvas, input.found);
+    trail::draw(&painter, canvas, input.trails);
     label_handles(editor, *view, ui, rect);
     if let (Some(start), Some(pos)) = (view.box_start, ui.input(|i| i.pointer.interact_pos())) {
         canvas::selection_box(&painter, canvas, start, pos);
@@ -101,13 +108,17 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
 /// What labels take on each side of the half disc, points.
 const LABELS: Vec2 = vec2(30.0, 24.0);
 
+/// How far the radar sees; somewhat beyond what a snapshot heard, whose own range bin is no more than its label.
+fn extent_metres(radar: &Radar, snapshot_range_metres: Option<f64>) -> f64 {
+    snapshot_range_metres.map_or(radar.max_range_metres(), |range| 1.25 * range)
+}
+
 /// Shows everything the radar can see, and whatever else the scene holds nearby.
-fn fit(radar: &Radar, editor: &Editor, view: &mut SceneView, rect: Rect) {
+fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
     let resized = view.fitted.is_some_and(|size| size != rect.size()) && editor.dragged().is_none();
     if !(view.fit || resized) || rect.width() < 40.0 || rect.height() < 40.0 {
         return;
     }
-    let extent = radar.max_range_metres();
     let (mut low, mut high) = (Place::new(-extent, 0.0), Place::new(extent, extent));
     if let Some((a, b)) = editor.bounds() {
         // Things at a kilometre would make everything else a dot.
@@ -281,132 +292,4 @@ fn context_menu(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::widgets::seen;
-    use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    struct Held {
-        editor: Editor,
-        view: SceneView,
-        asked: Vec<Command>,
-    }
-
-    fn panel(scene: Scene) -> Harness<'static, Held> {
-        let radar = Radar::default();
-        let draw = move |ui: &mut Ui, held: &mut Held| {
-            let input = Input {
-                radar: &radar,
-                snap: Snap::Off,
-                fields_of_view: false,
-                found: &[],
-                cursor: None,
-                error: Some("too far"),
-                numbers: true,
-            };
-            let commands = show(ui, input, &mut held.editor, &mut held.view);
-            held.asked.extend(commands);
-        };
-        let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
-        let mut panel = Harness::builder().with_size([600.0, 400.0]).with_step_dt(0.02).build_ui_state(draw, held);
-        panel.step();
-        panel
-    }
-
-    #[test]
-    fn a_drag_moves_the_object_and_the_pointer_is_told() {
-        let mut scene = panel(Scene::of_points([(0.0, 20.0)]));
-        let from = scene.get_by_label("point 1: move").rect().center();
-        scene.hover_at(from);
-        scene.step();
-        scene.drag_at(from);
-        scene.step();
-        scene.hover_at(from + vec2(40.0, 0.0));
-        scene.step();
-        scene.drop_at(from + vec2(40.0, 0.0));
-        scene.step();
-        let held = scene.state();
-        let moved = held.editor.scene().objects[0].centre_metres()[0];
-        assert!((moved - 40.0 * held.view.metres_per_point).abs() < 1e-6, "{moved}");
-        assert!(held.asked.iter().all(|c| matches!(c, Command::Hover(_))) && !held.asked.is_empty());
-    }
-
-    #[test]
-    fn labels_stand_around_the_half_disc_and_none_is_cut() {
-        for size in [[280.0, 170.0], [480.0, 300.0], [1400.0, 800.0]] {
-            let radar = Radar::default();
-            let mut state = (Editor::new(Scene::default()), SceneView::default());
-            let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
-                let (snap, fields_of_view) = (Snap::Off, false);
-                let (found, numbers) = (&[], true);
-                let input = Input { radar: &radar, snap, fields_of_view, found, cursor: None, error: None, numbers };
-                _ = show(ui, input, editor, view);
-            };
-            state.0.add(crate::scene::Object::Point(crate::scene::Point::new(0.0, 20.0)));
-            let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
-            seen::assert_readable(scene.output());
-            let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().1);
-            let radius = Radar::default().max_range_metres() / view.metres_per_point;
-            let origin = view.to_screen(rect, Place::new(0.0, 0.0));
-            assert!(f64::from(origin.x - rect.left()) > radius + 10.0, "the disc doesn't touch the panel at {size:?}");
-            for text in seen::texts(scene.output()).iter().filter(|t| t.text.ends_with('°')) {
-                let outside = text.rect.distance_to_pos(origin) >= radius as f32;
-                assert!(outside, "{} is on the arc at {size:?}", text.text);
-            }
-        }
-    }
-
-    #[test]
-    fn either_end_of_a_line_can_be_dragged_to_any_slant_and_back() {
-        use crate::scene::{Line, Object};
-        let before = Line::vertical(0.0, 10.0, 0.5, 21);
-        let mut scene = panel(Scene { objects: vec![Object::Line(before.clone())], ..Scene::default() });
-        scene.state_mut().editor.select_all();
-        scene.step();
-        let line = |scene: &Harness<'static, Held>| match &scene.state().editor.scene().objects[0] {
-            Object::Line(line) => line.clone(),
-            other => panic!("{other:?}"),
-        };
-        let drag = |scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2| {
-            let from = scene.get_by_label(handle).rect().center();
-            scene.hover_at(from);
-            scene.step();
-            scene.drag_at(from);
-            scene.step();
-            scene.hover_at(from + by);
-            scene.step();
-            scene.drop_at(from + by);
-            scene.step();
-            scene.state().view.metres_per_point
-        };
-        let metres = drag(&mut scene, "line 1: move the far end: more or fewer reflectors", vec2(50.0, 10.0));
-        let turned = line(&scene);
-        let wanted = 90.0 - (50.0 * metres).atan2(10.0 - 10.0 * metres).to_degrees();
-        assert!((turned.direction_degrees - wanted).abs() < 0.1, "{turned:?}, not {wanted}");
-        assert_eq!([turned.x_metres, turned.y_start_metres], [0.0, 10.0], "the other end stays");
-        let far = turned.end_metres();
-        drag(&mut scene, "line 1: move the near end: more or fewer reflectors", vec2(-60.0, -20.0));
-        let [x, y] = line(&scene).end_metres();
-        assert!((x - far[0]).hypot(y - far[1]) < 1e-9 && line(&scene).x_metres < -1.0, "{:?}", line(&scene));
-        let editor = &mut scene.state_mut().editor;
-        assert!(editor.undo() && editor.undo() && !editor.undo());
-        assert_eq!(line(&scene), before);
-    }
-
-    #[test]
-    fn a_double_click_asks_for_a_point_there() {
-        let mut scene = panel(Scene::default());
-        let at = scene.get_by_label("Scene").rect().center();
-        for _ in 0..2 {
-            scene.hover_at(at);
-            scene.drag_at(at);
-            scene.drop_at(at);
-            scene.step();
-        }
-        let held = scene.state();
-        let place = held.view.to_scene(scene.get_by_label("Scene").rect(), at);
-        assert!(held.asked.contains(&Command::Add(NewObject::Point, Some(place))), "{:?}", held.asked);
-    }
-}
+mod tests;

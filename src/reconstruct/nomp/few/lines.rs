@@ -6,15 +6,11 @@
 //! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
 
 use super::atom::Atom;
-use crate::radar::{End, Radar};
-use crate::reconstruct::nomp::end_beams::{beam_of_cos, end_beams};
-use crate::signal::simd::{Kernel, LANES_F64, Lanes, Simd, phasor};
+use crate::radar::Radar;
+use crate::reconstruct::nomp::phased::{Heard, PhasedBeams, Row};
+use crate::signal::simd::{Kernel, Simd};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
-
-/// Beams formed by each end: fine enough to take the nearest.
-const BEAMS: usize = 96;
 
 /// Points added with their phases before magnitudes are taken.
 const BLOCK: usize = 5;
@@ -40,48 +36,24 @@ pub struct LineCandidate {
     pub score: f64,
 }
 
-/// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
+/// Looks for lines in the beams of both ends.
 pub struct LineDetector {
-    /// `[beam * bins + range bin]` for each end.
-    beams: [Vec<Complex64>; 2],
-    centres: [f64; 2],
-    bins: usize,
-    bins_per_metre: f64,
-    /// Phase of an echo at the middle of the chirp, turns a metre.
-    turns_per_metre: f64,
+    beams: PhasedBeams,
     extent_metres: f64,
-    /// Referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.
-    wrap_sign: f64,
 }
 
 impl LineDetector {
     /// Forms the beams of `residual` (all samples of both ends, not windowed).
     pub fn new(radar: &Radar, residual: &[Complex64]) -> Self {
-        let bins = radar.samples;
-        let middle = (bins as f64 - 1.0) / 2.0;
-        let shift: Vec<Complex64> =
-            (0..bins).map(|bin| Complex64::cis(TAU * (bin as f64 * middle / bins as f64).fract())).collect();
-        let beams = end_beams(radar, residual, BEAMS).map(|mut beams| {
-            beams.outer_iter_mut().for_each(|mut row| row.iter_mut().zip(&shift).for_each(|(b, shift)| *b *= shift));
-            beams.into_raw_vec_and_offset().0
-        });
-        LineDetector {
-            beams,
-            centres: End::BOTH.map(|e| radar.end_centre_metres(e)),
-            bins,
-            bins_per_metre: 1.0 / radar.range_resolution_metres(),
-            turns_per_metre: radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
-                + middle / radar.max_range_metres(),
-            extent_metres: radar.max_range_metres(),
-            wrap_sign: if bins.is_multiple_of(2) { -1.0 } else { 1.0 },
-        }
+        LineDetector { beams: PhasedBeams::new(radar, residual), extent_metres: radar.max_range_metres() }
     }
 
     /// What each of `count` reflectors at x, one behind the other from `start`, would have left at an end.
-    fn echoes(&self, end: usize, x: f64, start: f64, spacing: f64, count: usize) -> Vec<Echo> {
-        let mut echoes = vec![Echo::default(); count];
-        Simd::chosen().run(Column { detector: self, end, x, start, spacing, echoes: &mut echoes });
-        echoes
+    fn echoes(&self, end: usize, x: f64, start: f64, spacing: f64, count: usize) -> Vec<Heard> {
+        let mut heard = vec![Heard::default(); count];
+        let row = Row { first_metres: [x, start], step_metres: [0.0, spacing] };
+        Simd::chosen().run(Column { detector: self, end, row, heard: &mut heard });
+        heard
     }
 
     /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
@@ -186,23 +158,12 @@ struct Trial {
     start: usize,
 }
 
-/// What a reflector would have left at an end, its phase taken off.
-#[derive(Debug, Clone, Copy, Default)]
-struct Echo {
-    /// Value times the amplitude 1/R^2.
-    weighted: Complex64,
-    /// Square of the amplitude.
-    weight: f64,
-}
-
-/// Echoes of reflectors at equal x and equal spacing at one end.
+/// What a column of reflectors would have left at one end.
 struct Column<'a> {
     detector: &'a LineDetector,
     end: usize,
-    x: f64,
-    start: f64,
-    spacing: f64,
-    echoes: &'a mut [Echo],
+    row: Row,
+    heard: &'a mut [Heard],
 }
 
 impl Kernel for Column<'_> {
@@ -210,35 +171,8 @@ impl Kernel for Column<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        const W: usize = LANES_F64;
-        let LineDetector { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self.detector;
-        let beams = &self.detector.beams[self.end];
-        let dx = self.x - self.detector.centres[self.end];
-        for (first, echoes) in self.echoes.chunks_mut(W).enumerate() {
-            let y = Lanes::<f64, W>(std::array::from_fn(|i| self.start + (first * W + i) as f64 * self.spacing));
-            let range = (y * y + Lanes::splat(dx * dx)).sqrt().map(|r| if r > 0.05 { r } else { 0.05 });
-            let phase = phasor::<f64, W, FMA>(range * Lanes::splat(-turns_per_metre));
-            let amplitude = range.map(|r| 1.0 / (r * r));
-            for (lane, echo) in echoes.iter_mut().enumerate() {
-                let beam = &beams[beam_of_cos(dx / range.0[lane], BEAMS) * bins..][..bins];
-                let at = range.0[lane] * bins_per_metre;
-                let (low, part) = (at as usize, at.fract());
-                // Neighbouring rows differ by half a turn (the middle of the chirp): `new` already took that off.
-                let row = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
-                let value = row(low) * (1.0 - part) + row(low + 1) * part;
-                let amplitude = amplitude.0[lane];
-                let phase = Complex64::new(phase.re.0[lane], phase.im.0[lane]);
-                *echo = Echo { weighted: value * phase * amplitude, weight: amplitude * amplitude };
-            }
-        }
+        self.detector.beams.listen::<FMA>(self.end, &self.row, self.heard);
     }
-}
-
-/// Row `k` of a beam beyond its last.
-#[cold]
-fn wrapped(beam: &[Complex64], k: usize, wrap_sign: f64) -> Complex64 {
-    let value = beam[k % beam.len()];
-    if (k / beam.len()) % 2 == 1 { value * wrap_sign } else { value }
 }
 
 /// Blocks of neighbouring points in one column of the grid as one end sees them, one for every first point.

@@ -1,4 +1,5 @@
-//! A few points and lines, every sample of every atom written out: what finds the long vertical lines of the tables' scenes.
+//! Long vertical lines of the tables' scenes and a few points beside them, every sample of every atom written out: for what walls begun from two
+//! of their reflectors don't reach.
 //!
 //! | file | what it is |
 //! |---|---|

@@ -1,0 +1,100 @@
+//! Commands that put another scene on screen, or this one in a file.
+
+use super::saving;
+use crate::app::jobs::{Jobs, Purpose};
+use crate::app::state::{Command, MapKind, Panel, Settings, State};
+use crate::interact::Document;
+use crate::recording;
+use crate::scene::file::SceneFile;
+use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
+use crate::scene::presets;
+use std::path::{Path, PathBuf};
+
+/// Does those commands, and hands others on.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+    match command {
+        Command::New => {
+            state.set_document("new scene", Document::default());
+        }
+        Command::Open => jobs.choose_file(state, Purpose::Open),
+        Command::OpenPath(path) => open(state, path),
+        Command::Save => saving::save_again(state, jobs),
+        Command::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
+        Command::SaveTo(path) => saving::save(state, path),
+        Command::AnswerLosses(answer) => saving::answer(state, jobs, answer),
+        Command::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
+        Command::Discard(id) => state.editor.discard(id),
+        Command::Preset(index) => preset(state, index),
+        Command::Recording(index) => shipped_recording(state, index),
+        Command::RandomScene(kind) => random_scene(state, kind),
+        other => return Some(other),
+    }
+    None
+}
+
+/// Opens a scene file or a recording; on any error the scene on screen stays.
+fn open(state: &mut State, path: PathBuf) {
+    if let Some(document) = read(state, &path) {
+        show(state, "open", document);
+    }
+}
+
+/// Puts a document on screen, and where it is a recording, what recordings are looked at with.
+fn show(state: &mut State, label: &str, document: Document) {
+    let is_recording = document.recording().is_some();
+    state.set_document(label, document);
+    if is_recording {
+        show_recording_panels(state);
+    }
+}
+
+/// The list of what was found in front, and what reflectors leave unexplained behind the output.
+pub fn show_recording_panels(state: &mut State) {
+    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output), Panel::Found] {
+        state.arrangement.set_open(panel, true);
+    }
+}
+
+/// Reads a scene file or a recording; says why where it can't.
+pub fn read(state: &mut State, path: &Path) -> Option<Document> {
+    let read = match recording::file::is_recording_at(path) {
+        true => Document::read_recording(path).map_err(|e| e.to_string()),
+        false => Document::read(path).map_err(|e| e.to_string()),
+    };
+    match read {
+        Ok(document) => {
+            state.remember(path);
+            Some(document)
+        }
+        Err(error) => {
+            state.notices.error(format!("{error}\nThe scene on screen was kept."));
+            None
+        }
+    }
+}
+
+fn preset(state: &mut State, index: usize) {
+    let Some(preset) = presets::ALL.get(index) else { return };
+    match preset.load() {
+        Ok(file) => {
+            state.set_document("preset", Document::shipped(file));
+        }
+        Err(error) => state.notices.error(format!("Preset {}: {error}", preset.id)),
+    }
+}
+
+fn shipped_recording(state: &mut State, index: usize) {
+    let Some(preset) = recording::presets::ALL.get(index) else { return };
+    match Document::shipped_recording(preset) {
+        Ok(document) => show(state, "recording", document),
+        Err(error) => state.notices.error(format!("Recording {}: {error}", preset.id)),
+    }
+}
+
+fn random_scene(state: &mut State, kind: Kind) {
+    let Settings { random_seed: seed, random_number: number, .. } = state.settings;
+    let scene = Generator::new(state.radar(), Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
+    state.settings.random_number = number.wrapping_add(1);
+    let file = SceneFile { scene, radar: state.radar().clone() };
+    state.set_document("random scene", Document::made(file));
+}

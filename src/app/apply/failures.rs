@@ -1,0 +1,122 @@
+//! Commands about rows: try methods, open a row, look for worse, keep.
+
+use crate::app::jobs::{FailuresPlan, Jobs, Purpose, is_table_of_rows, keep, tell};
+use crate::app::state::{Command, Conditions, FailureChoice, OpenedRow, Panel, State};
+use crate::evaluate::campaign::Campaign;
+use crate::evaluate::sets::{Folder, SceneSet};
+use crate::evaluate::worsen::Aim;
+use std::path::Path;
+
+/// Does a command about rows; hands any other on.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+    match command {
+        Command::TryMethods(choice) => match plan(state, jobs, &choice) {
+            Ok(plan) => jobs.failures.begin(plan),
+            Err(error) => state.notices.error(error),
+        },
+        Command::CancelTrying => jobs.failures.cancel(),
+        Command::OpenRows => jobs.choose_file(state, Purpose::OpenRows),
+        Command::OpenTable(path) if !is_table_of_rows(&path) => return Some(Command::WatchLog(path)),
+        Command::OpenRowsFile(path) | Command::OpenTable(path) => {
+            jobs.failures.open(path);
+            if state.arrangement.maximised() != Some(Panel::Failures) {
+                state.arrangement.set_open(Panel::Failures, true);
+            }
+        }
+        Command::SaveRows => jobs.choose_file(state, Purpose::SaveRows),
+        Command::SaveRowsTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
+        Command::ClearRows => jobs.failures.clear(),
+        Command::BringRowsBack => jobs.failures.bring_back(),
+        Command::OpenRow(index) => open_row(state, jobs, index),
+        Command::Search(choice) => jobs.failures.search.begin(state, choice),
+        Command::CancelSearch => jobs.failures.search.cancel(),
+        Command::TakeFinding => take_finding(state, jobs),
+        Command::ForgetSearch => jobs.failures.search.forget(),
+        Command::KeepScene(note) => keep_scene(state, jobs, &note),
+        Command::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
+        Command::SetOwnScenes(path) => {
+            let folder = if path.is_dir() { Some(path.as_path()) } else { path.parent() };
+            state.settings.own_scenes = folder.map(Path::to_path_buf);
+        }
+        other => return Some(other),
+    }
+    None
+}
+
+fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPlan, String> {
+    let conditions = Conditions {
+        floor: state.settings.floor,
+        normalisation: state.settings.normalisation,
+        radar: state.radar().clone(),
+    };
+    let mut sets: Vec<SceneSet> = choice.kinds.iter().copied().map(SceneSet::Generated).collect();
+    if choice.own {
+        let folder = jobs.own_scenes(state).ok_or("There is no folder of your own scenes: choose one first.")?;
+        let folder =
+            Folder::open(&folder).map_err(|e| format!("{e}\nKeep a scene first, or choose another folder."))?;
+        sets.push(SceneSet::Folder(folder));
+    }
+    let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();
+    Ok(FailuresPlan { campaign: Campaign { count: choice.count, ..conditions.campaign(choice.seed) }, sets, methods })
+}
+
+/// Puts a row's scene on screen as another document, its floor and method in the settings. One undo takes back all of it, and a walk along
+/// many rows too, as long as nothing was changed on the way.
+fn open_row(state: &mut State, jobs: &Jobs, index: usize) {
+    let table = jobs.failures.table();
+    let Some(row) = table.rows().get(index).cloned() else { return };
+    let conditions = table.conditions();
+    let document = match conditions.document(&row) {
+        Ok(document) => document,
+        Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
+    };
+    if is_walking(state) {
+        state.undo();
+    }
+    let before = state.setup();
+    state.settings.floor = conditions.floor;
+    state.settings.normalisation = conditions.normalisation;
+    match state.methods.all.iter().find(|m| m.name() == row.method) {
+        Some(method) => {
+            state.settings.method = row.method.clone();
+            // Its own threshold, or the one that the row was judged at.
+            let eta = &mut state.settings.method_eta;
+            match method.eta() == row.eta {
+                true => _ = eta.remove(&row.method),
+                false => _ = eta.insert(row.method.clone(), row.eta),
+            }
+        }
+        None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),
+    }
+    let opened = document.id();
+    state.set_document("open row", document);
+    let after = state.setup();
+    state.guided.push(before, after);
+    state.failures.opened = Some(OpenedRow { row, index, generation: table.generation(), document: opened });
+}
+
+/// Whether the scene on screen is that of a row, as it was opened.
+fn is_walking(state: &State) -> bool {
+    let is_row = state.row_on_screen().is_some() && !state.editor.is_modified();
+    is_row && state.guided.can_undo(&state.setup())
+}
+
+fn take_finding(state: &mut State, jobs: &Jobs) {
+    let search = &jobs.failures.search;
+    let ([_, .., found], Some((choice, _))) = (search.path(), search.subject()) else { return };
+    let label = if choice.aim == Aim::Repair { "repair" } else { "worse" };
+    let found = found.scene.clone();
+    // Its name and notes stay those of the scene that it was looked for near.
+    state.editor.edit(label, None, |scene, _| (scene.objects, scene.noise_seed) = (found.objects, found.noise_seed));
+}
+
+fn keep_scene(state: &mut State, jobs: &Jobs, note: &str) {
+    let Some(folder) = jobs.own_scenes(state) else {
+        return state.notices.error("There is no folder to keep scenes in: choose one first.");
+    };
+    let kept = keep(&folder, state.editor.document().to_file(), note).map(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        format!("Kept as {name}. apertura evaluate --scenes \"{}\" tries methods on all kept scenes.", folder.display())
+    });
+    tell(state, kept.map_err(|error| format!("{error}\nThe scene was not kept; choose another folder.")));
+}

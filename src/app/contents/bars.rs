@@ -1,0 +1,34 @@
+//! What the menu bar and the status bar are told.
+
+use crate::app::chrome::{menu, status_bar};
+use crate::app::jobs::Jobs;
+use crate::app::state::{Panel, State};
+
+/// What the menu bar shows.
+pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
+    let history = state.editor.history();
+    menu::Input {
+        presents: state.is_presenting(),
+        can_undo: state.can_undo(),
+        can_redo: history.redo_label().is_some(),
+        selected: !state.editor.selection().is_empty(),
+        projection: state.settings.projection,
+        colours: state.settings.colours,
+        random: (state.settings.random_seed, state.settings.random_number),
+        recent: &state.recent,
+        is_recording: jobs.recorder.is_at_work(),
+        left: state.editor.left(),
+        is_open,
+    }
+}
+
+/// What the status bar says.
+pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
+    let scene = state.editor.scene();
+    status_bar::Input {
+        cursor: state.shown_cursor(),
+        objects: scene.objects.len(),
+        reflectors: scene.reflector_count(),
+        took: jobs.pipeline.took(),
+    }
+}

@@ -1,0 +1,204 @@
+//! What maps, cuts and the ROC are told.
+
+use super::{Contents, Reflectors, shown_found, shows_numbers};
+use crate::app::jobs::{Jobs, TheoryResult};
+use crate::app::panels::{cuts, map, roc};
+use crate::app::state::{Command, MapKind, MethodSlot, State};
+use crate::engine::ReadyMap;
+use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
+
+impl Contents<'_> {
+    pub(super) fn map(&mut self, ui: &mut Ui, kind: MapKind) -> Vec<Command> {
+        let texture = self.texture(ui, kind);
+        let projection = self.state.settings.projection;
+        let mut view = *self.state.map_views.of(projection);
+        let objects = marked(self.state, &mut self.memory.reflectors);
+        let input = map_input(self.state, self.jobs, objects, texture, kind);
+        let asked = map::show(ui, input, &mut view, &mut self.memory.map);
+        *self.state.map_views.of(projection) = view;
+        asked
+    }
+
+    /// A map's picture on the graphics card, if there is one.
+    pub(super) fn texture(&mut self, ui: &Ui, kind: MapKind) -> Option<TextureId> {
+        let options = TextureOptions { minification: TextureFilter::Linear, ..TextureOptions::NEAREST };
+        let picture = self.jobs.pipeline.result().and_then(|r| r.pictures.get(&kind))?;
+        let texture = self.memory.textures.entry(kind).or_default();
+        Some(texture.of(ui.ctx(), kind.title(), &picture.image, options))
+    }
+
+    pub(super) fn cuts(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let state = &*self.state;
+        // What is to be predicted is not to be read off a cut.
+        let hidden = state.is_predicting();
+        let maps = if hidden { Vec::new() } else { self.jobs.pipeline.cut_maps() };
+        let input = cuts::Input {
+            radar: state.radar(),
+            cursor: state.cut_cursor(),
+            maps: &maps,
+            pins: if hidden { &[] } else { state.pins.all() },
+            units: state.settings.units,
+        };
+        cuts::show(ui, input, &mut self.memory.cuts)
+    }
+
+    pub(super) fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let pipeline = &self.jobs.pipeline;
+        let shown = pipeline.result().filter(|_| !self.state.is_predicting());
+        let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
+        let method = pipeline.output().map_or("output", |o| o.method);
+        let refusal = pipeline.refusal().map(|r| r.reason.as_str());
+        roc::show(ui, roc::Input { points, method, eta: self.state.output_eta(), refusal })
+    }
+
+    pub(super) fn map_caption(&self, kind: MapKind) -> Option<String> {
+        caption(self.state, self.jobs, kind)
+    }
+}
+
+/// The reflectors to be marked, object by object.
+pub(super) fn marked<'a>(state: &State, reflectors: &'a mut Reflectors) -> &'a [map::Marked] {
+    if state.settings.show_reflectors { reflectors.of(state.editor.scene()) } else { &[] }
+}
+
+/// What a map is told.
+pub(super) fn map_input<'a>(
+    state: &'a State,
+    jobs: &'a Jobs,
+    objects: &'a [map::Marked],
+    texture: Option<TextureId>,
+    kind: MapKind,
+) -> map::Input<'a> {
+    let (settings, pipeline) = (&state.settings, &jobs.pipeline);
+    let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
+    let found = if kind.slot() == Some(MethodSlot::First) { shown_found(state, pipeline) } else { &[] };
+    let pair = kind.slot().and_then(|slot| pipeline.method(slot).output()).map(|o| &o.pair);
+    let of_formulas = jobs.theory.result().filter(|r| r.request.radar == *state.radar());
+    map::Input {
+        kind,
+        radar: state.editor.radar(),
+        scene: state.editor.scene(),
+        selection: state.editor.selection(),
+        projection: settings.projection,
+        colours: settings.colours,
+        units: settings.units,
+        difference: settings.difference,
+        texture,
+        end: picture.map_or(1.0, |p| p.end),
+        stale: pipeline.is_stale(kind),
+        cells: cells(jobs, kind),
+        marks: map::Marks { objects, found },
+        kinds: kinds(state, jobs, kind),
+        told_apart: kind.is_above() && pair.is_some_and(|pair| pair.target.is_some()),
+        over: None,
+        theory: of_formulas.and_then(|r| theory(r, kind)),
+        cursor: state.shown_cursor(),
+        error: error(state, jobs, kind),
+        veil: veil(state, kind),
+        numbers: shows_numbers(state),
+    }
+}
+
+/// What became of every object, where that is to be marked: on the maps of the whole array.
+fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Kinds<'a>> {
+    let slot = match kind {
+        MapKind::Target | MapKind::TargetAbove => MethodSlot::First,
+        other => other.slot()?,
+    };
+    let (fates, current) = jobs.kinds.of(slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
+    Some(map::Kinds { fates, current })
+}
+
+/// What stands in a map's title.
+pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
+    let pipeline = &jobs.pipeline;
+    let slot = kind.slot().unwrap_or(MethodSlot::First);
+    map::caption(map::Caption {
+        kind,
+        method: pipeline.method(slot).output().map(|o| o.method),
+        updating: is_updating(jobs, kind),
+        metrics: pipeline.scores_in(slot).map(|s| s.metrics).filter(|_| !state.is_predicting()),
+        target_eta: state.settings.target_eta,
+        output_eta: state.eta_in(slot),
+        explained: pipeline.unexplained().map(|u| u.explained),
+    })
+}
+
+/// Whether a map is of something else than what is on screen.
+pub(super) fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
+    let outdated = |slot| jobs.pipeline.method(slot).outdated().is_some();
+    jobs.pipeline.is_stale(kind) || kind.slot().is_some_and(outdated)
+}
+
+/// The numbers behind a map's picture.
+pub(super) fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
+    let frame = &jobs.pipeline.result()?.frame;
+    let pair = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| &o.pair);
+    let scale = frame.full.as_ref().map(|m| m.scale);
+    match kind {
+        MapKind::Input0 => frame.first.as_ref().map(cells_of),
+        MapKind::Input1 => frame.last.as_ref().map(cells_of),
+        MapKind::Target | MapKind::TargetAbove => frame.full.as_ref().map(cells_of),
+        MapKind::Output | MapKind::OutputAbove | MapKind::Second | MapKind::SecondAbove => {
+            pair.map(|p| map::Cells { map: &p.output, minus: None, scale })
+        }
+        MapKind::Difference | MapKind::SecondDifference => {
+            pair.and_then(|p| Some(map::Cells { map: &p.output, minus: Some(p.target.as_deref()?), scale }))
+        }
+        MapKind::Unexplained => jobs.pipeline.unexplained().map(|u| cells_of(&u.map)),
+    }
+}
+
+fn cells_of(map: &ReadyMap) -> map::Cells<'_> {
+    map::Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
+}
+
+/// What the formulas say of the map.
+fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
+    let [first, last, full] = &result.overlays;
+    let overlay = match kind {
+        MapKind::Input0 => first,
+        MapKind::Input1 => last,
+        _ => full,
+    };
+    Some(map::Theory {
+        overlay: overlay.as_ref()?,
+        reflector: result.request.reflector,
+        ellipse: result.ellipse.filter(|_| !matches!(kind, MapKind::Input0 | MapKind::Input1)),
+        listening: result.request.elements.name(),
+        snr: result.request.snr,
+        comb: kind.needs_output(),
+    })
+}
+
+/// Why a map is hidden: a lesson asks for a prediction first.
+fn veil(state: &State, kind: MapKind) -> Option<map::Veil> {
+    let run = state.lesson.as_ref().filter(|run| run.is_predicting())?;
+    Some(map::Veil { is_clicked: run.clicked_map() == Some(kind) })
+}
+
+/// Why a map has no picture, and what would help.
+fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Problem<'a>> {
+    if let Some(reason) = jobs.pipeline.scene_error() {
+        return Some(map::Problem { reason, instead: None });
+    }
+    let is_recorded = state.editor.document().recording().is_some();
+    if kind == MapKind::Unexplained {
+        let reason = match jobs.pipeline.why_unexplained() {
+            Some(reason) => reason,
+            None if is_recorded => return None,
+            None => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
+        };
+        return Some(map::Problem { reason, instead: None });
+    }
+    if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
+        // Where there is a target, there is a picture, and nobody reads this.
+        let reason = "The recording has the samples of the two ends alone: nobody knows what all elements would see.";
+        return Some(map::Problem { reason, instead: None });
+    }
+    let slot = kind.slot()?;
+    let refusal = jobs.pipeline.method(slot).refusal()?;
+    let instead = || state.methods.instead_of(refusal.method, state.radar());
+    // The second is chosen beside the maps.
+    Some(map::Problem { reason: &refusal.reason, instead: if slot == MethodSlot::First { instead() } else { None } })
+}

@@ -1,0 +1,58 @@
+//! What the panels are told that show the scene, or the radar before it.
+
+use super::{Contents, shown_found, shows_numbers};
+use crate::app::panels::{disturbances, elements, inspector, objects, radar, scene};
+use crate::app::state::Command;
+use eframe::egui::Ui;
+
+impl Contents<'_> {
+    pub(super) fn scene(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (state, pipeline) = (&mut *self.state, &self.jobs.pipeline);
+        let found = shown_found(state, pipeline);
+        let radar = state.editor.radar().clone();
+        let input = scene::Input {
+            radar: &radar,
+            snapshot_range_metres: state.editor.document().recording().and_then(|r| r.range_metres),
+            snap: state.settings.snap,
+            fields_of_view: state.settings.show_fields_of_view,
+            found,
+            trails: self.jobs.failures.search.trails(state.editor.document().id()),
+            cursor: state.shown_cursor(),
+            error: pipeline.scene_error(),
+            numbers: shows_numbers(state),
+        };
+        scene::show(ui, input, &mut state.editor, &mut state.scene_view)
+    }
+
+    pub(super) fn radar(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let recording = self.state.editor.document().recording();
+        let measured = recording.map(|r| radar::Measured { by_all_elements: r.signal().is_some() });
+        radar::show(ui, radar::Input { radar: self.state.radar(), measured })
+    }
+
+    pub(super) fn elements(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let input = elements::Input {
+            radar: self.state.radar(),
+            elements: &self.state.editor.scene().disturbances.elements,
+            calibration: self.jobs.calibration.result(),
+        };
+        elements::show(ui, input, &mut self.memory.elements)
+    }
+
+    pub(super) fn disturbances(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let document = self.state.editor.document();
+        let is_recorded = document.recording().is_some();
+        disturbances::show(ui, disturbances::Input { disturbances: &document.scene().disturbances, is_recorded })
+    }
+
+    pub(super) fn inspector(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (editor, coordinates) = (&self.state.editor, self.state.settings.coordinates);
+        inspector::show(ui, inspector::Input { editor, radar: editor.radar(), coordinates })
+    }
+
+    pub(super) fn objects(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let (editor, coordinates) = (&self.state.editor, self.state.settings.coordinates);
+        let input = objects::Input { scene: editor.scene(), selection: editor.selection(), coordinates };
+        objects::show(ui, input, &mut self.memory.objects)
+    }
+}

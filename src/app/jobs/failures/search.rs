@@ -1,0 +1,152 @@
+//! The search for a worse scene near the one on screen, or for its repair, in the background.
+
+use crate::app::jobs::rows::{RowJob, Stopped, Teller};
+use crate::app::state::{SearchChoice, State};
+use crate::evaluate::worsen::{Aim, Finding, Search as Job};
+use crate::reconstruct::Reconstructor;
+use crate::scene::Scene;
+use std::sync::Arc;
+
+/// Where the search begins, and how it goes.
+struct Plan {
+    job: Job,
+    scene: Arc<Scene>,
+    method: Arc<dyn Reconstructor>,
+}
+
+/// What a search is about.
+struct Subject {
+    scene: Arc<Scene>,
+    document: u64,
+    choice: SearchChoice,
+    method: &'static str,
+}
+
+/// The worker, and the path of the last search.
+pub struct Search {
+    job: RowJob<Plan, Finding, ()>,
+    subject: Option<Subject>,
+    /// Places of every object, from scene to scene of the path.
+    trails: Vec<Vec<[f64; 2]>>,
+    /// Scenes of the path that the trails lead through.
+    drawn: usize,
+    /// Whether its end was told.
+    told: bool,
+}
+
+impl Search {
+    /// Starts the worker, which waits; `wake` is called from its thread.
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Search> {
+        let job = RowJob::start("search", run, wake)?;
+        Ok(Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true })
+    }
+
+    /// Searches near the scene on screen.
+    pub fn begin(&mut self, state: &State, choice: SearchChoice) {
+        let Some(method) = state.method().cloned() else { return };
+        let scene = state.editor.scene().clone();
+        let job = Job {
+            radar: state.radar().clone(),
+            floor: state.settings.floor,
+            normalisation: state.settings.normalisation,
+            aim: choice.aim,
+            measure: choice.measure,
+            within_metres: choice.within_metres,
+            tries: choice.tries,
+            seed: 0,
+        };
+        let document = state.editor.document().id();
+        self.subject = Some(Subject { scene: scene.clone(), document, choice, method: method.name() });
+        (self.trails, self.drawn, self.told) = (Vec::new(), 0, false);
+        self.job.begin(Plan { job, scene, method });
+    }
+
+    /// Stops soon; what was found stays.
+    pub fn cancel(&mut self) {
+        self.job.cancel();
+    }
+
+    /// Forgets the path.
+    pub fn forget(&mut self) {
+        self.job.cancel();
+        self.job.take_rows();
+        (self.subject, self.trails, self.told) = (None, Vec::new(), true);
+    }
+
+    /// The part that is done, while it runs.
+    pub fn progress(&self) -> Option<f32> {
+        self.job.progress()
+    }
+
+    /// How it ended, if not well.
+    pub fn note(&self) -> Option<&str> {
+        self.job.note()
+    }
+
+    /// What was looked for, and by which method, if anything was.
+    pub fn subject(&self) -> Option<(SearchChoice, &'static str)> {
+        self.subject.as_ref().map(|s| (s.choice, s.method))
+    }
+
+    /// The start, and every scene that was better for the aim than all before it.
+    pub fn path(&self) -> &[Finding] {
+        if self.subject.is_some() { self.job.rows() } else { &[] }
+    }
+
+    /// Where every object went along the path, while the document is on screen that it began at.
+    pub fn trails(&self, document: u64) -> &[Vec<[f64; 2]>] {
+        let same = self.subject.as_ref().is_some_and(|s| s.document == document);
+        if same { &self.trails } else { &[] }
+    }
+
+    /// Whether the scene on screen is still the one that it began at.
+    pub fn is_about(&self, scene: &Arc<Scene>) -> bool {
+        self.subject.as_ref().is_some_and(|s| Arc::ptr_eq(&s.scene, scene))
+    }
+
+    /// Takes in what was found. Whether the search ended just now, and what a panic said.
+    pub fn poll(&mut self) -> (bool, Option<String>) {
+        let panicked = self.job.poll();
+        let path = if self.subject.is_some() { self.job.rows() } else { &[] };
+        for finding in &path[self.drawn.min(path.len())..] {
+            let objects = &finding.scene.objects;
+            self.trails.resize_with(objects.len(), Vec::new);
+            self.trails.iter_mut().zip(objects).for_each(|(trail, object)| trail.push(object.centre_metres()));
+        }
+        self.drawn = path.len();
+        let ended = !self.told && self.job.progress().is_none();
+        self.told |= ended;
+        (ended, panicked.map(|said| format!("The search failed ({said}). Choose another method, or move something.")))
+    }
+
+    /// What the search came to, in words.
+    pub fn summary(&self) -> Option<String> {
+        let (choice, method) = self.subject()?;
+        let [start, .., end] = self.path() else {
+            let nothing = if choice.aim == Aim::Repair { "right" } else { "worse" };
+            return (self.progress().is_none() && self.note().is_none())
+                .then(|| format!("No scene {nothing} for {method} within {} m.", choice.within_metres));
+        };
+        let before = start.metrics.squared_error;
+        let Finding { metrics, moved_metres, tries, .. } = end;
+        Some(format!(
+            "{method}: SE {before:.0}, then {:.0} after {moved_metres:.2} m; try {tries}",
+            metrics.squared_error
+        ))
+    }
+}
+
+fn run(plan: &Plan, teller: &Teller<'_, Finding>) -> Result<(), Stopped> {
+    let mut told = 0;
+    let on_try = |tries: u32, path: &[Finding]| {
+        path[told..].iter().for_each(|finding| teller.row(finding.clone()));
+        told = path.len();
+        teller.part(tries as f32 / plan.job.tries.max(1) as f32);
+        !teller.task.is_cancelled()
+    };
+    let outcome = plan.job.run(&plan.scene, plan.method.as_ref(), teller.task, on_try);
+    let outcome = outcome.map_err(|error| Stopped::Failed(error.to_string()))?;
+    // What the last batch found before it was stopped.
+    outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
+    if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) }
+}

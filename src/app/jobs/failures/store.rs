@@ -1,0 +1,179 @@
+//! Rows on disk: as CSV, and beside it how they were made, where that isn't as the tables' scenes are.
+
+use crate::app::state::Conditions;
+use crate::evaluate::rows::{Column, Row, read_rows, write_rows};
+use crate::files::{read_bounded, write_atomically, write_bytes};
+use crate::task::{Reply, Worker};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Most bytes that a file of conditions may have.
+const MAX_CONDITIONS_BYTES: u64 = 64 << 10;
+
+/// Rows, and how they were made.
+pub type Kept = (Vec<Row>, Conditions);
+
+/// The file beside `rows` that says how they were made.
+fn beside(rows: &Path) -> PathBuf {
+    rows.with_extension("conditions.toml")
+}
+
+/// Writes rows as CSV, and how they were made beside it where `apertura evaluate` makes them otherwise.
+///
+/// # Errors
+/// Which file could not be written, and why.
+pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), String> {
+    let other = beside(path);
+    let told = |path: &Path, error: io::Error| format!("{}: {error}", path.display());
+    if *conditions == Conditions::default() {
+        if let Err(error) = std::fs::remove_file(&other)
+            && error.kind() != io::ErrorKind::NotFound
+        {
+            return Err(told(&other, error));
+        }
+    } else {
+        let text = toml::to_string_pretty(conditions).map_err(|e| format!("{}: {e}", other.display()))?;
+        write_bytes(&other, text.as_bytes()).map_err(|e| told(&other, e))?;
+    }
+    write_atomically(path, |out| write_rows(out, rows)).map_err(|e| told(path, e))
+}
+
+/// Reads what [`write`] or `apertura evaluate --rows` wrote.
+///
+/// # Errors
+/// The file, the line and what was expected there.
+pub fn read(path: &Path) -> Result<Kept, String> {
+    let file = File::open(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let rows = read_rows(file).map_err(|e| format!("{}: {e}", path.display()))?;
+    let other = beside(path);
+    let conditions = match read_bounded(&other, MAX_CONDITIONS_BYTES) {
+        Ok(bytes) => read_conditions(&bytes).map_err(|e| format!("{}: {e}", other.display()))?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Conditions::default(),
+        Err(error) => return Err(format!("{}: {error}", other.display())),
+    };
+    Ok((rows, conditions))
+}
+
+/// Whether the first line of a file names the columns of rows. One that can't be read has none.
+pub fn is_table_of_rows(path: &Path) -> bool {
+    let mut line = String::new();
+    let first = File::open(path).map(|file| BufReader::new(file.take(MAX_CONDITIONS_BYTES)).read_line(&mut line));
+    let names: Vec<&str> = line.trim().split(',').collect();
+    matches!(first, Ok(Ok(_))) && [Column::Method, Column::SquaredError].iter().all(|c| names.contains(&c.name()))
+}
+
+fn read_conditions(bytes: &[u8]) -> Result<Conditions, String> {
+    let conditions: Conditions = toml::from_slice(bytes).map_err(|e| e.to_string())?;
+    conditions.radar.validate().map_err(|e| e.to_string())?;
+    Ok(conditions)
+}
+
+/// What the thread is asked for.
+enum Request {
+    Read { path: PathBuf, own: bool },
+    Write { path: PathBuf, rows: Arc<Vec<Row>>, conditions: Conditions, version: u64 },
+}
+
+/// What came of it.
+pub enum Done {
+    /// The rows of a file that somebody opened, or of the last session (`own`).
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Whether it is the app's own.
+        own: bool,
+        /// The rows.
+        kept: Result<Kept, String>,
+    },
+    /// The app's own file holds the rows of this version.
+    Wrote(u64),
+    /// It doesn't.
+    Unwritten(String),
+}
+
+/// Reads and writes rows on a thread of its own.
+pub struct Store {
+    worker: Worker<Request, Done>,
+}
+
+impl Store {
+    /// Starts the thread, which waits; `wake` is called from it.
+    pub fn start(wake: impl Fn() + Send + 'static) -> io::Result<Store> {
+        let work = |_: &mut (), request, _: &crate::task::Task| match request {
+            Request::Read { path, own } => {
+                let kept = read(&path);
+                Done::Read { path, own, kept }
+            }
+            Request::Write { path, rows, conditions, version } => match write(&path, &rows, &conditions) {
+                Ok(()) => Done::Wrote(version),
+                Err(error) => Done::Unwritten(error),
+            },
+        };
+        Ok(Store { worker: Worker::spawn("rows", || (), work, wake)? })
+    }
+
+    /// Reads a file.
+    pub fn read(&self, path: PathBuf, own: bool) {
+        self.worker.request(Request::Read { path, own });
+    }
+
+    /// Writes the app's own file.
+    pub fn write(&self, path: PathBuf, rows: Arc<Vec<Row>>, conditions: Conditions, version: u64) {
+        self.worker.request(Request::Write { path, rows, conditions, version });
+    }
+
+    /// Whether it reads or writes.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy()
+    }
+
+    /// What is done.
+    pub fn poll(&self) -> Vec<Done> {
+        let done = |reply| match reply {
+            Reply::Done { result, .. } => result,
+            Reply::Panicked { message, .. } => Done::Unwritten(format!("failed: {message}")),
+        };
+        self.worker.replies().into_iter().map(done).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::table::some_row;
+    use super::*;
+    use crate::maps::Normalisation;
+    use crate::radar::{Decibels, Radar};
+    use crate::signal::Floor;
+
+    #[test]
+    fn rows_come_back_with_how_they_were_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        let rows = vec![some_row(0, "live"), some_row(1, "live")];
+        let radar = Radar { elements: 64, ..Radar::default() };
+        let normalisation = Normalisation::DynamicRange(Decibels(60.0));
+        let other = Conditions { floor: Floor::Snr(Decibels(20.0)), normalisation, radar };
+        for conditions in [other, Conditions::default()] {
+            write(&path, &rows, &conditions).unwrap();
+            assert_eq!(read(&path).unwrap(), (rows.clone(), conditions.clone()));
+            assert!(is_table_of_rows(&path));
+            assert_eq!(beside(&path).exists(), conditions != Conditions::default(), "nothing stale stays");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        assert!(read(&path).unwrap_err().contains("rows.csv"));
+        std::fs::write(&path, "no,rows\n").unwrap();
+        assert!(read(&path).unwrap_err().contains("no column \"set\""));
+        assert!(!is_table_of_rows(&path) && !is_table_of_rows(folder.path()));
+        write(&path, &[], &Conditions::default()).unwrap();
+        std::fs::write(beside(&path), "[radar]\nelements = 0\n").unwrap();
+        let wrong = read(&path).unwrap_err();
+        assert!(wrong.contains("conditions.toml") && wrong.contains("elements"), "{wrong}");
+    }
+}

@@ -1,0 +1,143 @@
+//! The rows: each scene and method once, in the order they came.
+
+use crate::app::state::Conditions;
+use crate::evaluate::rows::{MAX_ROWS, Row};
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+
+/// What tells a row from any other of its table.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct RowKey {
+    set: String,
+    seed: u64,
+    index: u32,
+    method: String,
+}
+
+impl RowKey {
+    /// Of a row.
+    pub fn of(row: &Row) -> RowKey {
+        RowKey { set: row.set.clone(), seed: row.seed, index: row.index, method: row.method.clone() }
+    }
+}
+
+/// The rows, how they were made, and when they changed.
+#[derive(Debug, Default)]
+pub struct RowTable {
+    rows: Arc<Vec<Row>>,
+    places: HashMap<RowKey, usize>,
+    methods: BTreeSet<String>,
+    conditions: Conditions,
+    version: u64,
+    generation: u64,
+}
+
+impl RowTable {
+    /// Every row.
+    pub fn rows(&self) -> &Arc<Vec<Row>> {
+        &self.rows
+    }
+
+    /// Names of the methods that the rows are of.
+    pub fn methods(&self) -> &BTreeSet<String> {
+        &self.methods
+    }
+
+    /// How they were made.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
+    /// Rises with every change.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Rises when indices of rows lose their meaning.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// Puts other rows in the place of all; of rows of the same scene and method the last one stays.
+    pub fn replace(&mut self, rows: Vec<Row>, conditions: Conditions) {
+        let (version, generation) = (self.version + 1, self.generation + 1);
+        *self = RowTable { conditions, version, generation, ..RowTable::default() };
+        rows.into_iter().for_each(|row| _ = self.add(row));
+    }
+
+    /// Adds a row, in the place of the one of the same scene and method where there is one. Whether there was room.
+    pub fn add(&mut self, row: Row) -> bool {
+        let key = RowKey::of(&row);
+        let place = self.places.get(&key).copied();
+        if place.is_none() && self.rows.len() >= MAX_ROWS {
+            return false;
+        }
+        self.version += 1;
+        let rows = Arc::make_mut(&mut self.rows);
+        match place {
+            Some(place) => rows[place] = row,
+            None => {
+                if !self.methods.contains(&row.method) {
+                    self.methods.insert(row.method.clone());
+                }
+                self.places.insert(key, rows.len());
+                rows.push(row);
+            }
+        }
+        true
+    }
+
+    /// Whether there is a row of the same scene and method.
+    pub fn has(&self, row: &Row) -> bool {
+        self.places.contains_key(&RowKey::of(row))
+    }
+}
+
+/// A row of no scene in particular, to test with.
+#[cfg(test)]
+pub fn some_row(index: u32, method: &str) -> Row {
+    Row {
+        set: "1".into(),
+        index,
+        seed: 0,
+        method: method.into(),
+        eta: 0.8,
+        squared_error: 100.0 + f64::from(index * 7919 % 1000),
+        detection: (!index.is_multiple_of(5)).then_some(0.5),
+        false_alarm: 0.01,
+        detection_at_printed: None,
+        milliseconds: 3.0,
+        objects: 1 + index as usize % 6,
+        reflectors: 3,
+        missed: index as usize % 3,
+        ghosts: 0,
+        nearest_pair_columns: None,
+        nearest_pair_bins: None,
+        min_range_metres: Some(5.0),
+        strongest_over_weakest_db: Some(0.0),
+        found: Some(1),
+        merged: Some(0),
+        wrong_tooth: Some(0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_and_method_stands_there_once_with_its_latest_figures() {
+        let mut table = RowTable::default();
+        for index in [0, 1, 0] {
+            assert!(table.add(some_row(index, "live")));
+        }
+        let better = Row { squared_error: 1.0, ..some_row(1, "live") };
+        table.add(better.clone());
+        assert!(table.has(&better) && !table.has(&some_row(1, "nomp")));
+        assert_eq!(**table.rows(), [some_row(0, "live"), better]);
+        let (version, generation) = (table.version(), table.generation());
+        table.replace(vec![some_row(3, "nomp")], Conditions::default());
+        assert!(table.version() > version && table.generation() > generation);
+        assert_eq!((table.rows().len(), table.methods()), (1, &BTreeSet::from(["nomp".to_owned()])));
+    }
+}

@@ -1,0 +1,242 @@
+//! Small maps of what rows are of: a byte a cell, the latest so many of them.
+
+use super::table::RowKey;
+use crate::app::jobs::rows::{RowJob, Stopped, Teller};
+use crate::app::state::Conditions;
+use crate::evaluate::rows::Row;
+use crate::evaluate::trial::{Answer, Trial};
+use crate::maps::RangeAngleMap;
+use crate::reconstruct::{Reconstructor, Request};
+use crate::task::panic_message;
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Columns of a thumbnail.
+pub const WIDTH: usize = 96;
+/// Rows of a thumbnail.
+pub const HEIGHT: usize = 48;
+/// Most thumbnails that are kept: some 5 MB.
+const MOST: usize = 512;
+
+/// Lambda of a map, 0 to 255, row by row from the smallest range; each cell the largest of those that it stands for.
+pub type Bytes = Box<[u8]>;
+
+/// Both maps of a row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Thumbnail {
+    /// What the whole array sees.
+    pub target: Bytes,
+    /// What the method made.
+    pub output: Bytes,
+}
+
+impl Thumbnail {
+    /// Of what a row was made of.
+    pub fn of(trial: &Trial, answer: &Answer) -> Thumbnail {
+        Thumbnail { target: shrunk(&trial.target), output: shrunk(&answer.found.lambda) }
+    }
+}
+
+fn shrunk(map: &RangeAngleMap) -> Bytes {
+    let (rows, columns) = map.lambda.dim();
+    // The largest, so that no point is lost.
+    let mut small = vec![0.0f32; WIDTH * HEIGHT];
+    for ((row, column), lambda) in map.lambda.indexed_iter() {
+        let cell = &mut small[row * HEIGHT / rows * WIDTH + column * WIDTH / columns];
+        *cell = cell.max(*lambda);
+    }
+    // A map of fewer cells has some twice.
+    let at = |y: usize, x: usize| (y * rows / HEIGHT, x * columns / WIDTH);
+    let few = |i: usize| {
+        let (y, x) = (i / WIDTH, i % WIDTH);
+        let large = small[i];
+        if rows < HEIGHT || columns < WIDTH { large.max(map.lambda[at(y, x)]) } else { large }
+    };
+    (0..small.len()).map(|i| (few(i) * 255.0 + 0.5) as u8).collect()
+}
+
+/// A thumbnail, or why there is none.
+pub type Made = Result<Arc<Thumbnail>, String>;
+
+/// The latest so many, by table and row.
+#[derive(Default)]
+struct Cache {
+    made: HashMap<(u64, RowKey), (Made, u64)>,
+    clock: u64,
+}
+
+impl Cache {
+    fn get(&mut self, key: &(u64, RowKey)) -> Option<Made> {
+        self.clock += 1;
+        let (made, used) = self.made.get_mut(key)?;
+        *used = self.clock;
+        Some(made.clone())
+    }
+
+    fn insert(&mut self, key: (u64, RowKey), made: Made) {
+        self.clock += 1;
+        self.made.insert(key, (made, self.clock));
+        if self.made.len() > MOST {
+            // A quarter at once, so that this is rare.
+            let mut used: Vec<u64> = self.made.values().map(|(_, used)| *used).collect();
+            used.sort_unstable();
+            let oldest = used[MOST / 4];
+            self.made.retain(|_, (_, used)| *used > oldest);
+        }
+    }
+}
+
+/// The thumbnails of one table, shared with whoever makes them.
+#[derive(Clone, Default)]
+pub struct Album(Arc<Mutex<Cache>>);
+
+impl Album {
+    /// The thumbnail of a row of table `generation`, if it is there.
+    pub fn get(&self, generation: u64, row: &Row) -> Option<Made> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&(generation, RowKey::of(row)))
+    }
+
+    /// Keeps one.
+    pub fn insert(&self, generation: u64, row: &Row, made: Made) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert((generation, RowKey::of(row)), made);
+    }
+
+    /// How many there are.
+    #[cfg(test)]
+    fn len(&self) -> usize {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).made.len()
+    }
+}
+
+/// Rows whose thumbnails are missing.
+struct Plan {
+    generation: u64,
+    conditions: Conditions,
+    rows: Vec<(Row, Option<Arc<dyn Reconstructor>>)>,
+}
+
+/// Makes thumbnails of rows that were not made here, one after the other.
+pub struct Thumbnails {
+    /// Those there are.
+    pub album: Album,
+    job: RowJob<Plan, (), ()>,
+    asked: Vec<RowKey>,
+}
+
+impl Thumbnails {
+    /// Starts the thread, which waits; `wake` is called from it.
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Thumbnails> {
+        let album = Album::default();
+        let theirs = album.clone();
+        let work = move |plan: &Plan, teller: &Teller<'_, ()>| make(plan, &theirs, teller);
+        Ok(Thumbnails { album, job: RowJob::start("thumbnails", work, wake)?, asked: Vec::new() })
+    }
+
+    /// Asks for those of `rows` that are missing, unless it was asked for all of them already.
+    pub fn ask<'a>(
+        &mut self,
+        generation: u64,
+        conditions: &Conditions,
+        rows: impl Iterator<Item = &'a Row>,
+        method: impl Fn(&str) -> Option<Arc<dyn Reconstructor>>,
+    ) {
+        let missing: Vec<&Row> = rows.filter(|row| self.album.get(generation, row).is_none()).collect();
+        let keys: Vec<RowKey> = missing.iter().map(|row| RowKey::of(row)).collect();
+        if keys.is_empty() || (self.is_busy() && keys.iter().all(|key| self.asked.contains(key))) {
+            return;
+        }
+        self.job.cancel();
+        let rows = missing.into_iter().map(|row| (row.clone(), method(&row.method))).collect();
+        self.job.begin(Plan { generation, conditions: conditions.clone(), rows });
+        self.asked = keys;
+    }
+
+    /// Whether some are being made.
+    pub fn is_busy(&self) -> bool {
+        self.job.progress().is_some()
+    }
+
+    /// Stops: the machine is wanted for something that is timed.
+    pub fn stop(&mut self) {
+        self.job.cancel();
+    }
+
+    /// Takes in what is finished. Returns what a panic said.
+    pub fn poll(&mut self) -> Option<String> {
+        self.job.poll()
+    }
+}
+
+/// The scene simulated last, for the next row of the same.
+type Last<'a> = Option<(&'a Row, Trial)>;
+
+fn make(plan: &Plan, album: &Album, teller: &Teller<'_, ()>) -> Result<(), Stopped> {
+    let mut last: Last<'_> = None;
+    for (row, method) in &plan.rows {
+        // A method that panics on one row must not do so in every frame.
+        let made = catch_unwind(AssertUnwindSafe(|| one(plan, row, method.as_deref(), teller, &mut last)));
+        if teller.task.is_cancelled() {
+            return Err(Stopped::Cancelled);
+        }
+        album.insert(plan.generation, row, made.unwrap_or_else(|panic| Err(panic_message(panic.as_ref()))));
+        teller.part(0.5);
+    }
+    Ok(())
+}
+
+fn one<'a>(
+    plan: &Plan,
+    row: &'a Row,
+    method: Option<&dyn Reconstructor>,
+    teller: &Teller<'_, ()>,
+    last: &mut Last<'a>,
+) -> Made {
+    let method = method.ok_or_else(|| format!("there is no method \"{}\" here", row.method))?;
+    let Conditions { floor, normalisation, .. } = plan.conditions;
+    let scene = |of: &Row| (of.set.clone(), of.seed, of.index);
+    let (_, trial) = match last.take().filter(|(of, _)| scene(of) == scene(row)) {
+        Some(same) => last.insert(same),
+        None => {
+            let case = plan.conditions.case(row)?;
+            let trial = Trial::new(&case.radar, &case.scene, floor, normalisation).map_err(|e| e.to_string())?;
+            last.insert((row, trial))
+        }
+    };
+    let request = Request { floor, normalisation, task: teller.task.clone(), ..Request::default() };
+    let answer = trial.ask(method, &request).map_err(|e| e.to_string())?;
+    Ok(Arc::new(Thumbnail::of(trial, &answer)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::table::some_row;
+    use super::*;
+    use ndarray::Array2;
+
+    #[test]
+    fn no_point_is_lost_however_large_or_small_the_map() {
+        for (rows, columns) in [(512, 1024), (256, 1024), (48, 96), (32, 64), (1, 128), (50, 100)] {
+            let mut lambda = Array2::zeros((rows, columns));
+            lambda[[rows - 1, columns / 3]] = 1.0;
+            let small = shrunk(&RangeAngleMap { lambda });
+            assert_eq!(small.len(), WIDTH * HEIGHT);
+            let bright: Vec<usize> = (0..small.len()).filter(|i| small[*i] == 255).collect();
+            let far = |i: &usize| i / WIDTH + HEIGHT / rows.min(HEIGHT) + 1 >= HEIGHT;
+            assert!(!bright.is_empty() && bright.iter().all(far), "{rows}, {columns}: {bright:?}");
+            assert!(bright.iter().any(|i| (i % WIDTH).abs_diff(WIDTH / 3) <= 1), "{rows}, {columns}: {bright:?}");
+        }
+    }
+
+    #[test]
+    fn ten_thousand_rows_leave_a_bounded_album() {
+        let album = Album::default();
+        let thumbnail = Arc::new(Thumbnail { target: Box::default(), output: Box::default() });
+        for index in 0..10_000 {
+            album.insert(1, &some_row(index, "live"), Ok(thumbnail.clone()));
+        }
+        assert!(album.len() <= MOST);
+        assert!(album.get(1, &some_row(9999, "live")).is_some(), "the latest stay");
+        assert!(album.get(2, &some_row(9999, "live")).is_none(), "another table's are others");
+    }
+}

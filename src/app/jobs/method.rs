@@ -1,0 +1,262 @@
+//! One method at work on the scene on screen: what it was asked for, what it made last, or why it made nothing.
+
+use super::scene_maps::{MapsRequest, MapsResult, Pair};
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::Radar;
+use crate::reconstruct::found::find;
+use crate::reconstruct::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::recording;
+use crate::scene::Reflector;
+use crate::signal::{Floor, TwoEnds};
+use crate::task::{Reply, Task, Worker};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
+/// finishes, so that something is seen.
+const PATIENCE: Duration = Duration::from_millis(400);
+
+/// What a method works on.
+#[derive(Clone)]
+pub struct Basis {
+    radar: Radar,
+    ends: Arc<TwoEnds>,
+    floor: Floor,
+    normalisation: Normalisation,
+    snapshot_range_metres: Option<f64>,
+}
+
+impl Basis {
+    /// What a method gets of a scene; `None` where nobody wanted its ends.
+    pub fn of(result: &MapsResult) -> Option<Basis> {
+        let MapsRequest { radar, wanted, recording, .. } = &result.request;
+        Some(Basis {
+            radar: radar.clone(),
+            ends: result.frame.ends.clone()?,
+            floor: if recording.is_some() { recording::FLOOR } else { wanted.floor },
+            normalisation: wanted.normalisation,
+            snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
+        })
+    }
+
+    fn same(&self, other: &Basis) -> bool {
+        Arc::ptr_eq(&self.ends, &other.ends)
+            && (self.floor, self.normalisation) == (other.floor, other.normalisation)
+            && self.snapshot_range_metres == other.snapshot_range_metres
+            && self.radar == other.radar
+    }
+}
+
+/// What a method is asked for.
+#[derive(Clone)]
+pub struct MethodRequest {
+    /// What it works on.
+    pub basis: Basis,
+    /// What it aims for; `None` where a recording has the two ends alone.
+    pub target: Option<Arc<RangeAngleMap>>,
+    /// The method.
+    pub method: Arc<dyn Reconstructor>,
+    /// Whether what was found is to be listed.
+    pub listed: bool,
+}
+
+impl MethodRequest {
+    fn same(&self, other: &MethodRequest) -> bool {
+        self.basis.same(&other.basis) && self.method.name() == other.method.name() && self.listed == other.listed
+    }
+}
+
+/// What a method made.
+#[derive(Clone)]
+pub struct MethodResult {
+    /// Its name.
+    pub method: &'static str,
+    /// Its map, and the one it aimed for.
+    pub pair: Pair,
+    /// What it found, the strongest first, where a list was asked for.
+    pub found: Option<Vec<Detection>>,
+    /// Where it found reflectors.
+    pub reflectors: Vec<Reflector>,
+    /// Time it took.
+    pub took: Duration,
+    basis: Basis,
+}
+
+impl MethodResult {
+    /// The radar that it reconstructed for.
+    pub fn radar(&self) -> &Radar {
+        &self.basis.radar
+    }
+}
+
+/// Why a method gave nothing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// Its name.
+    pub method: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+/// What a method made of the samples, and the list of what it found where one was asked for.
+type Answer = (Reconstruction, Option<Vec<Detection>>);
+
+type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
+
+/// The worker, what it was asked last, and what it made last.
+pub struct MethodJob {
+    worker: Worker<MethodRequest, MethodReply>,
+    asked: Option<MethodRequest>,
+    /// Since when the output belongs to something else than the maps.
+    outdated: Option<Instant>,
+    output: Option<MethodResult>,
+    refusal: Option<Refusal>,
+}
+
+impl MethodJob {
+    /// Starts the worker's `thread`; `wake` is called from it when there is something to show.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn start(thread: &'static str, wake: impl Fn() + Send + 'static) -> std::io::Result<MethodJob> {
+        // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
+        let threads =
+            move || rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{thread} {i}")).build().ok();
+        let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
+            let result = match threads {
+                Some(threads) => threads.install(|| reconstruct(&q, task)),
+                None => reconstruct(&q, task),
+            };
+            (q, result)
+        };
+        let worker = Worker::spawn(thread, threads, work, wake)?;
+        Ok(MethodJob { worker, asked: None, outdated: None, output: None, refusal: None })
+    }
+
+    /// Takes in what the worker made of the `latest` maps or earlier ones. Returns messages for the user.
+    pub fn poll(&mut self, latest: Option<&MapsResult>) -> Vec<String> {
+        let mut messages = Vec::new();
+        for reply in self.worker.replies() {
+            match reply {
+                Reply::Done { result: (request, Ok(answer)), elapsed, .. } => {
+                    self.take_in(request, answer, elapsed, latest);
+                }
+                // Cancelled by the user, or because the scene moved on and the next request waits.
+                Reply::Done { result: (_, Err(ReconstructError::Cancelled)), .. } => {}
+                Reply::Done { result: (request, Err(error)), .. } => {
+                    self.refuse(request.method.name(), error.to_string());
+                }
+                Reply::Panicked { message, .. } => {
+                    let method = self.asked.as_ref().map_or("", |q| q.method.name());
+                    self.refuse(method, format!("failed: {message}"));
+                    messages.push(format!(
+                        "The reconstruction failed ({message}). It was started afresh; choose another method, or change the scene to try again."
+                    ));
+                }
+            }
+        }
+        messages
+    }
+
+    fn take_in(
+        &mut self,
+        request: MethodRequest,
+        (answer, found): Answer,
+        took: Duration,
+        latest: Option<&MapsResult>,
+    ) {
+        let MethodRequest { basis, target, method, .. } = request;
+        let Reconstruction { lambda, mut reflectors } = answer;
+        if reflectors.is_empty() {
+            reflectors = found.iter().flatten().map(Detection::reflector).collect();
+        }
+        let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
+        let pair = Pair { target: latest.and_then(MapsResult::target).or(target), output: Arc::new(lambda) };
+        self.refusal = None;
+        self.output = Some(MethodResult { method: method.name(), pair, found, reflectors, took, basis });
+    }
+
+    /// There is no output, and the last one is not its own: nothing of it stays.
+    fn refuse(&mut self, method: &'static str, reason: String) {
+        self.output = None;
+        self.refusal = Some(Refusal { method, reason });
+    }
+
+    /// New maps of the same samples, as when a scene comes to rest: the output stays, and aims for their target.
+    pub fn aim(&mut self, maps: &MapsResult) {
+        if let (Some(target), Some(output)) = (maps.target(), &mut self.output)
+            && Basis::of(maps).is_some_and(|basis| basis.same(&output.basis))
+        {
+            output.pair.target = Some(target);
+        }
+    }
+
+    /// Asks for an output, unless it was asked for just that; `held` while something is dragged.
+    pub fn ask(&mut self, request: MethodRequest, held: bool) {
+        let current =
+            self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
+        self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
+        if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
+            if !held {
+                self.worker.cancel_older_than(PATIENCE);
+            }
+            self.worker.request(request.clone());
+            self.asked = Some(request);
+        }
+    }
+
+    /// Stops what runs, as the user wished.
+    pub fn cancel(&mut self) {
+        self.worker.cancel();
+        let method = self.asked.as_ref().map_or("", |q| q.method.name());
+        let reason = "cancelled; change the scene or the method to start again".to_owned();
+        self.refusal = Some(Refusal { method, reason });
+    }
+
+    /// Stops what runs, since nobody looks at it any more; it is asked for again when somebody does.
+    pub fn rest(&mut self) {
+        if self.worker.is_busy() {
+            self.worker.cancel();
+            self.asked = None;
+        }
+    }
+
+    /// The latest output.
+    pub fn output(&self) -> Option<&MethodResult> {
+        self.output.as_ref()
+    }
+
+    /// Why there is no output for the scene on screen.
+    pub fn refusal(&self) -> Option<&Refusal> {
+        self.refusal.as_ref()
+    }
+
+    /// Progress, 0 to 1; `None` when nothing runs.
+    pub fn progress(&self) -> Option<f32> {
+        self.worker.progress()
+    }
+
+    /// Whether it has something to do.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy()
+    }
+
+    /// Since when the output belongs to something else than the maps, where it does.
+    pub fn outdated(&self) -> Option<Instant> {
+        self.outdated
+    }
+}
+
+fn reconstruct(q: &MethodRequest, task: &Task) -> Result<Answer, ReconstructError> {
+    let Basis { radar, ends, floor, normalisation, snapshot_range_metres } = &q.basis;
+    let request = Request {
+        floor: *floor,
+        normalisation: *normalisation,
+        snapshot_range_metres: *snapshot_range_metres,
+        task: task.clone(),
+    };
+    let answer = q.method.reconstruct(radar, ends, &request)?;
+    let list = || find(q.method.as_ref(), radar, ends, &request, &answer);
+    let found = q.listed.then(list).transpose()?;
+    Ok((answer, found))
+}

@@ -1,0 +1,293 @@
+//! Two methods on the scene on screen: side by side, flipped in place, or parted by an edge.
+
+use super::map::{self, Over};
+use crate::app::state::{Command, Compare, Layout, MapKind, MapView};
+use crate::app::widgets::entry::button;
+use crate::app::widgets::progress::progress;
+use crate::reconstruct::Reconstructor;
+use eframe::egui;
+use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
+use std::sync::Arc;
+
+/// A map, and what stands above it.
+pub struct Titled<'a> {
+    /// Whose it is, and how good.
+    pub title: String,
+    /// The map.
+    pub map: map::Input<'a>,
+}
+
+/// What is compared.
+pub struct Input<'a> {
+    /// What was chosen.
+    pub compare: &'a Compare,
+    /// Every method.
+    pub methods: &'a [Arc<dyn Reconstructor>],
+    /// Names of the first and of the second.
+    pub chosen: [&'static str; 2],
+    /// The maps of [`Compare::maps`].
+    pub maps: Vec<Titled<'a>>,
+    /// Progress of the second method, while it runs.
+    pub progress: Option<f32>,
+}
+
+/// Height of what stands above a map, points.
+const TITLE: f32 = 18.0;
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
+        choices(ui, &input, &mut asked);
+        let area = ui.available_rect_before_wrap();
+        let Input { compare, maps, .. } = input;
+        let places = match compare.layout {
+            Layout::Beside => grid(area, maps.len()),
+            Layout::Flip | Layout::Swipe => vec![area],
+        };
+        let maps = match compare.layout {
+            Layout::Beside => maps,
+            Layout::Flip => maps.into_iter().skip(compare.front).take(1).collect(),
+            Layout::Swipe => swiped(maps, compare.edge),
+        };
+        for (index, (place, Titled { title, map })) in places.into_iter().zip(maps).enumerate() {
+            let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE);
+            ui.scope_builder(UiBuilder::new().max_rect(above).id_salt(("title", index)), |ui| {
+                ui.add(Label::new(RichText::new(title).size(12.0)).truncate().selectable(false));
+            });
+            ui.scope_builder(UiBuilder::new().max_rect(below).id_salt(("map", index)), |ui| {
+                asked.extend(map::show(ui, map, view, memory));
+            });
+        }
+    });
+    asked
+}
+
+/// Two columns of maps, as many rows as it takes.
+fn grid(area: Rect, count: usize) -> Vec<Rect> {
+    let size: Vec2 = vec2(area.width() / 2.0, area.height() / count.div_ceil(2).max(1) as f32);
+    let corner = |i: usize| area.min + vec2((i % 2) as f32 * size.x, (i / 2) as f32 * size.y);
+    (0..count).map(|i| Rect::from_min_size(corner(i), size).shrink(2.0)).collect()
+}
+
+/// The first map, the second over its right part.
+fn swiped(maps: Vec<Titled<'_>>, edge: f32) -> Vec<Titled<'_>> {
+    let mut maps = maps.into_iter();
+    let (Some(mut left), Some(right)) = (maps.next(), maps.next()) else { return Vec::new() };
+    let map::Input { texture, stale, error, cells, .. } = right.map;
+    left.map.over = Some(Over { texture, stale, error, cells, edge });
+    left.title = format!("{}  |  {}", left.title, right.title);
+    vec![left]
+}
+
+fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let mut compare = input.compare.clone();
+    ui.horizontal_wrapped(|ui| {
+        let [first, second] = input.chosen;
+        if let Some(name) = method(ui, "First", first, input.methods) {
+            asked.push(Command::Method(name));
+        }
+        if let Some(name) = method(ui, "Second", second, input.methods) {
+            compare.second = name.to_owned();
+        }
+        for layout in Layout::ALL {
+            let tip = match layout {
+                Layout::Beside => "Both outputs above, their differences from the target below",
+                Layout::Flip => "One of two maps, in the same place as the other",
+                Layout::Swipe => "One map left of an edge, the other right of it",
+            };
+            if ui.selectable_label(compare.layout == layout, layout.name()).on_hover_text(tip).clicked() {
+                compare.layout = layout;
+            }
+        }
+        if compare.layout != Layout::Beside {
+            for (label, map) in ["of", "and"].into_iter().zip(&mut compare.maps) {
+                choose_map(ui, label, map);
+            }
+        }
+        button(ui, "Flip maps", Command::Flip, true, asked);
+        // Its room is kept: what stands below must not jump when a reconstruction begins.
+        let room = vec2(170.0, ui.spacing().interact_size.y);
+        ui.allocate_ui(room, |ui| {
+            ui.set_min_size(room);
+            if let Some(part) = input.progress
+                && progress(ui, part, 100.0, "Stop the second method; its last output stays")
+            {
+                asked.push(Command::CancelSecond);
+            }
+        });
+    });
+    if compare != *input.compare {
+        asked.push(Command::SetCompare(Box::new(compare)));
+    }
+}
+
+/// A method to choose; its name where another was chosen.
+fn method(ui: &mut Ui, label: &str, chosen: &'static str, methods: &[Arc<dyn Reconstructor>]) -> Option<&'static str> {
+    let mut name = chosen;
+    let label = ui.label(label);
+    let combo = ComboBox::from_id_salt(("method", label.id)).width(100.0).selected_text(chosen).show_ui(ui, |ui| {
+        for method in methods {
+            ui.selectable_value(&mut name, method.name(), method.name()).on_hover_text(method.description());
+        }
+    });
+    combo.response.labelled_by(label.id);
+    (name != chosen).then_some(name)
+}
+
+fn choose_map(ui: &mut Ui, label: &str, map: &mut MapKind) {
+    let label = ui.label(label);
+    let combo = ComboBox::from_id_salt(("map", label.id)).width(110.0).selected_text(map.title()).show_ui(ui, |ui| {
+        for kind in Compare::OFFERED {
+            ui.selectable_value(map, kind, kind.title()).on_hover_text(kind.describe());
+        }
+    });
+    combo.response.labelled_by(label.id);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::Projection;
+    use crate::app::widgets::seen;
+    use crate::interact::Selection;
+    use crate::radar::Radar;
+    use crate::reconstruct::{Baseline, CAPON};
+    use crate::scene::Scene;
+    use eframe::egui::accesskit::Role;
+    use eframe::egui::{Key, TextureId};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Held {
+        compare: Compare,
+        progress: Option<f32>,
+        refused: bool,
+        asked: Vec<Command>,
+    }
+
+    fn panel(layout: Layout) -> Harness<'static, Held> {
+        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
+        let (radar, scene, selection) = (Radar::default(), Scene::default(), Selection::default());
+        let (mut view, mut memory) = (MapView::default(), map::Memory::default());
+        let draw = move |ui: &mut Ui, held: &mut Held| {
+            let titled = |kind: MapKind| {
+                let refused = held.refused && kind == MapKind::Second;
+                let error = refused.then_some(map::Problem { reason: "needs more samples", instead: None });
+                let texture = (!refused).then(TextureId::default);
+                let map = map::Input::bare(kind, &radar, Projection::RangeAngle, &scene, &selection);
+                Titled { title: kind.title().to_owned(), map: map::Input { texture, error, ..map } }
+            };
+            let input = Input {
+                compare: &held.compare,
+                methods: &methods,
+                chosen: ["baseline", "capon"],
+                maps: held.compare.maps().into_iter().map(titled).collect(),
+                progress: held.progress,
+            };
+            let asked = show(ui, input, &mut view, &mut memory);
+            held.asked.extend(asked.into_iter().filter(|c| !matches!(c, Command::Hover(_))));
+        };
+        let compare = Compare { layout, ..Compare::default() };
+        let held = Held { compare, progress: None, refused: false, asked: Vec::new() };
+        let mut panel = Harness::builder().with_size([900.0, 560.0]).build_ui_state(draw, held);
+        panel.run_steps(3);
+        panel
+    }
+
+    #[test]
+    fn both_outputs_and_both_differences_are_side_by_side() {
+        let panel = panel(Layout::Beside);
+        let place = |label: &str| panel.get_by_label(label).rect();
+        let [first, second] = ["Output map", "Second output map"].map(place);
+        let [below, beside] = ["Difference map", "Second difference map"].map(place);
+        assert!(first.right() < second.left() && below.right() < beside.left());
+        assert!(first.bottom() < below.top() && (first.width() - second.width()).abs() < 30.0);
+        seen::assert_readable(panel.output());
+    }
+
+    #[test]
+    fn flipping_shows_the_other_map_in_the_same_place() {
+        let mut panel = panel(Layout::Flip);
+        let first = panel.get_by_label("Output map").rect();
+        assert!(panel.query_by_label("Second output map").is_none());
+        panel.get_by_label("Flip maps").click();
+        panel.step();
+        assert_eq!(panel.state().asked, [Command::Flip]);
+        panel.state_mut().compare.flip();
+        panel.run_steps(2);
+        assert_eq!(panel.get_by_label("Second output map").rect(), first);
+        assert!(panel.query_by_label("Output map").is_none());
+    }
+
+    #[test]
+    fn the_edge_is_dragged_and_moved_by_keys() {
+        let mut panel = panel(Layout::Swipe);
+        let map = panel.get_by_label("Output map").rect();
+        let edge =
+            |panel: &Harness<'_, Held>| panel.get_by_role_and_label(Role::Slider, "Edge between two maps").rect();
+        assert!((edge(&panel).center().x - map.center().x).abs() < 1.0);
+        let from = edge(&panel).center() + vec2(0.0, 60.0);
+        panel.hover_at(from);
+        panel.step();
+        panel.drag_at(from);
+        panel.step();
+        panel.hover_at(from + vec2(-map.width() / 4.0, 0.0));
+        panel.step();
+        panel.drop_at(from + vec2(-map.width() / 4.0, 0.0));
+        panel.step();
+        let swipes = |asked: &[Command]| -> Vec<f32> {
+            asked.iter().filter_map(|c| if let Command::Swipe(edge) = c { Some(*edge) } else { None }).collect()
+        };
+        let dragged = swipes(&panel.state().asked);
+        assert!(dragged.last().is_some_and(|edge| (edge - 0.25).abs() < 0.01), "{dragged:?}");
+        assert!(!panel.state().asked.iter().any(|c| matches!(c, Command::Grab(_))), "the map beneath stays");
+
+        panel.state_mut().asked.clear();
+        panel.get_by_role_and_label(Role::Slider, "Edge between two maps").focus();
+        panel.run_steps(2);
+        panel.key_press(Key::ArrowRight);
+        panel.run_steps(2);
+        panel.key_press_modifiers(egui::Modifiers::SHIFT, Key::ArrowLeft);
+        panel.run_steps(2);
+        let [right, left] = swipes(&panel.state().asked)[..] else { panic!("{:?}", panel.state().asked) };
+        assert!((right - 0.51).abs() < 1e-6 && (left - 0.4).abs() < 1e-6, "{right}, {left}");
+    }
+
+    #[test]
+    fn methods_and_maps_are_chosen_and_a_second_that_runs_is_cancelled() {
+        let mut panel = panel(Layout::Swipe);
+        panel.get_by_label("Second").click();
+        panel.run_steps(2);
+        panel.get_by_role_and_label(Role::Button, "baseline").click();
+        panel.run_steps(2);
+        let Some(Command::SetCompare(compare)) = panel.state().asked.last().cloned() else {
+            panic!("{:?}", panel.state().asked)
+        };
+        assert_eq!(compare.second, "baseline");
+        panel.get_by_label("and").click();
+        panel.run_steps(2);
+        panel.get_by_label("Target").click();
+        panel.run_steps(2);
+        let Some(Command::SetCompare(compare)) = panel.state().asked.last().cloned() else {
+            panic!("{:?}", panel.state().asked)
+        };
+        assert_eq!(compare.maps, [MapKind::Output, MapKind::Target]);
+        panel.state_mut().progress = Some(0.4);
+        panel.run_steps(2);
+        panel.get_by_label("Cancel").click();
+        panel.run_steps(2);
+        assert_eq!(panel.state().asked.last(), Some(&Command::CancelSecond));
+    }
+
+    #[test]
+    fn a_second_method_that_refuses_says_why_in_either_layout() {
+        for layout in [Layout::Beside, Layout::Swipe] {
+            let mut panel = panel(layout);
+            panel.state_mut().refused = true;
+            panel.run_steps(2);
+            let texts = seen::texts(panel.output());
+            assert!(texts.iter().any(|t| t.text == "needs more samples"), "{layout:?}: {texts:?}");
+        }
+    }
+}

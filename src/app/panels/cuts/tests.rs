@@ -1,0 +1,154 @@
+use super::*;
+use crate::app::widgets::seen;
+use crate::maps::{LambdaScale, RangeAngleMap};
+use eframe::egui::{Pos2, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use ndarray::Array2;
+use std::sync::Arc;
+
+struct Held {
+    memory: Memory,
+    asked: Vec<Command>,
+    pins: Vec<PinnedCut>,
+    units: Units,
+    bin: f64,
+}
+
+/// A map with one lobe at bin 300 and column 700, on a scale of 100 dB.
+fn lobe(kind: MapKind, radar: &Radar) -> CutMap {
+    let level = |(k1, k2): (usize, usize)| {
+        let (range, angle) = ((k1 as f32 - 300.0) / 20.0, (k2 as f32 - 700.0) / 40.0);
+        1.0 - 0.03 * (range * range + angle * angle).min(30.0)
+    };
+    let lambda = Array2::from_shape_fn((radar.samples, radar.elements), level);
+    CutMap { kind, map: Arc::new(RangeAngleMap { lambda }), scale: Some(LambdaScale { peak: 0.0, floor: -5.0 }) }
+}
+
+fn panel(size: [f32; 2]) -> Harness<'static, Held> {
+    let radar = Radar::default();
+    let small =
+        CutMap { kind: MapKind::Output, map: Arc::new(RangeAngleMap { lambda: Array2::zeros((8, 8)) }), scale: None };
+    let maps = [lobe(MapKind::Input0, &radar), lobe(MapKind::Target, &radar), small];
+    let draw = move |ui: &mut Ui, held: &mut Held| {
+        let cursor = Cursor::at_cell(&radar, held.bin, 700.0);
+        let input = Input { radar: &radar, cursor, maps: &maps, pins: &held.pins, units: held.units };
+        let commands = show(ui, input, &mut held.memory);
+        if commands.contains(&Command::PinCuts) {
+            held.pins.push(PinnedCut { radar: radar.clone(), cursor, maps: maps.to_vec() });
+        }
+        held.asked.extend(commands);
+    };
+    let held =
+        Held { memory: Memory::default(), asked: Vec::new(), pins: Vec::new(), units: Units::Lambda, bin: 300.0 };
+    let mut panel = Harness::builder().with_size(size).with_step_dt(0.02).build_ui_state(draw, held);
+    panel.run_steps(2);
+    panel
+}
+
+fn places(panel: &Harness<'_, Held>) -> [Option<f64>; 2] {
+    panel.state().memory.views[&Cut::Range].markers.places
+}
+
+fn click(panel: &mut Harness<'_, Held>, at: Pos2) {
+    panel.hover_at(at);
+    panel.step();
+    panel.drag_at(at);
+    panel.step();
+    panel.drop_at(at);
+    // Two clicks in quick succession would be a double click.
+    panel.run_steps(40);
+}
+
+#[test]
+fn maps_of_another_radar_are_left_out_and_nothing_is_asked() {
+    let cuts = panel([640.0, 300.0]);
+    let _named = cuts.get_by_label("Target");
+    assert!(cuts.state().asked.is_empty());
+    let lines = cuts.state().memory.read.map(|line| line.kind);
+    assert_eq!(lines, Some(MapKind::Target), "what is measured where nobody chose");
+}
+
+#[test]
+fn clicks_place_markers_drags_move_them_and_their_difference_is_told() {
+    let mut cuts = panel([700.0, 600.0]);
+    let chart = cuts.get_by_label("Range profile").rect();
+    let at = |part: f32, rect: Rect| pos2(rect.left() + part * rect.width(), rect.center().y);
+    click(&mut cuts, at(0.25, chart));
+    let chart = cuts.get_by_label("Range profile").rect();
+    click(&mut cuts, at(0.5, chart));
+    let extent = Radar::default().max_range_metres();
+    let [Some(a), Some(b)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
+    assert!((a / extent - 0.25).abs() < 5e-3 && (b / extent - 0.5).abs() < 5e-3, "{a} {b}");
+    let _difference = cuts.get_by_label_contains("B − A: +9.");
+    let chart = cuts.get_by_label("Range profile").rect();
+    let from = at((b / extent) as f32, chart);
+    cuts.hover_at(from);
+    cuts.step();
+    cuts.drag_at(from);
+    cuts.step();
+    cuts.hover_at(at(0.75, chart));
+    cuts.step();
+    cuts.drop_at(at(0.75, chart));
+    cuts.step();
+    let [now, Some(moved)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
+    assert_eq!(now, Some(a));
+    assert!((moved / extent - 0.75).abs() < 5e-3, "{moved}");
+    assert!(cuts.state().memory.views[&Cut::Range].span.is_none(), "the cut itself was not dragged");
+    let _width = cuts.get_by_label_contains("3 dB width at B: ");
+}
+
+#[test]
+fn a_pinned_cut_stays_while_the_cursor_moves_on() {
+    let mut cuts = panel([900.0, 500.0]);
+    cuts.get_by_label("Pin").click();
+    cuts.run_steps(2);
+    assert_eq!(cuts.state().asked, [Command::PinCuts]);
+    cuts.state_mut().bin = 400.0;
+    cuts.run_steps(2);
+    let held = cuts.state();
+    let radar = Radar::default();
+    let maps = held.pins[0].maps.clone();
+    let input = Input {
+        radar: &radar,
+        cursor: Cursor::at_cell(&radar, 400.0, 700.0),
+        maps: &maps,
+        pins: &held.pins,
+        units: Units::Decibels,
+    };
+    let drawn = traces(&input, &BTreeSet::from([MapKind::Input0]), Cut::Angle);
+    let highest = |t: &Trace| t.lambda.iter().map(|p| p[1]).fold(0.0, f64::max);
+    assert_eq!(
+        drawn.iter().map(|t| (t.kind, t.pin)).collect::<Vec<_>>(),
+        [(MapKind::Target, Some(0)), (MapKind::Target, None)]
+    );
+    assert!(highest(&drawn[0]) > 0.999 && highest(&drawn[1]) < 0.3, "one through the lobe, one beside it");
+    cuts.get_by_label_contains("Unpin 1: ").click();
+    cuts.step();
+    assert_eq!(cuts.state().asked, [Command::PinCuts, Command::Unpin(0)]);
+}
+
+#[test]
+fn decibels_are_an_axis_and_a_choice() {
+    let mut cuts = panel([900.0, 400.0]);
+    cuts.get_by_label("dB").click();
+    cuts.step();
+    assert_eq!(cuts.state().asked, [Command::SetUnits(Units::Decibels)]);
+    cuts.state_mut().units = Units::Decibels;
+    cuts.run_steps(2);
+    let texts = seen::texts(cuts.output());
+    assert!(texts.iter().filter(|t| t.text == "below the peak, dB").count() == 2, "{texts:?}");
+    assert!(texts.iter().any(|t| t.text == "−80" || t.text == "−50"), "{texts:?}");
+}
+
+#[test]
+fn a_cut_has_several_labels_none_cut_off_at_any_size() {
+    for size in [[290.0, 190.0], [480.0, 260.0], [480.0, 900.0], [1400.0, 800.0]] {
+        let cuts = panel(size);
+        seen::assert_readable(cuts.output());
+        let texts = seen::texts(cuts.output());
+        for label in ["0.0", "10", "20", "30"] {
+            assert!(texts.iter().any(|t| t.text == label), "{label} at {size:?}: {texts:?}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What stands in the table: titles, widths, and figures with their digits.
+
+use crate::evaluate::rows::{Column, Row, Value};
+
+/// What stands in a cell.
+pub fn text(row: &Row, column: Column) -> String {
+    match column.of(row) {
+        Value::Missing => "–".to_owned(),
+        Value::Text(text) => last_part(text).to_owned(),
+        Value::Number(value) => number(column, value),
+    }
+}
+
+/// A number of a column, with as many digits as it deserves.
+pub fn number(column: Column, value: f64) -> String {
+    let digits = match column {
+        Column::Eta => 3,
+        Column::Detection | Column::FalseAlarm | Column::DetectionAtPrinted => 4,
+        Column::SquaredError | Column::Milliseconds | Column::StrongestOverWeakestDb => 1,
+        Column::NearestPairColumns | Column::NearestPairBins => 1,
+        Column::MinRangeMetres => 2,
+        _ => 0,
+    };
+    format!("{value:.digits$}").replace('-', "−")
+}
+
+/// The last part of a folder's path: the cell has no room for more.
+fn last_part(text: &str) -> &str {
+    text.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or(text)
+}
+
+/// A column's name in at most two lines.
+pub fn title(column: Column) -> [&'static str; 2] {
+    let name = column.name();
+    let middle = name.len() / 2;
+    let seams = name.match_indices('_').map(|(at, _)| at);
+    match seams.min_by_key(|at| at.abs_diff(middle)).filter(|_| name.len() > 10) {
+        Some(at) => [&name[..at], &name[at..]],
+        None => [name, ""],
+    }
+}
+
+/// Width of a column, points.
+pub fn width(column: Column) -> f32 {
+    match column {
+        Column::Set => 74.0,
+        Column::Method => 130.0,
+        Column::Index | Column::Seed | Column::Eta => 52.0,
+        Column::StrongestOverWeakestDb => 110.0,
+        _ => 78.0,
+    }
+}
+
+/// Whether figures stand to the right, under each other.
+pub fn is_number(column: Column) -> bool {
+    !matches!(column, Column::Set | Column::Method)
+}
+
+/// How a row is called.
+pub fn name(row: &Row) -> String {
+    format!("set {}, scene {}, {}", last_part(&row.set), row.index, row.method)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::jobs::some_row;
+
+    #[test]
+    fn every_column_has_a_title_and_a_text() {
+        let row = Row { set: "/home/me/scenes/".into(), ..some_row(3, "live") };
+        for column in Column::ALL {
+            assert_eq!(title(column).concat(), column.name());
+            assert!(!text(&row, column).is_empty());
+        }
+        assert_eq!(title(Column::SquaredError), ["squared", "_error"]);
+        assert_eq!(
+            [Column::Set, Column::DetectionAtPrinted, Column::Found].map(|c| text(&row, c)),
+            ["scenes", "–", "1"]
+        );
+        assert_eq!(name(&row), "set scenes, scene 3, live");
+    }
+}

@@ -1,0 +1,279 @@
+//! Histogram and scatter plot of the rows; a box selects rows, a click opens one.
+
+use super::order::{Boxed, Order};
+use super::points::{Dot, Points, Subject};
+use crate::app::jobs::RowTable;
+use crate::app::widgets::axes::Axis;
+use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::widgets::theme::Inks;
+use crate::evaluate::rows::Column;
+use eframe::egui;
+use eframe::egui::{Color32, ComboBox, Mesh, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Which chart is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum View {
+    /// None: all room is the table's.
+    #[default]
+    None,
+    /// A histogram.
+    Histogram,
+    /// Two columns.
+    Columns,
+    /// Two methods.
+    Methods,
+}
+
+impl View {
+    const ALL: [(View, &'static str, &'static str); 4] = [
+        (View::None, "Table", "The table alone"),
+        (View::Histogram, "Histogram", "How often the figures of a column fall where"),
+        (View::Columns, "Scatter", "One column against another"),
+        (View::Methods, "A against B", "One column for one method against the same for another, scene by scene"),
+    ];
+}
+
+/// What is charted.
+pub struct Input<'a> {
+    /// Every row.
+    pub table: &'a RowTable,
+    /// Which of them.
+    pub order: &'a Order,
+    /// The row that was opened last.
+    pub opened: Option<usize>,
+}
+
+/// What was chosen, and what was worked out.
+pub struct Memory {
+    /// Which chart.
+    pub view: View,
+    x: Column,
+    y: Column,
+    methods: [String; 2],
+    made: Option<(u64, Subject, Points)>,
+    mesh: Option<(MeshKey, Arc<Mesh>)>,
+    start: Option<Pos2>,
+    boxes: u64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        let (x, y) = (Column::NearestPairColumns, Column::SquaredError);
+        let view = View::default();
+        Memory { view, x, y, methods: Default::default(), made: None, mesh: None, start: None, boxes: 0 }
+    }
+}
+
+/// What dots look like depends on this.
+type MeshKey = (u64, Rect, Option<u64>, Color32);
+
+/// What was asked of a chart.
+#[derive(Default)]
+pub struct Answer {
+    /// The row to open.
+    pub open: Option<usize>,
+    /// The rows in a box that was drawn.
+    pub boxed: Option<Boxed>,
+}
+
+/// Fewer dots are drawn larger.
+const FEW: usize = 500;
+
+/// How near to a dot a click must be, points.
+const NEAR: f32 = 10.0;
+
+/// Which chart, and of what.
+pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut Memory) {
+    for (view, name, tip) in View::ALL {
+        ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
+    }
+    let column = |ui: &mut Ui, id: &str, name: &str, column: &mut Column| {
+        let label = ui.label(name);
+        let combo = ComboBox::from_id_salt(id).selected_text(column.name()).width(150.0).show_ui(ui, |ui| {
+            for other in Column::ALL {
+                ui.selectable_value(column, other, other.name());
+            }
+        });
+        combo.response.labelled_by(label.id);
+    };
+    match memory.view {
+        View::None => {}
+        View::Histogram => column(ui, "histogram", "of", &mut memory.y),
+        View::Columns => {
+            column(ui, "scatter y", "of", &mut memory.y);
+            column(ui, "scatter x", "over", &mut memory.x);
+        }
+        View::Methods => {
+            column(ui, "methods", "of", &mut memory.y);
+            let mut names = table.methods().iter();
+            for (chosen, (id, name)) in memory.methods.iter_mut().zip([("method a", "A"), ("method b", "B")]) {
+                let other = names.next();
+                if !table.methods().contains(chosen) {
+                    *chosen = other.cloned().unwrap_or_default();
+                }
+                let label = ui.label(name);
+                let combo = ComboBox::from_id_salt(id).selected_text(chosen.as_str()).show_ui(ui, |ui| {
+                    for method in table.methods() {
+                        ui.selectable_value(chosen, method.clone(), method);
+                    }
+                });
+                combo.response.labelled_by(label.id);
+            }
+        }
+    }
+}
+
+/// Draws the chart that was chosen.
+pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut Memory) -> Answer {
+    let Some((subject, titles)) = subject(memory) else { return Answer::default() };
+    let stamp = input.order.stamp();
+    if !memory.made.as_ref().is_some_and(|(made, of, _)| *made == stamp && *of == subject) {
+        let points = Points::of(input.table, input.order.filtered(), &subject);
+        memory.made = Some((stamp, subject.clone(), points));
+        memory.mesh = None;
+    }
+    let Some((_, _, points)) = &memory.made else { return Answer::default() };
+    let area = ui.available_rect_before_wrap();
+    ui.allocate_rect(area, Sense::hover());
+    if points.dots.is_empty() {
+        let ink = ui.visuals().weak_text_color();
+        let text = "No row has these figures.";
+        ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(13.0), ink);
+        return Answer::default();
+    }
+    let [[left, right], [bottom, top]] = points.spans;
+    let (x, y) = (Axis::new(left, right, &titles[0]), Axis::new(bottom, top, &titles[1]));
+    let drawn = Chart { name: "Chart of rows", x, y }.show(ui, area, Sense::click_and_drag());
+    match &points.bars {
+        Some(_) => bars(ui, &drawn, points, boxed),
+        None if memory.view == View::Methods => {
+            let (low, high) = (left.max(bottom), right.min(top));
+            let equal = Stroke::new(1.0, ui.visuals().weak_text_color());
+            drawn.line([[low, low], [high, high]].into_iter().filter(|_| low < high), equal, Some([4.0, 4.0]));
+            dots(ui, &drawn, points, stamp, boxed, &mut memory.mesh);
+        }
+        None => dots(ui, &drawn, points, stamp, boxed, &mut memory.mesh),
+    }
+    if let Some(dot) = points.dots.iter().find(|dot| input.opened.is_some_and(|row| dot.rows.contains(&row))) {
+        let stroke = Stroke::new(2.0, ui.visuals().strong_text_color());
+        match &points.bars {
+            Some(_) => drawn.upright(dot.at[0], stroke),
+            None => _ = drawn.painter().circle_stroke(drawn.at(dot.at), 5.0, stroke),
+        }
+    }
+    let answer = Answer {
+        open: clicked(&drawn, points),
+        boxed: rubber_box(ui, &drawn, points, &mut memory.start).map(|rows| {
+            memory.boxes += 1;
+            Boxed { generation: input.table.generation(), rows, stamp: memory.boxes }
+        }),
+    };
+    told(&drawn, points, input.table);
+    answer
+}
+
+fn subject(memory: &Memory) -> Option<(Subject, [String; 2])> {
+    let (x, y) = (memory.x, memory.y);
+    let [a, b] = &memory.methods;
+    Some(match memory.view {
+        View::None => return None,
+        View::Histogram => (Subject::Histogram(y), [y.name().to_owned(), "rows".to_owned()]),
+        View::Columns => (Subject::Columns(x, y), [x.name().to_owned(), y.name().to_owned()]),
+        View::Methods => {
+            let title = |method: &str| format!("{method}.{}", y.name());
+            (Subject::Methods(y, a.clone(), b.clone()), [title(a), title(b)])
+        }
+    })
+}
+
+fn bars(ui: &Ui, drawn: &Drawn<'_>, points: &Points, boxed: Option<&Boxed>) {
+    let Some(bars) = &points.bars else { return };
+    let inks = Inks::of(ui.visuals());
+    let wide = (bars.high - bars.low).max(f64::MIN_POSITIVE) / bars.counts.len() as f64;
+    for (i, count) in bars.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let from = bars.low + wide * i as f64;
+        let bar = Rect::from_two_pos(drawn.at([from, 0.0]), drawn.at([from + wide, *count as f64]));
+        drawn.painter().rect_filled(bar.expand2(Vec2::new(0.5, 0.0)), 0.0, inks.ends[0]);
+    }
+    let chosen = points.dots.iter().filter(|dot| boxed.is_some_and(|b| b.rows.contains(&dot.rows[0])));
+    let ends = chosen
+        .map(|dot| dot.at[0])
+        .fold(None, |ends: Option<(f64, f64)>, x| Some(ends.map_or((x, x), |(low, high)| (low.min(x), high.max(x)))));
+    if let Some((low, high)) = ends {
+        let (from, to) = (drawn.at([low, 0.0]).x - 2.0, drawn.at([high, 0.0]).x + 2.0);
+        let range = Rect::from_x_y_ranges(from..=to, drawn.rect.y_range());
+        drawn.painter().rect_filled(range, 0.0, inks.selected.gamma_multiply(0.25));
+    }
+}
+
+/// All dots as one mesh, which stays as long as nothing changed.
+fn dots(
+    ui: &Ui,
+    drawn: &Drawn<'_>,
+    points: &Points,
+    stamp: u64,
+    boxed: Option<&Boxed>,
+    kept: &mut Option<(MeshKey, Arc<Mesh>)>,
+) {
+    let inks = Inks::of(ui.visuals());
+    let key = (stamp, drawn.rect, boxed.map(|b| b.stamp), inks.ends[0]);
+    if !kept.as_ref().is_some_and(|(of, _)| *of == key) {
+        let mut mesh = Mesh::default();
+        let size = Vec2::splat(if points.dots.len() < FEW { 5.0 } else { 3.0 });
+        for dot in &points.dots {
+            let chosen = boxed.is_some_and(|b| dot.rows.iter().any(|row| b.rows.contains(row)));
+            let colour = if chosen { inks.selected } else { inks.ends[0].gamma_multiply(0.8) };
+            mesh.add_colored_rect(Rect::from_center_size(drawn.at(dot.at), size), colour);
+        }
+        *kept = Some((key, Arc::new(mesh)));
+    }
+    if let Some((_, mesh)) = kept {
+        drawn.painter().add(Shape::mesh(mesh.clone()));
+    }
+}
+
+fn nearest(drawn: &Drawn<'_>, points: &Points, at: Pos2) -> Option<Dot> {
+    let away = |dot: &&Dot| drawn.at(dot.at).distance(at);
+    let nearest = points.dots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+    (points.bars.is_none() && away(&nearest) <= NEAR).then_some(*nearest)
+}
+
+fn clicked(drawn: &Drawn<'_>, points: &Points) -> Option<usize> {
+    let at = drawn.response.interact_pointer_pos().filter(|_| drawn.response.clicked())?;
+    nearest(drawn, points, at).map(|dot| dot.rows[0])
+}
+
+/// Which row the pointer is at.
+fn told(drawn: &Drawn<'_>, points: &Points, table: &RowTable) {
+    let at = drawn.response.hover_pos().filter(|_| !drawn.response.dragged());
+    let row = at.and_then(|at| nearest(drawn, points, at)).and_then(|dot| table.rows().get(dot.rows[0]));
+    if let Some(row) = row {
+        drawn.response.clone().on_hover_text_at_pointer(super::cells::name(row));
+    }
+}
+
+/// Draws the box that is being dragged; the rows in it once it is let go. Over a histogram it is as high as that.
+fn rubber_box(ui: &Ui, drawn: &Drawn<'_>, points: &Points, start: &mut Option<Pos2>) -> Option<HashSet<usize>> {
+    let (origin, now) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos()));
+    if drawn.response.drag_started() {
+        *start = origin.or(now);
+    }
+    let (from, now) = ((*start)?, now?);
+    let mut drawn_box = Rect::from_two_pos(from, now);
+    if points.bars.is_some() {
+        drawn_box = Rect::from_x_y_ranges(drawn_box.x_range(), drawn.rect.y_range());
+    }
+    let ink = Inks::of(ui.visuals()).selected;
+    drawn.painter().rect(drawn_box, 0.0, ink.gamma_multiply(0.12), Stroke::new(1.0, ink), StrokeKind::Middle);
+    if !drawn.response.drag_stopped() {
+        if !drawn.response.dragged() {
+            *start = None;
+        }
+        return None;
+    }
+    *start = None;
+    let inside = points.dots.iter().filter(|dot| drawn_box.expand(1e-3).contains(drawn.at(dot.at)));
+    Some(inside.flat_map(|dot| dot.rows).collect())
+}

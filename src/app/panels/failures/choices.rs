@@ -1,0 +1,112 @@
+//! Which methods are tried on which scenes, and where the rows come from and go to.
+
+use super::input::Input;
+use crate::app::state::{Command, FailureChoice};
+use crate::app::widgets::method_menu::method_menu;
+use crate::app::widgets::progress::progress;
+use crate::scene::generate::Kind;
+use eframe::egui;
+use eframe::egui::{Button, DragValue, Ui};
+use std::collections::BTreeSet;
+
+/// What is chosen.
+pub struct Memory {
+    methods: BTreeSet<&'static str>,
+    kinds: BTreeSet<Kind>,
+    own: bool,
+    count: u32,
+    seed: u64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Memory { methods: BTreeSet::new(), kinds: BTreeSet::from([Kind::Set2]), own: false, count: 20, seed: 0 }
+    }
+}
+
+/// Draws them.
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    memory.methods.retain(|name| input.methods.iter().any(|m| m.name() == *name));
+    if memory.methods.is_empty() {
+        memory.methods.extend(input.method);
+    }
+    ui.horizontal_wrapped(|ui| {
+        match input.progress {
+            Some(part) => {
+                if progress(ui, part, 180.0, "Stop after this map; the rows stay") {
+                    asked.push(Command::CancelTrying);
+                }
+            }
+            None => run(ui, input, memory, asked),
+        }
+        ui.separator();
+        files(ui, input, asked);
+    });
+    if let Some(note) = input.note {
+        ui.colored_label(ui.visuals().warn_fg_color, note);
+    }
+}
+
+fn run(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
+    let menu = ui.menu_button(format!("Scenes: {}", sets(memory)), |ui| {
+        for kind in Kind::all() {
+            let mut chosen = memory.kinds.contains(&kind);
+            let name = if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() };
+            if ui.checkbox(&mut chosen, name).on_hover_text(kind.description()).changed() {
+                match chosen {
+                    true => memory.kinds.insert(kind),
+                    false => memory.kinds.remove(&kind),
+                };
+            }
+        }
+        ui.separator();
+        let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
+        ui.checkbox(&mut memory.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));
+        if ui.button("Another folder…").on_hover_text("Pick any scene of the folder").clicked() {
+            asked.push(Command::ChooseOwnScenes);
+            ui.close();
+        }
+    });
+    menu.response.on_hover_text("Kinds of scenes to try them on");
+    let label = ui.label("of each");
+    ui.add(DragValue::new(&mut memory.count).range(1..=100_000)).labelled_by(label.id);
+    let label = ui.label("seed");
+    ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+    let ready = !memory.methods.is_empty() && (memory.own || !memory.kinds.is_empty());
+    let start = ui.add_enabled(ready, Button::new("Try"));
+    let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
+               the same stay; those made with others make room";
+    let start = start.on_hover_text(tip).on_disabled_hover_text("Choose a method and scenes first");
+    if start.clicked() {
+        asked.push(Command::TryMethods(FailureChoice {
+            methods: memory.methods.iter().copied().collect(),
+            kinds: memory.kinds.iter().copied().collect(),
+            own: memory.own,
+            count: memory.count,
+            seed: memory.seed,
+        }));
+    }
+}
+
+fn sets(memory: &Memory) -> String {
+    let kinds = memory.kinds.iter().map(Kind::to_string);
+    let names: Vec<String> = kinds.chain(memory.own.then(|| "own".to_owned())).collect();
+    if names.len() > 4 { format!("{} kinds", names.len()) } else { names.join(", ") }
+}
+
+fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let has_rows = !input.table.rows().is_empty();
+    let mut button = |name: &str, tip: &str, enabled: bool, command: Command| {
+        if ui.add_enabled(enabled, egui::Button::new(name)).on_hover_text(tip).clicked() {
+            asked.push(command);
+        }
+    };
+    button("Open…", "Show rows that were saved, or written by apertura evaluate --rows", true, Command::OpenRows);
+    button("Save…", "Save the rows as CSV", has_rows, Command::SaveRows);
+    button("Clear", "Forget every row", has_rows, Command::ClearRows);
+    if let Some(count) = input.before {
+        let name = format!("Bring back {count} rows");
+        button(&name, "The rows that others took the place of", true, Command::BringRowsBack);
+    }
+}

@@ -1,0 +1,164 @@
+//! The filter: an expression with completion, and a mark where it is wrong.
+
+use crate::evaluate::filter::{Filter, FilterError, complete};
+use eframe::egui;
+use eframe::egui::text::{CCursor, CharIndex};
+use eframe::egui::text_edit::TextEditOutput;
+use eframe::egui::{
+    CompletionPopup, CompletionQuery, Label, RectAlign, RichText, Stroke, Suggestion, TextEdit, Ui, vec2,
+};
+use std::collections::BTreeSet;
+
+/// What was typed, and what it means.
+#[derive(Default)]
+pub struct Memory {
+    /// The expression.
+    pub text: String,
+    read: Option<(String, usize)>,
+    filter: Option<Filter>,
+    error: Option<FilterError>,
+    stamp: u64,
+}
+
+impl Memory {
+    /// The last expression that meant something; all rows where `None`.
+    pub fn filter(&self) -> Option<&Filter> {
+        self.filter.as_ref()
+    }
+
+    /// Rises when that changed.
+    pub fn stamp(&self) -> u64 {
+        self.stamp
+    }
+
+    /// Reads what was typed, unless it was read before.
+    fn read(&mut self, methods: &BTreeSet<&str>) {
+        let now = (self.text.clone(), methods.len());
+        if self.read.as_ref() == Some(&now) {
+            return;
+        }
+        self.read = Some(now);
+        let names: Vec<&str> = methods.iter().copied().collect();
+        let read = match self.text.trim() {
+            "" => Ok(None),
+            _ => Filter::parse(&self.text, &names).map(Some),
+        };
+        match read {
+            // While somebody types, the rows stay as they were.
+            Err(error) => self.error = Some(error),
+            Ok(filter) => {
+                self.error = None;
+                if self.filter != filter {
+                    (self.filter, self.stamp) = (filter, self.stamp + 1);
+                }
+            }
+        }
+    }
+}
+
+/// Draws the field; `methods` are those that expressions may name.
+pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut Memory) {
+    let names: Vec<&str> = methods.iter().copied().collect();
+    let edit = ui.horizontal(|ui| {
+        let label = ui.label("Filter");
+        let id = ui.make_persistent_id("filter of rows");
+        let edit = TextEdit::singleline(&mut memory.text)
+            .hint_text("live.squared_error > 800 & objects >= 4")
+            .desired_width(f32::INFINITY);
+        let popup = CompletionPopup::new(id).word_boundary(is_boundary).align(RectAlign::BOTTOM_START);
+        let edit = popup.show(ui, edit, |query| suggestions(query, &names)).text_edit;
+        let _labelled = edit.response.response.clone().labelled_by(label.id);
+        edit
+    });
+    memory.read(methods);
+    if let Some(error) = &memory.error {
+        mark(ui, &edit.inner, error.column, ui.visuals().error_fg_color);
+    }
+}
+
+/// Says what is wrong with the expression, if anything is.
+pub fn problem(ui: &mut Ui, memory: &Memory) {
+    if let Some(error) = &memory.error {
+        ui.add(Label::new(RichText::new(error.to_string()).color(ui.visuals().error_fg_color)).wrap());
+    }
+}
+
+/// Underlines the character at `column`, counted from 1.
+fn mark(ui: &Ui, edit: &TextEditOutput, column: usize, ink: egui::Color32) {
+    let at =
+        |index: usize| edit.galley.pos_from_cursor(CCursor::new(CharIndex(index))).translate(edit.galley_pos.to_vec2());
+    let (from, to) = (at(column.saturating_sub(1)), at(column));
+    let painter = ui.painter().with_clip_rect(edit.response.response.rect.expand(4.0));
+    let line = from.left()..=to.left().max(from.left() + 6.0);
+    painter.hline(line, from.bottom(), Stroke::new(2.0, ink));
+    let tip = from.left_bottom();
+    let arrow = vec![tip, tip + vec2(-3.5, 5.0), tip + vec2(3.5, 5.0)];
+    painter.add(egui::Shape::convex_polygon(arrow, ink, Stroke::NONE));
+}
+
+/// What stands between names: a dot too, as what follows it is a name of its own.
+fn is_boundary(c: char) -> bool {
+    !(c.is_alphanumeric() || matches!(c, '_' | '-'))
+}
+
+/// What the word before the cursor may become; nothing for an empty one, so that Enter and Tab keep their meaning.
+fn suggestions(query: &CompletionQuery<'_>, methods: &[&str]) -> Vec<Suggestion> {
+    let (start, end) = (query.word_range.start.0, query.word_range.end.0);
+    let found = complete(query.text, end, methods);
+    let after_dot = query.text.chars().nth(end.wrapping_sub(1)) == Some('.');
+    if found.start >= end && !after_dot {
+        return Vec::new();
+    }
+    // A number and its minus belong to the word of the field, but not to the name.
+    let before: String = query.text.chars().skip(start).take(found.start.saturating_sub(start)).collect();
+    found.candidates.into_iter().map(|name| Suggestion::new(format!("{before}{name}")).content(name)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn field() -> Harness<'static, Memory> {
+        let draw = |ui: &mut Ui, memory: &mut Memory| {
+            show(ui, &BTreeSet::from(["live", "nomp"]), memory);
+            problem(ui, memory);
+        };
+        Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Memory::default())
+    }
+
+    fn write(field: &mut Harness<'_, Memory>, text: &str) {
+        field.get_by_label("Filter").focus();
+        field.step();
+        field.get_by_label("Filter").type_text(text);
+        field.run_steps(3);
+    }
+
+    #[test]
+    fn names_are_completed_and_the_expression_is_read() {
+        let mut field = field();
+        write(&mut field, "nomp.squ");
+        field.key_press(egui::Key::Enter);
+        field.run_steps(3);
+        assert_eq!(field.state().text, "nomp.squared_error");
+        assert!(field.state().filter().is_none() && field.state().error.is_some(), "it is no expression yet");
+        write(&mut field, " > 800");
+        assert!(field.state().error.is_none());
+        assert_eq!(
+            field.state().filter(),
+            Some(&Filter::parse("nomp.squared_error > 800", &["live", "nomp"]).unwrap())
+        );
+    }
+
+    #[test]
+    fn a_mistake_is_pointed_at_and_the_last_filter_stays() {
+        let mut field = field();
+        write(&mut field, "objects > 3");
+        let (stamp, filter) = (field.state().stamp(), field.state().filter().cloned());
+        assert!(filter.is_some());
+        write(&mut field, " & objcts = 2");
+        assert_eq!((field.state().stamp(), field.state().filter()), (stamp, filter.as_ref()));
+        let _told = field.get_by_label_contains("column 15:");
+    }
+}

@@ -1,0 +1,148 @@
+//! Every scene that methods were tried on, row by row: sorted, filtered, charted, opened, made worse, kept.
+
+mod cells;
+mod charts;
+mod choices;
+mod filter;
+mod input;
+mod opened;
+mod order;
+mod points;
+mod table;
+
+pub use input::{Input, Live, Now, Searched};
+
+use crate::app::state::Command;
+use charts::View;
+use eframe::egui;
+use eframe::egui::{Frame, Margin, Ui, Vec2};
+use order::{Boxed, Order, Sort, Wanted};
+use std::collections::BTreeSet;
+
+/// What the panel remembers from frame to frame.
+#[derive(Default)]
+pub struct Memory {
+    choices: choices::Memory,
+    filter: filter::Memory,
+    sort: Option<Sort>,
+    order: Order,
+    boxed: Option<Boxed>,
+    charts: charts::Memory,
+    table: table::Memory,
+    opened: opened::Memory,
+    in_sight: Vec<usize>,
+}
+
+impl Memory {
+    /// Indices of the rows in sight, from top to bottom.
+    pub fn in_sight(&self) -> &[usize] {
+        &self.in_sight
+    }
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    Frame::NONE.inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
+        choices::show(ui, input, &mut memory.choices, &mut asked);
+        egui::Panel::bottom("row on screen").resizable(false).frame(Frame::NONE.inner_margin(Margin::symmetric(0, 4))).show(
+            ui,
+            |ui| opened::show(ui, input, &mut memory.opened, &mut asked),
+        );
+        if input.table.rows().is_empty() {
+            memory.in_sight.clear();
+            let text = "Try methods on scenes, or open rows that apertura evaluate --rows wrote: every scene is a row to \
+                        sort, filter and open.";
+            ui.weak(text);
+            return;
+        }
+        let known: BTreeSet<&str> =
+            input.table.methods().iter().map(String::as_str).chain(input.methods.iter().map(|m| m.name())).collect();
+        filter::show(ui, &known, &mut memory.filter);
+        update(ui, input, memory);
+        head(ui, input, memory);
+        if memory.charts.view != View::None {
+            let panel = beside_or_below(ui.available_size()).frame(Frame::NONE);
+            panel.show(ui, |ui| chart(ui, input, memory, &mut asked));
+        }
+        rows(ui, input, memory, &mut asked);
+    });
+    asked
+}
+
+/// Where a chart stands: beside the rows where there is more room.
+fn beside_or_below(room: Vec2) -> egui::Panel {
+    let of = |length: f32| (0.45 * length, 90.0..=(0.8 * length).max(90.0));
+    if room.x > 2.2 * room.y {
+        let (usual, range) = of(room.x);
+        egui::Panel::right("chart beside rows").default_size(usual).size_range(range)
+    } else {
+        let (usual, range) = of(room.y);
+        egui::Panel::bottom("chart below rows").default_size(usual).size_range(range)
+    }
+}
+
+/// Puts the rows in order, if something changed.
+fn update(ui: &Ui, input: &Input<'_>, memory: &mut Memory) {
+    memory.boxed.take_if(|boxed| boxed.generation != input.table.generation());
+    let wanted = Wanted {
+        table: input.table,
+        filter: memory.filter.filter(),
+        filter_stamp: memory.filter.stamp(),
+        sort: memory.sort,
+        boxed: memory.boxed.as_ref(),
+    };
+    if let Some(later) = memory.order.update(&wanted) {
+        ui.ctx().request_repaint_after(later);
+    }
+}
+
+/// How many rows are shown, and what else is.
+fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
+    ui.horizontal_wrapped(|ui| {
+        let (shown, all) = (memory.order.shown().len(), input.table.rows().len());
+        ui.weak(if shown == all { format!("{all} rows") } else { format!("{shown} of {all} rows") });
+        if let Some(boxed) = &memory.boxed {
+            let name = format!("× {} in the box", boxed.rows.len());
+            if ui.small_button(name).on_hover_text("Show rows outside the box again").clicked() {
+                memory.boxed = None;
+            }
+        }
+        ui.separator();
+        charts::choices(ui, input.table, &mut memory.charts);
+        // Beside what is always there, so that nothing moves while somebody types.
+        filter::problem(ui, &memory.filter);
+    });
+}
+
+fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    let of = charts::Input { table: input.table, order: &memory.order, opened: input.opened };
+    let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
+    asked.extend(answer.open.map(Command::OpenRow));
+    if let Some(boxed) = answer.boxed {
+        // An empty box selects all.
+        memory.boxed = Some(boxed).filter(|boxed| !boxed.rows.is_empty());
+        ui.request_repaint();
+    }
+}
+
+fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    let of = table::Input {
+        table: input.table,
+        album: input.album,
+        shown: memory.order.shown(),
+        sort: memory.sort,
+        opened: input.opened,
+        colours: input.colours,
+    };
+    let answer = table::show(ui, &of, &mut memory.table);
+    asked.extend(answer.open.map(Command::OpenRow));
+    if let Some(column) = answer.sort {
+        memory.sort = Sort::clicked(memory.sort, column);
+        ui.request_repaint();
+    }
+    memory.in_sight = answer.in_sight;
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,141 @@
+//! The scene on screen: the row's own figures beside those of now, worse and repaired, and kept.
+
+use super::input::{Input, Live, Now, Searched};
+use crate::app::state::{Command, SearchChoice};
+use crate::app::widgets::numbers::percent;
+use crate::app::widgets::progress::progress;
+use crate::evaluate::Metrics;
+use crate::evaluate::rows::Row;
+use crate::evaluate::worsen::{Aim, Measure, Search};
+use eframe::egui::{Button, ComboBox, DragValue, Grid, TextEdit, Ui};
+
+/// What is chosen, and what was written.
+pub struct Memory {
+    measure: Measure,
+    within_metres: f64,
+    tries: u32,
+    note: String,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        let Search { measure, within_metres, tries, .. } = Search::default();
+        Memory { measure, within_metres, tries, note: String::new() }
+    }
+}
+
+/// Draws it.
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    if let Some(live) = &input.on_screen {
+        figures(ui, live);
+    }
+    ui.horizontal_wrapped(|ui| {
+        search(ui, &input.search, memory, asked);
+        ui.separator();
+        let label = ui.label("Note");
+        ui.add(TextEdit::singleline(&mut memory.note).hint_text("why it is kept").desired_width(160.0))
+            .labelled_by(label.id);
+        let folder = input.own.map_or_else(|| "a folder that you choose first".to_owned(), |f| f.display().to_string());
+        let keep = ui.add_enabled(input.own.is_some(), Button::new("Keep"));
+        let tip = format!("Add the scene on screen to your own scenes, with the note: {folder}");
+        if keep.on_hover_text(tip).clicked() {
+            asked.push(Command::KeepScene(std::mem::take(&mut memory.note)));
+        }
+        if input.own.is_none() && ui.button("Folder…").clicked() {
+            asked.push(Command::ChooseOwnScenes);
+        }
+    });
+}
+
+fn figures(ui: &mut Ui, live: &Live<'_>) {
+    Grid::new("row and now").num_columns(5).spacing([14.0, 2.0]).show(ui, |ui| {
+        ui.label(format!("row: {}", super::cells::name(live.row)));
+        let Row { squared_error, detection, false_alarm, .. } = *live.row;
+        rates(ui, &Metrics { squared_error, detection, false_alarm });
+        ui.label(fates(live.row));
+        ui.end_row();
+        match &live.now {
+            Some(Now { method, metrics, fates }) => {
+                ui.label(format!("now: {method}"));
+                rates(ui, metrics);
+                ui.label(fates.as_deref().unwrap_or_default());
+            }
+            None => _ = ui.weak("now: …").on_hover_text("As soon as a panel shows the output"),
+        }
+        ui.end_row();
+    });
+}
+
+fn rates(ui: &mut Ui, metrics: &Metrics) {
+    let detection = metrics.detection.map_or_else(|| "–".to_owned(), percent);
+    ui.label(format!("SE {:.1}", metrics.squared_error));
+    ui.label(format!("P_D {detection}"));
+    ui.label(format!("P_FA {}", percent(metrics.false_alarm)));
+}
+
+/// What became of a row's objects, in words.
+fn fates(row: &Row) -> String {
+    let maybe = |count: Option<usize>, name: &str| count.filter(|n| *n > 0).map(|n| format!("{n} {name}"));
+    let told = [row.found, Some(row.missed), row.merged, row.wrong_tooth].into_iter().sum::<Option<usize>>();
+    let parts = [
+        maybe(row.found, "found"),
+        maybe(Some(row.missed), "missed"),
+        maybe(row.merged, "merged"),
+        maybe(row.wrong_tooth, "wrong tooth"),
+        maybe(told.map(|told| row.objects.saturating_sub(told)), "hidden"),
+        maybe(Some(row.ghosts), if row.ghosts == 1 { "ghost" } else { "ghosts" }),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    if let Some(part) = searched.progress {
+        if progress(ui, part, 140.0, "Stop looking; what was found stays") {
+            asked.push(Command::CancelSearch);
+        }
+    } else {
+        let label = ui.label("Look by");
+        let combo = ComboBox::from_id_salt("measure").selected_text(name(memory.measure)).show_ui(ui, |ui| {
+            for measure in Measure::ALL {
+                ui.selectable_value(&mut memory.measure, measure, name(measure));
+            }
+        });
+        combo.response.labelled_by(label.id);
+        let label = ui.label("within");
+        let within = DragValue::new(&mut memory.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
+        ui.add(within).labelled_by(label.id);
+        let label = ui.label("in");
+        let tries = DragValue::new(&mut memory.tries).range(1..=100_000).suffix(" tries");
+        ui.add(tries).labelled_by(label.id);
+        let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
+        let repair = "Look for the smallest move of its objects after which the method in use is right";
+        for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
+            if ui.button(title).on_hover_text(tip).clicked() {
+                let Memory { measure, within_metres, tries, .. } = *memory;
+                asked.push(Command::Search(SearchChoice { aim, measure, within_metres, tries }));
+            }
+        }
+    }
+    if let Some(summary) = &searched.summary {
+        ui.label(summary);
+    }
+    if let Some(note) = searched.note {
+        ui.colored_label(ui.visuals().warn_fg_color, note);
+    }
+    if searched.progress.is_none() && searched.has_found {
+        if ui.button("Show").on_hover_text("Put what was found on screen; undo brings this scene back").clicked() {
+            asked.push(Command::TakeFinding);
+        }
+        if ui.button("Forget").on_hover_text("Forget the search; its path is no longer drawn").clicked() {
+            asked.push(Command::ForgetSearch);
+        }
+    }
+}
+
+fn name(measure: Measure) -> &'static str {
+    match measure {
+        Measure::SquaredError => "squared error",
+        Measure::Missed => "missed objects",
+        Measure::Ghosts => "ghosts",
+    }
+}

@@ -1,0 +1,175 @@
+//! Which rows are shown, and in which order: worked out when something changed, not in every frame.
+
+use crate::app::jobs::RowTable;
+use crate::evaluate::filter::Filter;
+use crate::evaluate::rows::{Column, sorted_by};
+use std::collections::HashSet;
+use std::time::{Duration, Instant};
+
+/// While rows come, they are put in order so often.
+const EVERY: Duration = Duration::from_millis(250);
+
+/// By which column rows are sorted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sort {
+    /// The column.
+    pub column: Column,
+    /// The largest first.
+    pub descending: bool,
+}
+
+impl Sort {
+    /// What a click on the title of `column` makes of it: the largest first, then the smallest, then the order in which rows came.
+    pub fn clicked(now: Option<Sort>, column: Column) -> Option<Sort> {
+        match now {
+            Some(sort) if sort.column == column => sort.descending.then_some(Sort { column, descending: false }),
+            _ => Some(Sort { column, descending: true }),
+        }
+    }
+}
+
+/// What decides which rows are shown.
+pub struct Wanted<'a> {
+    /// The rows.
+    pub table: &'a RowTable,
+    /// Which of them; all where `None`.
+    pub filter: Option<&'a Filter>,
+    /// Rises when the filter changes.
+    pub filter_stamp: u64,
+    /// In which order.
+    pub sort: Option<Sort>,
+    /// Those in a box of a chart, if one was drawn.
+    pub boxed: Option<&'a Boxed>,
+}
+
+/// Rows in a box.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Boxed {
+    /// The table that they stand in.
+    pub generation: u64,
+    /// Their indices.
+    pub rows: HashSet<usize>,
+    /// Rises with every box.
+    pub stamp: u64,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Key {
+    version: u64,
+    generation: u64,
+    filter: u64,
+    sort: Option<Sort>,
+    boxed: Option<u64>,
+}
+
+/// The order, as it was worked out last.
+#[derive(Default)]
+pub struct Order {
+    of: Option<Key>,
+    when: Option<Instant>,
+    filtered: Vec<usize>,
+    shown: Vec<usize>,
+    stamp: u64,
+}
+
+impl Order {
+    /// Rows of which the filter is true, in the order they came.
+    pub fn filtered(&self) -> &[usize] {
+        &self.filtered
+    }
+
+    /// Those of them in the box, sorted: what the table shows.
+    pub fn shown(&self) -> &[usize] {
+        &self.shown
+    }
+
+    /// Rises when it was worked out again.
+    pub fn stamp(&self) -> u64 {
+        self.stamp
+    }
+
+    /// Works it out again if something changed. Returns when to come again, if rows that have just come wait for it.
+    pub fn update(&mut self, wanted: &Wanted<'_>) -> Option<Duration> {
+        let Wanted { table, filter, filter_stamp, sort, boxed } = *wanted;
+        let boxed = boxed.filter(|boxed| boxed.generation == table.generation());
+        let key = Key {
+            version: table.version(),
+            generation: table.generation(),
+            filter: filter_stamp,
+            sort,
+            boxed: boxed.map(|b| b.stamp),
+        };
+        if self.of.as_ref() == Some(&key) {
+            return None;
+        }
+        let only_rows = self.of.as_ref().is_some_and(|of| Key { version: key.version, ..of.clone() } == key);
+        if let Some(wait) = self.when.filter(|_| only_rows).and_then(|when| EVERY.checked_sub(when.elapsed())) {
+            return Some(wait);
+        }
+        let rows = table.rows();
+        self.filtered = match filter {
+            Some(filter) => filter.matching(rows),
+            None => (0..rows.len()).collect(),
+        };
+        let mut is_shown = vec![false; rows.len()];
+        for &index in self.filtered.iter().filter(|index| boxed.is_none_or(|b| b.rows.contains(index))) {
+            is_shown[index] = true;
+        }
+        self.shown = match sort {
+            Some(Sort { column, descending }) => sorted_by(rows, column, descending),
+            None => (0..rows.len()).collect(),
+        };
+        self.shown.retain(|index| is_shown[*index]);
+        self.of = Some(key);
+        self.when = Some(Instant::now());
+        self.stamp += 1;
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::jobs::some_row;
+    use crate::app::state::Conditions;
+
+    fn table(count: u32) -> RowTable {
+        let mut table = RowTable::default();
+        table.replace((0..count).map(|i| some_row(i, "live")).collect(), Conditions::default());
+        table
+    }
+
+    #[test]
+    fn rows_are_filtered_boxed_and_sorted_only_when_something_changed() {
+        let mut table = table(6);
+        let mut order = Order::default();
+        let filter = Filter::parse("index >= 2", &["live"]).unwrap();
+        let boxed = Boxed { generation: table.generation(), rows: HashSet::from([1, 3, 5]), stamp: 1 };
+        fn wanted<'a>(table: &'a RowTable, filter: &'a Filter, boxed: &'a Boxed) -> Wanted<'a> {
+            let sort = Some(Sort { column: Column::Index, descending: true });
+            Wanted { table, filter: Some(filter), filter_stamp: 1, sort, boxed: Some(boxed) }
+        }
+        order.update(&wanted(&table, &filter, &boxed));
+        assert_eq!((order.filtered(), order.shown()), (&[2, 3, 4, 5][..], &[5, 3][..]));
+        let stamp = order.stamp();
+        order.update(&wanted(&table, &filter, &boxed));
+        assert_eq!(order.stamp(), stamp);
+        table.add(some_row(6, "live"));
+        assert!(order.update(&wanted(&table, &filter, &boxed)).is_some(), "rows that come are taken in now and then");
+        order.update(&Wanted { boxed: None, ..wanted(&table, &filter, &boxed) });
+        assert_eq!(order.shown(), [6, 5, 4, 3, 2], "and at once when something else changed");
+        table.replace(Vec::new(), Conditions::default());
+        order.update(&wanted(&table, &filter, &boxed));
+        assert!(order.shown().is_empty(), "nor do indices of another table stay");
+    }
+
+    #[test]
+    fn a_title_sorts_both_ways_and_then_no_more() {
+        let first = Sort::clicked(None, Column::Missed);
+        assert_eq!(first, Some(Sort { column: Column::Missed, descending: true }));
+        let second = Sort::clicked(first, Column::Missed);
+        assert_eq!(second.map(|s| s.descending), Some(false));
+        assert_eq!(Sort::clicked(second, Column::Missed), None);
+        assert_eq!(Sort::clicked(second, Column::Ghosts).map(|s| s.column), Some(Column::Ghosts));
+    }
+}

@@ -1,0 +1,143 @@
+//! What charts are drawn of: the rows as dots and bars, worked out when the rows changed.
+
+use crate::app::jobs::RowTable;
+use crate::evaluate::rows::{Column, Histogram, Row, Value};
+use std::collections::HashMap;
+
+/// Bars of a histogram.
+const BARS: usize = 40;
+
+/// What a chart shows.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Subject {
+    /// How often the figures of a column fall where.
+    Histogram(Column),
+    /// Two columns of every row.
+    Columns(Column, Column),
+    /// One column for two methods on the same scene.
+    Methods(Column, String, String),
+}
+
+/// A dot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dot {
+    /// Where.
+    pub at: [f64; 2],
+    /// The row to open, and the other one where there are two.
+    pub rows: [usize; 2],
+}
+
+/// A chart's content.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Points {
+    /// The dots of a scatter plot; of a histogram, one a row that lies on the axis.
+    pub dots: Vec<Dot>,
+    /// The bars of a histogram.
+    pub bars: Option<Histogram>,
+    /// Where the axes begin and end.
+    pub spans: [[f64; 2]; 2],
+}
+
+fn number(row: &Row, column: Column) -> Option<f64> {
+    match column.of(row) {
+        Value::Number(value) => Some(value),
+        _ => None,
+    }
+}
+
+impl Points {
+    /// Of the rows whose indices are in `filtered`.
+    pub fn of(table: &RowTable, filtered: &[usize], subject: &Subject) -> Points {
+        let rows = table.rows();
+        let of_row = |index: &usize| rows.get(*index).map(|row| (*index, row));
+        let listed = || filtered.iter().filter_map(of_row);
+        match subject {
+            Subject::Histogram(column) => {
+                let on_axis =
+                    |(index, row): (usize, &Row)| Some(Dot { at: [number(row, *column)?, 0.0], rows: [index; 2] });
+                let dots = listed().filter_map(on_axis).collect();
+                let bars = Histogram::of(listed().map(|(_, row)| row), *column, BARS);
+                let most = bars.as_ref().and_then(|b| b.counts.iter().max()).map_or(1, |most| *most);
+                let x = bars.as_ref().map_or([0.0, 1.0], |b| padded(b.low, b.high, 0.0));
+                Points { dots, bars, spans: [x, [0.0, 1.05 * most as f64]] }
+            }
+            Subject::Columns(x, y) => {
+                let dot = |(index, row): (usize, &Row)| {
+                    Some(Dot { at: [number(row, *x)?, number(row, *y)?], rows: [index; 2] })
+                };
+                Points::scattered(listed().filter_map(dot).collect())
+            }
+            Subject::Methods(column, a, b) => {
+                let scene = |row: &Row| (row.set.clone(), row.seed, row.index);
+                let of_b: HashMap<_, usize> =
+                    listed().filter(|(_, row)| row.method == *b).map(|(index, row)| (scene(row), index)).collect();
+                let dot = |(index, row): (usize, &Row)| {
+                    let other = *of_b.get(&scene(row))?;
+                    Some(Dot { at: [number(row, *column)?, number(&rows[other], *column)?], rows: [index, other] })
+                };
+                Points::scattered(listed().filter(|(_, row)| row.method == *a).filter_map(dot).collect())
+            }
+        }
+    }
+
+    fn scattered(dots: Vec<Dot>) -> Points {
+        let span = |axis: usize| {
+            let ends = dots.iter().map(|dot| dot.at[axis]);
+            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+            if low <= high { padded(low, high, 0.03) } else { [0.0, 1.0] }
+        };
+        Points { spans: [span(0), span(1)], dots, bars: None }
+    }
+}
+
+/// The ends with a little room around; never the same.
+fn padded(low: f64, high: f64, part: f64) -> [f64; 2] {
+    let size = high - low;
+    let room = if size > 0.0 { part * size } else { 0.5 * low.abs().max(1.0) };
+    [low - room, high + room]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::jobs::some_row;
+    use crate::app::state::Conditions;
+
+    fn table() -> RowTable {
+        let mut table = RowTable::default();
+        let of =
+            |method: &'static str| (0..6).map(move |i| Row { found: (i != 2).then_some(4), ..some_row(i, method) });
+        table.replace(of("live").chain(of("nomp").skip(1)).collect(), Conditions::default());
+        table
+    }
+
+    #[test]
+    fn two_methods_meet_on_their_common_scenes() {
+        let table = table();
+        let all: Vec<usize> = (0..table.rows().len()).collect();
+        let subject = Subject::Methods(Column::SquaredError, "live".into(), "nomp".into());
+        let points = Points::of(&table, &all, &subject);
+        assert_eq!(points.dots.len(), 5, "the first scene was tried by one only");
+        assert!(points.dots.iter().all(|dot| dot.at[0] == dot.at[1] && dot.rows[1] == dot.rows[0] + 5));
+        let [low, high] = points.spans[0];
+        assert!(points.dots.iter().all(|dot| low < dot.at[0] && dot.at[0] < high));
+    }
+
+    #[test]
+    fn rows_without_a_figure_have_no_dot() {
+        let table = table();
+        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found));
+        assert_eq!(points.dots.iter().map(|dot| dot.rows[0]).collect::<Vec<_>>(), [0, 3]);
+        assert!(points.spans[1][0] < 4.0 && points.spans[1][1] > 4.0, "a span is never empty");
+        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method));
+        assert!(none.bars.is_none() && none.dots.is_empty());
+    }
+
+    #[test]
+    fn the_bars_of_a_histogram_count_the_filtered_rows() {
+        let table = table();
+        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index));
+        assert_eq!(points.bars.map(|b| b.counts.iter().sum::<usize>()), Some(3));
+        assert_eq!(points.spans[0], [0.0, 5.0]);
+    }
+}

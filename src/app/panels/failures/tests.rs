@@ -1,0 +1,177 @@
+use super::*;
+use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
+use crate::app::state::{Conditions, FailureChoice, SearchChoice};
+use crate::app::widgets::seen;
+use crate::evaluate::rows::{Column, Row};
+use crate::evaluate::worsen::{Aim, Measure};
+use crate::picture::ColourMap;
+use crate::reconstruct::{Baseline, CAPON, Reconstructor};
+use crate::scene::generate::Kind;
+use eframe::egui::{Key, Modifiers, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+struct Drawn {
+    table: RowTable,
+    album: Album,
+    memory: Memory,
+    asked: Vec<Command>,
+    opened: Option<usize>,
+}
+
+fn panel_of(rows: Vec<Row>, size: Vec2) -> Harness<'static, Drawn> {
+    let draw = |ui: &mut Ui, drawn: &mut Drawn| {
+        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
+        let row = drawn.opened.map(|index| drawn.table.rows()[index].clone());
+        let input = Input {
+            methods: &methods,
+            method: Some("capon"),
+            table: &drawn.table,
+            album: &drawn.album,
+            before: None,
+            progress: None,
+            note: None,
+            own: Some(Path::new("/own")),
+            colours: ColourMap::Grey,
+            opened: drawn.opened,
+            on_screen: row.as_ref().map(|row| Live { row, now: None }),
+            search: Searched::default(),
+        };
+        let asked = show(ui, &input, &mut drawn.memory);
+        for command in &asked {
+            if let Command::OpenRow(index) = command {
+                drawn.opened = Some(*index);
+            }
+        }
+        drawn.asked.extend(asked);
+    };
+    let mut table = RowTable::default();
+    table.replace(rows, Conditions::default());
+    let drawn = Drawn { table, album: Album::default(), memory: Memory::default(), asked: Vec::new(), opened: None };
+    let mut panel = Harness::builder().with_size(size).build_ui_state(draw, drawn);
+    panel.run_steps(3);
+    panel
+}
+
+fn panel(count: u32) -> Harness<'static, Drawn> {
+    panel_of((0..count).map(|i| some_row(i, "capon")).collect(), vec2(900.0, 700.0))
+}
+
+fn click(panel: &mut Harness<'_, Drawn>, label: &str) {
+    panel.get_by_label(label).click();
+    panel.run_steps(3);
+}
+
+#[test]
+fn what_is_chosen_is_tried_searched_and_kept() {
+    let mut panel = panel(0);
+    for label in ["Try", "Worse", "Keep", "Open…"] {
+        click(&mut panel, label);
+    }
+    let choice = FailureChoice { methods: vec!["capon"], kinds: vec![Kind::Set2], own: false, count: 20, seed: 0 };
+    let search = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 256 };
+    let asked =
+        [Command::TryMethods(choice), Command::Search(search), Command::KeepScene(String::new()), Command::OpenRows];
+    assert_eq!(panel.state().asked, asked);
+}
+
+#[test]
+fn titles_sort_and_keys_walk_through_the_rows_in_that_order() {
+    let mut panel = panel(50);
+    click(&mut panel, "squared_error");
+    let rows = panel.state().table.rows().clone();
+    let worst = (0..50).max_by(|a, b| rows[*a].squared_error.total_cmp(&rows[*b].squared_error)).unwrap();
+    assert_eq!(panel.state().memory.in_sight()[0], worst);
+    click(&mut panel, &format!("set 1, scene {worst}, capon"));
+    for _ in 0..2 {
+        panel.key_press(Key::ArrowDown);
+        panel.run_steps(2);
+    }
+    panel.key_press(Key::End);
+    panel.run_steps(3);
+    let opened: Vec<usize> = panel
+        .state()
+        .asked
+        .iter()
+        .map(|c| if let Command::OpenRow(row) = c { *row } else { panic!("{c:?}") })
+        .collect();
+    let figures: Vec<f64> = opened.iter().map(|row| rows[*row].squared_error).collect();
+    assert_eq!((opened.len(), opened[0]), (4, worst));
+    assert!(figures.is_sorted_by(|a, b| a >= b), "{figures:?}");
+    let smallest = rows.iter().map(|row| row.squared_error).reduce(f64::min);
+    assert_eq!(figures.last().copied(), smallest);
+    assert!(panel.state().memory.in_sight().contains(&opened[3]), "the row that was walked to is in sight");
+}
+
+#[test]
+fn a_box_in_the_scatter_plot_selects_rows() {
+    let apart = |i: u32| Row { nearest_pair_columns: Some(f64::from(i)), ..some_row(i, "capon") };
+    let mut panel = panel_of((0..200).map(apart).collect(), vec2(900.0, 700.0));
+    click(&mut panel, "Scatter");
+    panel.state_mut().memory.sort = Some(Sort { column: Column::Index, descending: false });
+    let chart = panel.get_by_label("Chart of rows").rect();
+    let (from, to) = (chart.left_top() + vec2(2.0, 2.0), chart.center_bottom() - vec2(0.0, 2.0));
+    panel.hover_at(from);
+    panel.step();
+    panel.drag_at(from);
+    panel.step();
+    for part in [0.3, 0.6, 1.0] {
+        panel.hover_at(from + (to - from) * part);
+        panel.step();
+    }
+    panel.drop_at(to);
+    panel.run_steps(4);
+    let shown = panel.state().memory.order.shown().to_vec();
+    let last = *shown.last().unwrap();
+    assert!((90..110).contains(&last) && shown == (0..=last).collect::<Vec<_>>(), "the left half: {shown:?}");
+    let name = format!("× {} in the box", shown.len());
+    click(&mut panel, &name);
+    assert_eq!(panel.state().memory.order.shown().len(), 200);
+}
+
+#[test]
+fn ten_thousand_rows_are_put_in_order_once_and_drawn_as_few() {
+    let mut panel = panel(10_000);
+    let Drawn { table, album, .. } = panel.state();
+    let bytes = || vec![99; THUMBNAIL_WIDTH * THUMBNAIL_HEIGHT].into_boxed_slice();
+    let thumbnail = Arc::new(Thumbnail { target: bytes(), output: bytes() });
+    table.rows().iter().for_each(|row| album.insert(table.generation(), row, Ok(thumbnail.clone())));
+    click(&mut panel, "missed");
+    let stamp = panel.state().memory.order.stamp();
+    let began = Instant::now();
+    for _ in 0..20 {
+        panel.step();
+    }
+    let took = began.elapsed();
+    assert_eq!(panel.state().memory.order.stamp(), stamp, "nothing changed");
+    let in_sight = panel.state().memory.in_sight().len();
+    assert!((5..30).contains(&in_sight), "{in_sight} rows in sight");
+    assert!(seen::texts(panel.output()).len() < 700, "what is out of sight is not drawn");
+    assert!(took < Duration::from_secs(10), "20 frames took {took:?}");
+    panel.get_by_label("Rows").focus();
+    panel.step();
+    panel.key_press_modifiers(Modifiers::NONE, Key::End);
+    panel.run_steps(3);
+    let last = *panel.state().memory.order.shown().last().unwrap();
+    assert_eq!(panel.state().opened, Some(last));
+    assert!(panel.state().memory.in_sight().contains(&last));
+    panel.key_press(Key::PageUp);
+    panel.run_steps(3);
+    let held = panel.state().memory.table.pictures();
+    assert!(held <= panel.state().memory.in_sight().len(), "{held} pictures are held");
+}
+
+#[test]
+fn an_opened_row_keeps_its_figures_beside_those_of_now() {
+    let mut panel = panel(3);
+    click(&mut panel, "set 1, scene 2, capon");
+    let texts = seen::texts(panel.output());
+    let error = format!("{:.1}", panel.state().table.rows()[2].squared_error);
+    for said in [error.clone(), format!("SE {error}")] {
+        assert!(texts.iter().any(|t| t.text == said), "{said}: in the table, and beside the live ones");
+    }
+    assert!(texts.iter().any(|t| t.text == "1 found, 2 missed"), "{texts:?}");
+}

@@ -1,0 +1,50 @@
+//! What is drawn where a map has no picture, or hides it.
+
+use crate::app::state::Command;
+use crate::app::widgets::theme::Inks;
+use eframe::egui::{self, Align2, Painter, Rect, Ui, vec2};
+
+/// A map that is hidden until somebody has predicted what it shows.
+#[derive(Clone, Copy)]
+pub struct Veil {
+    /// Whether the prediction is a click in this map.
+    pub is_clicked: bool,
+}
+
+/// Why there is no picture.
+pub struct Problem<'a> {
+    /// What is wrong.
+    pub reason: &'a str,
+    /// Name of a method that works instead.
+    pub instead: Option<&'static str>,
+}
+
+/// What a map without a picture says, and the way out of it.
+pub fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<'_>>, asked: &mut Vec<Command>) {
+    painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    let text = error.map_or("computing…", |e| e.reason);
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 16.0).max(40.0), 76.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(egui::RichText::new(text).size(12.0).weak()).wrap().selectable(false));
+            if let Some(instead) = error.and_then(|e| e.instead)
+                && ui.button(format!("Use {instead}")).on_hover_text("A method that works here").clicked()
+            {
+                asked.push(Command::Method(instead));
+            }
+        });
+    });
+}
+
+/// What a hidden map says, at its top: the middle is where many a peak will be. The one that waits for a click stands out.
+pub fn veil(painter: &Painter, rect: Rect, is_clicked: bool, visuals: &egui::Visuals) {
+    let (text, ink, size) = match is_clicked {
+        true => ("Click where you expect it", Inks::of(visuals).selected, 16.0),
+        false => ("Hidden until you have predicted", visuals.weak_text_color(), 13.0),
+    };
+    let at = rect.center_top() + vec2(0.0, 10.0);
+    painter.text(at, Align2::CENTER_TOP, text, egui::FontId::proportional(size), ink);
+    if is_clicked {
+        painter.rect_stroke(rect.shrink(1.0), 0.0, egui::Stroke::new(2.0, ink), egui::StrokeKind::Inside);
+    }
+}

@@ -1,0 +1,261 @@
+//! Kinds of failure on a map: every object marked by what became of it, and ghosts; by shape as well as by hue.
+
+use super::frame::Frame;
+use crate::app::jobs::{Fates, Verdict};
+use crate::app::widgets::axes;
+use crate::app::widgets::theme::MARK_EDGE;
+use crate::evaluate::failure::Fate;
+use crate::maps::Aperture;
+use crate::scene::Reflector;
+use crate::theory::{Cell, blob_cell};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+
+/// How near the pointer must be to a mark to be told of it, points.
+const NEAR: f32 = 10.0;
+
+/// Most marks that are drawn.
+const MARKS: usize = 400;
+
+/// What became of everything that the map should show.
+#[derive(Clone, Copy)]
+pub struct Kinds<'a> {
+    /// The verdicts.
+    pub fates: &'a Fates,
+    /// Whether they are of the output on screen, and not of an earlier one.
+    pub current: bool,
+}
+
+/// The shape of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sign {
+    /// A tick.
+    Found,
+    /// A cross in a ring.
+    Missed,
+    /// Two rings that overlap; a line leads to the other object.
+    Merged,
+    /// A triangle that points to where the output has it.
+    WrongTooth,
+    /// Four corners of a square.
+    Ghost,
+    /// Three dots.
+    Hidden,
+}
+
+impl Sign {
+    /// All of them, in the order of a legend.
+    pub const ALL: [Sign; 6] = [Sign::Found, Sign::Missed, Sign::Merged, Sign::WrongTooth, Sign::Ghost, Sign::Hidden];
+
+    fn of(verdict: &Verdict, fates: &Fates) -> Sign {
+        let fate = verdict.object.and_then(|object| fates.failures.objects.get(object));
+        match fate {
+            None => Sign::Ghost,
+            Some(Fate::Found) => Sign::Found,
+            Some(Fate::Missed) => Sign::Missed,
+            Some(Fate::Merged { .. }) => Sign::Merged,
+            Some(Fate::WrongTooth { .. }) => Sign::WrongTooth,
+            Some(Fate::Hidden) => Sign::Hidden,
+        }
+    }
+
+    /// Its name, for `count` of them.
+    pub fn name(self, count: usize) -> &'static str {
+        match self {
+            Sign::Found => "found",
+            Sign::Missed => "missed",
+            Sign::Merged => "merged",
+            Sign::WrongTooth => "wrong tooth",
+            Sign::Ghost if count == 1 => "ghost",
+            Sign::Ghost => "ghosts",
+            Sign::Hidden => "hidden",
+        }
+    }
+
+    /// Its colour on maps: those of Okabe and Ito, which differ for the colour-blind, too.
+    fn colour(self) -> Color32 {
+        match self {
+            Sign::Found => Color32::from_rgb(86, 180, 233),
+            Sign::Missed => Color32::from_rgb(255, 122, 60),
+            Sign::Merged => Color32::from_rgb(240, 228, 66),
+            Sign::WrongTooth => Color32::from_rgb(232, 150, 200),
+            Sign::Ghost => Color32::WHITE,
+            Sign::Hidden => Color32::from_gray(176),
+        }
+    }
+
+    /// Its lines around a place, as large as a ring around a reflector; `way` is where a triangle points.
+    fn lines(self, at: Pos2, way: Vec2) -> Vec<Vec<Pos2>> {
+        let ring = |centre: Pos2, radius: f32| -> Vec<Pos2> {
+            (0..=20).map(|i| centre + radius * Vec2::angled(i as f32 * std::f32::consts::TAU / 20.0)).collect()
+        };
+        let path = |points: &[(f32, f32)]| points.iter().map(|&(x, y)| at + vec2(x, y)).collect::<Vec<_>>();
+        match self {
+            Sign::Found => vec![path(&[(-6.0, 0.0), (-2.0, 5.0), (6.5, -6.0)])],
+            Sign::Missed => {
+                vec![ring(at, 7.0), path(&[(-3.0, -3.0), (3.0, 3.0)]), path(&[(-3.0, 3.0), (3.0, -3.0)])]
+            }
+            Sign::Merged => vec![ring(at - vec2(3.5, 0.0), 5.5), ring(at + vec2(3.5, 0.0), 5.5)],
+            Sign::WrongTooth => {
+                let (way, side) = (8.0 * way, 6.0 * way.rot90());
+                let back = at - 0.5 * way;
+                vec![vec![at + way, back + side, back - side, at + way]]
+            }
+            Sign::Ghost => [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .into_iter()
+                .map(|(x, y)| path(&[(3.0 * x, 7.0 * y), (7.0 * x, 7.0 * y), (7.0 * x, 3.0 * y)]))
+                .collect(),
+            Sign::Hidden => [-5.0, 0.0, 5.0].into_iter().map(|x| ring(at + vec2(x, 0.0), 1.0)).collect(),
+        }
+    }
+
+    /// Draws it, with an edge that makes it readable over any picture.
+    pub fn draw(self, painter: &Painter, at: Pos2, way: Vec2, current: bool) {
+        let colour = if current { self.colour() } else { Color32::from_gray(140) };
+        let lines = self.lines(at, way);
+        for (width, colour) in [(4.0, MARK_EDGE), (1.8, colour)] {
+            for line in &lines {
+                painter.add(Shape::line(line.clone(), Stroke::new(width, colour)));
+            }
+        }
+    }
+}
+
+impl Kinds<'_> {
+    /// How many there are of each, those that occur only.
+    pub fn counts(&self) -> Vec<(Sign, usize)> {
+        let signs: Vec<Sign> = self.fates.verdicts.iter().map(|v| Sign::of(v, self.fates)).collect();
+        let count = |sign: Sign| (sign, signs.iter().filter(|s| **s == sign).count());
+        Sign::ALL.into_iter().map(count).filter(|(_, count)| *count > 0).collect()
+    }
+
+    /// Draws the marks; the one under the pointer says which object it is, and why.
+    pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, above: f32) {
+        let mut nearest: Option<(&Verdict, f32)> = None;
+        for verdict in self.fates.verdicts.iter().take(MARKS) {
+            let Some(at) = self.place(frame, verdict) else { continue };
+            self.draw_one(painter, frame, verdict, at);
+            let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
+            if distance < nearest.map_or(NEAR, |(_, d)| d) {
+                nearest = Some((verdict, distance));
+            }
+        }
+        if let Some((verdict, _)) = nearest {
+            let corner = frame.rect.left_bottom() + vec2(8.0, -8.0 - above);
+            axes::text_on_patch(painter, corner, Align2::LEFT_BOTTOM, &self.why(verdict));
+        }
+    }
+
+    fn draw_one(&self, painter: &Painter, frame: Frame<'_>, verdict: &Verdict, at: Pos2) {
+        let sign = Sign::of(verdict, self.fates);
+        let fate = verdict.object.and_then(|object| self.fates.failures.objects.get(object));
+        let to = match fate {
+            Some(Fate::Merged { with }) => self.centre(*with).map(|other| frame.blob(&other)),
+            Some(Fate::WrongTooth { columns }) => self.shifted(frame, verdict, *columns),
+            _ => None,
+        };
+        if let Some(to) = to {
+            for (width, colour) in [(3.0, MARK_EDGE), (1.2, sign.colour())] {
+                painter.line_segment([at, to], Stroke::new(width, colour));
+            }
+        }
+        let way = to.map_or(Vec2::ZERO, |to| (to - at).normalized());
+        sign.draw(painter, at, if way == Vec2::ZERO { vec2(1.0, 0.0) } else { way }, self.current);
+    }
+
+    /// The middle of an object, as a reflector.
+    fn centre(&self, object: usize) -> Option<Reflector> {
+        let [x_metres, y_metres] = self.fates.scene.objects.get(object)?.centre_metres();
+        Some(Reflector { x_metres, y_metres, reflectivity: 1.0 })
+    }
+
+    /// Where a mark is: where the map shows the object, or where a ghost is brightest.
+    fn place(&self, frame: Frame<'_>, verdict: &Verdict) -> Option<Pos2> {
+        match verdict.object {
+            Some(object) => self.centre(object).map(|centre| frame.blob(&centre)),
+            None => verdict.brightest.map(|[bin, column]| frame.cell(Cell { bin: bin as f64, column: column as f64 })),
+        }
+    }
+
+    /// Where the output has an object that is on the wrong tooth.
+    fn shifted(&self, frame: Frame<'_>, verdict: &Verdict, columns: i32) -> Option<Pos2> {
+        let centre = self.centre(verdict.object?)?;
+        let cell = blob_cell(frame.radar, centre.x_metres, centre.y_metres, Aperture::Full);
+        Some(frame.cell(Cell { column: cell.column + f64::from(columns), ..cell }))
+    }
+
+    /// Which object it is, what became of it, and why that is said.
+    fn why(&self, verdict: &Verdict) -> String {
+        let Fates { scene, failures, eta, .. } = self.fates;
+        let cells = verdict.cells;
+        let Some(index) = verdict.object else {
+            return format!("ghost: {cells} cells above η = {eta:.2}\nwhere the scene has nothing");
+        };
+        let named = |index: usize| {
+            let kind = scene.objects.get(index).map_or("object", |o| o.kind());
+            format!("{kind} {}", index + 1)
+        };
+        let part = failures.covered.get(index).copied().unwrap_or(0.0);
+        let detected = format!("{:.0} % of its {cells} cells exceed η = {eta:.2}", 100.0 * part);
+        let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
+            Fate::Found => detected,
+            Fate::Missed => format!("{detected}: less than half"),
+            Fate::Merged { with } => format!("one blob covers it and {};\nthe target shows two", named(with)),
+            Fate::WrongTooth { columns } => {
+                let (by, way) = (columns.abs(), if columns < 0 { "left" } else { "right" });
+                let plural = if by == 1 { "" } else { "s" };
+                format!("the output has it {by} column{plural} to the {way};\n{detected}")
+            }
+            Fate::Hidden => "the target itself does not show it".to_owned(),
+        };
+        let fate = failures.objects.get(index).map_or("hidden", |fate| fate.name());
+        format!("{}: {fate}\n{reason}", named(index))
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+    use crate::app::state::{MapView, Projection};
+    use crate::radar::Radar;
+    use crate::scene::Scene;
+    use eframe::egui::{Rect, pos2};
+
+    /// One object of every fate and a ghost.
+    pub fn fates() -> Fates {
+        let scene = Scene::of_points([(-8.0, 12.0), (-4.0, 16.0), (0.0, 20.0), (3.0, 24.0), (6.0, 28.0)]);
+        let objects =
+            [Fate::Found, Fate::Missed, Fate::Merged { with: 3 }, Fate::WrongTooth { columns: -3 }, Fate::Hidden];
+        Fates::made_up(scene, &objects, &[[100, 300]])
+    }
+
+    #[test]
+    fn every_kind_has_a_shape_of_its_own() {
+        let of = |sign: Sign| sign.lines(pos2(0.0, 0.0), vec2(1.0, 0.0));
+        for a in Sign::ALL {
+            assert!(of(a).iter().flatten().all(|p| p.to_vec2().length() < 11.0), "{a:?} is no larger than a ring");
+            for b in Sign::ALL {
+                assert!(a == b || (of(a) != of(b) && a.colour() != b.colour()), "{a:?} and {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_mark_under_the_pointer_says_what_happened_and_why() {
+        let (fates, radar) = (fates(), Radar::default());
+        let kinds = Kinds { fates: &fates, current: true };
+        let said: Vec<String> = fates.verdicts.iter().map(|v| kinds.why(v)).collect();
+        assert_eq!(said[0], "point 1: found\n100 % of its 40 cells exceed η = 0.80");
+        assert_eq!(said[1], "point 2: missed\n0 % of its 40 cells exceed η = 0.80: less than half");
+        assert_eq!(said[2], "point 3: merged\none blob covers it and point 4;\nthe target shows two");
+        assert!(said[3].starts_with("point 4: wrong tooth\nthe output has it 3 columns to the left;\n"), "{}", said[3]);
+        assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
+        assert_eq!(said[5], "ghost: 12 cells above η = 0.80\nwhere the scene has nothing");
+        assert_eq!(kinds.counts().len(), Sign::ALL.len());
+
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1024.0, 512.0));
+        let (view, projection) = (MapView::default(), Projection::RangeAngle);
+        let frame = Frame { rect, view, radar: &radar, projection, centre_x_metres: 0.0 };
+        let ghost = kinds.place(frame, &fates.verdicts[5]).unwrap();
+        assert!((ghost - pos2(300.5, 512.0 - 100.5)).length() < 0.1, "{ghost:?}");
+    }
+}

@@ -1,0 +1,80 @@
+//! Where a map goes within its panel, its axes, and what moves it.
+
+use super::frame::Frame;
+use crate::app::state::{MapView, Projection};
+use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::nudge::zoom_keys;
+use crate::radar::Carrier;
+use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
+
+/// Where the picture goes within the panel, below a legend that is `above` points high.
+pub fn rect_of(painter: &Painter, area: Rect, bar: Option<&Bar>, projection: Projection, above: f32) -> Rect {
+    let height = area.height() - axes::BOTTOM - 8.0 - above;
+    let right = bar.map_or(12.0, |bar| bar.width(painter, height));
+    let rect = Rect::from_min_max(
+        area.min + vec2(axes::LEFT, 8.0 + above),
+        pos2(
+            (area.right() - right).max(area.left() + 60.0),
+            (area.bottom() - axes::BOTTOM).max(area.top() + above + 30.0),
+        ),
+    );
+    if projection == Projection::RangeAngle {
+        return rect;
+    }
+    // Equal aspect: the map is twice as wide as high.
+    let size = vec2(rect.width().min(2.0 * rect.height()), rect.height().min(rect.width() / 2.0));
+    Align2::CENTER_CENTER.align_size_within_rect(size, rect)
+}
+
+/// Zooms by wheel, pinch and keys, pans by dragging, and shows the whole map after a double click.
+pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pans: bool) {
+    if let Some(pos) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let factor = pinch * (scroll / 200.0).exp();
+        if factor != 1.0 {
+            let fixed = view.at(rect, pos);
+            view.zoom(factor, fixed);
+        }
+    }
+    if let Some(factor) = zoom_keys(response) {
+        let middle = view.at(rect, rect.center());
+        view.zoom(factor, middle);
+    }
+    if pans && response.dragged() {
+        let before = view.at(rect, rect.min);
+        let after = view.at(rect, rect.min + response.drag_delta());
+        view.pan(before - after);
+    }
+    if response.double_clicked() {
+        *view = MapView::default();
+    }
+}
+
+/// Draws both axes of the part that is shown.
+pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
+    let Frame { rect, view, radar, projection, .. } = frame;
+    let (x, y) = match projection {
+        Projection::RangeAngle => {
+            let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);
+            let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
+            let title = match radar.carrier {
+                Carrier::OneWay => "cos θ",
+                Carrier::TwoWay => {
+                    let titles = ["cos θ, folded: each column stands for two directions", "cos θ, folded"];
+                    axes::fitting(painter, rect.width(), &titles)
+                }
+            };
+            let x = Axis::new(cos(view.low.x), cos(view.high.x), title);
+            (x, Axis::new(range(view.low.y), range(view.high.y), "range, m"))
+        }
+        Projection::Cartesian => {
+            let extent = radar.max_range_metres();
+            let x = |fraction: f32| (2.0 * f64::from(fraction) - 1.0) * extent;
+            let y = |fraction: f32| f64::from(fraction) * extent;
+            let across = Axis::new(x(view.low.x), x(view.high.x), "x, m");
+            (across, Axis::new(y(view.low.y), y(view.high.y), "y, m"))
+        }
+    };
+    axes::draw(ui, painter, rect, x, y);
+}

@@ -1,0 +1,95 @@
+use super::*;
+use crate::app::widgets::seen;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+/// A panel that does what it asks for, as the app would.
+fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, Vec<Command>)> {
+    let draw = move |ui: &mut Ui, state: &mut (Radar, Vec<Command>)| {
+        let asked = show(ui, Input { radar: &state.0, measured });
+        for command in &asked {
+            match command {
+                Command::SetRadar(radar) => state.0 = (**radar).clone(),
+                Command::RadarPreset(index) => state.0 = presets::ALL[*index].radar.clone(),
+                other => panic!("{other:?}"),
+            }
+        }
+        state.1.extend(asked);
+    };
+    Harness::builder().with_size([640.0, 420.0]).build_ui_state(draw, (radar, Vec::new()))
+}
+
+fn type_into(panel: &mut Harness<'_, (Radar, Vec<Command>)>, label: &str, text: &str) {
+    let field = panel.get_by(|n| n.label().as_deref() == Some(label) && n.role() == egui::accesskit::Role::SpinButton);
+    field.focus();
+    panel.run();
+    panel.event(egui::Event::Text(text.to_owned()));
+    panel.run();
+    panel.key_press(egui::Key::Enter);
+    panel.run();
+}
+
+#[test]
+fn every_consequence_is_in_sight_in_a_panel_beside_the_maps() {
+    let draw = |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None });
+    let panel = Harness::builder().with_size([480.0, 700.0]).build_ui_state(draw, ());
+    seen::assert_readable(panel.output());
+    for label in ["range bin 7.49 cm", "a turn for each wavelength of distance"] {
+        assert!(panel.get_by_label(label).rect().right() <= 480.0, "{label}");
+    }
+}
+
+#[test]
+fn a_bandwidth_changes_its_consequence() {
+    let mut panel = panel(Radar::default(), None);
+    let _told = panel.get_by_label("range bin 7.49 cm");
+    type_into(&mut panel, "bandwidth", "150");
+    let _told = (panel.get_by_label("range bin 99.93 cm"), panel.get_by_label("maximum range 511.65 m"));
+    assert!((panel.state().0.bandwidth_hz - 150e6).abs() < 1.0);
+    assert_eq!(panel.state().1.len(), 1, "one edit is one command");
+}
+
+#[test]
+fn fewer_elements_take_their_ends_along_and_spacings_are_one_number() {
+    let mut panel = panel(Radar::default(), None);
+    type_into(&mut panel, "elements", "16");
+    assert_eq!((panel.state().0.elements, panel.state().0.end_elements), (16, 8));
+    type_into(&mut panel, "the same in wavelengths", "1");
+    let spacing = panel.state().0.element_spacing_metres;
+    assert!((spacing - panel.state().0.wavelength_metres()).abs() < 1e-12);
+    let _told = panel.get_by_label_contains("some directions look alike");
+    panel.state().0.validate().unwrap();
+}
+
+#[test]
+fn the_focus_passes_through_and_changes_nothing() {
+    let odd = Radar { carrier_hz: 76.123_456_789e9, element_spacing_metres: 1.234_567e-3, ..Radar::default() };
+    let mut panel = panel(odd, None);
+    for _ in 0..30 {
+        panel.key_press(egui::Key::Tab);
+        panel.run();
+    }
+    assert!(panel.state().1.is_empty(), "{:?}", panel.state().1);
+}
+
+#[test]
+fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
+    let mut free = panel(Radar::default(), None);
+    free.get_by_label("Start from").click();
+    free.run();
+    free.get_by_label("24 GHz, 256 elements").click();
+    free.run();
+    assert_eq!(free.state().1, [Command::RadarPreset(3)]);
+    let _told = free.get_by_label_contains("range bins of 60 cm");
+    let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
+    measured.run();
+    assert!(measured.query_by_label("Start from").is_none());
+    measured.get_by_label("two-way").click();
+    measured.run();
+    assert!(measured.state().1.is_empty());
+    type_into(&mut measured, "elements of an end", "20");
+    assert_eq!(measured.state().0.end_elements, 20);
+    measured.get_by_label("hamming").click();
+    measured.run();
+    assert_eq!(measured.state().0.window, WindowFunction::Hamming, "windows are no part of a measurement");
+}

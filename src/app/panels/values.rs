@@ -1,0 +1,154 @@
+//! What every map has under the pointer, in one small table.
+
+use super::map::Cells;
+use crate::app::state::{Command, Cursor, MapKind};
+use crate::app::widgets::numbers::signed;
+use crate::radar::Radar;
+use eframe::egui;
+use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
+
+/// The maps that are listed, from the inputs to the differences.
+pub const LISTED: [MapKind; 8] = [
+    MapKind::Input0,
+    MapKind::Input1,
+    MapKind::Target,
+    MapKind::Output,
+    MapKind::Second,
+    MapKind::Difference,
+    MapKind::SecondDifference,
+    MapKind::Unexplained,
+];
+
+/// A map of which there are numbers.
+pub struct Row<'a> {
+    /// Which.
+    pub kind: MapKind,
+    /// The method that made it, if one did.
+    pub method: Option<&'static str>,
+    /// Its numbers.
+    pub cells: Cells<'a>,
+    /// Whether they are of an earlier scene.
+    pub updating: bool,
+}
+
+/// What is listed.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Where: under the pointer, or where it was last.
+    pub cursor: Cursor,
+    /// The maps.
+    pub rows: &'a [Row<'a>],
+    /// Whether nothing is told: a prediction is asked for.
+    pub hidden: bool,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        if input.hidden {
+            ui.weak("Hidden until you have predicted.");
+            return;
+        }
+        let Some((bin, column)) = input.cursor.cell(input.radar) else {
+            ui.weak("The pointer is beyond the maps.");
+            return;
+        };
+        let (range, cosine) = (input.cursor.range_metres, signed(input.cursor.cos_theta, 3));
+        ui.label(format!("range {range:.2} m · cos θ {cosine}"));
+        ui.weak(format!("range bin {bin}, column {column}"));
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
+            Grid::new("values").num_columns(3).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
+                for (heading, tooltip) in [
+                    ("map", "Every map there is; those of the second method while the panel Compare is in sight"),
+                    ("Λ", "Normalised magnitude, 0 to 1; of a difference with its sign"),
+                    ("dB", "Decibels below the map's peak; of a difference the decibels between both"),
+                ] {
+                    ui.strong(heading).on_hover_text(tooltip);
+                }
+                ui.end_row();
+                input.rows.iter().for_each(|row| line(ui, row, bin, column));
+            });
+        });
+    });
+    Vec::new()
+}
+
+fn line(ui: &mut Ui, row: &Row<'_>, bin: usize, column: usize) {
+    let is_difference = row.kind.is_difference();
+    let value = row.cells.value(bin, column);
+    let method = row.method.map_or_else(String::new, |method| format!(" ({method})"));
+    let updating = if row.updating { ", updating" } else { "" };
+    ui.label(format!("{}{method}{updating}", row.kind.title())).on_hover_text(row.kind.describe());
+    let unknown = || "–".to_owned();
+    let lambda = value.map_or_else(unknown, |v| v.lambda_text(is_difference));
+    let decibels = value.and_then(|v| v.decibels_text(is_difference)).unwrap_or_else(unknown);
+    let text = |text: String| {
+        let text = RichText::new(text).monospace();
+        if row.updating { text.weak() } else { text }
+    };
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text(lambda)));
+    // The last column takes all the room that is left: nothing is aligned to its end.
+    ui.label(text(decibels));
+    ui.end_row();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use crate::maps::{LambdaScale, RangeAngleMap};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+    use ndarray::Array2;
+
+    fn panel(hidden: bool, bin: f64) -> Harness<'static> {
+        let map = |value: f32| RangeAngleMap { lambda: Array2::from_elem((512, 1024), value) };
+        let mut maps = [map(0.25), map(0.5), map(1.0)];
+        maps[0].lambda[[100, 700]] = 0.75;
+        let draw = move |ui: &mut Ui| {
+            let radar = Radar::default();
+            let scale = Some(LambdaScale { peak: 5.0, floor: 0.0 });
+            let cells =
+                |of: usize, minus: Option<usize>| Cells { map: &maps[of], minus: minus.map(|m| &maps[m]), scale };
+            let row = |kind, method, cells, updating| Row { kind, method, cells, updating };
+            let rows = [
+                row(MapKind::Input0, None, cells(0, None), false),
+                row(MapKind::Target, None, cells(2, None), false),
+                row(MapKind::Second, Some("capon"), cells(1, None), true),
+                row(MapKind::SecondDifference, Some("capon"), cells(1, Some(2)), false),
+            ];
+            let cursor = Cursor::at_cell(&radar, bin, 700.0);
+            let asked = show(ui, Input { radar: &radar, cursor, rows: &rows, hidden });
+            assert!(asked.is_empty());
+        };
+        let mut panel = Harness::builder().with_size([360.0, 220.0]).build_ui(draw);
+        panel.run();
+        panel
+    }
+
+    #[test]
+    fn every_map_tells_what_it_has_under_the_pointer() {
+        let shown = panel(false, 100.0);
+        let texts: Vec<String> = seen::texts(shown.output()).into_iter().map(|t| t.text).collect();
+        let radar = Radar::default();
+        let cursor = Cursor::at_cell(&radar, 100.0, 700.0);
+        let place = format!("range {:.2} m · cos θ {}", cursor.range_metres, signed(cursor.cos_theta, 3));
+        for expected in [&place, "range bin 100, column 700", "Input 0", "0.750", "−25.0", "Target", "1.000", "0.0"] {
+            assert!(texts.iter().any(|t| t == expected), "{expected}: {texts:?}");
+        }
+        for expected in ["Second output (capon), updating", "0.500", "−50.0", "Second difference (capon)", "−0.500"]
+        {
+            assert!(texts.iter().any(|t| t == expected), "{expected}: {texts:?}");
+        }
+        seen::assert_readable(shown.output());
+    }
+
+    #[test]
+    fn nothing_is_told_before_a_prediction_or_beyond_the_maps() {
+        let _hidden = panel(true, 100.0).get_by_label("Hidden until you have predicted.");
+        let beyond = panel(false, 600.0);
+        assert!(beyond.query_by_label("The pointer is beyond the maps.").is_some());
+        assert!(beyond.query_by_label("Target").is_none());
+    }
+}

@@ -1,0 +1,197 @@
+//! Peaks moved to where their exact echoes explain the samples best; what the others can do without is taken away.
+//!
+//! The cyclic least squares that Yardibi et al. refine their own peaks with (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum
+//! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of `nomp`.
+
+use super::peaks::{Peak, gains};
+use crate::radar::{Radar, hann};
+use crate::reconstruct::echoes::Gained;
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::nomp::{
+    Atom, Detector, Fit, Grower, Limits, Rows, Samples, Settings, Tie, Workbench, distance_bins, rows_of,
+};
+use crate::scene::Reflector;
+use crate::signal::{ArrayEcho, TwoEnds};
+use crate::task::Task;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Of all reflectors once both ends' gains are tied.
+const TIED: Limits = Limits { iterations: 20, least_gain: 1e-4, ridge: 0.0 };
+
+/// Most reflectors whose gains are tied by moving them together.
+const MOST_TIED: usize = 48;
+
+/// Tied gains may leave this many times what each end's own gains leave: a wrong place leaves more.
+const TIED_COST: f64 = 4.0;
+
+/// Of peaks nearer than this in range at either end the strongest is taken first.
+const APART_BINS: f64 = 4.0;
+
+/// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
+const NEAREST_BETWEEN: f64 = 0.25;
+
+/// Most rounds of taking peaks from one look.
+const ROUNDS: usize = 4;
+
+/// A reflector must explain this many times the energy that noise gives to one more gain.
+const LEAST_OVER_NOISE: f64 = 16.0;
+
+/// A peak of which this part is left has been explained by others.
+const EXPLAINED: f64 = 0.05;
+
+/// Another look needs that this part of the energy at most is left by the last.
+const WORTH_ANOTHER: f64 = 0.9;
+
+/// Part of the energy that may be left unexplained: 130 dB down, above what rounding leaves, which is no white noise.
+const AS_GOOD_AS_NOTHING: f64 = 1e-13;
+
+/// Work granted: about ten microseconds a unit.
+const MOST_WORK: usize = 30_000;
+
+/// A peak that is not yet taken.
+struct Waiting {
+    echo: ArrayEcho,
+    rows: Rows,
+    /// What it explained when it was found.
+    energy: f64,
+}
+
+/// Reflectors found so far, and what they leave of the samples.
+pub(super) struct Settled<'a> {
+    radar: &'a Radar,
+    task: &'a Task,
+    bench: Workbench<'a>,
+    detector: Arc<Detector>,
+    settings: Settings,
+    samples: Samples,
+    fit: Fit,
+    /// Energy that is as good as nothing.
+    enough: f64,
+}
+
+impl<'a> Settled<'a> {
+    /// Nothing found yet in `ends`.
+    pub fn new(radar: &'a Radar, ends: &TwoEnds, task: &'a Task) -> Self {
+        let bench = Workbench::new(radar, &hann(radar.samples), task, MOST_WORK);
+        let samples = Samples::new(&bench.sensor, &ends.flat());
+        let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
+        let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
+        Settled { radar, task, bench, detector, settings, samples, fit, enough }
+    }
+
+    fn grower(&self) -> Grower<'_> {
+        let Settled { radar, task, bench, detector, settings, .. } = self;
+        Grower { radar, bench, detector, settings, task }
+    }
+
+    /// What the reflectors leave of the samples.
+    pub fn left(&self) -> TwoEnds {
+        TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.bench.sensor))
+    }
+
+    /// Takes the reflectors behind `peaks`: the strongest first, those nearby once it is known what it leaves of them. Whether that
+    /// explained enough to look again.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn take(&mut self, peaks: &[Peak]) -> Result<bool, ReconstructError> {
+        let before = self.fit.clone();
+        let mut waiting: Vec<Waiting> = peaks.iter().filter_map(|p| Waiting::new(self.radar, p)).collect();
+        let first = self.heard(&waiting);
+        waiting.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
+        for _ in 0..ROUNDS {
+            self.task.check()?;
+            let noise = LEAST_OVER_NOISE * self.bench.gain_noise(self.radar, &self.fit);
+            let now = self.heard(&waiting);
+            let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
+            left.retain(|(now, w)| *now > noise.max(EXPLAINED * w.energy));
+            left.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let taken = strongest_apart(self.radar, &mut left);
+            if taken.is_empty() || self.is_done() {
+                break;
+            }
+            let grower = self.grower();
+            self.fit = grower.settled(grower.with_points(self.fit.clone(), &taken)?)?;
+            waiting = left.into_iter().map(|(_, w)| w).collect();
+        }
+        let grower = self.grower();
+        self.fit = grower.pruned(self.fit.clone())?;
+        let is_better = self.fit.cost() < WORTH_ANOTHER * before.cost();
+        if self.fit.cost() > before.cost() {
+            self.fit = before;
+        }
+        Ok(is_better && !self.is_done())
+    }
+
+    /// Whether nothing is left to be explained, or no work granted.
+    fn is_done(&self) -> bool {
+        self.fit.cost() <= self.enough || self.bench.is_spent()
+    }
+
+    /// Energy that each of `waiting` by itself would explain of what is left.
+    fn heard(&self, waiting: &[Waiting]) -> Vec<f64> {
+        let mut weighted = self.fit.residual.flat(&self.bench.sensor);
+        let weights = self.bench.squared.iter().cycle();
+        weighted.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
+        let mean = self.bench.squared.iter().sum::<f64>() / self.bench.squared.len() as f64;
+        waiting.par_iter().map(|w| w.echo.correlate(&weighted).norm_sqr() / mean).collect()
+    }
+
+    /// The reflectors, with the gains that both ends agree on; `ends` are the samples that they were found in.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
+        let Settled { radar, task, bench, samples, mut fit, .. } = self;
+        if fit.atoms.len() <= MOST_TIED {
+            let tied = bench.refine(&samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
+            if tied.cost() <= TIED_COST * fit.cost() {
+                fit = tied;
+            }
+        }
+        let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
+            let [x, y] = atom.position_metres(0.0);
+            let place = radar.polar_of(x, y);
+            let power = gains[0].norm_sqr();
+            let peak = Peak { range_metres: place.range_metres, cos_theta: place.cos_theta, power };
+            is_heard_at_the_ends(radar, x, y).then_some(peak)
+        };
+        let peaks: Vec<Peak> = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
+        gains(radar, &peaks, ends, task)
+    }
+}
+
+/// Whether no element between the ends would hear a reflector there much louder than the ends do: such a one would fill the map, and
+/// nothing that was measured speaks for it.
+fn is_heard_at_the_ends(radar: &Radar, x_metres: f64, y_metres: f64) -> bool {
+    let nearest = |from: f64, to: f64| (x_metres - x_metres.clamp(from, to)).hypot(y_metres);
+    let outermost = radar.element_x_metres(radar.elements - 1);
+    let inner = radar.element_x_metres(radar.elements - radar.end_elements);
+    let at_an_end = nearest(-outermost, -inner).min(nearest(inner, outermost));
+    nearest(-outermost, outermost) > NEAREST_BETWEEN * at_an_end
+}
+
+impl Waiting {
+    fn new(radar: &Radar, peak: &Peak) -> Option<Self> {
+        let echo = ArrayEcho::at(radar, peak.range_metres, peak.cos_theta);
+        let Reflector { x_metres, y_metres, .. } = echo.reflector;
+        let is_heard = echo.norm().is_finite() && echo.norm() > 0.0;
+        let rows = rows_of(radar, &Atom::Point { x_metres, y_metres });
+        is_heard.then_some(Waiting { rows, echo, energy: 0.0 })
+    }
+}
+
+/// Takes from `left` the places of those that have no stronger one nearby.
+fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
+    let mut taken: Vec<(Rows, [f64; 2])> = Vec::new();
+    left.retain(|(_, w)| {
+        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > APART_BINS);
+        if is_apart {
+            taken.push((w.rows, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
+        }
+        !is_apart
+    });
+    taken.into_iter().map(|(_, place)| place).collect()
+}

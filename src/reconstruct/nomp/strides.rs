@@ -1,0 +1,306 @@
+//! Rows of reflectors from their first two: a wall whose points stand too close to be told apart still shows those at its ends.
+//!
+//! From one point that both ends hear over about another, every step that may be meant is tried over the first few reflectors. The best
+//! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
+//! wrong ones go along.
+
+use super::atom::Atom;
+use super::phased::{Heard, PhasedBeams, Row};
+use super::solver::damped_step;
+use crate::signal::simd::{Kernel, Simd};
+use crate::task::Task;
+use faer::Mat;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Longest step from one reflector of a row to the next, metres.
+const MOST_STEP_METRES: f64 = 0.4;
+
+/// Shortest step, metres: nearer points are one that was found twice.
+const LEAST_STEP_METRES: f64 = 0.02;
+
+/// Neighbours of a point that its row may lead over.
+const NEIGHBOURS: usize = 8;
+
+/// Reflectors of the first glance.
+const FIRST: usize = 8;
+
+/// Steps of the grid around a pair to each side, along the line of sight and across.
+const REACH: [i32; 2] = [10, 12];
+
+/// Steps of a pair that are followed further.
+const KEPT: usize = 6;
+
+/// Grids whose best rows are followed further.
+const MOST_GRIDS: usize = 96;
+
+/// Most reflectors of a row.
+const MOST_REFLECTORS: usize = 140;
+
+/// Growth of the row from one look to the next.
+const GROWTH: f64 = 1.4;
+
+/// Moves of a row at each length.
+const MOVES: usize = 4;
+
+/// A row that adds up to less than this part of the most it did has passed its end.
+const PASSED: f64 = 0.4;
+
+/// A row that the beams may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stride {
+    /// The row.
+    pub atom: Atom,
+    /// Reflectors whose echoes add up, more or less.
+    pub weight: f64,
+}
+
+/// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
+pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
+    let pairs = (0..points.len()).flat_map(|i| neighbours(points, i).map(move |j| (i, j)));
+    let mut grids: Vec<Grid> = pairs.map(|(i, j)| Grid::new(beams, i, points[i], points[j])).collect();
+    grids.par_iter_mut().for_each(|grid| {
+        if !task.is_cancelled() {
+            grid.rows = Simd::chosen().run(Glance { beams, grid });
+        }
+    });
+    grids.sort_by(|a, b| b.best().total_cmp(&a.best()));
+    grids.truncate(MOST_GRIDS);
+    let mut found: Vec<(usize, Stride)> = grids
+        .par_iter()
+        .flat_map_iter(|grid| grid.rows.iter().map(move |(row, _)| (grid.first, *row)))
+        .filter(|_| !task.is_cancelled())
+        .filter_map(|(first, row)| Some((first, followed(beams, row)?)))
+        .collect();
+    found.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
+    let mut taken = vec![false; points.len()];
+    found.retain(|(first, _)| !std::mem::replace(&mut taken[*first], true));
+    found.into_iter().map(|(_, stride)| stride).collect()
+}
+
+/// The nearest points that may be next to point `i` in a row.
+fn neighbours(points: &[[f64; 2]], i: usize) -> impl Iterator<Item = usize> {
+    let apart = |j: usize| (points[j][0] - points[i][0]).hypot(points[j][1] - points[i][1]);
+    let mut near: Vec<(f64, usize)> = (0..points.len())
+        .map(|j| (apart(j), j))
+        .filter(|(metres, _)| (LEAST_STEP_METRES..=MOST_STEP_METRES).contains(metres))
+        .collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.into_iter().take(NEIGHBOURS).map(|(_, j)| j)
+}
+
+/// Steps from one point over about another.
+struct Grid {
+    /// Number of the first point.
+    first: usize,
+    middle: Row,
+    /// One step of the grid along the line of sight, and one across (x, y), metres.
+    along: [f64; 2],
+    across: [f64; 2],
+    /// The best rows with the part of the beams' power that adds up in each.
+    rows: Vec<(Row, f64)>,
+}
+
+impl Grid {
+    fn new(beams: &PhasedBeams, first: usize, from: [f64; 2], over: [f64; 2]) -> Self {
+        let step = [over[0] - from[0], over[1] - from[1]];
+        let range = from[0].hypot(from[1]).max(0.1);
+        let sight = [from[0] / range, from[1] / range];
+        let between = (beams.centres_metres[1] - beams.centres_metres[0]).abs().max(1e-3);
+        let wavelength = beams.turns_per_metre.abs().recip();
+        let last = (FIRST - 1) as f64;
+        // Half a wavelength over all reflectors: by the range itself, by its difference between the ends, by the row's curvature.
+        let along = 0.5 * wavelength / last;
+        let curved = 0.5 * wavelength * range / (step[0].hypot(step[1]) * last * last);
+        let across = (along * range / between).min(curved);
+        Grid {
+            first,
+            middle: Row { first_metres: from, step_metres: step },
+            along: sight.map(|v| v * along),
+            across: [-sight[1] * across, sight[0] * across],
+            rows: Vec::new(),
+        }
+    }
+
+    fn at(&self, i: i32, j: i32) -> Row {
+        let [i, j] = [i, j].map(f64::from);
+        let step = [0, 1].map(|axis| self.middle.step_metres[axis] + i * self.along[axis] + j * self.across[axis]);
+        Row { step_metres: step, ..self.middle }
+    }
+
+    fn best(&self) -> f64 {
+        self.rows.first().map_or(0.0, |(_, part)| *part)
+    }
+}
+
+/// All steps of a grid tried over the first few reflectors.
+struct Glance<'a> {
+    beams: &'a PhasedBeams,
+    grid: &'a Grid,
+}
+
+impl Kernel for Glance<'_> {
+    type Output = Vec<(Row, f64)>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let [rows, columns] = REACH.map(|reach| (2 * reach + 1) as usize);
+        let mut parts = vec![0.0; rows * columns];
+        let mut heard = [Heard::default(); FIRST];
+        for (at, part) in parts.iter_mut().enumerate() {
+            let row = self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
+            if row.place_metres((FIRST - 1) as f64)[1] <= 0.0 {
+                continue;
+            }
+            let (mut added, mut all) = (0.0, 0.0);
+            for end in 0..2 {
+                self.beams.listen::<FMA>(end, &row, &mut heard);
+                let (a, b) = added_up(&heard);
+                (added, all) = (added + a, all + b);
+            }
+            *part = added / f64::max(all, f64::MIN_POSITIVE);
+        }
+        let is_summit = |at: usize| {
+            let (i, j) = (at / columns, at % columns);
+            let beside = (i.saturating_sub(1)..=(i + 1).min(rows - 1))
+                .flat_map(|k| (j.saturating_sub(1)..=(j + 1).min(columns - 1)).map(move |l| k * columns + l));
+            beside.into_iter().all(|other| parts[other] <= parts[at])
+        };
+        let mut summits: Vec<usize> = (0..parts.len()).filter(|&at| parts[at] > 0.0 && is_summit(at)).collect();
+        summits.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
+        summits.truncate(KEPT);
+        let row = |at: usize| self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
+        summits.into_iter().map(|at| (row(at), parts[at])).collect()
+    }
+}
+
+/// Power of the echoes added with their phases, as a row of one gain would have it, and power of all of them.
+#[inline(always)]
+fn added_up(heard: &[Heard]) -> (f64, f64) {
+    let (mut sum, mut weight, mut all) = (Complex64::default(), 0.0, 0.0);
+    for h in heard {
+        sum += h.weighted;
+        weight += h.weight;
+        all += h.weighted.norm_sqr() / h.weight;
+    }
+    (sum.norm_sqr() / weight, all)
+}
+
+/// The row over more and more reflectors, as long as their echoes add up.
+fn followed(beams: &PhasedBeams, mut row: Row) -> Option<Stride> {
+    let mut count = FIRST;
+    let (mut most, mut best) = (0.0, None);
+    while count <= MOST_REFLECTORS {
+        let Some(moved) = climbed(beams, row, count) else { break };
+        row = moved.row;
+        if moved.added > most {
+            most = moved.added;
+            let [x_metres, y_metres] = row.first_metres;
+            let [dx_metres, dy_metres] = row.step_metres;
+            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
+            best = Some(Stride { atom, weight: moved.added / moved.all * count as f64 });
+        } else if moved.added < PASSED * most {
+            break;
+        }
+        count = (count as f64 * GROWTH) as usize + 1;
+    }
+    best
+}
+
+/// A row where its echoes add up to most.
+struct Climbed {
+    row: Row,
+    added: f64,
+    all: f64,
+}
+
+/// Derivatives of what adds up, and their products.
+struct Slope {
+    added: f64,
+    all: f64,
+    gradient: Vec<f64>,
+    hessian: Mat<f64>,
+}
+
+/// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it crosses the array's axis.
+fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
+    let mut slope = slope(beams, &row, count)?;
+    let mut damping = 1e-2;
+    for _ in 0..MOVES {
+        let Some(step) = damped_step(&slope.hessian, &slope.gradient, damping) else {
+            damping *= 10.0;
+            continue;
+        };
+        let moved = Row {
+            first_metres: [row.first_metres[0] + step[0], row.first_metres[1] + step[1]],
+            step_metres: [row.step_metres[0] + step[2], row.step_metres[1] + step[3]],
+        };
+        match self::slope(beams, &moved, count).filter(|s| s.added > slope.added) {
+            Some(better) => (slope, row, damping) = (better, moved, damping * 0.3),
+            None => damping *= 10.0,
+        }
+    }
+    Some(Climbed { row, added: slope.added, all: slope.all })
+}
+
+/// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it.
+fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
+    if row.place_metres((count - 1) as f64)[1] <= 0.0 || row.first_metres[1] <= 0.0 {
+        return None;
+    }
+    let mut out = Slope { added: 0.0, all: 0.0, gradient: vec![0.0; 4], hessian: Mat::zeros(4, 4) };
+    let mut heard = vec![Heard::default(); count];
+    for (end, centre) in beams.centres_metres.iter().enumerate() {
+        Simd::chosen().run(Listen { beams, end, row, heard: &mut heard });
+        let (added, all) = added_up(&heard);
+        (out.added, out.all) = (out.added + added, out.all + all);
+        let sum: Complex64 = heard.iter().map(|h| h.weighted).sum();
+        let weight: f64 = heard.iter().map(|h| h.weight).sum();
+        let (mut total, mut mean) = (0.0, [0.0; 4]);
+        let mut products = [[0.0; 4]; 4];
+        for (i, h) in heard.iter().enumerate() {
+            let i = i as f64;
+            let [x, y] = row.place_metres(i);
+            let range = (x - centre).hypot(y).max(1e-3);
+            let share = h.weighted * sum.conj() / weight;
+            // Phases as they were taken off: by minus the turns of the distance.
+            let turn = -TAU * beams.turns_per_metre;
+            let [by_x, by_y] = [turn * (x - centre) / range, turn * y / range];
+            let by = [by_x, by_y, i * by_x, i * by_y];
+            let certain = share.re.max(0.0);
+            total += certain;
+            for p in 0..4 {
+                out.gradient[p] -= 2.0 * share.im * by[p];
+                mean[p] += certain * by[p];
+                for q in 0..4 {
+                    products[p][q] += certain * by[p] * by[q];
+                }
+            }
+        }
+        for p in 0..4 {
+            for q in 0..4 {
+                let common = mean[p] * mean[q] / f64::max(total, f64::MIN_POSITIVE);
+                out.hessian[(p, q)] += 2.0 * (products[p][q] - common);
+            }
+        }
+    }
+    Some(out)
+}
+
+/// What a row would have left at one end.
+struct Listen<'a> {
+    beams: &'a PhasedBeams,
+    end: usize,
+    row: &'a Row,
+    heard: &'a mut [Heard],
+}
+
+impl Kernel for Listen<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        self.beams.listen::<FMA>(self.end, self.row, self.heard);
+    }
+}

@@ -1,0 +1,214 @@
+//! Two methods on one scene: flipped, swiped, read off cell by cell, and what became of every object.
+
+use crate::session::{Session, step_until};
+use apertura::app::{Command, Compare, Layout, MapKind, Panel};
+use apertura::evaluate::trial::Trial;
+use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
+use apertura::radar::Radar;
+use apertura::reconstruct::{About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::scene::generate::Kind;
+use apertura::signal::{Floor, TwoEnds, simulate};
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::Node;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+fn with_capon() -> Session {
+    Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)])
+}
+
+/// The scene on screen, simulated as every command does.
+fn trial(s: &Session) -> Trial {
+    Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
+}
+
+/// What a label says.
+fn text_of(node: &Node<'_>) -> String {
+    let node = node.accesskit_node();
+    node.label().or(node.value()).unwrap_or_default()
+}
+
+fn largest_difference(a: &RangeAngleMap, b: &RangeAngleMap) -> f32 {
+    assert_eq!(a.lambda.dim(), b.lambda.dim());
+    a.lambda.iter().zip(&b.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn the_second_output_is_what_its_method_makes_and_its_figures_are_those_of_the_command_line() {
+    let mut s = with_capon();
+    assert!(s.state().second_output().is_none(), "nobody looks at it");
+    s.ask(Command::OpenPanel(Panel::Compare));
+    for round in 0..2 {
+        let trial = trial(&s);
+        let answer = trial.ask(&CAPON, &Request { floor: Floor::Thesis, ..Request::default() }).unwrap();
+        let shown = s.state().second_output().expect("capon's output");
+        assert!(largest_difference(shown, &answer.found.lambda) < 1e-5, "round {round}");
+        let metrics = s.state().second_metrics().expect("its figures");
+        assert_eq!(metrics, answer.metrics, "round {round}");
+        assert_eq!(s.state().shown_method(), Some("baseline"), "beside the first");
+        let at = s.handle("point 1: move");
+        s.drag(at, vec2(14.0, 9.0), 5);
+    }
+    s.ask(Command::SetCompare(Box::new(Compare { second: "baseline".into(), ..Compare::default() })));
+    assert_eq!(s.state().second_metrics(), s.state().metrics(), "the same method twice");
+}
+
+/// Counts how often it came to an end; takes its time while told to.
+struct Slow {
+    finished: Arc<AtomicU32>,
+    milliseconds: Arc<AtomicU32>,
+}
+
+impl Reconstructor for Slow {
+    fn about(&self) -> About {
+        About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
+    }
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_millis(self.milliseconds.load(Ordering::SeqCst).into()) {
+            request.task.check()?;
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        self.finished.fetch_add(1, Ordering::SeqCst);
+        Baseline.reconstruct(radar, ends, request)
+    }
+}
+
+#[test]
+fn the_second_method_works_only_while_the_panel_is_open_and_says_when_it_is_behind() {
+    let (finished, milliseconds) = (Arc::<AtomicU32>::default(), Arc::<AtomicU32>::default());
+    let slow = Slow { finished: finished.clone(), milliseconds: milliseconds.clone() };
+    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(slow)]);
+    s.ask(Command::RandomScene(Kind::Set1));
+    assert_eq!(finished.load(Ordering::SeqCst), 0);
+    s.ask(Command::Maximise(Panel::Compare));
+    assert_eq!(finished.load(Ordering::SeqCst), 1);
+    assert!(s.app.query_by_label_contains("(updating)").is_none());
+
+    milliseconds.store(900, Ordering::SeqCst);
+    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    step_until(&mut s, "the second output is told to be old", |s| {
+        s.app.query_all_by_label_contains("(updating)").any(|node| text_of(&node).starts_with("slow"))
+    });
+    s.settle();
+    assert!(s.app.query_by_label_contains("(updating)").is_none());
+    let before = finished.load(Ordering::SeqCst);
+    s.ask(Command::Maximise(Panel::Compare));
+    s.ask(Command::RandomScene(Kind::Set1));
+    assert_eq!(finished.load(Ordering::SeqCst), before, "the panel is out of sight");
+}
+
+/// Works with nothing.
+struct Refuses;
+
+impl Reconstructor for Refuses {
+    fn about(&self) -> About {
+        About { name: "refuses", description: "works with nothing", told: "", eta: 0.5 }
+    }
+    fn estimate(&self, _: &Radar, _: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
+        Err(ReconstructError::Unusable { method: "refuses", reason: "it never works".into() })
+    }
+}
+
+#[test]
+fn a_second_method_that_refuses_says_so_and_the_first_stays() {
+    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(Refuses)]);
+    s.ask(Command::Maximise(Panel::Compare));
+    assert!(s.app.query_all_by_label_contains("it never works").next().is_some());
+    assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
+    assert!(!s.state().pictures().contains(&MapKind::Second));
+}
+
+#[test]
+fn one_key_opens_the_panel_and_flips_two_maps_in_place() {
+    let mut s = with_capon();
+    s.press(Modifiers::NONE, Key::X);
+    assert!(s.state().arrangement().is_open(Panel::Compare));
+    s.ask(Command::Maximise(Panel::Compare));
+    let place = |s: &Session, label: &str| s.app.query_by_label(label).map(|map| map.rect());
+    let first = place(&s, "Output map").expect("the first is in front");
+    assert!(s.state().pictures().contains(&MapKind::Second), "the other is ready");
+    s.press(Modifiers::NONE, Key::X);
+    assert_eq!((place(&s, "Output map"), place(&s, "Second output map")), (None, Some(first)));
+    s.press(Modifiers::NONE, Key::X);
+    assert_eq!(place(&s, "Output map"), Some(first));
+    let maps = [MapKind::Target, MapKind::Input1];
+    s.ask(Command::SetCompare(Box::new(Compare { maps, layout: Layout::Flip, ..Compare::default() })));
+    assert_eq!(s.state().pictures(), [MapKind::Input1, MapKind::Target], "any two, and no others");
+    s.press(Modifiers::NONE, Key::X);
+    assert!(place(&s, "Input 1 map").is_some());
+}
+
+#[test]
+fn the_edge_between_two_maps_is_swiped_by_pointer_and_keys() {
+    let mut s = with_capon();
+    s.ask(Command::SetCompare(Box::new(Compare { layout: Layout::Swipe, ..Compare::default() })));
+    s.ask(Command::Maximise(Panel::Compare));
+    let edge = |s: &Session| s.app.get_by_role_and_label(Role::Slider, "Edge between two maps").rect().center();
+    let map = s.app.get_by_label("Output map").rect();
+    let (scene, from) = (s.state().editor().scene().clone(), edge(&s) + vec2(0.0, 70.0));
+    s.drag(from, vec2(map.width() / 4.0, 0.0), 6);
+    assert!((s.state().settings().compare.edge - 0.75).abs() < 0.02, "{}", s.state().settings().compare.edge);
+    assert!((edge(&s).x - from.x - map.width() / 4.0).abs() < 8.0);
+    assert!(Arc::ptr_eq(&scene, s.state().editor().scene()), "nothing of the scene was dragged");
+    let before = s.state().settings().compare.edge;
+    s.app.get_by_role_and_label(Role::Slider, "Edge between two maps").focus();
+    s.settle();
+    s.press(Modifiers::NONE, Key::ArrowLeft);
+    s.press(Modifiers::NONE, Key::ArrowLeft);
+    assert!((s.state().settings().compare.edge - before + 0.02).abs() < 1e-5);
+}
+
+#[test]
+fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
+    let mut s = with_capon();
+    s.ask(Command::OpenPanel(Panel::Compare));
+    s.ask(Command::OpenPanel(Panel::Values));
+    s.ask(Command::Maximise(Panel::Values));
+    let (radar, scene) = (s.state().radar().clone(), s.state().editor().scene().clone());
+    let text = text_of(&s.app.get_by_label_contains("range bin "));
+    let mut numbers = text.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty());
+    let (bin, column): (usize, usize) =
+        (numbers.next().unwrap().parse().unwrap(), numbers.next().unwrap().parse().unwrap());
+
+    let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).unwrap();
+    let maps = LogMaps::of_signal(&radar, &signal);
+    let request = Request { floor: Floor::Thesis, ..Request::default() };
+    let output = Baseline.reconstruct(&radar, &signal.two_ends(&radar), &request).unwrap().lambda;
+    let [first, last, target] = [&maps.first, &maps.last, &maps.full].map(|map| map.normalise(Normalisation::MinMax));
+    let scale = maps.full.scale(Normalisation::MinMax);
+    let at = |map: &RangeAngleMap| f64::from(map.lambda[[bin, column]]);
+    for (title, lambda) in [("Input 0", at(&first)), ("Input 1", at(&last)), ("Target", at(&target))] {
+        let _row = s.app.get_by_label(title);
+        assert!(s.app.query_all_by_label(&format!("{lambda:.3}")).next().is_some(), "{title}: {lambda:.3}");
+    }
+    let _row = s.app.get_by_label("Output (baseline)");
+    let decibels = 20.0 * (scale.peak - scale.floor) * (at(&output) - 1.0);
+    for expected in [format!("{:.3}", at(&output)), format!("{decibels:+.1}").replace('-', "−")] {
+        assert!(s.app.query_all_by_label(&expected).next().is_some(), "{expected}");
+    }
+    let difference = format!("{:+.3}", at(&output) - at(&target)).replace('-', "−");
+    assert!(s.app.query_all_by_label(&difference).next().is_some(), "{difference}");
+    assert!(s.app.query_by_label("Second output (capon)").is_none(), "its panel is out of sight");
+}
+
+#[test]
+fn kinds_of_failure_are_marked_and_are_those_of_the_evaluation() {
+    let mut s = Session::start();
+    assert!(s.state().failures().is_none());
+    s.press(Modifiers::NONE, Key::H);
+    for round in 0..2 {
+        let trial = trial(&s);
+        let answer = trial.ask(&Baseline, &Request { floor: Floor::Thesis, ..Request::default() }).unwrap();
+        assert_eq!(s.state().failures(), Some(&trial.failures(&answer)), "round {round}");
+        assert!(s.app.query_all_by_label_contains("Legend: hit, false alarm, miss, ").next().is_some());
+        let at = s.handle("point 2: move");
+        s.drag(at, vec2(-20.0, 15.0), 5);
+    }
+    s.press(Modifiers::NONE, Key::H);
+    assert!(s.state().failures().is_none());
+    assert!(s.app.query_all_by_label("Legend: hit, false alarm, miss").next().is_some(), "hatches go on");
+}

@@ -1,0 +1,211 @@
+//! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
+
+use crate::session::{Session, harness, step_until};
+use apertura::app::{Command, FailureChoice, Panel, SearchChoice};
+use apertura::evaluate::rows::{Row, read_rows};
+use apertura::evaluate::sets::Folder;
+use apertura::evaluate::worsen::{Aim, Measure};
+use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::signal::Floor;
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+
+fn methods() -> Vec<Arc<dyn Reconstructor>> {
+    vec![Arc::new(Baseline), Arc::new(CAPON)]
+}
+
+/// A window with six rows: three scenes by two methods.
+fn tried() -> Session {
+    let mut s = Session::with_methods(methods());
+    try_methods(&mut s, choice(vec![Kind::Set2], false));
+    assert_eq!(s.state().rows().len(), 6);
+    s
+}
+
+fn choice(kinds: Vec<Kind>, own: bool) -> FailureChoice {
+    FailureChoice { methods: vec!["baseline", "capon"], kinds, own, count: 3, seed: 7 }
+}
+
+fn try_methods(s: &mut Session, choice: FailureChoice) {
+    s.app.state_mut().ask(Command::TryMethods(choice));
+    step_until(s, "it starts", |s| s.state().is_at_work());
+    step_until(s, "it ends", |s| !s.state().is_at_work());
+    s.settle();
+}
+
+fn name(row: &Row) -> String {
+    format!("set {}, scene {}, {}", row.set, row.index, row.method)
+}
+
+/// The rows in sight, from top to bottom, as they are called.
+fn listed(s: &Session) -> Vec<String> {
+    let mut rows: Vec<(f32, String)> = s
+        .state()
+        .rows()
+        .iter()
+        .map(name)
+        .filter_map(|name| {
+            let top = s.app.query_by_label(&name)?.rect().top();
+            Some((top, name))
+        })
+        .collect();
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rows.into_iter().map(|(_, name)| name).collect()
+}
+
+fn worst(s: &Session) -> (usize, Row) {
+    let rows = s.state().rows().iter().enumerate();
+    let worst = rows.max_by(|a, b| a.1.squared_error.total_cmp(&b.1.squared_error)).unwrap();
+    (worst.0, worst.1.clone())
+}
+
+fn write(s: &mut Session, text: &str) {
+    s.app.get_by_label("Filter").focus();
+    s.app.step();
+    s.app.get_by_label("Filter").type_text(text);
+    s.settle();
+}
+
+#[test]
+fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
+    let mut s = tried();
+    s.ask(Command::Maximise(Panel::Failures));
+    s.app.get_by_label("squared_error").click();
+    s.settle();
+    let (index, row) = worst(&s);
+    assert_eq!((listed(&s).len(), &listed(&s)[0]), (6, &name(&row)));
+
+    write(&mut s, "method = 'capon' & objcts > 1");
+    let told = s.app.query_by_label_contains("column 20:").is_some();
+    assert!(told && listed(&s).len() == 6, "a mistake is pointed at, and the rows stay");
+    s.app.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    s.settle();
+    write(&mut s, "squared_error >= capon.squared_error & method = 'baseline'");
+    let rows = s.state().rows();
+    let of_capon = |row: &Row| rows.iter().find(|r| r.index == row.index && r.method == "capon").unwrap();
+    let worse = |row: &&Row| row.method == "baseline" && row.squared_error >= of_capon(row).squared_error;
+    assert_eq!(listed(&s).len(), rows.iter().filter(worse).count());
+    s.app.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    s.settle();
+    s.app.key_press(Key::Delete);
+    s.settle();
+
+    let before = s.state().editor().document().clone();
+    s.app.get_by_label(&name(&row)).click();
+    s.settle();
+    s.ask(Command::Maximise(Panel::Failures));
+    let radar = s.state().radar().clone();
+    let expected = Generator::new(&radar, Reading::Program, Purpose::Test, 7).scene(Kind::Set2, row.index);
+    assert_eq!((s.state().opened_row(), &**s.state().editor().scene()), (Some(index), &expected));
+    let m = s.state().metrics().unwrap();
+    assert_eq!(s.state().shown_method(), Some(if row.method == "capon" { "capon" } else { "baseline" }));
+    assert_eq!((m.squared_error, m.detection, m.false_alarm), (row.squared_error, row.detection, row.false_alarm));
+
+    s.ask(Command::OpenPanel(Panel::Failures));
+    let missed = format!("{} missed", row.missed);
+    let fates = s.app.query_all_by_label_contains(&missed).count();
+    assert!(row.missed == 0 || fates == 2, "those of the row, and those of now: {fates}");
+
+    let at = s.handle("point 1: move");
+    s.drag(at, vec2(25.0, 10.0), 5);
+    assert!(s.state().editor().is_modified() && s.state().metrics() != Some(m));
+    let file = s.state().editor().document().to_file();
+    s.ask(Command::KeepScene("Moved a little.".to_owned()));
+    let own = s.folder.path().join("data/scenes");
+    let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
+    assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
+    assert_eq!(kept.scene.notes, "Moved a little.");
+    try_methods(&mut s, choice(Vec::new(), true));
+    assert_eq!(s.state().rows().len(), 8, "it is a test set at once");
+
+    s.ask(Command::Undo);
+    s.ask(Command::Undo);
+    assert_eq!(s.state().editor().document().id(), before.id(), "the scene from before the row");
+}
+
+#[test]
+fn arrow_keys_walk_through_rows_and_one_undo_takes_the_walk_back() {
+    let mut s = tried();
+    let before = (s.state().editor().document().id(), s.state().settings().method.clone());
+    s.ask(Command::SetFloor(Floor::Exact));
+    s.ask(Command::OpenPanel(Panel::Failures));
+    let mut last = None;
+    s.ask(Command::OpenRow(0));
+    s.app.get_by_label("Rows").focus();
+    s.settle();
+    for step in 1..4 {
+        s.press(Modifiers::NONE, Key::ArrowDown);
+        assert_eq!(s.state().opened_row(), Some(step));
+        let row = &s.state().rows()[step];
+        assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error);
+        assert_eq!(s.state().settings().floor, Floor::Thesis, "as the rows were made");
+        last = s.state().metrics();
+    }
+    assert!(last.is_some() && s.state().editor().left().is_empty(), "a walk leaves nothing behind");
+    s.ask(Command::Undo);
+    let after = (s.state().editor().document().id(), s.state().settings().method.clone());
+    assert_eq!((after, s.state().settings().floor), (before, Floor::Exact));
+}
+
+#[test]
+fn rows_are_saved_opened_brought_back_and_there_after_a_restart() {
+    let mut s = tried();
+    let rows = s.state().rows().to_vec();
+    let path = s.folder.path().join("saved.csv");
+    s.ask(Command::SaveRowsTo(path.clone()));
+    step_until(&mut s, "it is written", |s| s.folder.path().join("saved.csv").exists());
+    assert_eq!(read_rows(std::fs::File::open(&path).unwrap()).unwrap(), rows);
+    s.ask(Command::ClearRows);
+    assert!(s.state().rows().is_empty());
+    s.ask(Command::BringRowsBack);
+    assert_eq!(s.state().rows(), rows);
+    s.ask(Command::ClearRows);
+    s.ask(Command::OpenTable(path.clone()));
+    assert_eq!(s.state().rows(), rows, "as when the file is dropped on the window");
+    let (_, row) = worst(&s);
+    s.ask(Command::OpenRow(rows.iter().position(|r| *r == row).unwrap()));
+    s.ask(Command::ClosePanel(Panel::Failures));
+    assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error, "the radar is that of the rows");
+    std::fs::write(&path, "not,rows\n1,2\n").unwrap();
+    let messages = s.state().messages();
+    s.ask(Command::OpenRowsFile(path));
+    assert!(s.state().messages() > messages && s.state().rows() == rows, "it is told, and the rows stay");
+    step_until(&mut s, "they are kept", |s| s.state().rows_are_kept());
+    let Session { app, folder } = s;
+    drop(app);
+    let app = harness(folder.path(), Some("scene.toml"), methods());
+    let mut s = Session { app, folder };
+    s.settle();
+    assert_eq!(s.state().rows(), rows);
+}
+
+#[test]
+fn a_search_goes_on_beside_the_window_and_its_find_is_one_step() {
+    let mut s = tried();
+    // Where the error is least, there is most to make worse.
+    let rows = s.state().rows().iter().enumerate();
+    let best = rows.min_by(|a, b| a.1.squared_error.total_cmp(&b.1.squared_error)).unwrap().0;
+    s.ask(Command::OpenPanel(Panel::Failures));
+    s.ask(Command::OpenRow(best));
+    let before = s.state().editor().scene().clone();
+    let choice = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 48 };
+    s.app.state_mut().ask(Command::Search(choice));
+    step_until(&mut s, "it starts", |s| s.state().is_at_work());
+    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
+    s.settle();
+    let path = s.state().search_path().to_vec();
+    assert!(path.len() > 1, "something near is worse");
+    let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
+    assert!(found.metrics.squared_error > start.squared_error);
+    assert_eq!(s.state().editor().scene().objects, found.scene.objects);
+    assert_eq!(s.state().metrics().unwrap().squared_error, found.metrics.squared_error);
+    assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
+    s.ask(Command::Undo);
+    assert_eq!(s.state().editor().scene(), &before);
+    s.app.state_mut().ask(Command::Search(SearchChoice { tries: 100_000, ..choice }));
+    step_until(&mut s, "it starts", |s| s.state().is_at_work());
+    s.ask(Command::CancelSearch);
+    step_until(&mut s, "it can be stopped", |s| !s.state().is_at_work());
+}
