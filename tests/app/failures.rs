@@ -19,20 +19,13 @@ fn methods() -> Vec<Arc<dyn Reconstructor>> {
 /// A window with six rows: three scenes by two methods.
 fn tried() -> Session {
     let mut s = Session::with_methods(methods());
-    try_methods(&mut s, choice(vec![Kind::Set2], false));
+    s.ask_and_wait(Command::TryMethods(choice(vec![Kind::Set2], false)));
     assert_eq!(s.state().rows().len(), 6);
     s
 }
 
 fn choice(kinds: Vec<Kind>, own: bool) -> FailureChoice {
     FailureChoice { methods: vec!["baseline", "capon"], kinds, own, count: 3, seed: 7 }
-}
-
-fn try_methods(s: &mut Session, choice: FailureChoice) {
-    s.app.state_mut().ask(Command::TryMethods(choice));
-    step_until(s, "it starts", |s| s.state().is_at_work());
-    step_until(s, "it ends", |s| !s.state().is_at_work());
-    s.settle();
 }
 
 fn name(row: &Row) -> String {
@@ -117,7 +110,7 @@ fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
     let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
-    try_methods(&mut s, choice(Vec::new(), true));
+    s.ask_and_wait(Command::TryMethods(choice(Vec::new(), true)));
     assert_eq!(s.state().rows().len(), 8, "it is a test set at once");
 
     s.ask(Command::Undo);
@@ -132,9 +125,13 @@ fn arrow_keys_walk_through_rows_and_one_undo_takes_the_walk_back() {
     s.ask(Command::SetFloor(Floor::Exact));
     s.ask(Command::OpenPanel(Panel::Failures));
     let mut last = None;
-    s.ask(Command::OpenRow(0));
-    s.app.get_by_label("Rows").focus();
-    s.settle();
+    let first = s.handle(&name(&s.state().rows()[0]));
+    s.drag(first, vec2(0.0, 0.0), 1);
+    assert_eq!(
+        s.state().opened_row(),
+        Some(0),
+        "by the pointer, as a person would: the rows have the keys from then on"
+    );
     for step in 1..4 {
         s.press(Modifiers::NONE, Key::ArrowDown);
         assert_eq!(s.state().opened_row(), Some(step));
@@ -191,10 +188,7 @@ fn a_search_goes_on_beside_the_window_and_its_find_is_one_step() {
     s.ask(Command::OpenRow(best));
     let before = s.state().editor().scene().clone();
     let choice = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 48 };
-    s.app.state_mut().ask(Command::Search(choice));
-    step_until(&mut s, "it starts", |s| s.state().is_at_work());
-    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
-    s.settle();
+    s.ask_and_wait(Command::Search(choice));
     let path = s.state().search_path().to_vec();
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);

@@ -55,6 +55,14 @@ impl Session {
         self.settle();
     }
 
+    /// Asks for what goes on beside the window, and waits for its end, which may come within the frame it began in.
+    pub fn ask_and_wait(&mut self, command: Command) {
+        self.app.state_mut().ask(command);
+        self.app.step();
+        step_until(self, "it ends", |s| !s.state().is_at_work());
+        self.settle();
+    }
+
     pub fn press(&mut self, modifiers: Modifiers, key: Key) {
         self.app.key_press_modifiers(modifiers, key);
         self.settle();

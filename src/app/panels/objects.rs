@@ -2,6 +2,7 @@
 
 use crate::app::state::Command;
 use crate::app::widgets::axes;
+use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind};
 use crate::interact::{Coordinates, Field, Selection, SelectionMode};
 use crate::scene::{Object, Scene};
 use eframe::egui;
@@ -121,7 +122,9 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, list: &Response, as
         && let Some(row) = latest
     {
         // What was selected elsewhere comes into sight, where it isn't.
-        area = in_sight(ui, area, row);
+        if let Some(window) = ui.data(|d| d.get_temp::<Window>(list_window(ui))) {
+            area = bring_in_sight(area, row, ROW_HEIGHT, window);
+        }
     }
     memory.latest = latest;
     let output = area.show_rows(ui, ROW_HEIGHT, input.scene.objects.len(), |ui, range| {
@@ -133,25 +136,12 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, list: &Response, as
             }
         }
     });
-    let shown = [output.state.clamped_offset().y, output.inner_rect.height()];
+    let shown = Window { offset: output.state.clamped_offset().y, room: output.inner_rect.height() };
     ui.data_mut(|d| d.insert_temp(list_window(ui), shown));
 }
 
 fn list_window(ui: &Ui) -> egui::Id {
     ui.scope_id().with("rows in sight")
-}
-
-/// Scrolls so far that `row` is in sight.
-fn in_sight(ui: &Ui, area: ScrollArea, row: usize) -> ScrollArea {
-    let Some([offset, height]) = ui.data(|d| d.get_temp::<[f32; 2]>(list_window(ui))) else { return area };
-    let (top, bottom) = (row as f32 * ROW_HEIGHT, (row + 1) as f32 * ROW_HEIGHT);
-    if top < offset {
-        area.vertical_scroll_offset(top)
-    } else if bottom > offset + height {
-        area.vertical_scroll_offset(bottom - height)
-    } else {
-        area
-    }
 }
 
 /// Draws a row; how its object is to be selected, if it was clicked.
@@ -163,10 +153,8 @@ fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<
         egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, format!("{name} in the list"))
     });
     let visuals = ui.visuals();
-    if selected {
-        ui.painter().rect_filled(rect, 2.0, visuals.selection.bg_fill);
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 2.0, visuals.widgets.hovered.weak_bg_fill);
+    if let Some(colour) = colour_behind(visuals, &response, selected) {
+        ui.painter().rect_filled(rect, 2.0, colour);
     }
     let place = |(field, _): (Field, &str)| {
         let digits = if field == Field::ThetaDegrees { 0.1 } else { 0.01 };

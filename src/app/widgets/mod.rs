@@ -9,6 +9,7 @@ pub mod focus_ring;
 pub mod icons;
 pub mod inline;
 pub mod legend;
+pub mod list_rows;
 pub mod method_menu;
 pub mod nudge;
 pub mod numbers;

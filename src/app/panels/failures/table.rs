@@ -3,6 +3,7 @@
 use super::cells;
 use super::order::Sort;
 use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
+use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind};
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::evaluate::rows::{Column, Row};
 use crate::picture::ColourMap;
@@ -60,8 +61,8 @@ pub struct Memory {
     is_crowded_out: bool,
     /// Whether the opened row was in sight.
     is_opened_in_sight: bool,
-    /// Where the first row in sight begins, and how much room rows have.
-    window: [f32; 2],
+    /// What of the rows is in sight.
+    window: Window,
 }
 
 impl Memory {
@@ -87,14 +88,14 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Answer {
     let list = ui.interact(ui.available_rect_before_wrap(), id, Sense::focusable_noninteractive());
     list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Rows"));
     if list.has_focus() {
-        answer.open = keys(ui, &list, input, memory.window[1]);
+        answer.open = keys(ui, &list, input, memory.window.room);
     }
     let mut area = ScrollArea::both().auto_shrink([false, false]);
     // A row that is opened comes into sight, and stays there when what is told of it takes some of the room.
     if (input.opened != memory.latest || memory.is_crowded_out)
         && let Some(at) = input.opened.and_then(|row| input.shown.iter().position(|shown| *shown == row))
     {
-        area = in_sight(area, at, memory.window);
+        area = bring_in_sight(area, at, ROW, memory.window);
     }
     memory.latest = input.opened;
     let width = MAPS + Column::ALL.map(cells::width).iter().sum::<f32>();
@@ -118,8 +119,8 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Answer {
         let titles = Rect::from_min_size(titles, vec2(width.max(viewport.width()), TITLE));
         answer.sort = self::titles(ui, input.sort, titles);
     });
-    let window = [output.state.clamped_offset().y, output.inner_rect.height() - TITLE];
-    memory.is_crowded_out = window[1] < memory.window[1] && memory.is_opened_in_sight;
+    let window = Window { offset: output.state.clamped_offset().y, room: output.inner_rect.height() - TITLE };
+    memory.is_crowded_out = window.room < memory.window.room && memory.is_opened_in_sight;
     memory.is_opened_in_sight = input.opened.is_some_and(|row| answer.in_sight.contains(&row));
     memory.window = window;
     let generation = input.table.generation();
@@ -156,18 +157,6 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize>
     (Some(to) != now).then(|| input.shown[to])
 }
 
-/// Scrolls so far that row `at` of those listed is in sight.
-fn in_sight(area: ScrollArea, at: usize, [offset, room]: [f32; 2]) -> ScrollArea {
-    let (top, bottom) = (at as f32 * ROW, (at + 1) as f32 * ROW);
-    if top < offset {
-        area.vertical_scroll_offset(top)
-    } else if bottom > offset + room {
-        area.vertical_scroll_offset(bottom - room)
-    } else {
-        area
-    }
-}
-
 /// Draws a row; whether it was clicked.
 fn row(ui: &Ui, input: &Input<'_>, at: usize, rect: Rect, memory: &mut Memory) -> bool {
     let index = input.shown[at];
@@ -177,12 +166,9 @@ fn row(ui: &Ui, input: &Input<'_>, at: usize, rect: Rect, memory: &mut Memory) -
     let selected = input.opened == Some(index);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, cells::name(row)));
     let visuals = ui.visuals();
-    if selected {
-        ui.painter().rect_filled(rect, 0.0, visuals.selection.bg_fill);
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 0.0, visuals.widgets.hovered.weak_bg_fill);
-    } else if at % 2 == 1 {
-        ui.painter().rect_filled(rect, 0.0, visuals.faint_bg_color);
+    let striped = (at % 2 == 1).then_some(visuals.faint_bg_color);
+    if let Some(colour) = colour_behind(visuals, &response, selected).or(striped) {
+        ui.painter().rect_filled(rect, 0.0, colour);
     }
     let problem = maps(ui, input, index, row, rect, memory);
     figures(ui, row, rect);
