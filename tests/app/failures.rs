@@ -5,6 +5,7 @@ use apertura::app::{Command, FailureChoice, Panel, SearchChoice};
 use apertura::evaluate::rows::{Row, read_rows};
 use apertura::evaluate::sets::Folder;
 use apertura::evaluate::worsen::{Aim, Measure};
+use apertura::files::memory::resident_bytes;
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
@@ -202,4 +203,43 @@ fn a_search_goes_on_beside_the_window_and_its_find_is_one_step() {
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.ask(Command::CancelSearch);
     step_until(&mut s, "it can be stopped", |s| !s.state().is_at_work());
+}
+
+/// What the child of the test below holds on one page of the table and seventy pages further.
+const HELD: &str = "held, bytes:";
+
+#[test]
+#[ignore = "the child of the test below"]
+fn child_that_walks_through_ten_thousand_rows() {
+    let mut s = tried();
+    let row = s.state().rows()[0].clone();
+    let path = s.folder.path().join("many.csv");
+    let rows: Vec<Row> = (0..10_000).map(|index| Row { index, ..row.clone() }).collect();
+    apertura::evaluate::rows::write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();
+    s.ask(Command::OpenTable(path));
+    assert_eq!(s.state().rows().len(), 10_000);
+    s.ask(Command::Maximise(Panel::Failures));
+    let first = s.handle(&name(&s.state().rows()[0]));
+    s.drag(first, vec2(0.0, 0.0), 1);
+    let mut held = Vec::new();
+    for page in 1..=90 {
+        s.press(Modifiers::NONE, Key::PageDown);
+        if page % 70 == 20 {
+            held.push(resident_bytes().unwrap_or(0));
+        }
+    }
+    assert!(s.state().opened_row() > Some(600), "more rows than small maps are kept of: {:?}", s.state().opened_row());
+    println!("\n{HELD} {} {}", held[0], held[1]);
+}
+
+#[test]
+fn memory_is_flat_over_ten_thousand_rows() {
+    let mut child = std::process::Command::new(std::env::current_exe().unwrap());
+    child.args(["--exact", "failures::child_that_walks_through_ten_thousand_rows", "--ignored", "--nocapture"]);
+    let output = child.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{said} {}", String::from_utf8_lossy(&output.stderr));
+    let line = said.lines().find_map(|line| line.strip_prefix(HELD)).unwrap();
+    let held: Vec<u64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+    assert!(held[1] <= held[0] + (16 << 20), "{held:?} bytes");
 }

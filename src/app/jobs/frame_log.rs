@@ -1,5 +1,6 @@
 //! Times of every frame as CSV, for `--frame-log`.
 
+use crate::files::memory::resident_bytes;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -35,7 +36,8 @@ impl FrameLog {
         let processor =
             processor_ms().zip(processor_began).map_or_else(String::new, |(now, then)| format!("{:.3}", now - then));
         let previous = previous.map_or_else(String::new, |s| format!("{:.3}", s * 1e3));
-        let memory = resident_mib().map_or_else(String::new, |m| format!("{m:.1}"));
+        let memory =
+            resident_bytes().map_or_else(String::new, |bytes| format!("{:.1}", bytes as f64 / f64::from(1 << 20)));
         writeln!(
             self.out,
             "{},{seconds:.4},{ui:.3},{previous},{requested},{painted},{memory},{processor}",
@@ -50,11 +52,4 @@ impl FrameLog {
 fn processor_ms() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split_whitespace().next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds / 1e6)
-}
-
-/// Memory of this process, where the system tells (Linux).
-fn resident_mib() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|l| l.strip_prefix("VmRSS:"))?;
-    line.trim().trim_end_matches("kB").trim().parse::<f64>().ok().map(|k| k / 1024.0)
 }
