@@ -2,7 +2,7 @@
 
 use crate::app::state::Command;
 use crate::app::widgets::axes;
-use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind};
+use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
 use crate::interact::{Coordinates, Field, Selection, SelectionMode};
 use crate::scene::{Object, Scene};
 use eframe::egui;
@@ -25,6 +25,8 @@ pub struct Input<'a> {
 pub struct Memory {
     /// The object that was picked last, when it was last drawn.
     latest: Option<usize>,
+    /// Whether a row was clicked, so that the list is to have the keys.
+    was_clicked: bool,
 }
 
 const ROW_HEIGHT: f32 = 20.0;
@@ -43,11 +45,12 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             Sense::focusable_noninteractive(),
         );
         list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Objects"));
+        focus_after_click(&list, &mut memory.was_clicked);
         if list.has_focus() {
             asked.extend(keys(ui, &list, &input));
         }
         heading(ui, input.coordinates);
-        rows(ui, &input, memory, &list, &mut asked);
+        rows(ui, &input, memory, &mut asked);
     });
     asked
 }
@@ -114,7 +117,7 @@ fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
     }
 }
 
-fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, list: &Response, asked: &mut Vec<Command>) {
+fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let latest = input.selection.latest();
     let mut area = ScrollArea::vertical().auto_shrink([false, false]);
@@ -131,7 +134,7 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, list: &Response, as
         for index in range {
             let Some(object) = input.scene.objects.get(index) else { break };
             if let Some(mode) = row(ui, input, index, object) {
-                list.request_focus();
+                memory.was_clicked = true;
                 asked.push(Command::Select(vec![index], mode));
             }
         }

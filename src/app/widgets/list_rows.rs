@@ -1,4 +1,4 @@
-//! What lists of rows of one height share: scrolling to a row, and the colours behind one.
+//! What lists of rows of one height share: scrolling to a row, the colours behind one, and the keys after a click on one.
 
 use eframe::egui::{Color32, Response, ScrollArea, Visuals};
 
@@ -29,5 +29,18 @@ pub fn colour_behind(visuals: &Visuals, response: &Response, is_selected: bool) 
         Some(visuals.selection.bg_fill)
     } else {
         response.hovered().then_some(visuals.widgets.hovered.weak_bg_fill)
+    }
+}
+
+/// Gives `list` the keys once the click on one of its rows is over, if one `was_clicked`. Not at once: egui takes the focus from whatever
+/// a click did not hit, once more in a frame that is laid out anew, and what the click brings up may have moved the rows away.
+pub fn focus_after_click(list: &Response, was_clicked: &mut bool) {
+    if *was_clicked {
+        if list.ctx.input(|i| i.pointer.any_click()) {
+            list.ctx.request_repaint();
+        } else {
+            list.request_focus();
+            *was_clicked = false;
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::cells;
 use super::order::Sort;
 use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
-use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind};
+use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::evaluate::rows::{Column, Row};
 use crate::picture::ColourMap;
@@ -61,6 +61,8 @@ pub struct Memory {
     is_crowded_out: bool,
     /// Whether the opened row was in sight.
     is_opened_in_sight: bool,
+    /// Whether a row was clicked, so that the rows are to have the keys.
+    was_clicked: bool,
     /// What of the rows is in sight.
     window: Window,
 }
@@ -87,6 +89,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Answer {
     let id = Id::unique("rows of failures");
     let list = ui.interact(ui.available_rect_before_wrap(), id, Sense::focusable_noninteractive());
     list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Rows"));
+    focus_after_click(&list, &mut memory.was_clicked);
     if list.has_focus() {
         answer.open = keys(ui, &list, input, memory.window.room);
     }
@@ -110,7 +113,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Answer {
             let top = pos2(origin.x, origin.y + TITLE + ROW * at as f32);
             let rect = Rect::from_min_size(top, vec2(width.max(viewport.width()), ROW));
             if row(ui, input, at, rect, memory) {
-                list.request_focus();
+                memory.was_clicked = true;
                 answer.open = Some(input.shown[at]);
             }
         }
