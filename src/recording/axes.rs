@@ -39,7 +39,7 @@ impl fmt::Display for AxisKind {
 
 /// Which of several chirps are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a chirp's number from 0, or \"mean\"")]
 pub enum Chirp {
     /// One, from 0.
     Number(usize),

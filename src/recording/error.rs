@@ -57,7 +57,7 @@ pub enum Fault {
     #[error("{0}")]
     Calibration(#[from] CalibrationError),
     /// Elements or samples are not as many as the radar's.
-    #[error("holds {found} {what}; expected {expected}")]
+    #[error("holds {found} {what}; expected {expected} (it is read as {} elements by {} samples)", .shape.0, .shape.1)]
     Count {
         /// "elements" or "samples".
         what: &'static str,
@@ -65,6 +65,8 @@ pub enum Fault {
         found: usize,
         /// How many there should be, and why.
         expected: String,
+        /// Elements and samples that the axes make of the array.
+        shape: (usize, usize),
     },
     /// A sample is NaN or infinite.
     #[error("sample {sample} of element {element} is not finite; expected finite numbers only")]

@@ -175,8 +175,13 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     let radar = radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
     table.check(&radar).map_err(|fault| fault.of(path))?;
     let data = folder.join(&table.file);
-    let rows = table.read(open, profile.as_ref()).map_err(|fault| fault.of(&data))?;
-    let samples = table.sorted(&radar, rows).map_err(|fault| fault.of(&data))?;
+    // Keys stand in the TOML, whatever file they are about.
+    let place = |fault: Fault| match fault {
+        Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
+        fault => fault.of(&data),
+    };
+    let rows = table.read(open, profile.as_ref()).map_err(place)?;
+    let samples = table.sorted(&radar, rows).map_err(place)?;
     let Table { mut missing, range_metres, .. } = table;
     missing.sort_unstable();
     Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres })
@@ -311,7 +316,8 @@ impl Table {
                 let (first, last) = (array(Some(first))?, array(Some(last))?);
                 if first.dim() != last.dim() {
                     let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
-                    return Err(Fault::Count { what: "numbers in \"last\"", found: last.len(), expected });
+                    let (found, shape) = (last.len(), last.dim());
+                    return Err(Fault::Count { what: "numbers in \"last\"", found, expected, shape });
                 }
                 // Equal shapes join.
                 concatenate(Axis(0), &[first.view(), last.view()])
@@ -350,7 +356,7 @@ impl Table {
     fn sorted(&self, radar: &Radar, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
         if rows.ncols() != radar.samples {
             let expected = format!("{} as radar.samples says", radar.samples);
-            return Err(Fault::Count { what: "samples", found: rows.ncols(), expected });
+            return Err(Fault::Count { what: "samples", found: rows.ncols(), expected, shape: rows.dim() });
         }
         let covered = self.covered(radar);
         let present: Vec<usize> = covered.iter().copied().filter(|n| !self.missing.contains(n)).collect();
@@ -369,6 +375,7 @@ impl Table {
                 what: "elements",
                 found: rows.nrows(),
                 expected: format!("{} as {whose}{without}", covered.len()),
+                shape: rows.dim(),
             }
         })?;
         let mut samples = Array2::zeros((radar.elements, radar.samples));

@@ -112,7 +112,9 @@ fn header(file: &mut impl Read) -> Result<bool, MatError> {
     match &header[124..] {
         [0, 1, b'I', b'M'] => Ok(false),
         [1, 0, b'M', b'I'] => Ok(true),
-        _ => Err(MatError::Header("its header ends in neither byte order")),
+        _ => Err(MatError::Header(
+            "its header ends in neither byte order; a file of version 4 can be saved with the option -v7",
+        )),
     }
 }
 

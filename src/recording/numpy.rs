@@ -43,7 +43,7 @@ pub enum NumpyError {
         shape: Vec<usize>,
     },
     /// Numbers of another type.
-    #[error("{what} holds {found}; expected complex or real numbers, or integers of 16 or more bits")]
+    #[error("{what} holds {found}; expected complex or real numbers, or signed integers of 16 or more bits")]
     Type {
         /// Which array.
         what: String,

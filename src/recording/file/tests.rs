@@ -161,15 +161,16 @@ fn faults_name_file_key_shape_and_what_was_expected() {
             "[recording]\nfile = \".\"\naxes = [\"element\", \"sample\"]".to_owned(),
             ["recording.file", ".npz, .npy, .mat or .bin"],
         ),
-        ("[recording]\nfile = \"d.npz\"\narray = \"a\"".to_owned(), ["d.npz", "recording.axes is missing"]),
+        ("[recording]\nfile = \"d.npz\"\narray = \"a\"".to_owned(), ["r.toml", "recording.axes is missing"]),
         (usual("").replace("\"a\"", "\"b\""), ["d.npz", "\"b\"; expected it beside what is there: a, cube"]),
-        (usual("").replace("array = \"a\"\n", ""), ["d.npz", "recording.array is missing"]),
+        (usual("").replace("array = \"a\"\n", ""), ["r.toml", "recording.array is missing"]),
         (usual("").replace("\"a\"", "\"cube\""), ["recording.axes names 2 axes", "shape [2, 8, 4]"]),
         (
             usual("").replace("\"element\", \"sample\"", "\"sample\", \"element\""),
-            ["d.npz", "holds 8 samples; expected 4"],
+            ["d.npz", "holds 8 samples; expected 4 as radar.samples says (it is read as 4 elements by 8 samples)"],
         ),
         (usual("").replace("\"element\"", "\"antenna\""), ["line 12", "antenna"]),
+        (usual("chirp = \"median\""), ["line 13", "a chirp's number from 0, or \"mean\""]),
         (usual("elements = \"ends\""), ["d.npz", "holds 8 elements; expected 6 as radar.end_elements"]),
         (usual("missing = [1, 1]"), ["recording.missing", "each once"]),
         (usual("missing = [8]"), ["recording.missing names element 8", "below 8"]),
@@ -177,9 +178,9 @@ fn faults_name_file_key_shape_and_what_was_expected() {
         (usual("first = \"a\""), ["recording.array", "both first and last"]),
         (usual("[recording.calibration]\ngain_db = [1]"), ["gain_db has 1", "expected 8"]),
         (usual("").replace("d.npz", "nan.npz"), ["nan.npz", "sample 2 of element 5 is not finite"]),
-        (usual("").replace("d.npz", "real.npy"), ["real.npy", "recording.array"]),
+        (usual("").replace("d.npz", "real.npy"), ["r.toml", "recording.array is there"]),
         (usual("").replace("d.npz", "real.npy").replace("array = \"a\"\n", ""), ["real.npy", "magic number"]),
-        (usual("").replace("d.npz", "r.bin"), ["r.bin", "[recording.capture] is missing"]),
+        (usual("").replace("d.npz", "r.bin"), ["r.toml", "[recording.capture] is missing"]),
     ] {
         let message = read(&folder, &text).unwrap_err().to_string();
         assert!(parts.iter().all(|p| message.contains(p)), "{text}\n{message}");
