@@ -47,10 +47,10 @@ impl WindowFunction {
 
     /// The symmetric window of `len` points ([`WindowFunction::cosines`]).
     ///
-    /// One point or none gives ones, as NumPy's windows do.
+    /// One point or none gives ones, as NumPy's windows do; so do two, of which most windows would leave nothing.
     pub fn weights(self, len: usize) -> Vec<f64> {
         let [a, b, c] = self.cosines();
-        if len < 2 {
+        if len < 3 {
             return vec![1.0; len];
         }
         let turn = |n: usize| TAU * n as f64 / (len - 1) as f64;
@@ -60,9 +60,17 @@ impl WindowFunction {
 
 /// Symmetric Hann window of `len` points, `0.5 - 0.5 cos(2 pi n / (len - 1))`: zero at both ends (thesis section 3.1).
 ///
-/// One point or none gives ones, as NumPy's `hanning` does.
+/// Two points or fewer give ones.
 pub fn hann(len: usize) -> Vec<f64> {
     WindowFunction::Hann.weights(len)
+}
+
+/// Fewest points of a Hann window of which more than one weighs anything.
+const LEAST_WINDOWED: usize = 4;
+
+/// [`hann`] for a chirp of `samples`; ones where it would leave one sample or none.
+pub fn chirp_window(samples: usize) -> Vec<f64> {
+    if samples < LEAST_WINDOWED { vec![1.0; samples] } else { hann(samples) }
 }
 
 #[cfg(test)]
@@ -78,7 +86,8 @@ mod tests {
             assert!((w[n] - w[11 - n]).abs() < 1e-15);
         }
         assert!((w.iter().sum::<f64>() - 5.5).abs() < 1e-12, "sum of a symmetric Hann window is (N-1)/2");
-        assert_eq!(hann(1), [1.0]);
+        assert_eq!((hann(1), hann(2)), (vec![1.0], vec![1.0; 2]));
+        assert_eq!((chirp_window(3), chirp_window(4)), (vec![1.0; 3], hann(4)));
     }
 
     /// Decibels of the highest side lobe below the peak, from a transform written out at 32 places a bin.

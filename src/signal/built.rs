@@ -6,7 +6,7 @@ use super::interference::add_interference;
 use super::over_floor::simulate_echoes;
 use super::phase::EchoModel;
 use super::samples::BeatSignal;
-use crate::radar::{BuiltArray, Decibels, ElementError, Radar};
+use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
 use crate::scene::{Reflector, Scene, SceneError};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -70,12 +70,15 @@ pub struct Calibration {
 }
 
 /// Estimates gain and phase of every element from the echo of `reflector` in `signal`: what each element's samples hold of the echo
-/// that an ideal element would hear. Other reflectors disturb little where they are some range bins away.
+/// that an ideal element would hear, by least squares under a Hann window. Other reflectors disturb little where they are two range bins
+/// away or more.
 ///
 /// `None` where no element hears the reflector.
 pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> Option<Calibration> {
     let polar = radar.polar_of(reflector.x_metres, reflector.y_metres);
     let (mut energy, mut left) = (0.0, 0.0);
+    let window = chirp_window(radar.samples);
+    let mean_weight = window.iter().sum::<f64>() / radar.samples as f64;
     let responses: Vec<Complex64> = signal
         .samples
         .outer_iter()
@@ -83,10 +86,12 @@ pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> O
         .map(|(n, samples)| {
             let echo = ArrayEcho::heard_by(radar, &[radar.element_x_metres(n)], polar.range_metres, polar.cos_theta);
             let samples: Vec<Complex64> = samples.iter().copied().collect();
-            let share = echo.correlate(&samples);
+            let weighted: Vec<Complex64> = samples.iter().zip(&window).map(|(v, w)| v * w).collect();
+            let share = echo.correlate(&weighted) / mean_weight;
             let all: f64 = samples.iter().map(Complex64::norm_sqr).sum();
             energy += all;
-            left += (all - share.norm_sqr()).max(0.0);
+            let explained = 2.0 * (share.conj() * echo.correlate(&samples)).re - share.norm_sqr();
+            left += (all - explained).max(0.0);
             share / echo.norm()
         })
         .collect();
@@ -191,6 +196,24 @@ mod tests {
         found.take_off(&mut signal);
         let (gain, phase) = calibrate(&radar, &signal, &reflector).unwrap().spread();
         assert!(gain.0 < 1e-6 && phase < 1e-6, "{gain} {phase}");
+    }
+
+    #[test]
+    fn reflectors_a_few_bins_away_hardly_disturb_a_calibration() {
+        let radar = small();
+        let tolerances = Tolerances { gain: Decibels(1.5), phase_degrees: 20.0, position_millimetres: 0.0 };
+        let array = tolerances.build(&radar, 2);
+        // Eight bins further out, a little stronger.
+        let scene = Scene::of_points([(0.0, 11.0), (1.0, 11.6)]);
+        let signal = simulate_built(&radar, &scene, &array, Floor::Exact, 1).unwrap();
+        let mut left = signal.clone();
+        calibrate(&radar, &signal, &scene.reflectors()[0]).unwrap().take_off(&mut left);
+        let ideal = simulate(&radar, &scene, Floor::Exact, 1).unwrap();
+        let ratio = |n: usize| left.samples[[n, 9]] / ideal.samples[[n, 9]];
+        for n in 0..radar.elements {
+            let off = ratio(n) / ratio(0);
+            assert!((off - 1.0).norm() < 0.02, "element {n}: {off}");
+        }
     }
 
     #[test]

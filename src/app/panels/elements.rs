@@ -5,7 +5,9 @@ use crate::app::state::Command;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{BuiltArray, Decibels, ElementError, End, Radar, Tolerances};
 use eframe::egui;
-use eframe::egui::{DragValue, Grid, Key, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{
+    DragValue, EventFilter, Grid, Key, Modifiers, PointerButton, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
+};
 use std::sync::Arc;
 
 /// What is shown.
@@ -119,14 +121,18 @@ fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Co
     }
     let chosen = at(memory.chosen);
     painter.vline(chosen, rect.y_range(), Stroke::new(1.0, inks.selected));
-    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked()) {
-        memory.chosen = under(pos.x);
+    if response.clicked() {
+        // The space bar clicks, too, wherever the pointer is.
+        let pointer = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary));
+        memory.chosen = pointer.map_or(memory.chosen, |pos| under(pos.x));
         asked.push(with(input, memory.chosen, |e| e.dead = !e.dead));
     }
     if response.has_focus() {
-        let key = |key| ui.input(|i| i.key_pressed(key));
-        memory.chosen = (memory.chosen + usize::from(key(Key::ArrowRight))).min(count - 1);
-        memory.chosen = memory.chosen.saturating_sub(usize::from(key(Key::ArrowLeft)));
+        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+        let steps = |key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key));
+        let (right, left) = (steps(Key::ArrowRight), steps(Key::ArrowLeft));
+        memory.chosen = (memory.chosen + right).saturating_sub(left).min(count - 1);
     }
     let tip = response.hover_pos().map(|pos| {
         let n = under(pos.x);
@@ -285,6 +291,18 @@ mod tests {
         }
         assert_eq!(panel.state().asked, 2);
         assert!(panel.state().elements.is_ideal());
+    }
+
+    #[test]
+    fn arrow_keys_and_the_space_bar_silence_an_element() {
+        let mut panel = panel(BuiltArray::default(), None);
+        panel.get_by_label("Elements").focus();
+        panel.run();
+        for key in [Key::ArrowRight, Key::ArrowRight, Key::Space] {
+            panel.key_press(key);
+            panel.run();
+        }
+        assert!(panel.state().elements.elements[2].dead && panel.state().elements.dead() == 1);
     }
 
     #[test]

@@ -200,6 +200,9 @@ const POWER: Number = Number {
     decimals: 3,
 };
 
+/// What follows from the bandwidth of a snapshot.
+const NO_RANGES: &str = "one sample tells no range from another";
+
 fn rows(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, free: Free) {
     let is_free = free.constants;
     let wavelength = radar.wavelength_metres();
@@ -207,11 +210,22 @@ fn rows(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, free: Free) {
     if let Some(ghz) = number(ui, &CARRIER, radar.carrier_hz * 1e-9, &text, is_free) {
         radar.carrier_hz = ghz * 1e9;
     }
-    let text = format!("range bin {}", metres(follows.range_bin_metres));
-    if let Some(mhz) = number(ui, &BANDWIDTH, radar.bandwidth_hz * 1e-6, &text, is_free) {
-        radar.bandwidth_hz = mhz * 1e6;
+    let is_snapshot = radar.samples == 1;
+    if is_snapshot && !is_free {
+        ui.label(BANDWIDTH.name).on_hover_text(BANDWIDTH.tooltip);
+        ui.weak("not known");
+        last_cell(ui, NO_RANGES);
+    } else {
+        let bin = format!("range bin {}", metres(follows.range_bin_metres));
+        let text = if is_snapshot { NO_RANGES } else { &bin };
+        if let Some(mhz) = number(ui, &BANDWIDTH, radar.bandwidth_hz * 1e-6, text, is_free) {
+            radar.bandwidth_hz = mhz * 1e6;
+        }
     }
-    let text = format!("maximum range {}", metres(follows.max_range_metres));
+    let text = match is_snapshot {
+        true => "a snapshot: one range bin".to_owned(),
+        false => format!("maximum range {}", metres(follows.max_range_metres)),
+    };
     if let Some(samples) = number(ui, &SAMPLES, radar.samples as f64, &text, is_free) {
         radar.samples = samples as usize;
     }

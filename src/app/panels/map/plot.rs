@@ -66,7 +66,12 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
                 }
             };
             let x = Axis::new(cos(view.low.x), cos(view.high.x), title);
-            (x, Axis::new(range(view.low.y), range(view.high.y), "range, m"))
+            // The one row of a snapshot stands for no range.
+            let y = match radar.samples {
+                1 => Axis { ticks: Some(&[]), ..Axis::new(0.0, 1.0, "one range") },
+                _ => Axis::new(range(view.low.y), range(view.high.y), "range, m"),
+            };
+            (x, y)
         }
         Projection::Cartesian => {
             let extent = radar.max_range_metres();

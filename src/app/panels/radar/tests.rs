@@ -93,3 +93,14 @@ fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
     measured.run();
     assert_eq!(measured.state().0.window, WindowFunction::Hamming, "windows are no part of a measurement");
 }
+
+#[test]
+fn a_snapshot_has_no_ranges_and_one_that_was_measured_no_bandwidth() {
+    let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
+    let free = panel(radar.clone(), None);
+    let _told =
+        (free.get_by_label("one sample tells no range from another"), free.get_by_label("a snapshot: one range bin"));
+    let measured = panel(radar, Some(Measured { by_all_elements: true }));
+    let _told = measured.get_by_label("not known");
+    assert!(measured.query_by_label_contains("2000").is_none());
+}
