@@ -1,4 +1,4 @@
-//! `apertura bench --methods`: run time against squared error of every reconstruction method, and the hybrid's time for crowds.
+//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search.
 
 use crate::commands::CommandError;
 use crate::commands::figure::{Drawn, Figure, save};
@@ -20,6 +20,9 @@ use std::path::Path;
 
 /// Crowded scenes are told apart by how close their reflectors lie: a few say nothing of the median.
 const FEWEST_CROWDS: u32 = 20;
+
+/// Methods whose time grows with the number of reflectors.
+const SEARCHERS: [&str; 3] = ["hybrid", "iaa", "sbl"];
 
 /// What was measured.
 #[derive(Debug, Serialize)]
@@ -49,9 +52,10 @@ impl MethodRow {
     }
 }
 
-/// The hybrid on scenes of many reflectors.
-#[derive(Debug, Serialize)]
+/// One of [`SEARCHERS`] on scenes of many reflectors.
+#[derive(Debug, Clone, Serialize)]
 struct Crowd {
+    method: &'static str,
     reflectors: usize,
     what: &'static str,
     scenes: u32,
@@ -64,15 +68,17 @@ struct Crowd {
 pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let all = methods::all();
     let crowds = count.max(FEWEST_CROWDS);
-    let bar = indicatif::ProgressBar::new(u64::from(count) * 3 * all.len() as u64 + 2 * u64::from(crowds));
+    let maps = 3 * u64::from(count) * all.len() as u64 + 2 * u64::from(crowds) * SEARCHERS.len() as u64;
+    let bar = indicatif::ProgressBar::new(maps);
     let report = Report {
         threads: rayon::current_num_threads(),
         scenes: count,
         methods: method_rows(count, &all.iter().map(AsRef::as_ref).collect::<Vec<_>>(), || bar.inc(1))?,
-        crowds: vec![
-            crowd(crowds, Kind::Points(10), 10, "points", || bar.inc(1))?,
-            crowd(crowds, Kind::Mixed(4), 300, "four lines of 75", || bar.inc(1))?,
-        ],
+        crowds: [
+            crowds_of(crowds, Kind::Points(10), 10, "points", || bar.inc(1))?,
+            crowds_of(crowds, Kind::Mixed(4), 300, "four lines of 75", || bar.inc(1))?,
+        ]
+        .concat(),
     };
     bar.finish_and_clear();
     if let Some(folder) = output {
@@ -93,7 +99,8 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
     }
     for c in &report.crowds {
         print(&format!(
-            "hybrid, {} reflectors ({}): {:.0} ms a map, {:.0} ms at worst, SE {:.0} ± {:.0} ({} scenes)",
+            "{}, {} reflectors ({}): {:.0} ms a map, {:.0} ms at worst, SE {:.0} ± {:.0} ({} scenes)",
+            c.method,
             c.reflectors,
             c.what,
             c.median_milliseconds,
@@ -125,39 +132,49 @@ fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) ->
     Ok(methods.iter().map(row).collect())
 }
 
-/// The hybrid on the first `count` test scenes of `kind` that hold `reflectors` reflectors.
-fn crowd(
+/// The [`SEARCHERS`] on the first `count` test scenes of `kind` that hold `reflectors` reflectors.
+fn crowds_of(
     count: u32,
     kind: Kind,
     reflectors: usize,
     what: &'static str,
     on_map: impl Fn(),
-) -> Result<Crowd, CommandError> {
-    let hybrid = methods::by_name("hybrid").map_err(CommandError::failed)?;
+) -> Result<Vec<Crowd>, CommandError> {
+    let methods = SEARCHERS.map(methods::by_name).into_iter().collect::<Result<Vec<_>, _>>();
+    let methods = methods.map_err(CommandError::failed)?;
     let (radar, request) = (Radar::default(), Request::default());
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
     let scenes = (0..).map(|number| generator.scene(kind, number)).filter(|s| s.reflector_count() == reflectors);
-    let (mut times, mut errors) = (Vec::new(), Vec::new());
-    for scene in scenes.take(count as usize) {
+    let mut times = vec![Vec::new(); methods.len()];
+    let mut errors = vec![Vec::new(); methods.len()];
+    for (number, scene) in scenes.take(count as usize).enumerate() {
         let trial = Trial::new(&radar, &scene, request.floor, request.normalisation).map_err(CommandError::failed)?;
-        if times.is_empty() {
-            // Warmed up, as the methods above were.
-            trial.ask(&*hybrid, &request).map_err(CommandError::failed)?;
+        for (method, (times, errors)) in methods.iter().zip(times.iter_mut().zip(&mut errors)) {
+            if number == 0 {
+                // Warmed up, as the methods above were.
+                trial.ask(&**method, &request).map_err(CommandError::failed)?;
+            }
+            let answer = trial.ask(&**method, &request).map_err(CommandError::failed)?;
+            times.push(answer.milliseconds);
+            errors.push(answer.metrics.squared_error);
+            on_map();
         }
-        let answer = trial.ask(&*hybrid, &request).map_err(CommandError::failed)?;
-        times.push(answer.milliseconds);
-        errors.push(answer.metrics.squared_error);
-        on_map();
     }
-    times.sort_by(f64::total_cmp);
-    Ok(Crowd {
-        reflectors,
-        what,
-        scenes: count,
-        median_milliseconds: times[times.len() / 2],
-        worst_milliseconds: times[times.len() - 1],
-        squared_error: Estimate::of(&errors),
-    })
+    let figures = methods.iter().zip(times.iter_mut().zip(&errors));
+    Ok(figures
+        .map(|(method, (times, errors))| {
+            times.sort_by(f64::total_cmp);
+            Crowd {
+                method: method.name(),
+                reflectors,
+                what,
+                scenes: count,
+                median_milliseconds: times[times.len() / 2],
+                worst_milliseconds: times[times.len() - 1],
+                squared_error: Estimate::of(errors),
+            }
+        })
+        .collect())
 }
 
 /// Height of a name on the chart, pixels.
