@@ -42,7 +42,8 @@ impl Hybrid {
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
         let mut drawn = found.reconstruction(radar, request);
-        if found.complete {
+        // Nothing fills in on a radar that the fallback doesn't know.
+        if found.complete || self.fallback.check_radar(radar).is_err() {
             return Ok(drawn);
         }
         let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;

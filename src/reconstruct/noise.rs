@@ -33,12 +33,16 @@ pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = A
     let spectrum = Spectrum::new(radar.samples);
     let mut bins = vec![0.0; radar.samples];
     let (mut count, mut energy) = (0.0, 0.0);
-    for channel in channels {
+    // Elements that measured nothing tell nothing of the noise.
+    for channel in channels.filter(|c| c.iter().any(|v| v.norm_sqr() > 0.0)) {
         for (bin, v) in bins.iter_mut().zip(spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * w))) {
             *bin += v.norm_sqr();
         }
         energy += channel.iter().map(Complex64::norm_sqr).sum::<f64>() / radar.samples as f64;
         count += 1.0;
+    }
+    if count == 0.0 {
+        return 0.0;
     }
     let quiet = (QUIET_PART * bins.len() as f64) as usize;
     let strongest = bins.iter().copied().fold(0.0, f64::max);

@@ -1,7 +1,7 @@
 //! Finely sampled range profiles, to be looked up at any distance.
 
 use crate::maps::Spectrum;
-use crate::radar::{Radar, hann};
+use crate::radar::{Radar, chirp_window};
 use crate::signal::simd::{ComplexLanes, Lanes, Real, phasor};
 use ndarray::ArrayView1;
 use num_complex::Complex64;
@@ -18,13 +18,10 @@ pub(super) struct Profiles {
     turns_per_metre: f64,
 }
 
-/// Fewest samples that a Hann window leaves more than one of.
-const LEAST_WINDOWED: usize = 4;
-
 impl Profiles {
     /// Profiles of `channels`, each `[samples]`, with `rows_per_bin` rows a range bin.
     pub fn new(radar: &Radar, channels: &[ArrayView1<'_, Complex64>], rows_per_bin: usize) -> Self {
-        let window = if radar.samples < LEAST_WINDOWED { vec![1.0; radar.samples] } else { hann(radar.samples) };
+        let window = chirp_window(radar.samples);
         let weight: f64 = window.iter().sum();
         let rows = rows_per_bin * radar.samples;
         let spectrum = Spectrum::new(rows);

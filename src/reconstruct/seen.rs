@@ -70,6 +70,20 @@ pub(super) fn cos_period(radar: &Radar) -> f64 {
     (radar.cos_of_column(radar.elements as f64) - radar.cos_of_column(0.0)).abs()
 }
 
+/// Why what one end hears can't be taken for plane waves, where nothing the radar sees is far enough away.
+pub(super) fn no_plane_waves(radar: &Radar) -> Option<String> {
+    let end_metres = (radar.end_elements - 1) as f64 * radar.element_spacing_metres;
+    let far_metres = 2.0 * end_metres.powi(2) / radar.wavelength_metres();
+    let seen_metres = radar.max_range_metres();
+    // A single sample has no ranges, and counts as far away.
+    (radar.samples > 1 && far_metres > seen_metres).then(|| {
+        format!(
+            "it takes what an end hears for plane waves, but ends of {end_metres:.2} m have their far field beyond \
+             {far_metres:.0} m, and the radar sees {seen_metres:.0} m; matched-filter and omp know near fields"
+        )
+    })
+}
+
 /// Why directions can't be told by their columns, where more than [`MOST_FOLDS`] share one.
 pub(super) fn too_many_folds(radar: &Radar) -> Option<String> {
     let folds = (2.0 / cos_period(radar)).ceil();

@@ -3,6 +3,7 @@
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::signal::phase::EchoModel;
+use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -84,6 +85,15 @@ impl ArrayEcho {
         ArrayEcho { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
     }
 
+    /// The echo where only those elements hear it that `hears` says; one entry an element.
+    pub fn where_heard(mut self, hears: &[bool]) -> Self {
+        for (series, _) in self.series.iter_mut().zip(hears).filter(|(_, hears)| !**hears) {
+            series.start = Complex64::default();
+        }
+        let power: f64 = self.series.iter().map(|s| s.start.norm_sqr()).sum();
+        ArrayEcho { norm: (power * self.samples as f64).sqrt(), ..self }
+    }
+
     /// Root of the sum of squares of its samples.
     pub fn norm(&self) -> f64 {
         self.norm
@@ -104,17 +114,7 @@ impl ArrayEcho {
 
     /// Inner product of its unit samples with `y`: `sum conj(echo) y`, `y` being `[elements * samples]`.
     pub fn correlate(&self, y: &[Complex64]) -> Complex64 {
-        let sum: Complex64 = self
-            .series
-            .iter()
-            .zip(y.chunks_exact(self.samples))
-            .map(|(s, y)| {
-                // Horner from the last sample: sum y[n] conj(step)^n.
-                let step = s.step.conj();
-                s.start.conj() * y.iter().rev().fold(Complex64::default(), |sum, v| sum * step + v)
-            })
-            .sum();
-        sum / self.norm
+        Simd::chosen().run(Correlate { echo: self, y }) / self.norm
     }
 
     /// Inner product of the unit samples of two echoes, `sum conj(self) other`: a geometric series for each element.
@@ -136,6 +136,54 @@ impl ArrayEcho {
             .sum();
         sum / (self.norm * other.norm)
     }
+}
+
+/// Samples side by side, and groups of them: as many as hide how long a multiplication takes.
+const W: usize = LANES_F64;
+const GROUPS: usize = 4;
+const STRIDE: usize = W * GROUPS;
+
+/// `sum conj(echo) y`.
+struct Correlate<'a> {
+    echo: &'a ArrayEcho,
+    y: &'a [Complex64],
+}
+
+impl Kernel for Correlate<'_> {
+    type Output = Complex64;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Complex64 {
+        let of = |(s, y): (&Series, &[Complex64])| s.start.conj() * polynomial::<FMA>(s.step.conj(), y);
+        self.echo.series.iter().zip(self.y.chunks_exact(self.echo.samples)).map(of).sum()
+    }
+}
+
+/// `sum y[n] z^n` by Horner's rule from the last sample, [`STRIDE`] interleaved sums at once; `z` lies on the unit circle.
+#[inline(always)]
+fn polynomial<const FMA: bool>(z: Complex64, y: &[Complex64]) -> Complex64 {
+    let mut powers = [Complex64::from(1.0); STRIDE];
+    powers[1] = z;
+    (2..STRIDE).for_each(|i| powers[i] = powers[i / 2] * powers[i.div_ceil(2)]);
+    let stride = powers[STRIDE / 2] * powers[STRIDE / 2];
+    let stride = ComplexLanes { re: Lanes::splat(stride.re), im: Lanes::splat(stride.im) };
+    let mut sums = [ComplexLanes::<f64, W>::zero(); GROUPS];
+    let whole = y.chunks_exact(STRIDE);
+    let rest = whole.remainder();
+    let lanes = |y: &[Complex64], group: usize| ComplexLanes {
+        re: Lanes(std::array::from_fn(|l| y.get(group * W + l).map_or(0.0, |v| v.re))),
+        im: Lanes(std::array::from_fn(|l| y.get(group * W + l).map_or(0.0, |v| v.im))),
+    };
+    for (group, sum) in sums.iter_mut().enumerate() {
+        *sum = lanes(rest, group);
+    }
+    for y in whole.rev() {
+        for (group, sum) in sums.iter_mut().enumerate() {
+            *sum = lanes(y, group).plus_product::<FMA>(*sum, stride);
+        }
+    }
+    let each = sums.iter().flat_map(|s| s.re.0.into_iter().zip(s.im.0));
+    each.zip(powers).map(|((re, im), power)| Complex64::new(re, im) * power).sum()
 }
 
 #[cfg(test)]
@@ -160,6 +208,21 @@ mod tests {
         add_echo(&model, radar.element_x_metres(0), &echo.reflector, Complex64::from(1.0), &mut added);
         for (a, e) in added.iter().zip(&exact) {
             assert!((a - e).norm() < 1e-13 * echo.norm());
+        }
+    }
+
+    #[test]
+    fn elements_that_hear_nothing_have_no_part_in_an_echo() {
+        let radar = Radar { samples: 16, end_elements: 3, ..Radar::default() };
+        let hears = [true, false, true, true, true, false];
+        let whole = ArrayEcho::at(&radar, 17.3, -0.4);
+        let part = whole.clone().where_heard(&hears);
+        let samples = part.unit_samples();
+        let energy: f64 = samples.iter().map(Complex64::norm_sqr).sum();
+        assert!((energy - 1.0).abs() < 1e-12 && (part.inner(&part).re - 1.0).abs() < 1e-12);
+        for (n, (part, whole)) in samples.chunks(16).zip(whole.unit_samples().chunks(16)).enumerate() {
+            let silent = part.iter().all(|v| v.norm_sqr() == 0.0);
+            assert!(silent != hears[n] && (silent || (part[3] / whole[3]).im.abs() < 1e-12));
         }
     }
 

@@ -52,6 +52,13 @@ impl TwoEnds {
         }
     }
 
+    /// Whether each element heard something, those of the first end first: one that is dead or missing measured nothing, which is not
+    /// the same as an echo of nothing.
+    pub fn hears(&self) -> Vec<bool> {
+        let elements = self.first.outer_iter().chain(self.last.outer_iter());
+        elements.map(|samples| samples.iter().any(|v| v.norm_sqr() > 0.0)).collect()
+    }
+
     /// The samples of both as one vector, element after element: `[2 * end_elements * samples]`.
     pub fn flat(&self) -> Vec<Complex64> {
         self.first.iter().chain(&self.last).copied().collect()

@@ -3,7 +3,7 @@
 use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
 use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT};
-use apertura::reconstruct::{IAA, ReconstructError, Reconstructor, Request, SBL};
+use apertura::reconstruct::{Detection, IAA, ReconstructError, Reconstructor, Request, SBL};
 use apertura::recording::presets;
 use apertura::scene::Scene;
 use apertura::signal::{Floor, simulate};
@@ -94,7 +94,7 @@ proptest! {
         samples in prop_oneof![Just(1usize), 2usize..64],
         elements in 6usize..64,
         end_part in 0.0f64..1.0,
-        wavelengths in 0.1f64..3.0,
+        wavelengths in prop_oneof![4 => 0.1f64..3.0, 1 => 3.0f64..6.0],
         carrier_ghz in 1.0f64..120.0,
         bandwidth_log_hz in 7.0f64..9.7,
         two_way in any::<bool>(),
@@ -134,6 +134,97 @@ proptest! {
             }
             prop_assert!(start.elapsed() < LONGEST, "{} took {:?}", method.name(), start.elapsed());
         }
+    }
+}
+
+/// What `method` finds of points at these ranges (metres) and cosines, over 40 dB.
+fn found(method: &str, radar: &Radar, places: &[(f64, f64)]) -> Result<Vec<Detection>, ReconstructError> {
+    let scene = Scene::of_points(places.iter().map(|(range, cos)| (range * cos, range * (1.0 - cos * cos).sqrt())));
+    let floor = Floor::Snr(Decibels(40.0));
+    let ends = simulate(radar, &scene, floor, 1).unwrap().two_ends(radar);
+    let request = Request { floor, ..Request::default() };
+    Ok(methods::by_name(method).unwrap().reconstruct(radar, &ends, &request)?.detections(radar))
+}
+
+/// Whether `found` begins with those places, in any order: within `bins` of range and `cos` of direction.
+fn begins_with(found: &[Detection], radar: &Radar, places: &[(f64, f64)], (bins, cos): (f64, f64)) -> bool {
+    let is_there = |d: &Detection| {
+        let apart =
+            |(range, c): &(f64, f64)| (radar.bin_of_range((d.range_metres - range).abs()), (d.cos_theta - c).abs());
+        places.iter().map(apart).any(|apart| apart.0 < bins && apart.1 < cos)
+    };
+    found.len() >= places.len() && found[..places.len()].iter().all(is_there)
+}
+
+#[test]
+fn steps_scale_with_the_radar() {
+    let kilometres = Radar { bandwidth_hz: 1e6, ..array(64, 12, 77e9, 0.5) };
+    let places = [(3000.0, 0.2), (9000.0, -0.4)];
+    let millimetres = Radar { bandwidth_hz: 10e9, ..array(32, 8, 300e9, 0.5) };
+    let near = [(0.6, 0.2), (1.1, -0.4)];
+    for (radar, places) in [(kilometres, places), (millimetres, near)] {
+        for name in ["nomp", "hybrid", "iaa", "sbl"] {
+            let found = found(name, &radar, &places).unwrap();
+            assert!(begins_with(&found, &radar, &places, (0.05, 0.002)), "{name}: {found:?}");
+            assert!(found[2..].iter().all(|d| d.relative_power.0 < -30.0), "{name}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_small_array_hears_nothing_a_wrap_further_out() {
+    // Beyond its far field a range and the same one wrap further out sound alike.
+    let radar = Radar { bandwidth_hz: 250e6, samples: 256, ..array(16, 5, 24.125e9, 0.5) };
+    let places = [(20.0, 0.0), (35.5, 0.5)];
+    let found = found("nomp", &radar, &places).unwrap();
+    assert!(begins_with(&found, &radar, &places, (0.05, 0.002)), "{found:?}");
+}
+
+#[test]
+fn a_cluster_at_600_metres_of_a_coarse_radar_is_answered_soon() {
+    let radar = Radar { bandwidth_hz: 50e6, samples: 256, ..array(64, 8, 77e9, 0.5) };
+    let places: Vec<(f64, f64)> =
+        (0..12).map(f64::from).map(|i| (600.0 + 4.0 * (1.7 * i).cos(), 0.3 + 0.003 * (2.1 * i).sin())).collect();
+    for name in ["omp", "nomp", "iaa", "sbl"] {
+        let start = Instant::now();
+        let found = found(name, &radar, &places).unwrap();
+        assert!(found.first().is_some_and(|d| (d.range_metres - 600.0).abs() < 10.0), "{name}: {found:?}");
+        assert!(start.elapsed() < LONGEST, "{name} took {:?}", start.elapsed());
+    }
+}
+
+#[test]
+fn ends_that_nothing_is_far_away_from_are_refused_at_once() {
+    let radar = Radar { element_spacing_metres: 1.0, bandwidth_hz: 5e8, ..array(32, 6, 77e9, 0.5) };
+    for name in ["iaa", "sbl", "capon"] {
+        let reason = found(name, &radar, &[(20.0, 0.2)]).unwrap_err().to_string();
+        assert!(reason.contains("far field"), "{name}: {reason}");
+    }
+}
+
+#[test]
+fn two_samples_have_maps() {
+    let radar = Radar { samples: 2, ..array(16, 4, 77e9, 0.5) };
+    let scene = Scene::of_points([(0.01, 0.05)]);
+    let signal = simulate(&radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap();
+    let full = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::DynamicRange(Decibels(30.0)));
+    assert!(full.lambda.iter().any(|v| *v < 0.5) && full.lambda.iter().any(|v| *v > 0.9));
+}
+
+#[test]
+fn an_element_that_measured_nothing_makes_no_ghosts() {
+    let radar = array(64, 10, 77e9, 0.5);
+    let places = [(4.2f64, 0.3f64), (6.1, -0.45)];
+    let scene = Scene::of_points(places.map(|(range, cos)| (range * cos, range * (1.0 - cos * cos).sqrt())));
+    let floor = Floor::Snr(Decibels(40.0));
+    let mut ends = simulate(&radar, &scene, floor, 1).unwrap().two_ends(&radar);
+    ends.first.row_mut(3).fill(Default::default());
+    ends.last.row_mut(9).fill(Default::default());
+    let request = Request { floor, ..Request::default() };
+    for name in ["nomp", "iaa", "sbl"] {
+        let found = methods::by_name(name).unwrap().reconstruct(&radar, &ends, &request).unwrap().detections(&radar);
+        assert!(begins_with(&found, &radar, &places, (0.1, 0.002)), "{name}: {found:?}");
+        assert!(found[2..].iter().all(|d| d.relative_power.0 < -30.0), "{name}: {found:?}");
     }
 }
 

@@ -30,9 +30,10 @@ impl Ends {
         let mut x_metres = Vec::new();
         let mut channels = Vec::new();
         let mut first_count = 0;
+        let mut hears = ends.hears().into_iter();
         for end in End::BOTH {
             for (element, channel) in radar.end_range(end).zip(ends.end(end).outer_iter()) {
-                if channel.iter().any(|v| v.norm_sqr() > 0.0) {
+                if hears.next() == Some(true) {
                     x_metres.push(radar.element_x_metres(element));
                     channels.push(channel);
                     first_count += usize::from(end == End::First);

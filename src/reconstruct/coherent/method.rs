@@ -12,6 +12,7 @@ use crate::reconstruct::echoes::of_echoes;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::noise::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::seen::no_plane_waves;
 use crate::signal::TwoEnds;
 use crate::task::Task;
 use rayon::prelude::*;
@@ -55,7 +56,7 @@ impl Reconstructor for CoherentMethod {
                 "the array is {bins:.0} range bins long; a sector of directions for each bin is taken up to {MOST_SECTORS}"
             )));
         }
-        Ok(())
+        no_plane_waves(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

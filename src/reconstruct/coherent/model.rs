@@ -177,12 +177,20 @@ fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
     wave
 }
 
-/// Directions beside the sector, relative to its middle, from which one end may hear a plane wave at the place's range.
+/// Directions beside the sector, relative to its middle, from which one end may hear a plane wave at the place's range: those that sound
+/// different at its elements.
 fn beside(radar: &Radar, place: &Place) -> Vec<f64> {
     let turns_per_metre = radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
-    let width_cos = 1.0 / (turns_per_metre * radar.end_elements as f64 * radar.element_spacing_metres);
+    let period_cos = 1.0 / (turns_per_metre * radar.element_spacing_metres);
+    let width_cos = period_cos / radar.end_elements as f64;
     let clear_cos = place.sector.half_width_cos + CLEAR_WIDTHS * width_cos;
-    let count = (2.0 * BEAMS_PER_WIDTH / width_cos).ceil() as usize;
-    let cosines = (0..count).map(|i| (2 * i + 1) as f64 / count as f64 - 1.0);
-    cosines.map(|cos| cos - place.sector.middle_cos).filter(|step| step.abs() > clear_cos).collect()
+    let reach_cos = period_cos.min(2.0);
+    let count = (BEAMS_PER_WIDTH * reach_cos / width_cos).round() as usize;
+    let cosines = (0..count).map(|i| reach_cos * ((i as f64 + 0.5) / count as f64 - 0.5));
+    let step = |cos: f64| {
+        let step = cos - place.sector.middle_cos;
+        // Above half a wavelength directions a period apart sound alike.
+        if period_cos < 1.999 { step - (step / period_cos).round() * period_cos } else { step }
+    };
+    cosines.map(step).filter(|step| step.abs() > clear_cos).collect()
 }

@@ -87,10 +87,10 @@ pub(super) fn gains(
     ends: &TwoEnds,
     task: &Task,
 ) -> Result<Vec<Gained>, ReconstructError> {
-    let samples = ends.flat();
+    let (samples, hears) = (ends.flat(), ends.hears());
     let echoes: Vec<ArrayEcho> = peaks
         .iter()
-        .map(|p| ArrayEcho::at(radar, p.range_metres, p.cos_theta))
+        .map(|p| ArrayEcho::at(radar, p.range_metres, p.cos_theta).where_heard(&hears))
         .filter(|echo| echo.norm().is_finite() && echo.norm() > 0.0)
         .collect();
     let count = echoes.len();

@@ -74,8 +74,9 @@ pub(super) struct Settled<'a> {
 impl<'a> Settled<'a> {
     /// Nothing found yet in `ends`.
     pub fn new(radar: &'a Radar, ends: &TwoEnds, task: &'a Task) -> Self {
-        let bench = Workbench::new(radar, &hann(radar.samples), task, MOST_WORK);
-        let samples = Samples::new(&bench.sensor, &ends.flat());
+        let flat = ends.flat();
+        let bench = Workbench::new(radar, &hann(radar.samples), task, MOST_WORK).hearing(&flat);
+        let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
         Settled { radar, task, bench, detector, settings, samples, fit, enough }

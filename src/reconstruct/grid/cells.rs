@@ -3,12 +3,14 @@
 use crate::radar::Radar;
 use crate::reconstruct::seen::{Direction, directions, row_ranges_metres};
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
-use crate::signal::ArrayEcho;
+use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Array2;
 
 /// Ranges and directions of the cells.
 pub(super) struct Cells<'a> {
     radar: &'a Radar,
+    /// Whether each element of both ends heard something.
+    hears: Vec<bool>,
     /// Range of each row, metres.
     pub range_metres: Vec<f64>,
     /// Directions; several may share a column of the map.
@@ -25,9 +27,20 @@ pub(super) struct Cell {
 }
 
 impl<'a> Cells<'a> {
-    /// The cells of `radar`'s map.
+    /// The cells of `radar`'s map; all its elements hear.
     pub fn new(radar: &'a Radar) -> Self {
-        Cells { radar, range_metres: row_ranges_metres(radar), directions: directions(radar) }
+        let hears = vec![true; 2 * radar.end_elements];
+        Cells { radar, hears, range_metres: row_ranges_metres(radar), directions: directions(radar) }
+    }
+
+    /// The same where the elements hear that measured something of `ends`.
+    pub fn heard_by(radar: &'a Radar, ends: &TwoEnds) -> Self {
+        Cells { hears: ends.hears(), ..Cells::new(radar) }
+    }
+
+    /// The radar whose cells they are.
+    pub fn radar(&self) -> &'a Radar {
+        self.radar
     }
 
     /// Shape of the grid, `[range bins, directions]`.
@@ -55,7 +68,15 @@ impl<'a> Cells<'a> {
     /// The echo of a unit reflector in `cell`, where something may stand there.
     pub fn echo(&self, cell: Cell) -> Option<ArrayEcho> {
         self.reflector(cell)?;
-        let echo = ArrayEcho::at(self.radar, self.range_metres[cell.bin], self.directions[cell.direction].cos_theta);
+        self.echo_at(self.range_metres[cell.bin], self.directions[cell.direction].cos_theta)
+    }
+
+    /// The echo of a unit reflector at a place of the centre's polar grid, where it has one.
+    pub fn echo_at(&self, range_metres: f64, cos_theta: f64) -> Option<ArrayEcho> {
+        if range_metres <= 0.0 || cos_theta.abs() > 1.0 {
+            return None;
+        }
+        let echo = ArrayEcho::at(self.radar, range_metres, cos_theta).where_heard(&self.hears);
         (echo.norm().is_finite() && echo.norm() > 0.0).then_some(echo)
     }
 

@@ -76,7 +76,7 @@ fn candidates(radar: &Radar, cells: &Cells<'_>, ends: &TwoEnds, count: usize) ->
 
 impl Problem {
     fn new(radar: &Radar, ends: &TwoEnds, settings: &Fista, request: &Request) -> Result<Self, ReconstructError> {
-        let cells = Cells::new(radar);
+        let cells = Cells::heard_by(radar, ends);
         let atoms: Vec<ArrayEcho> = candidates(radar, &cells, ends, settings.candidates.min(MOST_CANDIDATES))
             .into_par_iter()
             .filter_map(|cell| cells.echo(cell))

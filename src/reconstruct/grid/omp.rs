@@ -113,16 +113,16 @@ impl Pursuit<'_> {
     /// `atom` moved off the grid to where it explains most of `samples`, of all directions nearby between which only the phase between
     /// the ends tells.
     fn refined(&self, atom: ArrayEcho, samples: &[Complex64]) -> ArrayEcho {
-        let radar = self.radar;
+        let (radar, cells) = (self.radar, &self.cells);
         let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
         let apart_metres = (radar.elements - radar.end_elements) as f64 * radar.element_spacing_metres;
         let tooth_cos = 1.0 / (apart_metres * turns_per_metre(radar));
         let best = (-TEETH..=TEETH)
             .into_par_iter()
-            .filter_map(|tooth| echo_at(radar, place.range_metres, place.cos_theta + f64::from(tooth) * tooth_cos))
-            .map(|atom| climbed(radar, atom, samples, TOOTH_STEPS))
+            .filter_map(|tooth| cells.echo_at(place.range_metres, place.cos_theta + f64::from(tooth) * tooth_cos))
+            .map(|atom| climbed(cells, atom, samples, TOOTH_STEPS))
             .reduce_with(|a, b| if b.0 > a.0 { b } else { a });
-        climbed(radar, best.map_or(atom, |(_, atom)| atom), samples, STEPS).1
+        climbed(cells, best.map_or(atom, |(_, atom)| atom), samples, STEPS).1
     }
 
     /// Moves every pick once more, now that the others' shares of `samples` are known: side lobes of an echo that was not yet picked
@@ -181,7 +181,7 @@ impl Omp {
         let samples = ends.flat();
         let noise = noise_variance * samples.len() as f64 * 1.1;
         let enough = noise.max(energy(&samples) * ROUNDING);
-        let cells = Cells::new(radar);
+        let cells = Cells::heard_by(radar, ends);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let (picks, basis) = (Vec::new(), Vec::new());
         let mut pursuit = Pursuit { radar, cells, picks, basis, residual: samples.clone() };
@@ -194,7 +194,7 @@ impl Omp {
             let atom = match pursuit.picks.len() {
                 _ if !pursuit.is_folded() => pick.atom,
                 0..MOST_RELAXED => pursuit.refined(pick.atom, &pursuit.residual),
-                _ => climbed(radar, pick.atom, &pursuit.residual, STEPS).1,
+                _ => climbed(&pursuit.cells, pick.atom, &pursuit.residual, STEPS).1,
             };
             let pick = Pick { atom, ..pick };
             if !pursuit.take(pick) {
@@ -213,15 +213,10 @@ fn turns_per_metre(radar: &Radar) -> f64 {
     radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres()
 }
 
-/// The echo of a unit reflector at that place of the centre's polar grid, where something may stand there.
-fn echo_at(radar: &Radar, range_metres: f64, cos_theta: f64) -> Option<ArrayEcho> {
-    let atom = (range_metres > 0.0 && cos_theta.abs() <= 1.0).then(|| ArrayEcho::at(radar, range_metres, cos_theta))?;
-    (atom.norm().is_finite() && atom.norm() > 0.0).then_some(atom)
-}
-
 /// `atom` moved to the nearest place where it explains most of `samples`, and its share there; in at most `steps` steps, which get
 /// shorter once none helps.
-fn climbed(radar: &Radar, mut atom: ArrayEcho, samples: &[Complex64], steps: usize) -> (f64, ArrayEcho) {
+fn climbed(cells: &Cells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps: usize) -> (f64, ArrayEcho) {
+    let radar = cells.radar();
     let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
     let (mut range, mut cos) = (place.range_metres, place.cos_theta);
     let aperture_metres = radar.elements as f64 * radar.element_spacing_metres;
@@ -231,7 +226,7 @@ fn climbed(radar: &Radar, mut atom: ArrayEcho, samples: &[Complex64], steps: usi
         let around = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)];
         let better = around.into_par_iter().filter_map(|(i, j)| {
             let (range, cos) = (range + f64::from(i) * step.0, cos + f64::from(j) * step.1);
-            let atom = echo_at(radar, range, cos)?;
+            let atom = cells.echo_at(range, cos)?;
             let now = atom.correlate(samples).norm();
             (now > heard).then_some((now, range, cos, atom))
         });

@@ -97,11 +97,12 @@ impl Echo {
             by_half_square: Vec::with_capacity(count),
             decay: Vec::with_capacity(count),
         };
-        for &x in &sensor.element_x {
+        for (&x, &hears) in sensor.element_x.iter().zip(&sensor.hears) {
             let e = sensor.model.echo(x, &r);
             echo.bins.push(e.beat_turns * samples);
             let turns = e.carrier_turns + (e.beat_turns * middle).fract();
-            echo.middle.push(Complex64::from_polar(e.amplitude, std::f64::consts::TAU * turns));
+            let amplitude = if hears { e.amplitude } else { 0.0 };
+            echo.middle.push(Complex64::from_polar(amplitude, std::f64::consts::TAU * turns));
             echo.by_x.push((r.x_metres - x) / e.distance_metres);
             echo.by_half_square.push(1.0 / e.distance_metres);
             echo.decay.push(2.0 / e.distance_metres);
@@ -175,7 +176,10 @@ impl Kernel for Subtract<'_> {
         for (factors, reflectors) in factors.chunks_mut(TOGETHER).zip(self.reflectors.chunks(TOGETHER)) {
             for (f, (reflector, gains)) in factors.iter_mut().zip(reflectors) {
                 fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), f);
-                let gain = |lane: usize| -gains[channel(lane) / sensor.end_elements];
+                let gain = |lane: usize| match sensor.hears[channel(lane)] {
+                    true => -gains[channel(lane) / sensor.end_elements],
+                    false => Complex64::default(),
+                };
                 let gain = ComplexLanes {
                     re: Lanes(std::array::from_fn(|lane| gain(lane).re)),
                     im: Lanes(std::array::from_fn(|lane| gain(lane).im)),

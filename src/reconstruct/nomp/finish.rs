@@ -88,7 +88,8 @@ pub(super) fn finish(
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
     let flat_bench = (complete && reflectors <= MOST_UNWINDOWED)
-        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, MOST_WORK));
+        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, MOST_WORK))
+        .map(|flat| flat.hearing(&samples.flat(&bench.sensor)));
     let bench = flat_bench.as_ref().unwrap_or(bench);
     let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
     let mut best = apart.clone();

@@ -187,7 +187,13 @@ impl Grower<'_> {
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
-        let better = if far.cost() < 0.5 * near.cost() { far } else { near };
+        if far.cost() >= 0.5 * near.cost() {
+            return (near.atoms[0], near.gains[0]);
+        }
+        // The nearer one may only not have got there: where the array is small, both places sound alike.
+        let [x, y] = far.atoms[0].position_metres(0.0);
+        let back = if x.hypot(y) > wrap { alone(wrapped([x, y], wrap)) } else { near };
+        let better = if far.cost() < 0.5 * back.cost() { far } else { back };
         (better.atoms[0], better.gains[0])
     }
 

@@ -56,6 +56,7 @@ pub struct Workbench<'a> {
     /// Squares of the weights of the samples of a chirp.
     pub squared: Vec<f64>,
     moments: Moments,
+    max_range_metres: f64,
     task: &'a Task,
     work: Work,
 }
@@ -112,9 +113,15 @@ impl<'a> Workbench<'a> {
             sensor: Sensor::new(radar),
             squared: window.iter().map(|w| w * w).collect(),
             moments: Moments::new(window),
+            max_range_metres: radar.max_range_metres(),
             task,
             work: Work::granted(most_work),
         }
+    }
+
+    /// The same where those channels alone hear of which `flat`, the samples channel by channel, holds something.
+    pub fn hearing(self, flat: &[Complex64]) -> Self {
+        Workbench { sensor: self.sensor.hearing(flat), ..self }
     }
 
     /// Counts what took as long as this many echoes.
@@ -180,7 +187,7 @@ impl<'a> Workbench<'a> {
         let equations = normal_equations(state, terms.ridge);
         for _ in 0..6 {
             let step = damped_step(&equations.hessian, &equations.gradient, *damping);
-            let Some(step) = step.filter(|s| s.iter().all(|v| v.abs() < FARTHEST_METRES)) else {
+            let Some(step) = step.filter(|s| self.is_within_reach(&state.fit.atoms, s)) else {
                 *damping *= 10.0;
                 continue;
             };
@@ -203,6 +210,17 @@ impl<'a> Workbench<'a> {
             *damping *= 10.0;
         }
         None
+    }
+
+    /// Whether no parameter of `atoms` is moved farther than a step may.
+    fn is_within_reach(&self, atoms: &[Atom], step: &[f64]) -> bool {
+        let squared = |atom: &Atom, k: usize| matches!(atom, Atom::Point { .. }) && k == 1;
+        let most = |atom: &Atom, k: usize| match squared(atom, k) {
+            true => FARTHEST_SQUARE * self.max_range_metres.powi(2),
+            false => FARTHEST * self.max_range_metres,
+        };
+        let parameters = atoms.iter().flat_map(|atom| (0..atom.parameters()).map(move |k| (atom, k)));
+        parameters.zip(step).all(|((atom, k), v)| v.abs() < most(atom, k))
     }
 
     /// For every atom, by how much the energy would grow without it, the other gains having made the best of it.
@@ -310,8 +328,11 @@ impl<'a> Workbench<'a> {
     }
 }
 
-/// A step longer than this is none.
-const FARTHEST_METRES: f64 = 1e3;
+/// A step longer than this part of the maximum range is none.
+const FARTHEST: f64 = 26.0;
+
+/// The same of a square of a distance, as a part of the maximum range's.
+const FARTHEST_SQUARE: f64 = 0.68;
 
 /// The reflectors of `atoms` with their gains.
 fn reflectors(atoms: &[Atom], gains: &[Gains]) -> Vec<(Reflector, Gains)> {

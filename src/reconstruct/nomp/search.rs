@@ -56,7 +56,7 @@ fn find_with(
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
     let flat = ends.flat();
     let window = hann(radar.samples);
-    let bench = Workbench::new(radar, &window, &request.task, settings.most_work);
+    let bench = Workbench::new(radar, &window, &request.task, settings.most_work).hearing(&flat);
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let search =

@@ -30,6 +30,8 @@ pub struct Sensor {
     pub samples: usize,
     /// Channels an end.
     pub end_elements: usize,
+    /// Whether each channel hears: one that doesn't has no echoes.
+    pub hears: Vec<bool>,
     carrier_radians_per_metre: f64,
     beat_radians_per_metre: f64,
 }
@@ -43,9 +45,18 @@ impl Sensor {
             element_x: element_x.collect(),
             samples: radar.samples,
             end_elements: radar.end_elements,
+            hears: vec![true; 2 * radar.end_elements],
             carrier_radians_per_metre: TAU * radar.carrier.turns_per_wavelength() / radar.wavelength_metres(),
             beat_radians_per_metre: TAU / radar.max_range_metres(),
         }
+    }
+
+    /// The same where those channels alone hear of which `flat`, the samples channel by channel, holds something.
+    pub fn hearing(mut self, flat: &[Complex64]) -> Self {
+        for (hears, channel) in self.hears.iter_mut().zip(flat.chunks_exact(self.samples)) {
+            *hears = channel.iter().any(|v| v.norm_sqr() > 0.0);
+        }
+        self
     }
 
     /// Samples of both ends together.
@@ -82,7 +93,7 @@ impl Sensor {
     pub fn fill_atom(&self, atom: &Atom, window: &[f64], columns: &mut [&mut [Complex64]]) {
         let mut blocks: Vec<Block> =
             self.element_x.chunks(W).map(|xs| Block { sensor: self, atom, window, xs, columns: Vec::new() }).collect();
-        for column in columns {
+        for column in columns.iter_mut() {
             for (block, part) in blocks.iter_mut().zip(column.chunks_mut(W * self.samples)) {
                 block.columns.push(part);
             }
@@ -91,6 +102,10 @@ impl Sensor {
             blocks.into_iter().for_each(|block| Simd::chosen().run(block));
         } else {
             blocks.into_par_iter().for_each(|block| Simd::chosen().run(block));
+        }
+        for column in columns.iter_mut() {
+            let channels = column.chunks_mut(self.samples).zip(&self.hears);
+            channels.filter(|(_, hears)| !**hears).for_each(|(channel, _)| channel.fill(Complex64::default()));
         }
     }
 }

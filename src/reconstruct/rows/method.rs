@@ -9,7 +9,7 @@ use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::noise::ends_noise_variance;
 use crate::reconstruct::power::of_power;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
-use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::seen::{no_plane_waves, too_many_folds};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -37,17 +37,8 @@ impl Reconstructor for RowMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let end_metres = (radar.end_elements - 1) as f64 * radar.element_spacing_metres;
-        let far_metres = 2.0 * end_metres.powi(2) / radar.wavelength_metres();
-        // A single sample has no ranges, and counts as far away.
-        if radar.samples > 1 && far_metres > radar.max_range_metres() {
-            return Err(self.unusable(format!(
-                "it takes what an end hears for plane waves, but ends of {end_metres:.2} m have their far field beyond \
-                 {far_metres:.0} m, and the radar sees {:.0} m; matched-filter and omp know near fields",
-                radar.max_range_metres()
-            )));
-        }
-        too_many_folds(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        let why = no_plane_waves(radar).or_else(|| too_many_folds(radar));
+        why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -44,7 +44,7 @@ pub fn find(
     request: &Request,
     most_work: usize,
 ) -> Result<Found, ReconstructError> {
-    let sensor = Sensor::new(radar);
+    let sensor = Sensor::new(radar).hearing(samples);
     let work = Work::granted(most_work);
     let window = hann(radar.samples);
     let windowed: Vec<Complex64> = samples.iter().enumerate().map(|(i, v)| v * window[i % radar.samples]).collect();
