@@ -21,12 +21,12 @@ fn tally(kind: Kind, count: u32) -> Tally {
 }
 
 #[test]
-fn beats_the_baseline_by_far_on_every_set() {
-    for (kind, at_most) in Kind::TEST_SETS.into_iter().zip([2000.0, 2500.0, 3500.0]) {
+fn is_as_good_on_every_set_as_when_it_was_trained() {
+    for (kind, at_most) in Kind::TEST_SETS.into_iter().zip([350.0, 620.0, 650.0]) {
         let tally = tally(kind, 4);
         let error = tally.squared_error().mean;
         assert!(error < at_most, "{kind:?}: SE {error}");
-        assert!(tally.detection().mean > 0.7, "{kind:?}: P_D {}", tally.detection().mean);
+        assert!(tally.detection().mean > 0.96, "{kind:?}: P_D {}", tally.detection().mean);
     }
 }
 
