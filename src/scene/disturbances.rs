@@ -45,6 +45,16 @@ impl Default for Interferer {
     }
 }
 
+impl Interferer {
+    /// The default one where `radar` sees it: as far ahead, as a part of the maximum range, as before table 3.1's.
+    pub fn before(radar: &Radar) -> Self {
+        let far = radar.max_range_metres() / Radar::default().max_range_metres();
+        let Interferer { x_metres, y_metres, .. } = Interferer::default();
+        let centimetres = |metres: f64| (100.0 * far * metres).round() / 100.0;
+        Interferer { x_metres: centimetres(x_metres), y_metres: centimetres(y_metres), ..Interferer::default() }
+    }
+}
+
 /// A straight wall that mirrors what stands on the radar's side of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

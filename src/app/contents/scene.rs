@@ -42,7 +42,8 @@ impl Contents<'_> {
     pub(super) fn disturbances(&mut self, ui: &mut Ui) -> Vec<Command> {
         let document = self.state.editor.document();
         let is_recorded = document.recording().is_some();
-        disturbances::show(ui, disturbances::Input { disturbances: &document.scene().disturbances, is_recorded })
+        let (disturbances, radar) = (&document.scene().disturbances, self.state.radar());
+        disturbances::show(ui, disturbances::Input { disturbances, radar, is_recorded })
     }
 
     pub(super) fn inspector(&mut self, ui: &mut Ui) -> Vec<Command> {

@@ -1,6 +1,7 @@
 //! What disturbs the scene: somebody else's radar, and a wall that mirrors.
 
 use crate::app::state::Command;
+use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
 use eframe::egui;
 use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
@@ -9,6 +10,8 @@ use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
 pub struct Input<'a> {
     /// What disturbs the scene.
     pub disturbances: &'a Disturbances,
+    /// The radar.
+    pub radar: &'a Radar,
     /// Whether a recording stands in the place of the scene: nothing is added to what was measured.
     pub is_recorded: bool,
 }
@@ -22,7 +25,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                 ui.weak("A recording has the disturbances that it was made with.");
                 return;
             }
-            interferer(ui, input.disturbances.interferer, &mut asked);
+            interferer(ui, &input, &mut asked);
             ui.add_space(8.0);
             mirror(ui, input.disturbances.mirror, &mut asked);
         });
@@ -64,11 +67,12 @@ fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
     ui.end_row();
 }
 
-fn interferer(ui: &mut Ui, now: Option<Interferer>, asked: &mut Vec<Command>) {
+fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let now = input.disturbances.interferer;
     let mut on = now.is_some();
     let tooltip = "Another radar whose chirps are not synchronised: heard while its frequency crosses ours";
     if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
-        asked.push(Command::SetInterferer(on.then(Interferer::default)));
+        asked.push(Command::SetInterferer(on.then(|| Interferer::before(input.radar))));
         return;
     }
     let Some(now) = now else { return };
@@ -122,7 +126,7 @@ mod tests {
 
     fn panel(is_recorded: bool) -> Harness<'static, Disturbances> {
         let draw = move |ui: &mut Ui, state: &mut Disturbances| {
-            for command in show(ui, Input { disturbances: &state.clone(), is_recorded }) {
+            for command in show(ui, Input { disturbances: &state.clone(), radar: &Radar::default(), is_recorded }) {
                 match command {
                     Command::SetInterferer(interferer) => state.interferer = interferer,
                     Command::SetMirror(mirror) => state.mirror = mirror,
@@ -142,7 +146,7 @@ mod tests {
             panel.get_by_label(label).click();
             panel.run();
         }
-        assert_eq!(panel.state().interferer, Some(Interferer::default()));
+        assert_eq!(panel.state().interferer, Some(Interferer::default()), "as it stands before the radar of table 3.1");
         assert_eq!(panel.state().mirror, Some(Mirror::default()));
         let field = panel
             .get_by(|n| n.label().as_deref() == Some("crosses at") && n.role() == egui::accesskit::Role::SpinButton);

@@ -85,6 +85,9 @@ fn told(elements: &BuiltArray) -> String {
     format!("{dead}gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
 }
 
+/// Phase from which on a dot is drawn: rounding leaves less after a calibration.
+const LEAST_DRAWN_DEGREES: f64 = 0.05;
+
 /// The elements side by side: red where one is dead, the gain as the height of its bar, the phase as where its dot stands.
 fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     let count = input.radar.elements;
@@ -114,7 +117,7 @@ fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Co
         }
         let half = (9.0 + error.gain.0 as f32 * 2.0).clamp(2.0, 24.0);
         painter.rect_filled(Rect::from_center_size(pos2(x, middle), vec2(width, 2.0 * half)), 1.0, ink);
-        if error.phase_degrees != 0.0 {
+        if error.phase_degrees.abs() >= LEAST_DRAWN_DEGREES {
             let up = (error.phase_degrees / 180.0) as f32 * 24.0;
             painter.circle_filled(pos2(x, middle - up), 2.0, inks.selected);
         }

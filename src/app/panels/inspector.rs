@@ -111,8 +111,10 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
         Coordinates::Cartesian => format!("range {:.3} m · cos θ {:.4}", polar.range_metres, polar.cos_theta),
         Coordinates::Polar => format!("x {x:.3} m · y {y:.3} m"),
     };
-    ui.weak(format!("{other} · bin {bin:.1} · column {column:.1}"));
-    if radar.samples > 1 && polar.range_metres > radar.max_range_metres() {
+    let has_ranges = radar.samples > 1;
+    let bin = if has_ranges { format!(" · bin {bin:.1}") } else { String::new() };
+    ui.weak(format!("{other}{bin} · column {column:.1}"));
+    if has_ranges && polar.range_metres > radar.max_range_metres() {
         ui.colored_label(ui.visuals().warn_fg_color, "Beyond the maximum range: it wraps around in the maps.");
     } else if y < 0.0 {
         ui.colored_label(ui.visuals().warn_fg_color, "Behind the array: it appears mirrored in front of it.");
