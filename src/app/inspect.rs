@@ -121,6 +121,11 @@ impl App {
         self.jobs.pipeline.is_settled()
     }
 
+    /// Whether those of a scene at rest are being computed.
+    pub fn is_settling(&self) -> bool {
+        self.jobs.pipeline.is_settling()
+    }
+
     /// Whether the output on screen belongs to something else than the maps.
     pub fn output_is_outdated(&self) -> bool {
         self.jobs.pipeline.output_is_outdated()

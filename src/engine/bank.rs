@@ -10,11 +10,13 @@ use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
 use crate::signal::{Algorithm, Floor, Plan, Rows, floor};
+use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::time::Instant;
 
 /// One update, as the caches see it.
 pub(super) struct Job<'a> {
+    pub task: &'a Task,
     pub radar: &'a Radar,
     pub scene: &'a Scene,
     pub wanted: &'a Wanted,
@@ -22,6 +24,20 @@ pub(super) struct Job<'a> {
     pub forced: Option<Algorithm>,
     pub amplitude: f64,
     pub missing: [bool; 3],
+}
+
+impl Job<'_> {
+    /// What is said of maps of which these rows were made.
+    fn made(&self, rows: &Rows, over_noise: bool) -> String {
+        let all = self.radar.samples;
+        match rows.count() {
+            made if made == all && over_noise => format!("{all} rows: the floor's level follows the scene"),
+            made if made == all => format!("{all} rows"),
+            some => {
+                format!("{some} of {all} rows, the others changed by less than {:.0e} of the peak", self.plan.tolerance)
+            }
+        }
+    }
 }
 
 /// A map's decades as they were last computed.
@@ -52,8 +68,8 @@ impl<T: Real, const W: usize> Group<T, W> {
         Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), variance: None }
     }
 
-    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Object]) {
-        synthesis.range_profiles(&reflectors(objects), &mut self.profiles);
+    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Object], task: &Task) {
+        synthesis.range_profiles(&reflectors(objects), &mut self.profiles, task);
         self.variance = None;
         self.objects = objects.to_vec();
     }
@@ -149,9 +165,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     /// Brings those of `maps` that the job misses up to the job's scene, row by row where only few changed.
-    pub fn run(&mut self, job: &Job<'_>, maps: &mut [Option<Kept>; 3], report: &mut Report) {
+    ///
+    /// # Errors
+    /// [`Cancelled`]: nothing is held any more, and `maps` are of no use.
+    pub fn run(&mut self, job: &Job<'_>, maps: &mut [Option<Kept>; 3], report: &mut Report) -> Result<(), Cancelled> {
         let start = Instant::now();
         let (what, changed) = self.follow(job);
+        job.task.check().inspect_err(|_| self.forget())?;
         report.computed(Stage::Signal, start.elapsed(), what);
 
         let start = Instant::now();
@@ -192,19 +212,11 @@ impl<T: Real, const W: usize> Bank<T, W> {
 
         let took = start.elapsed();
         let count = job.missing.iter().filter(|m| **m).count() as u32;
-        let what = match rows.count() {
-            all if all == job.radar.samples && noise.is_some() => {
-                format!("{all} rows: the floor's level follows the scene")
-            }
-            all if all == job.radar.samples => format!("{all} rows"),
-            some => format!(
-                "{some} of {} rows, the others changed by less than {:.0e} of the peak",
-                job.radar.samples, job.plan.tolerance
-            ),
-        };
+        let what = job.made(&rows, noise.is_some());
         for (stage, _) in Stage::MAPS.into_iter().zip(job.missing).filter(|(_, missing)| *missing) {
             report.computed(stage, took / count, what.as_str());
         }
+        Ok(())
     }
 
     /// Makes the two groups hold the scene; says how, and which rows may have changed.
@@ -237,13 +249,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 if !change.leaving.is_empty() {
                     let count = change.leaving.iter().map(Object::reflector_count).sum();
                     let synthesis = self.synthesis(job, count);
-                    self.leaving.fill(&self.syntheses[synthesis], &change.leaving);
+                    self.leaving.fill(&self.syntheses[synthesis], &change.leaving, job.task);
                     self.rest.add(&self.leaving, -1.0);
                     changed.extend(&self.leaving.profiles.touched);
                 }
                 let count = change.arriving.iter().map(Object::reflector_count).sum();
                 let synthesis = self.synthesis(job, count);
-                self.active.fill(&self.syntheses[synthesis], &change.arriving);
+                self.active.fill(&self.syntheses[synthesis], &change.arriving, job.task);
                 if let Some(built) = &mut self.built {
                     built.rounding = rounding;
                 }
@@ -264,7 +276,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let mut changed = self.rest.profiles.touched.clone();
         changed.extend(&self.active.profiles.touched);
         self.active.clear();
-        self.rest.fill(&self.syntheses[synthesis], &job.scene.objects);
+        self.rest.fill(&self.syntheses[synthesis], &job.scene.objects, job.task);
         changed.extend(&self.rest.profiles.touched);
         let (tolerance, forced) = (job.plan.tolerance, job.forced);
         self.built = Some(Built { tolerance, forced, rounding: 0.0 });

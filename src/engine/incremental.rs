@@ -14,7 +14,8 @@ use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::{self, Sum};
 use crate::signal::simd::{LANES_F32, LANES_F64};
-use crate::signal::{Algorithm, Plan, Precision, Rows, simulate_ends};
+use crate::signal::{Algorithm, Plan, Precision, Rows, Unfinished, simulate_ends_for};
+use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
 use std::time::Instant;
@@ -113,15 +114,23 @@ impl Engine {
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn update(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+        self.update_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
+    }
+
+    /// [`Engine::update`], unless `task` is cancelled before it is done: then the next update starts from scratch.
+    ///
+    /// # Errors
+    /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
+    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
         let begin = Instant::now();
         if !scene.disturbances.is_none() {
-            return self.settle(scene, wanted);
+            return self.settle_for(task, scene, wanted);
         }
         scene.validate(&self.radar)?;
         self.settled = self.settled.take().filter(|settled| settled.has(scene, wanted));
         let mut frame = match &mut self.settled {
             Some(settled) => settled.frame(wanted, Report::default()),
-            None => self.follow(scene, wanted)?,
+            None => self.follow(task, scene, wanted)?,
         };
         frame.report.total = begin.elapsed();
         Ok(frame)
@@ -133,11 +142,19 @@ impl Engine {
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn settle(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+        self.settle_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
+    }
+
+    /// [`Engine::settle`], unless `task` is cancelled before it is done; updates go on from where they were.
+    ///
+    /// # Errors
+    /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
+    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
         let begin = Instant::now();
         let mut report = Report::default();
         let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
             Some(settled) => settled,
-            None => Settled::of(&self.radar, scene, wanted, &mut report)?,
+            None => Settled::of(task, &self.radar, scene, wanted, &mut report)?,
         };
         let mut frame = self.settled.insert(settled).frame(wanted, report);
         frame.report.total = begin.elapsed();
@@ -145,20 +162,20 @@ impl Engine {
     }
 
     /// Brings what was shown last up to `scene`.
-    fn follow(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
         let mut report = Report::default();
         let visible = wanted.visible();
         let mut shown = self.recall(scene, wanted);
         if wanted.ends && shown.ends.is_none() {
             let start = Instant::now();
-            shown.ends = Some(Arc::new(simulate_ends(&self.radar, scene, wanted.floor, wanted.seed)?));
+            shown.ends = Some(Arc::new(simulate_ends_for(task, &self.radar, scene, wanted.floor, wanted.seed)?));
             report.computed(Stage::Ends, start.elapsed(), "summed at the two ends");
         } else {
             report.skipped(Stage::Ends, if wanted.ends { "the scene did not change" } else { "not looked at" });
         }
         let missing = [0, 1, 2].map(|i| visible[i] && !shown.current[i]);
         if missing.contains(&true) {
-            self.compute(scene, wanted, missing, &mut shown, &mut report);
+            self.compute(task, scene, wanted, missing, &mut shown, &mut report)?;
         } else {
             report.skipped(Stage::Signal, "the scene did not change");
             report.skipped(Stage::Noise, "the scene did not change");
@@ -201,7 +218,15 @@ impl Engine {
     }
 
     /// Computes those decades of `shown` that are `missing`, in the precision that the planner or somebody else chose.
-    fn compute(&mut self, scene: &Scene, wanted: &Wanted, missing: [bool; 3], shown: &mut Shown, report: &mut Report) {
+    fn compute(
+        &mut self,
+        task: &Task,
+        scene: &Scene,
+        wanted: &Wanted,
+        missing: [bool; 3],
+        shown: &mut Shown,
+        report: &mut Report,
+    ) -> Result<(), Cancelled> {
         let amplitude = scene_amplitude(&self.radar, scene);
         let mut chosen = Plan::cheapest(scene.reflector_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
@@ -212,20 +237,21 @@ impl Engine {
             refusal
         });
         let (radar, forced) = (&self.radar, self.forced.algorithm);
-        let job = Job { radar, scene, wanted, plan: chosen, forced, amplitude, missing };
+        let job = Job { task, radar, scene, wanted, plan: chosen, forced, amplitude, missing };
         if self.last.replace(chosen.precision) != Some(chosen.precision) {
             // What the maps show was summed by the other bank.
             shown.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
         }
         let maps = &mut shown.decades;
         match chosen.precision {
-            Precision::F32 => self.single.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report),
-            Precision::F64 => self.double.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report),
+            Precision::F32 => self.single.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report)?,
+            Precision::F64 => self.double.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report)?,
         }
         if let Some(why) = refusal {
             report.remark(Stage::Signal, why);
         }
         shown.current = [0, 1, 2].map(|i| shown.current[i] || missing[i]);
+        Ok(())
     }
 }
 

@@ -4,8 +4,9 @@ use super::frame::{Frame, ReadyMap, Wanted};
 use super::report::{Report, Stage};
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
 use crate::radar::{End, Radar};
-use crate::scene::{Disturbances, Object, Scene, SceneError};
-use crate::signal::{self, Floor, TwoEnds};
+use crate::scene::{Disturbances, Object, Scene};
+use crate::signal::{self, Floor, TwoEnds, Unfinished};
+use crate::task::Task;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -27,15 +28,22 @@ impl Settled {
     /// Computes what is wanted of `scene`, and adds to `report` what it cost.
     ///
     /// # Errors
-    /// [`SceneError`] when the scene can't be simulated.
-    pub fn of(radar: &Radar, scene: &Scene, wanted: &Wanted, report: &mut Report) -> Result<Settled, SceneError> {
+    /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
+    pub fn of(
+        task: &Task,
+        radar: &Radar,
+        scene: &Scene,
+        wanted: &Wanted,
+        report: &mut Report,
+    ) -> Result<Settled, Unfinished> {
         let start = Instant::now();
-        let signal = signal::simulate(radar, scene, wanted.floor, wanted.seed)?;
+        let signal = signal::simulate_for(task, radar, scene, wanted.floor, wanted.seed)?;
         let ends = Arc::new(signal.two_ends(radar));
         let profiles = range_transform(radar, &signal);
         report.computed(Stage::Signal, start.elapsed(), "from scratch in f64, as every command does");
         let mut logs = [None, None, None];
         for (i, log) in logs.iter_mut().enumerate().filter(|(i, _)| wanted.visible()[*i]) {
+            task.check()?;
             let start = Instant::now();
             *log = Some(angle_transform(radar, &profiles, APERTURES[i]).log_magnitude());
             report.computed(Stage::MAPS[i], start.elapsed(), "all rows in f64");

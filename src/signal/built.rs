@@ -6,8 +6,10 @@ use super::interference::add_interference;
 use super::over_floor::simulate_echoes;
 use super::phase::EchoModel;
 use super::samples::BeatSignal;
+use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
 use crate::scene::{Reflector, Scene, SceneError};
+use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -23,13 +25,25 @@ pub fn simulate_built(
     floor: Floor,
     seed: u64,
 ) -> Result<BeatSignal, SceneError> {
+    simulate_built_for(&Task::default(), radar, scene, array, floor, seed).map_err(Unfinished::of_scene)
+}
+
+/// [`simulate_built`], unless `task` is cancelled before it is done.
+pub(super) fn simulate_built_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    array: &BuiltArray,
+    floor: Floor,
+    seed: u64,
+) -> Result<BeatSignal, Unfinished> {
     scene.validate(radar)?;
-    array.validate(radar)?;
+    array.validate(radar).map_err(SceneError::from)?;
     let reflectors = scene.echoing(radar);
-    let mut signal = simulate_echoes(radar, &reflectors, floor, seed, |signal| {
+    let heard = |signal: &mut BeatSignal| {
         let model = EchoModel::new(radar);
         signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
-            if array.element(n).position_millimetres != 0.0 {
+            if array.element(n).position_millimetres != 0.0 && !task.is_cancelled() {
                 samples.fill(Complex64::default());
                 let Some(samples) = samples.as_slice_mut() else { return };
                 let x = array.element_x_metres(radar, n);
@@ -40,7 +54,9 @@ pub fn simulate_built(
             add_interference(radar, array, interferer, signal);
         }
         apply_responses(array, signal);
-    });
+    };
+    let mut signal = simulate_echoes(radar, &reflectors, floor, seed, heard, task);
+    task.check()?;
     for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
         if array.element(n).dead {
             samples.fill(Complex64::default());

@@ -220,6 +220,7 @@ mod tests {
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
     use crate::scene::Scene;
+    use crate::task::Task;
     use ndarray::{Array1, Array2};
     use num_complex::Complex64;
 
@@ -247,12 +248,12 @@ mod tests {
         match plan.precision {
             Precision::F32 => {
                 let mut out = BlockProfiles::silence(radar);
-                Synthesis::<f32, LANES_F32>::new(radar, plan).range_profiles(reflectors, &mut out);
+                Synthesis::<f32, LANES_F32>::new(radar, plan).range_profiles(reflectors, &mut out, &Task::default());
                 worst(&|n| out.profile(n).unwrap())
             }
             Precision::F64 => {
                 let mut out = BlockProfiles::silence(radar);
-                Synthesis::<f64, LANES_F64>::new(radar, plan).range_profiles(reflectors, &mut out);
+                Synthesis::<f64, LANES_F64>::new(radar, plan).range_profiles(reflectors, &mut out, &Task::default());
                 worst(&|n| out.profile(n).unwrap())
             }
         }
@@ -305,7 +306,11 @@ mod tests {
         let reflectors = Scene::of_points([(0.0, 15.0)]).reflectors();
         let mut out = BlockProfiles::<f64, LANES_F64>::silence(&radar);
         for (tolerance, most) in [(1e-3, 36), (1e-6, 236), (1e-12, 512)] {
-            Synthesis::new(&radar, plan(tolerance, Simd::best())).range_profiles(&reflectors, &mut out);
+            Synthesis::new(&radar, plan(tolerance, Simd::best())).range_profiles(
+                &reflectors,
+                &mut out,
+                &Task::default(),
+            );
             assert!(out.touched.count() <= most, "{tolerance:e}: {}", out.touched.count());
             for element in [0, 500, 1023] {
                 for (bin, cell) in out.profile(element).unwrap().iter().enumerate() {

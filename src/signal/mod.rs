@@ -39,6 +39,7 @@ pub mod simd;
 mod simulate;
 pub mod split;
 pub mod synthesis;
+mod unfinished;
 
 pub use algorithm::{Algorithm, Precision, UnknownAlgorithm};
 pub use built::{Calibration, apply_responses, calibrate, simulate_built};
@@ -49,4 +50,5 @@ pub use plan::Plan;
 pub use rows::Rows;
 pub use run::beat_signal;
 pub use samples::{BeatSignal, TwoEnds};
-pub use simulate::{simulate, simulate_ends};
+pub use simulate::{simulate, simulate_ends, simulate_ends_for, simulate_for};
+pub use unfinished::Unfinished;

@@ -2,23 +2,28 @@
 
 use super::floor::{self, Floor};
 use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
-use super::run::beat_signal;
+use super::run::samples_of;
 use super::samples::BeatSignal;
 use crate::radar::Radar;
 use crate::scene::Reflector;
+use crate::task::Task;
 
 /// The echoes of reflectors that the radar can see, over a floor; `heard` does to the echoes what the array does before its receivers add
-/// their noise.
+/// their noise. Of no meaning once `task` is cancelled.
 pub(super) fn simulate_echoes(
     radar: &Radar,
     reflectors: &[Reflector],
     floor: Floor,
     seed: u64,
     heard: impl FnOnce(&mut BeatSignal),
+    task: &Task,
 ) -> BeatSignal {
     let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, reflectors), tolerance(floor));
-    let mut signal = beat_signal(radar, reflectors, &plan);
+    let mut signal = BeatSignal { samples: samples_of(radar, reflectors, &plan, 0..radar.elements, task) };
     heard(&mut signal);
+    if task.is_cancelled() {
+        return signal;
+    }
     if let Some(variance) = noise_variance(radar, reflectors, floor) {
         floor::add_noise(&mut signal, &variance, seed);
     }

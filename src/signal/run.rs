@@ -8,6 +8,7 @@ use super::synthesis::Synthesis;
 use super::{direct, exact};
 use crate::radar::Radar;
 use crate::scene::Reflector;
+use crate::task::Task;
 use ndarray::{Array2, s};
 use num_complex::Complex64;
 use std::ops::Range;
@@ -19,25 +20,26 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector], plan: &Plan) -> Beat
     match plan.algorithm {
         Algorithm::Direct => direct::beat_signal(radar, reflectors),
         Algorithm::Exact => exact::beat_signal(radar, reflectors),
-        _ => BeatSignal { samples: samples_of(radar, reflectors, plan, 0..radar.elements) },
+        _ => BeatSignal { samples: samples_of(radar, reflectors, plan, 0..radar.elements, &Task::default()) },
     }
 }
 
 /// Noiseless samples of neighbouring elements by a block algorithm ([`Algorithm::is_fast`]), `[elements, samples]`, bit for bit those of
-/// the whole array.
+/// the whole array. Of no meaning once `task` is cancelled.
 pub(super) fn samples_of(
     radar: &Radar,
     reflectors: &[Reflector],
     plan: &Plan,
     elements: Range<usize>,
+    task: &Task,
 ) -> Array2<Complex64> {
     let lanes = if plan.precision == Precision::F32 { LANES_F32 } else { LANES_F64 };
     // Whole blocks: what an element's neighbours in a vector are may turn its last bits.
     let begin = elements.start / lanes * lanes;
     let blocks = begin..elements.end.next_multiple_of(lanes).min(radar.elements);
     let mut samples = match plan.precision {
-        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).samples(reflectors, blocks),
-        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).samples(reflectors, blocks),
+        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).samples(reflectors, blocks, task),
+        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).samples(reflectors, blocks, task),
     };
     samples.slice_collapse(s![elements.start - begin..elements.end - begin, ..]);
     samples

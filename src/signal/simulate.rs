@@ -1,13 +1,15 @@
 //! From a scene to samples over a floor: what every command and every figure starts from.
 
-use super::built::simulate_built;
+use super::built::simulate_built_for;
 use super::floor::{self, Floor};
 use super::over_floor::{noise_variance, simulate_echoes, tolerance};
 use super::plan::{Plan, amplitude_bound};
 use super::run::samples_of;
 use super::samples::{BeatSignal, TwoEnds};
+use super::unfinished::Unfinished;
 use crate::radar::{End, Radar};
 use crate::scene::{Scene, SceneError};
+use crate::task::Task;
 
 /// Beat signal of a scene over the named floor; `seed` picks the floor's noise.
 ///
@@ -19,11 +21,27 @@ use crate::scene::{Scene, SceneError};
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
+    simulate_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
+}
+
+/// [`simulate`], unless `task` is cancelled before it is done.
+///
+/// # Errors
+/// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
+pub fn simulate_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> Result<BeatSignal, Unfinished> {
     if !scene.disturbances.is_none() {
-        return simulate_built(radar, scene, &scene.disturbances.elements, floor, seed);
+        return simulate_built_for(task, radar, scene, &scene.disturbances.elements, floor, seed);
     }
     scene.validate(radar)?;
-    Ok(simulate_echoes(radar, &scene.reflectors(), floor, seed, |_| {}))
+    let signal = simulate_echoes(radar, &scene.reflectors(), floor, seed, |_| {}, task);
+    task.check()?;
+    Ok(signal)
 }
 
 /// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
@@ -31,8 +49,22 @@ pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<TwoEnds, SceneError> {
+    simulate_ends_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
+}
+
+/// [`simulate_ends`], unless `task` is cancelled before it is done.
+///
+/// # Errors
+/// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
+pub fn simulate_ends_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> Result<TwoEnds, Unfinished> {
     if !scene.disturbances.is_none() {
-        return Ok(simulate(radar, scene, floor, seed)?.two_ends(radar));
+        return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }
     scene.validate(radar)?;
     let reflectors = scene.reflectors();
@@ -40,12 +72,13 @@ pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> R
     let variance = noise_variance(radar, &reflectors, floor);
     let [first, last] = End::BOTH.map(|end| {
         let elements = radar.end_range(end);
-        let mut samples = samples_of(radar, &reflectors, &plan, elements.clone());
+        let mut samples = samples_of(radar, &reflectors, &plan, elements.clone(), task);
         if let Some(variance) = &variance {
             floor::add_noise_from(&mut samples, elements.start, &variance[elements], seed);
         }
         samples
     });
+    task.check()?;
     Ok(TwoEnds { first, last })
 }
 

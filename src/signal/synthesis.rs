@@ -14,6 +14,7 @@ use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
 use crate::radar::Radar;
 use crate::scene::Reflector;
+use crate::task::Task;
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -220,14 +221,15 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         }
     }
 
-    /// Samples of a run of neighbouring elements, `[elements, samples]`.
-    pub fn samples(&self, reflectors: &[Reflector], elements: Range<usize>) -> Array2<Complex64> {
+    /// Samples of a run of neighbouring elements, `[elements, samples]`. Blocks that are left when `task` is cancelled are left out:
+    /// who cancels it must not use the samples.
+    pub fn samples(&self, reflectors: &[Reflector], elements: Range<usize>, task: &Task) -> Array2<Complex64> {
         let mut out = Array2::zeros((elements.len(), self.radar.samples));
         out.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each_init(
             || self.scratch(),
             |scratch, (block, mut rows)| {
                 let first_element = elements.start + block * W;
-                if let Some(rows) = rows.as_slice_mut() {
+                if let (Some(rows), false) = (rows.as_slice_mut(), task.is_cancelled()) {
                     self.simd().run(ToRows(Block { synthesis: self, first_element, reflectors, scratch }, rows));
                 }
             },
@@ -235,8 +237,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         out
     }
 
-    /// Windowed range profiles of every element; replaces what `out` held.
-    pub fn range_profiles(&self, reflectors: &[Reflector], out: &mut BlockProfiles<T, W>) {
+    /// Windowed range profiles of every element; replaces what `out` held. Blocks that are left when `task` is cancelled are left out: who
+    /// cancels it must not use the profiles.
+    pub fn range_profiles(&self, reflectors: &[Reflector], out: &mut BlockProfiles<T, W>, task: &Task) {
         let bins = self.radar.samples;
         if reflectors.is_empty() {
             return out.clear();
@@ -246,6 +249,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             let before = std::mem::replace(&mut out.touched, rows).runs();
             return out.cells.par_chunks_mut(bins).enumerate().for_each(|(block, cells)| {
                 before.iter().for_each(|run| cells[run.clone()].fill(ComplexLanes::zero()));
+                if task.is_cancelled() {
+                    return;
+                }
                 let first_element = block * W;
                 self.simd().run(AddProfiles { synthesis: self, plan, first_element, reflectors, cells });
             });
@@ -254,6 +260,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         out.cells.par_chunks_mut(bins).enumerate().for_each_init(
             || (self.scratch(), vec![ComplexLanes::zero(); bins]),
             |(scratch, spare), (block, cells)| {
+                if task.is_cancelled() {
+                    return;
+                }
                 let block = Block { synthesis: self, first_element: block * W, reflectors, scratch };
                 self.simd().run(ToProfiles(self, Some(block), cells, spare));
             },

@@ -104,10 +104,15 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
 
     /// Asks for `request` next; one that waits is replaced, one that runs goes on.
     pub fn request(&self, request: Q) -> Generation {
+        self.request_for(Task::default(), request)
+    }
+
+    /// Asks for `request` next, on a task that the caller can cancel without touching any other's.
+    pub fn request_for(&self, task: Task, request: Q) -> Generation {
         let mut slot = self.shared.lock();
         slot.generation += 1;
         let generation = slot.generation;
-        slot.pending = Some((generation, request, Task::default()));
+        slot.pending = Some((generation, request, task));
         self.shared.ready.notify_one();
         generation
     }
@@ -121,12 +126,14 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
-    /// Cancels what runs if it began longer ago than `patience`; what waits stays.
-    pub fn cancel_older_than(&self, patience: Duration) {
-        if let Some((task, began)) = &self.shared.lock().running
-            && began.elapsed() > patience
-        {
-            task.cancel();
+    /// Cancels what runs if it began longer ago than `patience`, and says whether it did; what waits stays.
+    pub fn cancel_older_than(&self, patience: Duration) -> bool {
+        match &self.shared.lock().running {
+            Some((task, began)) if began.elapsed() > patience => {
+                task.cancel();
+                true
+            }
+            _ => false,
         }
     }
 

@@ -1,13 +1,15 @@
 //! Long work beside the window: evaluations, measurements, training logs, methods that fail.
 
 use crate::session::{Session, step_until};
-use apertura::app::{Command, MapKind, Panel};
+use apertura::app::{Command, MapKind, NewObject, Panel};
+use apertura::engine::{Outcome, StageReport};
 use apertura::radar::{Carrier, Radar};
 use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use eframe::egui::{self, vec2};
 use egui_kittest::kittest::Queryable;
+use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -131,7 +133,7 @@ impl Reconstructor for Slow {
     }
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let began = Instant::now();
-        while began.elapsed() < Duration::from_millis(600) {
+        while began.elapsed() < Duration::from_millis(1200) {
             request.task.check()?;
             std::thread::sleep(Duration::from_millis(5));
         }
@@ -175,6 +177,40 @@ fn a_drag_lets_a_slow_method_finish_now_and_then() {
     }
     s.app.drop_at(at);
     s.settle();
+}
+
+/// Reflectors of a cluster whose maps take a while.
+const CLUSTER: usize = 12_000;
+
+#[test]
+fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
+    let mut s = Session::start();
+    let path = s.folder.path().join("heavy.toml");
+    let radar = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n";
+    let place = "x_metres = 0.0\ny_metres = 10.0\nx_std_metres = 2.0\ny_std_metres = 2.0\n";
+    let cluster = format!("[[object]]\nkind = \"gaussian\"\n{place}count = {CLUSTER}\nseed = 1\n");
+    std::fs::write(&path, radar.to_owned() + &cluster).unwrap();
+    s.ask(Command::OpenPath(path));
+    let said = |s: &Session, text: &str| {
+        let says = |stage: &StageReport| matches!(&stage.outcome, Outcome::Computed(what) if what.contains(text));
+        s.state().report().unwrap().stages.iter().any(says)
+    };
+    // A machine may be so quick that the scene rests before the edit is seen, but not every time.
+    let given_up = (1..=10).step_by(2).any(|points| {
+        s.app.state_mut().ask(Command::Add(NewObject::Point, None));
+        step_until(&mut s, "the maps follow", |s| said(s, &format!("{} reflectors", CLUSTER + points)));
+        step_until(&mut s, "the scene rests", |s| s.state().is_settling());
+        s.app.state_mut().ask(Command::Add(NewObject::Point, None));
+        let came_to_rest = Cell::new(false);
+        step_until(&mut s, "the maps follow", |s| {
+            came_to_rest.set(came_to_rest.get() || said(s, "from scratch in f64"));
+            said(s, &format!("{} reflectors", CLUSTER + points + 1))
+        });
+        !came_to_rest.get()
+    });
+    assert!(given_up, "maps of the scene before are computed to the end");
+    s.settle();
+    assert!(s.state().is_settled());
 }
 
 #[test]

@@ -15,6 +15,7 @@ use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
 use crate::app::state::{CutMap, MapKind, MethodSlot, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::evaluate::TARGET_ETA;
+use crate::signal::Unfinished;
 use crate::task::{Reply, Task, Worker};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -22,9 +23,16 @@ use std::time::{Duration, Instant};
 /// What is older than this on screen is marked as old: less would flicker.
 const STALE: Duration = Duration::from_millis(400);
 
+/// Maps of a scene that has changed are given up when they took longer than this.
+const PATIENCE: Duration = Duration::from_millis(400);
+
 /// The workers, what they were asked last, and what they made last.
 pub struct Pipeline {
-    maps: Worker<MapsRequest, Result<MapsResult, String>>,
+    maps: Worker<MapsRequest, Result<MapsResult, Unfinished>>,
+    /// What every request at rest works on, until the scene changes.
+    settling: Task,
+    /// Whether maps were given up since the last ones arrived: the next come to an end, so that something is seen.
+    gave_up: bool,
     /// The first method and the second.
     methods: [MethodJob; 2],
     asked: Option<MapsRequest>,
@@ -45,11 +53,13 @@ impl Pipeline {
     /// # Errors
     /// When the system can't start a thread.
     pub fn start(wake: impl Fn() + Clone + Send + 'static) -> std::io::Result<Pipeline> {
-        let work = |state: &mut MapsState, request: MapsRequest, _: &Task| state.work(request);
+        let work = |state: &mut MapsState, request: MapsRequest, task: &Task| state.work(request, task);
         let maps = Worker::spawn("maps", MapsState::default, work, wake.clone())?;
         let methods = [MethodJob::start("reconstruction", wake.clone())?, MethodJob::start("second method", wake)?];
         Ok(Pipeline {
             maps,
+            settling: Task::default(),
+            gave_up: false,
             methods,
             asked: None,
             rest: Rest::default(),
@@ -72,7 +82,9 @@ impl Pipeline {
                     result.took = elapsed;
                     self.take_in_maps(result);
                 }
-                Reply::Done { result: Err(error), .. } => self.scene_error = Some(error),
+                Reply::Done { result: Err(Unfinished::Scene(error)), .. } => self.scene_error = Some(error.to_string()),
+                // What was asked for instead is on its way.
+                Reply::Done { result: Err(Unfinished::Cancelled(_)), .. } => {}
                 Reply::Panicked { message, .. } => messages.push(format!(
                     "Computing the maps failed ({message}). The last maps stay; undo the last change (Ctrl+Z) or change the scene."
                 )),
@@ -100,6 +112,7 @@ impl Pipeline {
         }
         self.result = Some(result);
         self.scene_error = None;
+        self.gave_up = false;
     }
 
     /// Asks the workers for what the panels of this frame need, if that changed.
@@ -107,7 +120,7 @@ impl Pipeline {
         let looked_at = LookedAt::of(state);
         let request = self.maps_request(state, &looked_at);
         let is_recorded = request.recording.is_some();
-        self.ask_maps(request);
+        self.ask_maps(request, state.editor.dragged().is_some());
         for slot in MethodSlot::BOTH {
             match looked_at.outputs[slot as usize] {
                 true => self.ask_method(state, slot, slot == MethodSlot::First && (looked_at.listed || is_recorded)),
@@ -139,11 +152,11 @@ impl Pipeline {
             let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
             output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
         };
-        MapsRequest {
+        let mut request = MapsRequest {
             radar: state.radar().clone(),
             scene: scene.clone(),
             wanted,
-            at_rest: self.motion == Motion::AtRest,
+            at_rest: false,
             pictures: looked_at.pictures.clone(),
             pairs: MethodSlot::BOTH.map(pair),
             colours: settings.colours,
@@ -155,18 +168,35 @@ impl Pipeline {
             scores: output && (recording.is_some() || !scene.objects.is_empty()),
             roc: looked_at.roc,
             recording,
-        }
+        };
+        // Maps that follow the hand come first: those at rest may take long, and would push a request that waits aside.
+        let follows = self.result.as_ref().is_some_and(|r| r.request.same_subject(&request));
+        request.at_rest = self.motion == Motion::AtRest && follows;
+        request
     }
 
-    fn ask_maps(&mut self, request: MapsRequest) {
+    fn ask_maps(&mut self, request: MapsRequest, held: bool) {
         if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
             self.requests += 1;
-            self.maps.request(request.clone());
+            if self.asked.as_ref().is_some_and(|a| !a.same_subject(&request)) {
+                self.make_way(held);
+            }
+            let task = if request.at_rest { self.settling.clone() } else { Task::default() };
+            self.maps.request_for(task, request.clone());
             if !request.at_rest {
                 // Maps that are only computed once more are not old meanwhile.
                 self.waiting.get_or_insert_with(Instant::now);
             }
             self.asked = Some(request);
+        }
+    }
+
+    /// The scene has changed: what was only computed once more is given up at once, other maps where they take long and nothing is
+    /// held.
+    fn make_way(&mut self, held: bool) {
+        std::mem::take(&mut self.settling).cancel();
+        if !held && !self.gave_up {
+            self.gave_up = self.maps.cancel_older_than(PATIENCE);
         }
     }
 
@@ -285,6 +315,11 @@ impl Pipeline {
     pub fn is_settled(&self) -> bool {
         let latest = self.asked.as_ref().zip(self.result.as_ref());
         latest.is_some_and(|(asked, result)| result.frame.settled && asked.same(&result.request))
+    }
+
+    /// Whether they are being computed.
+    pub fn is_settling(&self) -> bool {
+        self.maps.is_busy() && self.asked.as_ref().is_some_and(|asked| asked.at_rest) && !self.is_settled()
     }
 
     /// Time of the last maps and pictures that followed a change.

@@ -10,6 +10,8 @@ use crate::picture::ColourMap;
 use crate::radar::Radar;
 use crate::recording::Recording;
 use crate::scene::Scene;
+use crate::signal::Unfinished;
+use crate::task::Task;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
@@ -74,6 +76,19 @@ pub struct MapsRequest {
 }
 
 impl MapsRequest {
+    /// Whether the samples of both are the same: what is made for the one isn't made in vain for the other.
+    pub fn same_subject(&self, other: &MapsRequest) -> bool {
+        let recording = match (&self.recording, &other.recording) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        recording
+            && Arc::ptr_eq(&self.scene, &other.scene)
+            && self.radar == other.radar
+            && self.wanted.floor == other.wanted.floor
+    }
+
     /// Whether both would give the same result.
     pub fn same(&self, other: &MapsRequest) -> bool {
         let pairs = self.pairs.iter().zip(&other.pairs).all(|pair| match pair {
@@ -81,15 +96,8 @@ impl MapsRequest {
             (None, None) => true,
             _ => false,
         });
-        let recording = match (&self.recording, &other.recording) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
         pairs
-            && recording
-            && Arc::ptr_eq(&self.scene, &other.scene)
-            && self.radar == other.radar
+            && self.same_subject(other)
             && (self.wanted, self.at_rest) == (other.wanted, other.at_rest)
             && self.pictures == other.pictures
             && (self.colours, self.projection) == (other.colours, other.projection)
@@ -176,9 +184,9 @@ impl MapsState {
     /// Does what was asked, and nothing that was done before.
     ///
     /// # Errors
-    /// Why a scene has no maps.
-    pub fn work(&mut self, request: MapsRequest) -> Result<MapsResult, String> {
-        let (frame, unexplained) = self.frame(&request)?;
+    /// Why a scene has no maps, or that `task` was cancelled.
+    pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
+        let (frame, unexplained) = self.frame(&request, task)?;
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, kind) {
@@ -197,10 +205,14 @@ impl MapsState {
     }
 
     /// The maps of the scene, or of the recording that stands in its place, and what the scene leaves of it.
-    fn frame(&mut self, request: &MapsRequest) -> Result<(Frame, Option<Result<Unexplained, String>>), String> {
+    fn frame(
+        &mut self,
+        request: &MapsRequest,
+        task: &Task,
+    ) -> Result<(Frame, Option<Result<Unexplained, String>>), Unfinished> {
         let MapsRequest { radar, scene, wanted, .. } = request;
         if let Some(recording) = &request.recording {
-            scene.validate(radar).map_err(|e| e.to_string())?;
+            scene.validate(radar)?;
             let elements = &scene.disturbances.elements;
             let maps = match &mut self.recorded {
                 Some(maps) if maps.is_of(recording, radar, elements) => maps,
@@ -215,8 +227,11 @@ impl MapsState {
             Some(engine) if engine.radar() == radar => engine,
             slot => slot.insert(Engine::new(radar.clone())),
         };
-        let frame = if request.at_rest { engine.settle(scene, wanted) } else { engine.update(scene, wanted) };
-        Ok((frame.map_err(|e| e.to_string())?, None))
+        let frame = match request.at_rest {
+            true => engine.settle_for(task, scene, wanted)?,
+            false => engine.update_for(task, scene, wanted)?,
+        };
+        Ok((frame, None))
     }
 
     fn roc(&mut self, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {

@@ -211,6 +211,31 @@ fn worst_lambda(a: &Frame, b: &Frame) -> f32 {
         .fold(0.0, f32::max)
 }
 
+#[test]
+fn what_is_cancelled_leaves_nothing_half_made() {
+    let (before, after) = (Scene::of_points([(0.3, 1.0), (-0.4, 1.7)]), Scene::of_points([(0.3, 1.0), (0.1, 1.2)]));
+    let cancelled = Task::default();
+    cancelled.cancel();
+    let is_cancelled = |frame: Result<Frame, Unfinished>| matches!(frame, Err(Unfinished::Cancelled(_)));
+    // Without the samples of the ends it is cancelled among the range profiles.
+    for ends in [true, false] {
+        let wanted = Wanted { ends, ..Wanted::default() };
+        let mut engine = Engine::new(small());
+        let kept = engine.update(&before, &wanted).unwrap();
+        assert!(is_cancelled(engine.settle_for(&cancelled, &before, &wanted)));
+        let still = engine.update(&before, &wanted).unwrap();
+        assert!(Arc::ptr_eq(&lambda(&kept), &lambda(&still)), "what was there before stays");
+        assert!(is_cancelled(engine.update_for(&cancelled, &after, &wanted)));
+        let (then, fresh) = (engine.update(&after, &wanted), Engine::new(small()).update(&after, &wanted));
+        let worst = worst_lambda(&then.unwrap(), &fresh.unwrap());
+        assert!(worst < 1e-3, "{worst}");
+    }
+    let mut built = before;
+    built.disturbances.elements.elements =
+        vec![crate::radar::ElementError { position_millimetres: 0.5, ..Default::default() }; 64];
+    assert!(is_cancelled(Engine::new(small()).update_for(&cancelled, &built, &Wanted::default())));
+}
+
 fn full_map_rows(frame: &Frame) -> String {
     let stage = frame.report.stages.iter().find(|s| s.stage == Stage::FullMap).unwrap();
     match &stage.outcome {

@@ -258,6 +258,7 @@ mod tests {
     use crate::scene::Scene;
     use crate::signal::simd::{LANES_F32, LANES_F64};
     use crate::signal::{Plan, exact, synthesis::Synthesis};
+    use crate::task::Task;
 
     fn compare(radar: &Radar, simd: Simd) {
         let scene = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (4.0, 3.3)]);
@@ -267,7 +268,7 @@ mod tests {
         macro_rules! check {
             ($t:ty, $lanes:expr, $down:expr, $error:expr) => {{
                 let mut profiles = BlockProfiles::silence(radar);
-                Synthesis::<$t, $lanes>::new(radar, plan).range_profiles(&reflectors, &mut profiles);
+                Synthesis::<$t, $lanes>::new(radar, plan).range_profiles(&reflectors, &mut profiles, &Task::default());
                 let mut maps = [(); 3].map(|()| FastLogMap::silence(radar));
                 let [a, b, c] = &mut maps;
                 MapMaker::<$t, $lanes>::new(radar, simd).fill(
@@ -296,7 +297,7 @@ mod tests {
         let reflectors = Scene::of_points([(0.1, 1.0)]).reflectors();
         let mut profiles = BlockProfiles::<f64, LANES_F64>::silence(&radar);
         let plan = Plan::cheapest(1, 100.0, 1e-3).on_few_rows(&radar, 1);
-        Synthesis::new(&radar, plan).range_profiles(&reflectors, &mut profiles);
+        Synthesis::new(&radar, plan).range_profiles(&reflectors, &mut profiles, &Task::default());
         let touched = profiles.touched.clone();
         assert!(!touched.is_empty() && touched.count() < 128);
         let maker = MapMaker::new(&radar, Simd::best());
