@@ -1,7 +1,7 @@
 //! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
 
 use super::apply::{self, Effect};
-use super::chrome::{file_dialog, losses, menu, messages, palette, status_bar, tiles};
+use super::chrome::{file_dialog, menu, messages, palette, save_question, status_bar, tiles};
 use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
@@ -108,7 +108,7 @@ impl App {
             pointer: Pointer::default(),
             pins: Default::default(),
             guided: Default::default(),
-            lossy_save: None,
+            save_question: None,
             failures: Default::default(),
             lesson: None,
             before_presenting: None,
@@ -167,7 +167,7 @@ impl App {
         let input = input::Input {
             keys_taken: self.memory.palette.is_open()
                 || self.memory.file_dialog.is_open()
-                || self.state.lossy_save.is_some(),
+                || self.state.save_question.is_some(),
             selected: !self.state.editor.selection().is_empty(),
             bin_metres: self.state.radar().range_resolution_metres(),
         };
@@ -194,8 +194,8 @@ impl App {
         let input = palette::Input { methods: &state.methods.all };
         commands.extend(palette::show(ui.ctx(), input, &mut memory.palette));
         commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
-        let input = losses::Input { question: state.lossy_save.as_ref() };
-        commands.extend(losses::show(ui.ctx(), input));
+        let input = save_question::Input { question: state.save_question.as_ref() };
+        commands.extend(save_question::show(ui.ctx(), input));
         commands
     }
 

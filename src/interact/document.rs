@@ -247,6 +247,12 @@ impl Document {
         !self.saved.as_ref().is_some_and(|saved| saved.same(&self.content))
     }
 
+    /// Whether its file is there and holds something else than is known of it. Nothing is known after a restart: then it isn't said.
+    pub(super) fn is_outdated(&self) -> bool {
+        let (Some(path), Some(saved)) = (self.path(), &self.saved) else { return false };
+        path.exists() && !Document::read(path).is_ok_and(|on_disk| on_disk.content.same(saved))
+    }
+
     /// The document as a file holds it.
     pub fn to_file(&self) -> SceneFile {
         SceneFile { scene: Scene::clone(self.scene()), radar: Radar::clone(self.radar()) }

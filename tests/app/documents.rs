@@ -98,6 +98,44 @@ fn what_a_format_cannot_hold_is_asked_before_anything_is_written() {
 }
 
 #[test]
+fn what_another_program_wrote_is_not_replaced_without_a_question() {
+    let mut s = Session::start();
+    let path = s.folder.path().join("scene.toml");
+    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(Command::Save);
+    assert_eq!((title(&s).as_str(), points(&path)), ("scene.toml", 3), "nobody else was there");
+    write(&s, "scene.toml", 7);
+    let answer = |s: &mut Session, button: &str| {
+        s.ask(Command::Add(NewObject::Point, None));
+        s.ask(Command::Save);
+        assert!(s.app.query_by_label("scene.toml has changed").is_some());
+        assert_eq!(points(&path), 7, "nothing is written yet");
+        s.app.get_by_label(button).click();
+        s.settle();
+    };
+    answer(&mut s, "Cancel");
+    assert_eq!((title(&s).as_str(), points(&path)), ("scene.toml •", 7));
+    answer(&mut s, "Save as…");
+    assert_eq!(points(&path), 7);
+    let name = s.app.get_by_label("Name");
+    name.focus();
+    s.app.step();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.app.event(eframe::egui::Event::Text("mine.toml".to_owned()));
+    s.settle();
+    s.app.get_by_label("Save").click();
+    s.settle();
+    let mine = s.folder.path().join("mine.toml");
+    assert_eq!((title(&s).as_str(), points(&mine), points(&path)), ("mine.toml", 5, 7));
+    write(&s, "mine.toml", 7);
+    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(Command::Save);
+    s.app.get_by_label("Replace it").click();
+    s.settle();
+    assert_eq!((title(&s).as_str(), points(&mine)), ("mine.toml", 6));
+}
+
+#[test]
 fn a_start_with_a_file_loses_neither_the_file_nor_what_was_unsaved() {
     let mut s = Session::start();
     let b = write(&s, "b.toml", 5);

@@ -21,7 +21,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Com
         Command::Save => saving::save_again(state, jobs),
         Command::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
         Command::SaveTo(path) => saving::save(state, path),
-        Command::AnswerLosses(answer) => saving::answer(state, jobs, answer),
+        Command::AnswerSave(answer) => saving::answer(state, jobs, answer),
         Command::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
         Command::Discard(id) => state.editor.discard(id),
         Command::Preset(index) => preset(state, index),

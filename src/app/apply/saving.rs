@@ -1,7 +1,7 @@
-//! Writing the scene to a file, and the question before a file that can't hold all of it.
+//! Writing the scene to a file, and the question before one that can't hold all of it or that somebody else has written to.
 
 use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{LossyAnswer, LossySave, State};
+use crate::app::state::{Doubt, SaveAnswer, SaveQuestion, State};
 use crate::interact::Saved;
 use std::path::{Path, PathBuf};
 
@@ -24,27 +24,28 @@ pub fn save(state: &mut State, mut path: PathBuf) {
     if path.extension().is_none() {
         path.set_extension("toml");
     }
-    match state.editor.losses(&path) {
-        Ok(losses) if !losses.is_empty() => state.lossy_save = Some(LossySave { path, losses }),
+    let doubt = match state.editor.losses(&path) {
+        Ok(losses) if !losses.is_empty() => Some(Doubt::Losses(losses)),
+        Ok(_) if state.editor.would_replace_anothers(&path) => Some(Doubt::Changed),
         // An error comes again when writing, which tells it.
-        _ => write(state, path),
+        _ => None,
+    };
+    match doubt {
+        Some(doubt) => state.save_question = Some(SaveQuestion { path, doubt }),
+        None => write(state, path),
     }
 }
 
 /// Does what was answered.
-pub fn answer(state: &mut State, jobs: &mut Jobs, answer: LossyAnswer) {
-    let Some(LossySave { path, .. }) = state.lossy_save.take() else { return };
+pub fn answer(state: &mut State, jobs: &mut Jobs, answer: SaveAnswer) {
+    let Some(SaveQuestion { path, .. }) = state.save_question.take() else { return };
+    let toml = path.with_extension("toml");
     match answer {
-        LossyAnswer::Cancel => {}
-        LossyAnswer::Anyway => write(state, path),
-        LossyAnswer::AsToml => {
-            let toml = path.with_extension("toml");
-            // Another file of that name is not replaced without a question.
-            match toml.exists() {
-                true => jobs.choose_file(state, Purpose::SaveScene),
-                false => write(state, toml),
-            }
-        }
+        SaveAnswer::Cancel => {}
+        SaveAnswer::Anyway => write(state, path),
+        // Another file of that name is not replaced without a question.
+        SaveAnswer::Elsewhere if toml.exists() => jobs.choose_file(state, Purpose::SaveScene),
+        SaveAnswer::Elsewhere => write(state, toml),
     }
 }
 

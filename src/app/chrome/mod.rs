@@ -2,10 +2,10 @@
 
 mod file_browser;
 pub mod file_dialog;
-pub mod losses;
 pub mod menu;
 pub mod messages;
 pub mod palette;
+pub mod save_question;
 pub mod status_bar;
 pub mod tiles;
 pub mod unsaved;

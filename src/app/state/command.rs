@@ -3,8 +3,8 @@
 use super::bounds_settings::BoundsSettings;
 use super::compare::Compare;
 use super::failures::{FailureChoice, SearchChoice};
-use super::lossy_save::LossyAnswer;
 use super::panel::{MapKind, Panel};
+use super::save_question::SaveAnswer;
 use super::settings::{Projection, Units};
 use super::several::Several;
 use super::view::Cursor;
@@ -59,8 +59,8 @@ pub enum Command {
     SaveAs,
     /// Save the scene in this file.
     SaveTo(PathBuf),
-    /// Whether the scene is saved in a file that can't hold all of it.
-    AnswerLosses(LossyAnswer),
+    /// Whether the scene is saved in a file that can't hold all of it, or that somebody else has written to.
+    AnswerSave(SaveAnswer),
     /// Put this unsaved document, which another took the place of, on screen again.
     Recover(u64),
     /// Give this unsaved document up.

@@ -10,10 +10,10 @@ mod cuts;
 mod failures;
 mod guided;
 mod lesson_run;
-mod lossy_save;
 mod methods;
 mod notices;
 mod panel;
+mod save_question;
 mod settings;
 mod several;
 mod view;
@@ -27,10 +27,10 @@ pub use cuts::{CutMap, PinnedCut, Pins};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
 pub use guided::{Guided, Setup};
 pub use lesson_run::LessonRun;
-pub use lossy_save::{LossyAnswer, LossySave};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
+pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
 pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
@@ -69,7 +69,7 @@ pub struct State {
     /// What the guide did.
     pub guided: Guided,
     /// A file that can't hold all of the scene, if it is to be written.
-    pub lossy_save: Option<LossySave>,
+    pub save_question: Option<SaveQuestion>,
     /// Rows: which is open, which are in sight.
     pub failures: Failures,
     /// The lesson being taken.

@@ -53,6 +53,12 @@ impl Editor {
         Ok(self.document.losses(Format::of_path(path)?))
     }
 
+    /// Whether `path` is the document's own file and holds something else by now than what was read from it or written to it here: another
+    /// window or another program was there.
+    pub fn would_replace_anothers(&self, path: &Path) -> bool {
+        self.document.path() == Some(&*document::whole_path(path)) && self.document.is_outdated()
+    }
+
     /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only. What is
     /// laid over a recording is a scene of its own: the recording stays as it is.
     ///

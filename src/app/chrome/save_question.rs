@@ -1,0 +1,99 @@
+//! Asks before a scene is written to a file that can't hold all of it, or that somebody else has written to.
+
+use crate::app::state::{Command, Doubt, SaveAnswer, SaveQuestion};
+use eframe::egui::{Context, Id, Modal, Ui};
+
+/// What is asked.
+pub struct Input<'a> {
+    /// The file and what speaks against it, if anything is asked.
+    pub question: Option<&'a SaveQuestion>,
+}
+
+/// Draws the question, if there is one.
+pub fn show(ctx: &Context, input: Input<'_>) -> Vec<Command> {
+    let Some(question) = input.question else { return Vec::new() };
+    let modal = Modal::new(Id::unique("save question")).show(ctx, |ui| draw(ui, question));
+    let answer = modal.inner.or(modal.should_close().then_some(SaveAnswer::Cancel));
+    answer.map(Command::AnswerSave).into_iter().collect()
+}
+
+fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
+    ui.set_width(360.0);
+    let name = question.path.file_name().unwrap_or(question.path.as_os_str()).to_string_lossy();
+    let [elsewhere, tip, anyway] = match &question.doubt {
+        Doubt::Losses(losses) => {
+            ui.strong(format!("{name} can't hold all of this scene"));
+            ui.label("What would be lost in it:");
+            for loss in losses {
+                ui.label(format!("•  {loss}"));
+            }
+            ui.label("The scene on screen keeps everything; what of it is unsaved stays unsaved.");
+            ["Save as TOML", "A file beside it that holds everything", "Save anyway"]
+        }
+        Doubt::Changed => {
+            ui.strong(format!("{name} has changed"));
+            ui.label("Another window or another program has written to it since it was opened or saved here.");
+            ["Save as…", "Another file; this one stays as it is", "Replace it"]
+        }
+    };
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let elsewhere = ui.button(elsewhere).on_hover_text(tip);
+        if ui.memory(|m| m.focused().is_none()) {
+            elsewhere.request_focus();
+        }
+        let anyway = ui.button(anyway);
+        let cancel = ui.button("Cancel");
+        let answers = [(elsewhere, SaveAnswer::Elsewhere), (anyway, SaveAnswer::Anyway), (cancel, SaveAnswer::Cancel)];
+        answers.into_iter().find(|(button, _)| button.clicked()).map(|(_, answer)| answer)
+    })
+    .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file::Loss;
+    use eframe::egui::Key;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn asked() -> Harness<'static, Vec<Command>> {
+        let losses = vec![Loss::Radar, Loss::Structure { objects: 1, points: 40 }];
+        let question = SaveQuestion { path: "/there/walls.npz".into(), doubt: Doubt::Losses(losses) };
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            asked.extend(show(ui.ctx(), Input { question: Some(&question) }));
+        };
+        let mut question = Harness::new_ui_state(draw, Vec::new());
+        question.run();
+        question
+    }
+
+    #[test]
+    fn every_loss_is_listed_and_every_button_answers() {
+        for (button, answer) in [
+            ("Save anyway", SaveAnswer::Anyway),
+            ("Save as TOML", SaveAnswer::Elsewhere),
+            ("Cancel", SaveAnswer::Cancel),
+        ] {
+            let mut question = asked();
+            for said in ["walls.npz", "its radar", "which becomes 40 points"] {
+                assert!(question.query_by_label_contains(said).is_some(), "{said}");
+            }
+            assert!(question.state().is_empty(), "nothing happens by itself");
+            question.get_by_label(button).click();
+            question.step();
+            assert_eq!(question.state(), &[Command::AnswerSave(answer)]);
+        }
+    }
+
+    #[test]
+    fn escape_cancels_and_enter_loses_nothing() {
+        for (key, answer) in [(Key::Escape, SaveAnswer::Cancel), (Key::Enter, SaveAnswer::Elsewhere)] {
+            let mut question = asked();
+            question.key_press(key);
+            question.step();
+            assert_eq!(question.state().first(), Some(&Command::AnswerSave(answer)), "{key:?}");
+        }
+    }
+}
