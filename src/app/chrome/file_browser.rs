@@ -36,6 +36,8 @@ pub struct Browser {
     all: bool,
     entries: Vec<Entry>,
     problem: Option<String>,
+    /// Whether the name's field has had the focus: whoever opens the dialog can type at once.
+    was_focused: bool,
 }
 
 impl Browser {
@@ -45,8 +47,8 @@ impl Browser {
         let (purpose, folder) = (question.purpose, start.unwrap_or_else(|| PathBuf::from("/")));
         let (name, usual) = (question.name.clone(), question.name.clone());
         let typed = folder.display().to_string();
-        let mut browser =
-            Browser { purpose, folder, typed, name, usual, all: false, entries: Vec::new(), problem: None };
+        let (all, entries, problem, was_focused) = (false, Vec::new(), None, false);
+        let mut browser = Browser { purpose, folder, typed, name, usual, all, entries, problem, was_focused };
         browser.list();
         browser
     }
@@ -154,6 +156,9 @@ impl Browser {
             let label = ui.label("Name");
             let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
             done = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+            if !std::mem::replace(&mut self.was_focused, true) {
+                field.request_focus();
+            }
         });
         ui.horizontal(|ui| {
             let verb = if self.purpose.reads() { "Open" } else { "Save" };
@@ -249,14 +254,15 @@ mod tests {
     fn every_control_has_a_name_and_what_is_missing_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let mut dialog = panel(Purpose::Open, folder.path());
-        dialog.get_by_label("Name").click();
-        dialog.run_steps(2);
+        // The name's field has the focus.
         dialog.event(egui::Event::Text("missing.toml".to_owned()));
         dialog.run_steps(2);
         dialog.get_by_label("Open").click();
         dialog.run_steps(3);
         assert!(dialog.state().1.is_empty());
         let _told = dialog.get_by_label_contains("missing.toml is not there");
+        dialog.get_by_label("Name").click();
+        dialog.run_steps(2);
         dialog.get_by_label("Folder").click();
         dialog.run_steps(2);
         dialog.event(egui::Event::Text("/nowhere".to_owned()));

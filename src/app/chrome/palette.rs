@@ -190,9 +190,13 @@ mod tests {
         palette.step();
         for (text, frames_before_enter) in [("add line", 0), ("method: baseline", 2)] {
             palette.state_mut().0.toggle();
-            palette.event(Event::Text(text.to_owned()));
+            palette.step();
+            // Not by `event`, which leaves a frame to each.
+            palette.input_mut().events.push(Event::Text(text.to_owned()));
             palette.run_steps(frames_before_enter);
-            palette.key_press(Key::Enter);
+            let (key, modifiers) = (Key::Enter, Modifiers::NONE);
+            let enter = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+            palette.input_mut().events.push(enter);
             palette.step();
             assert!(!palette.state().0.is_open());
         }

@@ -48,7 +48,10 @@ impl Contents<'_> {
         let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
         let method = pipeline.output().map_or("output", |o| o.method);
         let refusal = pipeline.refusal().map(|r| r.reason.as_str());
-        roc::show(ui, roc::Input { points, method, eta: self.state.output_eta(), refusal })
+        let eta = self.state.output_eta();
+        let is_now = shown.is_some_and(|r| r.request.etas[0] == eta);
+        let metrics = pipeline.scores().filter(|_| is_now).map(|scores| scores.metrics);
+        roc::show(ui, roc::Input { points, method, eta, metrics, refusal })
     }
 
     pub(super) fn map_caption(&self, kind: MapKind) -> Option<String> {

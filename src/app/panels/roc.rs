@@ -6,7 +6,7 @@ use crate::app::widgets::chart::Chart;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::theme::Inks;
-use crate::evaluate::RocPoint;
+use crate::evaluate::{Metrics, RocPoint};
 use eframe::egui;
 use eframe::egui::{Sense, Stroke, Ui};
 
@@ -25,6 +25,8 @@ pub struct Input<'a> {
     pub method: &'a str,
     /// The threshold in use.
     pub eta: f32,
+    /// The figures on screen, where they are of this output: the characteristic has thresholds near that in use only.
+    pub metrics: Option<Metrics>,
     /// Why there is no output.
     pub refusal: Option<&'a str>,
 }
@@ -37,10 +39,12 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     };
     let place = |p: &RocPoint| [p.false_alarm.max(SMALLEST).log10(), 100.0 * p.detection];
     let nearest = |eta: f32| roc.iter().min_by(|a, b| (a.eta - eta).abs().total_cmp(&(b.eta - eta).abs()));
+    let at_eta = |m: Metrics| Some(RocPoint { eta: input.eta, detection: m.detection?, false_alarm: m.false_alarm });
+    let now = input.metrics.and_then(at_eta).or_else(|| nearest(input.eta).copied());
     let (line, mark) = (Inks::of(ui.visuals()).selected, Inks::of(ui.visuals()).ends[0]);
     egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 }).show(ui, |ui| {
         let mut entries = vec![Entry { sign: Sign::Line, colour: line, name: input.method.to_owned() }];
-        if let Some(now) = nearest(input.eta) {
+        if let Some(now) = &now {
             let rates = format!("P_D {}, P_FA {}", percent(now.detection), percent(now.false_alarm));
             let name = format!("η = {:.2}: {rates}", input.eta);
             entries.push(Entry { sign: Sign::Circle { filled: true }, colour: mark, name });
@@ -53,7 +57,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let area = ui.available_rect_before_wrap();
     let drawn = chart.show(ui, area, Sense::hover());
     drawn.line(roc.iter().map(place), Stroke::new(1.8, line), None);
-    if let Some(now) = nearest(input.eta) {
+    if let Some(now) = &now {
         drawn.dot(place(now), 5.0, mark);
     }
     if let Some(pos) = drawn.response.hover_pos() {
@@ -76,7 +80,8 @@ mod tests {
     #[test]
     fn a_scene_without_a_characteristic_is_told() {
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui, Input { points: None, method: "baseline", eta: 0.5, refusal: None }));
+            let input = Input { points: None, method: "baseline", eta: 0.5, metrics: None, refusal: None };
+            asked.extend(show(ui, input));
         };
         let roc = Harness::new_ui_state(draw, Vec::new());
         let _told = roc.get_by_label_contains("No ROC");
@@ -92,13 +97,14 @@ mod tests {
                     RocPoint { eta: 1.0 - part as f32, detection: part.sqrt(), false_alarm: part * part }
                 };
                 let points: Vec<RocPoint> = (0..=100).map(point).collect();
-                _ = show(ui, Input { points: Some(&points), method: "live", eta: 0.8, refusal: None });
+                let metrics = Some(Metrics { squared_error: 1.0, detection: Some(0.4466), false_alarm: 0.0398 });
+                _ = show(ui, Input { points: Some(&points), method: "live", eta: 0.8, metrics, refusal: None });
             });
             seen::assert_readable(roc.output());
             let texts = seen::texts(roc.output());
             let count = |text: &str| texts.iter().filter(|t| t.text == text).count();
             assert_eq!((count("100"), count("P_FA, %"), count("≤0.001")), (2, 1, 1), "{size:?}: {texts:?}");
-            assert_eq!(count("η = 0.80: P_D 44.72 %, P_FA 4.00 %"), 1, "{texts:?}");
+            assert_eq!(count("η = 0.80: P_D 44.66 %, P_FA 3.98 %"), 1, "the figures on screen: {texts:?}");
         }
     }
 }

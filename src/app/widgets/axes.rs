@@ -1,7 +1,7 @@
 //! Axes of maps, charts and of the scene: ticks at round numbers, labels that neither collide nor leave the panel.
 
 use eframe::egui;
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Space for tick labels and an axis title.
 pub const LEFT: f32 = 46.0;
@@ -118,7 +118,8 @@ pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     let ink = ui.visuals().weak_text_color();
     let stroke = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
     painter.rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Outside);
-    let (x_marks, y_marks) = marks_of(painter, rect, x, y);
+    let (mut x_marks, y_marks) = marks_of(painter, rect, x, y);
+    x_marks.sort_by(|a, b| x.part(a.value).total_cmp(&x.part(b.value)));
     let mut free = f32::NEG_INFINITY;
     for tick in &x_marks {
         let at = rect.left() + x.part(tick.value) * rect.width();
@@ -140,10 +141,14 @@ pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     let title = place(painter, pos2(rect.center().x, rect.bottom() + 18.0), Align2::CENTER_TOP, x.title);
     text(painter, title.min, Align2::LEFT_TOP, x.title, ink);
     let galley = painter.layout_no_wrap(y.title.to_owned(), tick_font(), ink);
-    if galley.size().x <= rect.height() {
-        let labels = y_marks.iter().map(|t| width(painter, &t.text)).fold(0.0, f32::max);
-        let left = (rect.left() - GAP - labels - 3.0 - galley.size().y).max(painter.clip_rect().left() + 1.0);
-        let at = pos2(left, rect.center().y + galley.size().x / 2.0);
+    let labels = y_marks.iter().map(|t| width(painter, &t.text)).fold(0.0, f32::max);
+    let left = |wide: f32| (rect.left() - GAP - labels - 3.0 - wide).max(painter.clip_rect().left() + 1.0);
+    let Vec2 { x: long, y: high } = galley.size();
+    if y.title.chars().count() == 1 {
+        // A letter that lies on its side is another one.
+        painter.galley(pos2(left(long), rect.center().y - high / 2.0), galley, ink);
+    } else if long <= rect.height() {
+        let at = pos2(left(high), rect.center().y + long / 2.0);
         painter.add(egui::epaint::TextShape::new(at, galley, ink).with_angle(-std::f32::consts::FRAC_PI_2));
     }
 }

@@ -152,3 +152,12 @@ fn a_cut_has_several_labels_none_cut_off_at_any_size() {
         }
     }
 }
+
+/// Whoever sees no difference between their hues still tells the inputs and the target apart.
+#[test]
+fn lines_differ_by_dash() {
+    let dashes = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(dash);
+    for (i, dash) in dashes.iter().enumerate() {
+        assert!(!dashes[i + 1..].contains(dash), "{dashes:?}");
+    }
+}

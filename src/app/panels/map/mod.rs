@@ -175,6 +175,10 @@ fn legend_of(painter: &Painter, input: &Input<'_>, area: Rect) -> Legend {
 fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &egui::Response, is_drawn: bool) {
     let rect = frame.rect;
     let is_old = input.stale && is_drawn;
+    if !is_drawn && input.veil.is_none() {
+        // What is said in the place of the map stays readable.
+        return;
+    }
     if input.veil.is_none() {
         let pointer = response.hover_pos().filter(|_| input.numbers);
         overlay::marks(inner, frame, &input.marks, pointer);
@@ -272,6 +276,8 @@ mod tests {
     use super::*;
     use crate::app::widgets::seen;
     use crate::maps::{LambdaScale, RangeAngleMap};
+    use crate::radar::Carrier;
+    use eframe::egui::Shape;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use ndarray::Array2;
@@ -286,7 +292,8 @@ mod tests {
 
     fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
         let radar = Radar::default();
-        asked.extend(show(ui, input(&radar, error), &mut MapView::default(), &mut Memory::default()));
+        let input = Input { cursor: Some(Cursor::at_cell(&radar, 200.0, 500.0)), ..input(&radar, error) };
+        asked.extend(show(ui, input, &mut MapView::default(), &mut Memory::default()));
     }
 
     #[test]
@@ -306,6 +313,10 @@ mod tests {
         let mut map = Harness::new_ui_state(|ui, asked| draw(ui, Some(problem()), asked), Vec::new());
         map.step();
         let _told = map.get_by_label("trained on another radar");
+        assert!(
+            !map.output().shapes.iter().any(|s| matches!(s.shape, Shape::Circle(_))),
+            "no crosshair is drawn over it"
+        );
         let _one = map.get_by_label("Output map");
         map.get_by_label("Use capon").click();
         map.step();
@@ -346,6 +357,20 @@ mod tests {
         }
     }
 
+    /// With the two-way carrier directions fall from left to right.
+    #[test]
+    fn an_axis_that_falls_has_its_labels_too() {
+        let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+        let map = Harness::builder().with_size([450.0, 270.0]).build_ui(move |ui| {
+            _ = show(ui, input(&radar, None), &mut MapView::default(), &mut Memory::default());
+        });
+        let texts = seen::texts(map.output());
+        let left = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.left());
+        let places = ["0.4", "0.2", "0.0", "−0.2", "−0.4"].map(left);
+        assert!(places[0].is_some() && places.is_sorted(), "{texts:?}");
+        seen::assert_readable(map.output());
+    }
+
     #[test]
     fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
         let radar = Radar::default();
@@ -356,6 +381,21 @@ mod tests {
         assert!(texts.iter().any(|t| t.text == "computing…"));
         assert!(!texts.iter().any(|t| t.text.contains("earlier scene")), "{texts:?}");
     }
+
+    #[test]
+    fn a_map_of_an_earlier_scene_says_so() {
+        let radar = Radar::default();
+        let says_so = |stale| {
+            let radar = radar.clone();
+            let map = Harness::builder().build_ui(move |ui| {
+                let input = Input { stale, texture: Some(TextureId::default()), ..input(&radar, None) };
+                _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+            });
+            seen::texts(map.output()).iter().any(|t| t.text.contains("earlier scene"))
+        };
+        assert_eq!([true, false].map(says_so), [true, false]);
+    }
+
     #[test]
     fn what_became_of_objects_is_told_above_the_map_and_under_the_pointer() {
         let radar = Radar::default();

@@ -27,7 +27,7 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>, pointer: Op
         let reflectors = &object.reflectors[..object.reflectors.len().min(left)];
         left -= reflectors.len();
         let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
-        for ring in rings(object, &blobs, frame.rect.height()) {
+        for ring in rings(object, &blobs, frame.rect.height(), 0.0) {
             for (width, colour) in [(2.5, MARK_EDGE), (1.2, MARK)] {
                 painter.add(ring.shape(Stroke::new(width, colour)));
             }
@@ -64,25 +64,30 @@ impl Ring {
 }
 
 /// A ring around each reflector; around a line whose rings would run together, one outline. Where a line wraps around the end of the
-/// ranges, it is in two pieces: nothing is as far apart as `height` otherwise.
-fn rings(object: &Marked, blobs: &[Pos2], height: f32) -> Vec<Ring> {
-    let radius = if object.reflectors.len() > 20 && !object.is_line { 2.5 } else { RADIUS };
+/// ranges, it is in two pieces: nothing is as far apart as `height` otherwise. All are `wider` than usual by so many points.
+fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> {
+    let radius = wider + if object.reflectors.len() > 20 && !object.is_line { 2.5 } else { RADIUS };
     let fused = |pair: &[Pos2]| pair[0].distance(pair[1]) < 2.0 * radius;
     if !object.is_line || !blobs.windows(2).all(|pair| fused(pair) || pair[0].distance(pair[1]) > height / 2.0) {
         return blobs.iter().map(|at| Ring::Circle(*at, radius)).collect();
     }
     let pieces = blobs.chunk_by(|a, b| a.distance(*b) <= height / 2.0);
-    pieces.map(|piece| Ring::Outline(outline(piece, RADIUS))).collect()
+    pieces.map(|piece| Ring::Outline(outline(piece, radius))).collect()
 }
 
-/// Rings around the blobs of what is selected.
+/// Rings around the blobs of what is selected, or outlines of lines.
 pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
-    let objects = selection.iter().filter_map(|i| scene.objects.get(i));
-    let reflectors = objects.flat_map(Object::reflectors).take(MARKS);
-    for r in reflectors {
-        let at = frame.blob(&r);
-        painter.circle_stroke(at, 8.0, Stroke::new(3.0, MARK_EDGE));
-        painter.circle_stroke(at, 8.0, Stroke::new(1.6, MARK_SELECTED));
+    let mut left = MARKS;
+    for object in selection.iter().filter_map(|i| scene.objects.get(i)) {
+        let reflectors: Vec<Reflector> = object.reflectors().into_iter().take(left).collect();
+        left -= reflectors.len();
+        let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
+        let marked = Marked { reflectors, is_line: matches!(object, Object::Line(_)) };
+        for ring in rings(&marked, &blobs, frame.rect.height(), 2.0) {
+            for (width, colour) in [(3.0, MARK_EDGE), (1.6, MARK_SELECTED)] {
+                painter.add(ring.shape(Stroke::new(width, colour)));
+            }
+        }
     }
 }
 
@@ -146,7 +151,13 @@ fn value_text(cells: &Cells<'_>, bin: usize, column: usize) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::MapView;
+    use crate::app::widgets::seen;
     use crate::maps::{LambdaScale, RangeAngleMap};
+    use crate::radar::Radar;
+    use crate::scene::Line;
+    use eframe::egui::Rect;
+    use egui_kittest::Harness;
     use ndarray::array;
 
     #[test]
@@ -168,10 +179,35 @@ mod tests {
         let reflector = Reflector { x_metres: 0.0, y_metres: 1.0, reflectivity: 1.0 };
         let object = |is_line| Marked { reflectors: vec![reflector; 5], is_line };
         let blobs = |step: f32| (0..5).map(|i| Pos2::new(step * i as f32, 50.0)).collect::<Vec<_>>();
-        let count = |is_line, step| rings(&object(is_line), &blobs(step), 100.0).len();
+        let count = |is_line, step| rings(&object(is_line), &blobs(step), 100.0, 0.0).len();
         assert_eq!([count(true, 4.0), count(true, 14.0), count(false, 4.0)], [1, 5, 5]);
         let mut wrapped = blobs(4.0);
         wrapped[3..].iter_mut().for_each(|at| at.y -= 90.0);
-        assert_eq!(rings(&object(true), &wrapped, 100.0).len(), 2, "what wraps around is in two pieces");
+        assert_eq!(rings(&object(true), &wrapped, 100.0, 0.0).len(), 2, "what wraps around is in two pieces");
+    }
+
+    #[test]
+    fn the_ring_under_the_pointer_tells_the_true_direction_and_no_other() {
+        let (radar, wall) = (Radar::default(), Object::Line(Line::vertical(-0.832 * 20.0, 0.5548 * 20.0, 0.1, 40)));
+        let objects = [Marked { reflectors: wall.reflectors(), is_line: true }];
+        let scene = Scene { objects: vec![wall], ..Scene::default() };
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(1024.0, 512.0));
+        let (view, projection) = (MapView::default(), Projection::RangeAngle);
+        let frame = Frame { rect, view, radar: &radar, projection, centre_x_metres: 0.0 };
+        let blob = frame.blob(&objects[0].reflectors[0]);
+        let draw = |pointer| {
+            let panel = Harness::builder().with_size(rect.size()).build_ui(|ui| {
+                marks(ui.painter(), frame, &Marks { objects: &objects, found: &[] }, pointer);
+                selected(ui.painter(), frame, &scene, &Selection::of([0]));
+            });
+            panel.output().clone()
+        };
+        let (away, near) = (draw(None), draw(Some(blob)));
+        assert!(!seen::texts(&away).iter().any(|t| t.text.starts_with("stands at")));
+        let told = seen::texts(&near).into_iter().find(|t| t.text.starts_with("stands at")).unwrap();
+        assert!(told.text.starts_with("stands at cos θ -0.832, seen at -0.81"), "{}", told.text);
+        // Four rings at most are drawn around a wall: two for the wall, two for its being selected.
+        let shapes = away.shapes.iter().filter(|s| matches!(s.shape, Shape::Path(_) | Shape::Circle(_))).count();
+        assert_eq!(shapes, 4, "{:?}", away.shapes);
     }
 }
