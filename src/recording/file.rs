@@ -46,6 +46,7 @@ use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis, concatenate};
 use num_complex::Complex64;
 use serde::Deserialize;
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
@@ -240,9 +241,10 @@ impl Table {
                 return Err(Fault::key("recording.range_metres", "is there", why));
             }
         }
-        let covered = self.covered(radar);
-        for (place, element) in self.missing.iter().enumerate() {
-            if !covered.contains(element) || self.missing[..place].contains(element) {
+        let mut may_miss = vec![false; radar.elements];
+        self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);
+        for element in &self.missing {
+            if !may_miss.get_mut(*element).is_some_and(std::mem::take) {
                 let expected = format!("elements that the file is to hold, each once, below {}", radar.elements);
                 return Err(Fault::key("recording.missing", format!("names element {element}"), expected));
             }
@@ -359,7 +361,8 @@ impl Table {
             return Err(Fault::Count { what: "samples", found: rows.ncols(), expected, shape: rows.dim() });
         }
         let covered = self.covered(radar);
-        let present: Vec<usize> = covered.iter().copied().filter(|n| !self.missing.contains(n)).collect();
+        let missing: HashSet<usize> = self.missing.iter().copied().collect();
+        let present: Vec<usize> = covered.iter().copied().filter(|n| !missing.contains(n)).collect();
         let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
             let without = if present.len() < covered.len() {
                 format!(", or {} without the missing ones", present.len())
@@ -379,9 +382,7 @@ impl Table {
             }
         })?;
         let mut samples = Array2::zeros((radar.elements, radar.samples));
-        for (element, row) in
-            places.iter().zip(rows.outer_iter()).filter(|(element, _)| !self.missing.contains(element))
-        {
+        for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {
             samples.row_mut(*element).assign(&row);
         }
         let signal = BeatSignal { samples };

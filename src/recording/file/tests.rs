@@ -50,6 +50,19 @@ fn a_whole_array_is_read_as_it_is() {
 }
 
 #[test]
+fn a_long_list_of_missing_elements_takes_no_time() {
+    let folder = folder_with("d.npz", &[("a", all().into_dyn())]);
+    let missing: Vec<usize> = (0..65_000).rev().collect();
+    let radar = RADAR.replace("elements = 8", "elements = 65536");
+    let text = format!("{radar}{}", usual(&format!("missing = {missing:?}\n")));
+    fs::write(folder.path().join("r.toml"), text).unwrap();
+    let began = std::time::Instant::now();
+    let error = load(&folder.path().join("r.toml")).unwrap_err().to_string();
+    assert!(error.contains("8 elements") && error.contains("65536") && error.contains("or 536"), "{error}");
+    assert!(began.elapsed().as_secs_f32() < 1.0, "{:?}", began.elapsed());
+}
+
+#[test]
 fn missing_elements_are_silent_whether_the_file_has_rows_for_them_or_not() {
     let without: Vec<usize> = (0..8).filter(|n| ![2, 6].contains(n)).collect();
     let fewer = all().select(Axis(0), &without);

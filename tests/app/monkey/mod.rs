@@ -54,7 +54,6 @@ impl Monkey {
         let points = apertura::scene::file::load(&folder.join("a.toml")).unwrap();
         apertura::scene::file::save(&folder.join("points.npz"), &points).unwrap();
         s.settle();
-        draw_missing_glyphs(&s);
         Monkey { s, rng: ChaCha8Rng::seed_from_u64(seed), witness: Witness::default(), steps: 0, kills: 0 }
     }
 
@@ -123,18 +122,12 @@ impl Monkey {
         let asked = self.rng.random_bool(0.3).then_some("b.toml");
         let app = harness(after.path(), asked, methods());
         self.s = Session { app, folder: after };
-        draw_missing_glyphs(&self.s);
         self.s.app.step();
         if let Err(lost) = self.witness.compare(self.s.state()) {
             panic!("step {}: {lost}", self.steps);
         }
         self.witness = Witness::default();
     }
-}
-
-/// The file dialog's crate draws pictures that no font here has; a test panics at them otherwise.
-fn draw_missing_glyphs(s: &Session) {
-    s.app.ctx.set_missing_glyph_policy(eframe::egui::MissingGlyphPolicy::Tofu);
 }
 
 /// Names, sizes and times of every file below `folder`.
