@@ -26,6 +26,10 @@ const LEAST_BESIDE: f64 = 0.05;
 /// Range side lobes are expected to lie this much, in power, above what the window gives a single reflector.
 const SIDE_LOBE_ROOM: f64 = 8.0;
 
+/// Power of a place relative to the strongest of all, beneath which it waits for another look: what the strongest ones leave may look
+/// like it.
+const LEAST_IN_A_LOOK: f64 = 1e-4;
+
 /// Most places that are looked into; the strongest.
 const MOST_PLACES: usize = 512;
 
@@ -95,7 +99,7 @@ impl Kernel for Listen<'_> {
     }
 }
 
-/// Every place that is no side lobe of another, strongest first. `noise_power` is that of one element's profile.
+/// Every place that is no side lobe of another and not too weak beside the strongest, strongest first. `noise_power` is that of one element's profile.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
@@ -139,6 +143,8 @@ pub(super) fn places(
     }
     found.sort_by(|a, b| b.power.total_cmp(&a.power));
     found.truncate(MOST_PLACES);
+    let least = found.first().map_or(0.0, |strongest| LEAST_IN_A_LOOK * strongest.power);
+    found.retain(|place| place.power > least);
     Ok(found)
 }
 

@@ -33,7 +33,11 @@ const APART_BINS: f64 = 4.0;
 const NEAREST_BETWEEN: f64 = 0.25;
 
 /// Most rounds of taking peaks from one look.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
+
+/// Part of what the strongest peak explains that one must explain to be taken in the same round: what stronger ones leave while they
+/// are not yet in their places looks like many weak ones.
+const LEAST_BESIDE: f64 = 0.03;
 
 /// A reflector must explain this many times the energy that noise gives to one more gain.
 const LEAST_OVER_NOISE: f64 = 16.0;
@@ -109,7 +113,10 @@ impl<'a> Settled<'a> {
             let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
             left.retain(|(now, w)| *now > noise.max(EXPLAINED * w.energy));
             left.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let least = left.first().map_or(0.0, |(strongest, _)| LEAST_BESIDE * strongest);
+            let mut later = left.split_off(left.partition_point(|(now, _)| *now >= least));
             let taken = strongest_apart(self.radar, &mut left);
+            left.append(&mut later);
             if taken.is_empty() || self.is_done() {
                 break;
             }
