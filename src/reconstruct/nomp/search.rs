@@ -104,10 +104,11 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let walls = self.walls(nothing, pairs)?;
+        let all = nothing.cost();
+        let (walls, pairs) = self.walls(nothing, pairs)?;
         let is_long = self.longest_run() >= LONG_RUN_BINS;
-        let mut answer = self.paired_again(walls, is_long)?;
-        if is_long && !answer.is_sure {
+        let mut answer = self.paired_again(walls, pairs, is_long)?;
+        if is_long && !answer.is_sure && answer.fit.cost() > NEARLY_NOTHING * all {
             let few = self.with_few()?;
             if few.is_sure || few.fit.cost() < answer.fit.cost() {
                 answer = few;
@@ -121,15 +122,18 @@ impl Search<'_> {
     }
 
     /// Walls that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found may have
-    /// hidden more. `pairs` are those of `fit`.
-    fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<Fit, ReconstructError> {
+    /// hidden more. `pairs` are those of `fit`; those of the answer come with it.
+    fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<(Fit, Pairs), ReconstructError> {
         for _ in 0..MOST_ROUNDS {
-            let before = fit.atoms.len();
-            fit = self.grower().more_walls(self.samples, fit, pairs.guesses_metres)?;
+            let (before, cost) = (fit.atoms.len(), fit.cost());
+            fit = self.grower().more_walls(self.samples, fit, pairs.guesses_metres.clone())?;
             let sure = pairs.points.iter().filter(|point| point.apart < SURELY_ONE && point.is_alone);
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
             if fit.atoms.len() + more.len() == before {
+                if fit.cost() != cost {
+                    pairs = self.pairs(&fit);
+                }
                 break;
             }
             fit.gains.extend(vec![Gains::default(); more.len()]);
@@ -140,19 +144,20 @@ impl Search<'_> {
             }
             pairs = self.pairs(&fit);
         }
-        Ok(fit)
+        Ok((fit, pairs))
     }
 
-    /// `fit` and the points that the ends' tones lead to in what it leaves, time and again. Where an echo is long and no wall was found,
-    /// they are left where they are: lines are better found before.
-    fn paired_again(&self, mut fit: Fit, is_long: bool) -> Result<Answer, ReconstructError> {
+    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again. Where an echo is long
+    /// and no wall was found, they are left where they are: lines are better found before.
+    fn paired_again(&self, mut fit: Fit, pairs: Pairs, is_long: bool) -> Result<Answer, ReconstructError> {
         let is_polished = !is_long || !fit.atoms.is_empty();
+        let mut pairs = Some(pairs);
         for _ in 0..MOST_ROUNDS {
             if self.is_explained(&fit) {
                 return Ok(Answer { fit, is_sure: true });
             }
             let before = fit.cost();
-            let pairs = self.pairs(&fit);
+            let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
             fit = self.grower().with_walls(self.samples, self.paired(fit, &pairs, is_polished)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
@@ -272,6 +277,9 @@ impl Search<'_> {
         End::BOTH.map(run_of).into_iter().max().unwrap_or(0)
     }
 }
+
+/// Part of the samples' energy: what is left beneath it shows little, and a search for long lines doesn't begin.
+const NEARLY_NOTHING: f64 = 1e-5;
 
 /// Most atoms that appear from one answer to the next.
 const MOST_APPEARING: usize = 2;
