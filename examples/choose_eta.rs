@@ -8,7 +8,7 @@ use apertura::evaluate::{Roc, squared_error};
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::nomp::{Settings, find};
-use apertura::reconstruct::{Fista, Reconstructor, Request};
+use apertura::reconstruct::{Fista, Reconstructor, Request, on_one_scale};
 use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
@@ -37,7 +37,8 @@ enum Choice {
     },
     /// Squared error of FISTA over its penalty
     Penalty,
-    /// Weight of the hybrid's fallback over the part of a cell's power that is unexplained, on validation scenes of every kind
+    /// Weight of the hybrid's fallback over the parts of a cell's power and of a scene's energy that are unexplained, on validation scenes
+    /// of every kind
     Weights,
 }
 
@@ -136,7 +137,10 @@ fn penalty() -> Outcome {
 const DECADES: f64 = 0.25;
 
 /// Weights that are told apart, from everything unexplained downwards.
-const BINS: usize = 16;
+const BINS: usize = 14;
+
+/// Parts of a scene's energy that are left which part the scenes.
+const LEFT: [f64; 2] = [1e-3, 0.03];
 
 /// What is known of all cells in which about the same part of the power is unexplained.
 #[derive(Default, Clone, Copy)]
@@ -151,12 +155,12 @@ struct Cells {
 }
 
 /// For cells in which about the same part of the power is unexplained, the part of the way from the drawn map to the fallback's that leaves
-/// the least squared error.
+/// the least squared error; apart for scenes of which little, some and much of the energy is left.
 fn weights() -> Outcome {
     let radar = Radar::default();
     let request = Request::default();
     let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
-    let mut all = [[Cells::default(); 2]; BINS];
+    let mut all = [[Cells::default(); BINS]; LEFT.len() + 1];
     for kind in Kind::all() {
         for trial in validation(&radar, kind, SCENES) {
             let trial = trial?;
@@ -164,14 +168,16 @@ fn weights() -> Outcome {
             if found.complete {
                 continue;
             }
-            let drawn = found.reconstruction(&radar, &request).lambda.lambda;
-            let filled = fallback.reconstruct(&radar, &trial.ends, &request)?.lambda.lambda;
+            let drawn = found.reconstruction(&radar, &request).lambda;
             let unexplained = found.unexplained_cells(&radar, &trial.ends);
-            let cells = unexplained.iter().zip(&trial.target.lambda).zip(drawn.iter().zip(&filled));
+            let filled = fallback.reconstruct(&radar, &trial.ends, &request)?.lambda;
+            let filled = on_one_scale(&drawn, filled, &unexplained);
+            let group = &mut all[LEFT.partition_point(|left| *left < found.energy_left())];
+            let cells = unexplained.iter().zip(&trial.target.lambda).zip(drawn.lambda.iter().zip(&filled.lambda));
             for ((part, target), (drawn, filled)) in cells {
                 let bin = (-f64::from(part.max(1e-9)).log10() / DECADES) as usize;
                 let [target, drawn, filled] = [target, drawn, filled].map(|v| f64::from(*v));
-                let cell = &mut all[bin.min(BINS - 1)][usize::from(filled > drawn)];
+                let cell = &mut group[bin.min(BINS - 1)];
                 cell.count += 1.0;
                 cell.drawn += (target - drawn).powi(2);
                 cell.filled += (target - filled).powi(2);
@@ -180,9 +186,14 @@ fn weights() -> Outcome {
             }
         }
     }
-    for (darker, what) in ["where the fallback is darker", "where it is brighter"].into_iter().enumerate() {
-        println!("{what}\n{:>8}{:>12}{:>10}{:>10}{:>8}", "decades", "cells", "SE drawn", "SE filled", "weight");
-        for (i, c) in all.iter().map(|both| both[darker]).enumerate() {
+    for (group, cells) in all.iter().enumerate() {
+        let from = if group == 0 { 0.0 } else { LEFT[group - 1] };
+        println!(
+            "scenes of which {from} of the energy or more is left, and less than {}",
+            LEFT.get(group).unwrap_or(&1.0)
+        );
+        println!("{:>8}{:>12}{:>10}{:>10}{:>8}", "decades", "cells", "SE drawn", "SE filled", "weight");
+        for (i, c) in cells.iter().enumerate() {
             let weight = c.wanted / c.square.max(f64::MIN_POSITIVE);
             let decades = -DECADES * (i as f64 + 0.5);
             println!("{decades:>8.2}{:>12.0}{:>10.0}{:>10.0}{weight:>8.2}", c.count, c.drawn, c.filled);

@@ -17,6 +17,9 @@ pub struct Request {
     /// Where the echoes of a single sample come from, metres, if anybody knows: one sample has no ranges of its own. They count as
     /// plane waves all the same. Chirps of several samples know their ranges.
     pub snapshot_range_metres: Option<f64>,
+    /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
+    /// as while something is dragged.
+    pub may_follow: bool,
     /// Progress to report to, and the flag to stop at.
     pub task: Task,
 }
@@ -28,6 +31,7 @@ impl Default for Request {
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             snapshot_range_metres: None,
+            may_follow: false,
             task: Task::default(),
         }
     }

@@ -28,11 +28,6 @@ impl Hybrid {
         Hybrid { settings, ..self }
     }
 
-    /// The same, starting each search from the last answer.
-    pub fn following(self) -> Following {
-        Following { hybrid: self, last: Mutex::new(None) }
-    }
-
     /// The map of what was found, with what is in doubt filled in.
     fn filled_in(
         &self,
@@ -47,7 +42,9 @@ impl Hybrid {
             return Ok(drawn);
         }
         let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;
-        drawn.lambda = blended(&drawn.lambda, &filled, &found.unexplained_cells(radar, ends));
+        let unexplained = found.unexplained_cells(radar, ends);
+        let filled = on_one_scale(&drawn.lambda, filled, &unexplained);
+        drawn.lambda = blended(&drawn.lambda, &filled, &unexplained, most_weight(found.energy_left() as f32));
         Ok(drawn)
     }
 
@@ -74,12 +71,15 @@ impl Reconstructor for Hybrid {
         let found = find(radar, ends, request, &self.settings)?;
         self.filled_in(&found, radar, ends, request)
     }
+
+    fn following(&self) -> Option<Arc<dyn Reconstructor>> {
+        Some(Arc::new(Following { hybrid: self.clone(), last: Mutex::new(None) }))
+    }
 }
 
-/// A [`Hybrid`] that keeps its last answer and starts from it: for samples that change a little at a time, as while something is
-/// dragged. Answers agree with those of the hybrid within the floor, and depend on what came before in their last digits, so that
-/// printed figures come from the hybrid itself.
-pub struct Following {
+/// A [`Hybrid`] that keeps its last answer, and starts from it where it may. Answers that it followed agree with those of the hybrid
+/// within the floor, and depend on what came before in their last digits: figures that are printed come from answers from scratch.
+struct Following {
     hybrid: Hybrid,
     last: Mutex<Option<(Radar, Arc<Found>)>>,
 }
@@ -97,7 +97,7 @@ impl Reconstructor for Following {
         // The lock is held for a copy only: whoever waits for it while it computes may be the one it waits for.
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let settings = &self.hybrid.settings;
-        let found = match last.filter(|(of, _)| of == radar) {
+        let found = match last.filter(|(of, _)| request.may_follow && of == radar) {
             Some((_, last)) => find_from(&last, radar, ends, request, settings)?,
             None => find(radar, ends, request, settings)?,
         };
@@ -107,30 +107,54 @@ impl Reconstructor for Following {
     }
 }
 
-/// Part of a cell's power that is unexplained, in decades, and the weight of the fallback there; a straight line between them. By
-/// `examples/choose_eta.rs`: where the two disagree, the part of the way from the drawn map to the fallback's that leaves least.
-const WEIGHTS: [[f32; 2]; 2] = [[-0.8, 0.0], [-0.15, 1.0]];
+/// Parts of a cell's power that are unexplained, in decades: up to the first the drawn map stays as it is, from the second on the fallback
+/// has all the weight that it gets in the scene. By `examples/choose_eta.rs weights`, as the next two.
+const CELL_DECADES: [f32; 2] = [-2.5, -0.8];
 
-/// Weight of the fallback, 0 to 1, where this part of a cell's power is unexplained.
-fn weight(unexplained: f32) -> f32 {
-    let decades = unexplained.max(1e-9).log10();
-    let after = WEIGHTS.partition_point(|[at, _]| *at <= decades);
-    if after == 0 {
-        return WEIGHTS[0][1];
-    }
-    let Some([next, high]) = WEIGHTS.get(after) else { return WEIGHTS[WEIGHTS.len() - 1][1] };
-    let [at, low] = WEIGHTS[after - 1];
-    low + (high - low) * (decades - at) / (next - at)
+/// Parts of a scene's energy that are left, in decades, between which the fallback's weight grows from [`LEAST_WEIGHT`] to 1: what makes
+/// up for nearly all of a scene draws a map that is as good as the fallback's, and what leaves much of it a worse one.
+const SCENE_DECADES: [f32; 2] = [-3.0, -1.5];
+
+/// Weight of the fallback where little of the scene's energy is left. The two maps err in different ways: their mean is better than either.
+const LEAST_WEIGHT: f32 = 0.5;
+
+/// Cells beyond which a difference between the maps is believed to be one of scale.
+const CELLS_TO_BELIEVE: f64 = 5000.0;
+
+/// Part of a cell's power that is unexplained from which on the cell says nothing about the scales.
+const SAYS_NOTHING: f32 = 0.1;
+
+/// How far between two parts another one is, on the scale of decades: 0 to 1.
+fn between([low, high]: [f32; 2], part: f32) -> f32 {
+    ((part.max(1e-9).log10() - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// From `drawn`, where all is explained, to `filled`, where nothing is. Both are Lambda of one scene, from the floor to the strongest cell.
-fn blended(drawn: &RangeAngleMap, filled: &RangeAngleMap, unexplained: &Array2<f32>) -> RangeAngleMap {
+/// Most weight that the fallback gets where this part of the scene's energy is left.
+fn most_weight(energy_left: f32) -> f32 {
+    LEAST_WEIGHT + (1.0 - LEAST_WEIGHT) * between(SCENE_DECADES, energy_left)
+}
+
+/// From `drawn`, where all is explained, towards `filled`, by `most` where nothing is. Both are Lambda of one scene on one scale.
+fn blended(drawn: &RangeAngleMap, filled: &RangeAngleMap, unexplained: &Array2<f32>, most: f32) -> RangeAngleMap {
     let mut lambda = drawn.lambda.clone();
     Zip::from(&mut lambda)
         .and(&filled.lambda)
         .and(unexplained)
-        .par_for_each(|out, filled, part| *out += weight(*part) * (filled - *out));
+        .par_for_each(|out, filled, part| *out += most * between(CELL_DECADES, *part) * (filled - *out));
     RangeAngleMap { lambda }
+}
+
+/// `filled` moved to the scale of `drawn`: each knows the weakest and the strongest cell in its own way, and where nearly all is explained
+/// the two should be one. Where few cells are, it stays nearly as it is.
+pub fn on_one_scale(drawn: &RangeAngleMap, filled: RangeAngleMap, unexplained: &Array2<f32>) -> RangeAngleMap {
+    let (mut sum, mut cells) = (0.0, 0.0);
+    for ((drawn, filled), part) in drawn.lambda.iter().zip(&filled.lambda).zip(unexplained) {
+        let weight = f64::from((1.0 - part / SAYS_NOTHING).max(0.0));
+        sum += weight * f64::from(filled - drawn);
+        cells += weight;
+    }
+    let brighter = (sum / (cells + CELLS_TO_BELIEVE)) as f32;
+    RangeAngleMap { lambda: filled.lambda.mapv_into(|v| (v - brighter).clamp(0.0, 1.0)) }
 }
 
 #[cfg(test)]
@@ -169,21 +193,45 @@ mod tests {
         let scene = Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() };
         let ends = ends_of(&radar, &scene);
         let request = Request::default();
-        // One point can't explain a cloud: over the cloud the map is the fallback's, and nowhere beyond both.
+        // One point can't explain a cloud: over the cloud the map is the fallback's, and nomp's own where it does.
         let few = Settings { most_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
+        let found = find(&radar, &ends, &request, &few).unwrap();
+        let parts = found.unexplained_cells(&radar, &ends);
+        let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;
-        let nomp = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
-        let cells = || hybrid.lambda.lambda.iter().zip(fallback.lambda.iter().zip(&nomp.lambda));
-        assert!(cells().all(|(h, (f, n))| *h >= f.min(*n) - 1e-6 && *h <= f.max(*n) + 1e-6));
-        let taken = cells().filter(|(h, (f, _))| h == f).count();
+        let fallback = on_one_scale(&drawn, fallback, &parts);
+        let mut taken = 0;
+        for (i, (h, part)) in hybrid.lambda.lambda.iter().zip(&parts).enumerate() {
+            let [drawn, fallback] = [&drawn, &fallback].map(|m| m.lambda.as_slice().unwrap()[i]);
+            assert!(*h >= drawn.min(fallback) - 1e-6 && *h <= drawn.max(fallback) + 1e-6);
+            assert!(*part > 1e-3 || *h == drawn);
+            taken += u32::from(*part > 0.2 && (h - fallback).abs() < 1e-6);
+        }
         assert!(taken > 1000, "{taken} cells are the fallback's");
     }
 
     #[test]
-    fn weight_grows_with_what_is_unexplained() {
-        assert_eq!((weight(0.0), weight(1.0)), (WEIGHTS[0][1], WEIGHTS[WEIGHTS.len() - 1][1]));
-        let all: Vec<f32> = (0..=100).map(|i| weight(i as f32 / 100.0)).collect();
-        assert!(all.windows(2).all(|w| w[0] <= w[1]), "{all:?}");
+    fn weight_grows_with_what_is_unexplained_in_the_cell_and_in_the_scene() {
+        let parts: Vec<f32> = (0..=1000).map(|i| i as f32 / 1000.0).collect();
+        for of in [most_weight, |part| between(CELL_DECADES, part)] {
+            assert!(parts.windows(2).all(|w| of(w[0]) <= of(w[1])));
+        }
+        assert_eq!((most_weight(0.0), most_weight(1.0)), (LEAST_WEIGHT, 1.0));
+        assert_eq!((between(CELL_DECADES, 0.0), between(CELL_DECADES, 1.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn maps_that_differ_in_scale_alone_are_one_where_all_is_explained() {
+        let drawn =
+            RangeAngleMap { lambda: Array2::from_shape_fn((512, 1024), |(i, j)| ((i * j) % 83) as f32 / 100.0) };
+        let brighter = RangeAngleMap { lambda: drawn.lambda.mapv(|v| v + 0.05) };
+        let largest = |unexplained: f32| {
+            let parts = Array2::from_elem(drawn.lambda.dim(), unexplained);
+            let moved = on_one_scale(&drawn, brighter.clone(), &parts);
+            moved.lambda.iter().zip(&drawn.lambda).map(|(m, d)| (m - d).abs()).fold(0.0, f32::max)
+        };
+        assert!(largest(0.0) < 1e-3, "{}", largest(0.0));
+        assert!((largest(0.5) - 0.05).abs() < 1e-6, "nothing is known: it stays");
     }
 }

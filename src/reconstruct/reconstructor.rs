@@ -6,6 +6,7 @@ use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
 use ndarray::Array3;
+use std::sync::Arc;
 
 /// Who a method is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +67,12 @@ pub trait Reconstructor: Send + Sync {
             Some(range_metres) => found.moved_to(range_metres),
             None => found,
         })
+    }
+
+    /// The same method with a memory, where that makes it faster on samples that change a little at a time: asked with
+    /// [`Request::may_follow`] it starts from its last answer, and otherwise it answers as without a memory.
+    fn following(&self) -> Option<Arc<dyn Reconstructor>> {
+        None
     }
 
     /// Estimates the whole array's map from the thesis networks' own input, `[4, range bins, columns]`

@@ -39,7 +39,7 @@ pub const ALL: &[Preset] = presets![
     "failure-live-ghost",
     "failure-wrong-tooth",
     "failure-hybrid-merged",
-    "failure-hybrid-ghosts",
+    "failure-hybrid-missed",
     "failure-thesis-missed",
     "failure-thesis-merged",
     "failure-thesis-ghost",

@@ -19,7 +19,7 @@ const EXPLAINED: [(&str, &str, [usize; 4]); 10] = [
     ("failure-wrong-tooth", "live", [0, 0, 1, 0]),
     ("failure-wrong-tooth", "hybrid", [0, 0, 1, 0]),
     ("failure-hybrid-merged", "hybrid", [0, 2, 0, 0]),
-    ("failure-hybrid-ghosts", "hybrid", [0, 0, 0, 2]),
+    ("failure-hybrid-missed", "hybrid", [2, 0, 0, 0]),
     ("failure-thesis-missed", "thesis", [1, 0, 0, 0]),
     ("failure-thesis-merged", "thesis", [3, 2, 0, 7]),
     ("failure-thesis-ghost", "thesis", [0, 0, 0, 1]),

@@ -55,6 +55,11 @@ pub struct Found {
 }
 
 impl Found {
+    /// Part of the samples' energy that is neither explained nor noise.
+    pub fn energy_left(&self) -> f64 {
+        (self.residual_variance - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
+    }
+
     /// What silence holds.
     pub(super) fn nothing() -> Self {
         Found {

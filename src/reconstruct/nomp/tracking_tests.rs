@@ -1,7 +1,7 @@
 //! Searches that start from the last answer.
 
 use super::*;
-use crate::reconstruct::{Baseline, Hybrid};
+use crate::reconstruct::{Baseline, Hybrid, Reconstructor};
 use crate::scene::Scene;
 use crate::signal::simulate;
 use rayon::prelude::*;
@@ -73,8 +73,8 @@ fn what_appears_vanishes_or_jumps_is_followed_too() {
 
 #[test]
 fn many_threads_may_ask_one_follower() {
-    let (radar, request) = (Radar::default(), Request::default());
-    let following = Hybrid::new(Arc::new(Baseline)).following();
+    let (radar, request) = (Radar::default(), Request { may_follow: true, ..Request::default() });
+    let following = Hybrid::new(Arc::new(Baseline)).following().unwrap();
     let counts: Vec<usize> = (0..8u32)
         .into_par_iter()
         .map(|step| following.reconstruct(&radar, &ends_of(&scene(step), 0), &request).unwrap().reflectors.len())
