@@ -3,10 +3,13 @@
 use crate::session::{Session, harness, step_until};
 use apertura::app::{Command, NewObject};
 use apertura::evaluate::rows::read_rows;
+use apertura::evaluate::trial::Trial;
 use apertura::interact::Document;
-use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::maps::Normalisation;
+use apertura::radar::Radar;
+use apertura::reconstruct::{About, Baseline, Hybrid, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
-use apertura::signal::TwoEnds;
+use apertura::signal::{Floor, TwoEnds};
 use eframe::egui::vec2;
 use std::path::Path;
 use std::sync::Arc;
@@ -102,12 +105,7 @@ impl Reconstructor for Counted {
     fn about(&self) -> About {
         About { name: "counted", description: "counts", told: "", eta: 0.5 }
     }
-    fn estimate(
-        &self,
-        radar: &apertura::radar::Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         self.0.fetch_add(1, Ordering::SeqCst);
         Baseline.reconstruct(radar, ends, request)
     }
@@ -123,4 +121,50 @@ fn a_scene_that_comes_to_rest_is_not_reconstructed_again() {
     assert_eq!(asked.load(Ordering::SeqCst), 2);
     assert_ne!(on_screen(&s), before);
     assert!(s.state().is_settled() && !s.state().output_is_outdated());
+}
+
+/// Counts how often its method is asked from scratch, and how often with leave to follow.
+struct Watched {
+    method: Arc<dyn Reconstructor>,
+    asked: Arc<[AtomicU32; 2]>,
+}
+
+impl Reconstructor for Watched {
+    fn about(&self) -> About {
+        self.method.about()
+    }
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        self.asked[usize::from(request.may_follow)].fetch_add(1, Ordering::SeqCst);
+        self.method.estimate(radar, ends, request)
+    }
+    fn following(&self) -> Option<Arc<dyn Reconstructor>> {
+        Some(Arc::new(Watched { method: self.method.following()?, asked: self.asked.clone() }))
+    }
+}
+
+#[test]
+fn a_drag_is_followed_and_at_rest_the_answer_is_that_from_scratch() {
+    let asked = Arc::new([AtomicU32::new(0), AtomicU32::new(0)]);
+    let count = |i: usize| asked[i].load(Ordering::SeqCst);
+    let hybrid = Arc::new(Hybrid::new(Arc::new(Baseline)));
+    let mut s = Session::with_methods(vec![Arc::new(Watched { method: hybrid.clone(), asked: asked.clone() })]);
+    let scratch = count(0);
+    assert!(scratch > 0);
+    let at = s.handle("point 1: move");
+    s.app.hover_at(at);
+    s.app.step();
+    s.app.drag_at(at);
+    s.app.step();
+    for i in 1..=3 {
+        let followed = count(1);
+        s.app.hover_at(at + vec2(6.0, 2.0) * i as f32);
+        step_until(&mut s, "the drag is followed", |_| count(1) > followed);
+    }
+    assert_eq!(count(0), scratch, "nothing from scratch while it is held");
+    s.app.drop_at(at + vec2(18.0, 6.0));
+    s.settle();
+    assert_eq!(count(0), scratch + 1);
+    let trial = Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax);
+    let answer = trial.unwrap().ask(hybrid.as_ref(), &Request::default()).unwrap();
+    assert_eq!(s.state().metrics(), Some(answer.metrics));
 }

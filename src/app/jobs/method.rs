@@ -58,11 +58,18 @@ pub struct MethodRequest {
     pub method: Arc<dyn Reconstructor>,
     /// Whether what was found is to be listed.
     pub listed: bool,
+    /// Whether the scene rests: the answer is then that of a method without a memory.
+    pub at_rest: bool,
 }
 
 impl MethodRequest {
-    fn same(&self, other: &MethodRequest) -> bool {
-        self.basis.same(&other.basis) && self.method.name() == other.method.name() && self.listed == other.listed
+    /// Whether what was made for this one is an answer to the `other` too: one at rest answers one in motion, and the other way round
+    /// only for a method without a memory.
+    fn serves(&self, other: &MethodRequest) -> bool {
+        self.basis.same(&other.basis)
+            && self.method.name() == other.method.name()
+            && self.listed == other.listed
+            && (self.at_rest || !other.at_rest || self.method.following().is_none())
     }
 }
 
@@ -103,6 +110,33 @@ type Answer = (Reconstruction, Option<Vec<Detection>>);
 
 type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 
+/// What the worker keeps from one request to the next.
+struct Kept {
+    /// Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
+    threads: Option<rayon::ThreadPool>,
+    /// The method asked last, and the same with a memory.
+    follower: Option<(Arc<dyn Reconstructor>, Arc<dyn Reconstructor>)>,
+}
+
+impl Kept {
+    fn new(thread: &'static str) -> Kept {
+        let threads = rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{thread} {i}")).build().ok();
+        Kept { threads, follower: None }
+    }
+
+    fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
+        if self.follower.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, &q.method)) {
+            self.follower = q.method.following().map(|follower| (q.method.clone(), follower));
+        }
+        let method = self.follower.as_ref().map_or(&q.method, |(_, follower)| follower);
+        let result = match &self.threads {
+            Some(threads) => threads.install(|| reconstruct(&q, method.as_ref(), task)),
+            None => reconstruct(&q, method.as_ref(), task),
+        };
+        (q, result)
+    }
+}
+
 /// The worker, what it was asked last, and what it made last.
 pub struct MethodJob {
     worker: Worker<MethodRequest, MethodReply>,
@@ -119,17 +153,8 @@ impl MethodJob {
     /// # Errors
     /// When the system can't start a thread.
     pub fn start(thread: &'static str, wake: impl Fn() + Send + 'static) -> std::io::Result<MethodJob> {
-        // Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
-        let threads =
-            move || rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{thread} {i}")).build().ok();
-        let work = |threads: &mut Option<rayon::ThreadPool>, q: MethodRequest, task: &Task| {
-            let result = match threads {
-                Some(threads) => threads.install(|| reconstruct(&q, task)),
-                None => reconstruct(&q, task),
-            };
-            (q, result)
-        };
-        let worker = Worker::spawn(thread, threads, work, wake)?;
+        let work = |kept: &mut Kept, q: MethodRequest, task: &Task| kept.work(q, task);
+        let worker = Worker::spawn(thread, move || Kept::new(thread), work, wake)?;
         Ok(MethodJob { worker, asked: None, outdated: None, output: None, refusal: None })
     }
 
@@ -196,7 +221,7 @@ impl MethodJob {
         let current =
             self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
         self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
-        if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
+        if !self.asked.as_ref().is_some_and(|a| a.serves(&request)) {
             if !held {
                 self.worker.cancel_older_than(PATIENCE);
             }
@@ -247,16 +272,17 @@ impl MethodJob {
     }
 }
 
-fn reconstruct(q: &MethodRequest, task: &Task) -> Result<Answer, ReconstructError> {
+fn reconstruct(q: &MethodRequest, method: &dyn Reconstructor, task: &Task) -> Result<Answer, ReconstructError> {
     let Basis { radar, ends, floor, normalisation, snapshot_range_metres } = &q.basis;
     let request = Request {
         floor: *floor,
         normalisation: *normalisation,
         snapshot_range_metres: *snapshot_range_metres,
+        may_follow: !q.at_rest,
         task: task.clone(),
     };
-    let answer = q.method.reconstruct(radar, ends, &request)?;
-    let list = || find(q.method.as_ref(), radar, ends, &request, &answer);
+    let answer = method.reconstruct(radar, ends, &request)?;
+    let list = || find(method, radar, ends, &request, &answer);
     let found = q.listed.then(list).transpose()?;
     Ok((answer, found))
 }

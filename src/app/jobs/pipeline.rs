@@ -203,12 +203,12 @@ impl Pipeline {
     /// Asks for an output of the latest maps, unless it was asked for just that.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.result.as_ref().and_then(|r| {
-            let target = r.target();
+            let (target, at_rest) = (r.target(), r.request.at_rest);
             // A recording of the two ends has none; a scene has one as soon as somebody wants it.
-            (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target))
+            (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target, at_rest))
         });
-        let Some(((basis, target), method)) = latest.zip(state.method_in(slot).cloned()) else { return };
-        let request = MethodRequest { basis, target, method, listed };
+        let Some(((basis, target, at_rest), method)) = latest.zip(state.method_in(slot).cloned()) else { return };
+        let request = MethodRequest { basis, target, method, listed, at_rest };
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
