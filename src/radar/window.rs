@@ -45,12 +45,16 @@ impl WindowFunction {
         }
     }
 
-    /// The symmetric window of `len` points ([`WindowFunction::cosines`]).
-    ///
-    /// One point or none gives ones, as NumPy's windows do; so do two, of which most windows would leave nothing.
+    /// The window for `len` points: this one from three on. One point or none isn't weighed, as by NumPy's windows, and neither are two, of
+    /// which most windows would leave nothing.
+    pub fn for_points(self, len: usize) -> WindowFunction {
+        if len < 3 { WindowFunction::Rectangular } else { self }
+    }
+
+    /// The symmetric window of `len` points ([`WindowFunction::cosines`]); ones where [`WindowFunction::for_points`] has no other.
     pub fn weights(self, len: usize) -> Vec<f64> {
-        let [a, b, c] = self.cosines();
-        if len < 3 {
+        let [a, b, c] = self.for_points(len).cosines();
+        if len < 2 {
             return vec![1.0; len];
         }
         let turn = |n: usize| TAU * n as f64 / (len - 1) as f64;

@@ -25,10 +25,9 @@ pub struct Lobe {
 }
 
 impl Pattern {
-    /// The pattern of `window` over `len` points; fewer than two points count as no weights at all, as in [`WindowFunction::weights`].
+    /// The pattern of `window` over `len` points, or of what [`WindowFunction::for_points`] has in its place.
     pub fn new(window: WindowFunction, len: usize) -> Self {
-        let window = if len < 2 { WindowFunction::Rectangular } else { window };
-        Pattern { cosines: window.cosines(), len: len.max(1) }
+        Pattern { cosines: window.for_points(len).cosines(), len: len.max(1) }
     }
 
     /// `sum_n w[n] cos(2 pi (n - (len - 1)/2) bins / len)`, real since the window is symmetric; exact.
