@@ -7,6 +7,7 @@ use apertura::evaluate::trial::Trial;
 use apertura::interact::Document;
 use apertura::maps::Normalisation;
 use apertura::radar::Radar;
+use apertura::reconstruct::nomp::Settings;
 use apertura::reconstruct::{About, Baseline, Hybrid, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::{Floor, TwoEnds};
@@ -146,7 +147,9 @@ impl Reconstructor for Watched {
 fn a_drag_is_followed_and_at_rest_the_answer_is_that_from_scratch() {
     let asked = Arc::new([AtomicU32::new(0), AtomicU32::new(0)]);
     let count = |i: usize| asked[i].load(Ordering::SeqCst);
-    let hybrid = Arc::new(Hybrid::new(Arc::new(Baseline)));
+    // Work enough for two points.
+    let few = Settings { most_work: 1000, most_line_work: 0, ..Settings::default() };
+    let hybrid = Arc::new(Hybrid::new(Arc::new(Baseline)).with_settings(few));
     let mut s = Session::with_methods(vec![Arc::new(Watched { method: hybrid.clone(), asked: asked.clone() })]);
     let scratch = count(0);
     assert!(scratch > 0);
