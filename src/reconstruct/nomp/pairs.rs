@@ -31,10 +31,6 @@ const GUESS: f64 = 6.0;
 /// Guesses that one tone takes part in.
 const MOST_GUESSES: usize = 2;
 
-/// What the ends disagree on a place beyond the maximum range counts so many times, and that much more: where the array is too small to
-/// see curvature, a place within sounds alike.
-const BEYOND: [f64; 2] = [4.0, 0.02];
-
 /// Rounds in which directions and the tones of the neighbouring element are brought together.
 const ROUNDS: usize = 4;
 
@@ -67,16 +63,6 @@ struct Pair {
     first: usize,
     last: usize,
     point: Paired,
-    /// Whether the place lies beyond the maximum range.
-    is_beyond: bool,
-}
-
-impl Pair {
-    /// What is tried first has the least.
-    fn rank(&self) -> f64 {
-        let [times, more] = BEYOND;
-        if self.is_beyond { times * self.point.apart + more } else { self.point.apart }
-    }
 }
 
 /// An end's element nearest to its middle, and the tones heard there.
@@ -88,7 +74,7 @@ struct Listener {
 /// What both ends' tones lead to.
 #[derive(Debug, Clone, Default)]
 pub struct Pairs {
-    /// Points, each of tones of its own, those first on which the ends agree best, within the maximum range by preference.
+    /// Points, each of tones of its own, those first on which the ends agree best.
     pub points: Vec<Paired>,
     /// Places (x, y), metres, where points may be: those and others that take part in the same tones.
     pub guesses_metres: Vec<[f64; 2]>,
@@ -110,7 +96,7 @@ pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> 
             pairs.extend(candidates(radar, &first, &last, i, wraps));
         }
     }
-    pairs.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
+    pairs.sort_by(|a, b| a.point.apart.total_cmp(&b.point.apart));
     let guesses = matched(&pairs, &first, &last, MOST_GUESSES);
     let guesses_metres = guesses.iter().map(|pair| pair.point.atom.position_metres(0.0)).collect();
     pairs.retain(|pair| pair.point.apart < MOST_APART);
@@ -213,8 +199,7 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         if apart < GUESS * MOST_APART {
             let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
             let is_alone = own.is_alone && other.is_alone;
-            let point = Paired { atom, apart, is_alone };
-            pairs.push(Pair { first: i, last: j, point, is_beyond: wraps > 0 });
+            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart, is_alone } });
         }
     }
     pairs
