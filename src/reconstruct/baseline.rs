@@ -21,6 +21,10 @@ impl Reconstructor for Baseline {
         }
     }
 
+    fn check_hearing(&self, _: &TwoEnds) -> Result<(), ReconstructError> {
+        Ok(())
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let log = channels_map(radar, ends.first.view()).log_magnitude();
         Ok(Reconstruction { lambda: log.normalise(request.normalisation), reflectors: Vec::new() })

@@ -3,9 +3,10 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use crate::maps::RangeAngleMap;
-use crate::radar::Radar;
+use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
 use ndarray::Array3;
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Who a method is.
@@ -59,6 +60,7 @@ pub trait Reconstructor: Send + Sync {
         request.task.check()?;
         check_ends(radar, ends)?;
         self.check_radar(radar)?;
+        self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
         let mut found = self.estimate(radar, &ends, request)?;
         found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
@@ -73,6 +75,21 @@ pub trait Reconstructor: Send + Sync {
     /// [`Request::may_follow`] it starts from its last answer, and otherwise it answers as without a memory.
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
         None
+    }
+
+    /// Says whether the method can work on ends of which one heard nothing at all: by default none can, as it joins both.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] names the deaf end.
+    fn check_hearing(&self, ends: &TwoEnds) -> Result<(), ReconstructError> {
+        let is_silent = End::BOTH.map(|end| ends.end(end).iter().all(|v| *v == Complex64::default()));
+        match is_silent {
+            [false, false] | [true, true] => Ok(()),
+            [is_first, _] => {
+                let end = if is_first { "first" } else { "last" };
+                Err(self.unusable(format!("it joins both ends, and no element of the {end} end heard anything")))
+            }
+        }
     }
 
     /// Estimates the whole array's map from the thesis networks' own input, `[4, range bins, columns]`
@@ -141,7 +158,6 @@ pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
 mod tests {
     use super::*;
     use crate::scene::Reflector;
-    use num_complex::Complex64;
 
     /// Answers one reflector as strong as the strongest sample.
     struct Echo;
@@ -170,6 +186,9 @@ mod tests {
         let request = Request::default();
         assert_eq!(Echo.reconstruct(&radar, &ends, &request), Ok(Reconstruction::silence(&radar)));
         ends.first[[1, 2]] = Complex64::from(3e-7);
+        let error = Echo.reconstruct(&radar, &ends, &request).unwrap_err().to_string();
+        assert!(error.contains("echo") && error.contains("no element of the last end"), "{error}");
+        ends.last[[0, 0]] = Complex64::from(1e-7);
         assert_eq!(Echo.reconstruct(&radar, &ends, &request).unwrap().reflectors[0].reflectivity, 3e-7);
         let long = Radar { samples: 16, ..radar.clone() };
         let error = Echo.reconstruct(&long, &crate::signal::BeatSignal::silence(&long).two_ends(&long), &request);

@@ -120,7 +120,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     ui.advance_cursor_after_rect(area);
     let bar = Bar { table: colour_table(ColourMap::Viridis), low: 0.0, high: 1.0, title: "likeness" };
     let right = bar.width(ui.painter(), area.height() - axes::BOTTOM - 8.0);
-    let x = Axis::new(-half[0], half[0], "cos θ off the reflector's, columns");
+    let x = Axis::new(-half[0], half[0], "cos θ off, columns");
     let chart = Chart { name: "Ambiguity function", x, y: Axis::new(-half[1], half[1], "range off, m") };
     let map = area.with_max_x(area.right() - right + 12.0);
     let drawn = chart.show(ui, map, Sense::hover());

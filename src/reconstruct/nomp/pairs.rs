@@ -31,6 +31,10 @@ const GUESS: f64 = 6.0;
 /// Guesses that one tone takes part in.
 const MOST_GUESSES: usize = 2;
 
+/// A place beyond the maximum range is not looked at where all that speaks for or against it differs by less than this, as a part of what is
+/// allowed, from what does for the place within: the array is too small to see curvature there.
+const ALIKE: f64 = 1.0;
+
 /// Rounds in which directions and the tones of the neighbouring element are brought together.
 const ROUNDS: usize = 4;
 
@@ -63,6 +67,16 @@ struct Pair {
     first: usize,
     last: usize,
     point: Paired,
+    /// Directions at both ends and gains: how far they are from agreeing, as parts of what is allowed.
+    disagreements: [f64; 3],
+}
+
+impl Pair {
+    /// Whether the same tones speak for `other` as they do for this.
+    fn sounds_like(&self, other: &Self) -> bool {
+        let differences = self.disagreements.iter().zip(other.disagreements).map(|(own, other)| (own - other).abs());
+        self.last == other.last && differences.sum::<f64>() < ALIKE
+    }
 }
 
 /// An end's element nearest to its middle, and the tones heard there.
@@ -92,9 +106,11 @@ pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> 
     let (Some(first), Some(last)) = (first, last) else { return Pairs::default() };
     let mut pairs: Vec<Pair> = Vec::new();
     for i in 0..first.heard.len() {
-        for wraps in 0..2 {
-            pairs.extend(candidates(radar, &first, &last, i, wraps));
-        }
+        let within = candidates(radar, &first, &last, i, 0);
+        let mut beyond = candidates(radar, &first, &last, i, 1);
+        beyond.retain(|far| !within.iter().any(|near| near.sounds_like(far)));
+        pairs.extend(within);
+        pairs.extend(beyond);
     }
     pairs.sort_by(|a, b| a.point.apart.total_cmp(&b.point.apart));
     let guesses = matched(&pairs, &first, &last, MOST_GUESSES);
@@ -190,16 +206,16 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         if range <= 0.0 || other_range <= 0.0 || square < 0.0 {
             continue;
         }
-        let cosines = [
+        let disagreements = [
             (along / range - own.cos) / own.cos_tolerance,
             ((along - between) / other_range - other.cos) / other.cos_tolerance,
+            (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / LOG_GAIN,
         ];
-        let gain = (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / LOG_GAIN;
-        let apart = cosines[0].abs() + cosines[1].abs() + gain.abs();
+        let apart = disagreements.iter().map(|part| part.abs()).sum();
         if apart < GUESS * MOST_APART {
             let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
             let is_alone = own.is_alone && other.is_alone;
-            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart, is_alone } });
+            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart, is_alone }, disagreements });
         }
     }
     pairs

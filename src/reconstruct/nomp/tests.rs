@@ -85,7 +85,8 @@ fn noise_alone_and_one_sample_give_a_bounded_answer() {
     assert!(found.reflectors.len() <= 1, "noise is not a scene: {:?}", found.reflectors);
 
     let mut one = ends_of(&radar, &Scene::default());
-    one.first[[3, 100]] = Complex64::from(1.0);
+    // The last end must hear something, however little.
+    (one.first[[3, 100]], one.last[[0, 0]]) = (Complex64::from(1.0), Complex64::from(1e-12));
     let found = Nomp::default().reconstruct(&radar, &one, &Request::default()).unwrap();
     assert!(found.lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)));
     assert!(found.reflectors.iter().all(|r| r.x_metres.is_finite() && r.reflectivity.is_finite()));
@@ -158,4 +159,34 @@ fn what_takes_too_long_ends_where_its_work_is_spent() {
     assert!(!first.complete);
     // Counted, not timed: the same every time.
     assert_eq!(first, find(&radar, &ends, &Request::default(), &little).unwrap());
+}
+
+#[test]
+fn an_array_too_small_to_see_curvature_puts_nothing_beyond_the_maximum_range() {
+    let radar = Radar {
+        carrier_hz: 24.125e9,
+        bandwidth_hz: 250e6,
+        element_spacing_metres: 0.00622,
+        elements: 16,
+        end_elements: 5,
+        samples: 256,
+        ..Radar::default()
+    };
+    let scene = Scene::of_points([(0.0, 20.0), (17.75, 30.74)]);
+    for seed in 0..6 {
+        let floor = Floor::Snr(Decibels(30.0));
+        let ends = simulate(&radar, &scene, floor, seed).unwrap().two_ends(&radar);
+        let found = Nomp::default().reconstruct(&radar, &ends, &Request { floor, ..Request::default() }).unwrap();
+        let ranges: Vec<f64> = found.reflectors.iter().map(|r| r.x_metres.hypot(r.y_metres)).collect();
+        assert!(ranges.iter().all(|range| *range < radar.max_range_metres()), "{seed}: {ranges:?}");
+        assert!(worst_error_metres(&scene, &found) < 2.0, "{seed}: {:?}", found.reflectors);
+    }
+}
+
+#[test]
+fn what_stands_beyond_the_maximum_range_of_a_wide_array_is_found_there() {
+    let radar = Radar::default();
+    let scene = Scene::of_points([(4.8, 47.8), (-46.8, 22.7), (8.0, 18.3), (50.0, 12.0)]);
+    let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
+    assert!(worst_error_metres(&scene, &found) < 1e-6, "{:?}", found.reflectors);
 }

@@ -3,16 +3,30 @@
 use super::canvas::Canvas;
 use crate::app::widgets::axes;
 use crate::interact::Place;
-use crate::scene::{Disturbances, Interferer, Mirror};
+use crate::scene::{Interferer, Mirror, Object, Scene};
 use eframe::egui::{Align2, Color32, Painter, Stroke, vec2};
 
-/// Draws the wall that mirrors and the other radar.
-pub fn draw(painter: &Painter, canvas: Canvas<'_>, disturbances: &Disturbances) {
-    if let Some(mirror) = &disturbances.mirror {
+/// Most reflectors whose ghosts are drawn.
+const MOST_MIRRORED: usize = 400;
+
+/// Draws the wall that mirrors, what is seen in it, and the other radar.
+pub fn draw(painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
+    if let Some(mirror) = &scene.disturbances.mirror {
         wall(painter, canvas, mirror);
+        ghosts(painter, canvas, scene, mirror);
     }
-    if let Some(interferer) = &disturbances.interferer {
+    if let Some(interferer) = &scene.disturbances.interferer {
         radar(painter, canvas, interferer);
+    }
+}
+
+/// Where the radar hears what isn't there: three hollow marks for every reflector before the wall.
+fn ghosts(painter: &Painter, canvas: Canvas<'_>, scene: &Scene, mirror: &Mirror) {
+    let drawn = scene.objects.iter().filter(|object| object.reflector_count() <= MOST_MIRRORED);
+    let reflectors = drawn.flat_map(Object::reflectors).take(MOST_MIRRORED);
+    for ghost in reflectors.flat_map(|reflector| mirror.ghosts(canvas.radar, &reflector)) {
+        let at = canvas.at(Place::new(ghost.x_metres, ghost.y_metres));
+        painter.circle_stroke(at, 3.0, Stroke::new(1.0, canvas.inks.grid_text));
     }
 }
 

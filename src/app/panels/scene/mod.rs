@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
-    disturbances::draw(&painter, canvas, &editor.scene().disturbances);
+    disturbances::draw(&painter, canvas, editor.scene());
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
         let look = Look { selected: editor.selection().contains(index), hovered };

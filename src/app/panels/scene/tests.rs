@@ -52,6 +52,28 @@ fn a_drag_moves_the_object_and_the_pointer_is_told() {
 }
 
 #[test]
+fn ghosts_stand_where_the_radar_hears_them() {
+    let mut mirrored = Scene::of_points([(3.0, 20.0)]);
+    mirrored.disturbances.mirror = Some(crate::scene::Mirror::default());
+    let rings = |scene: &Harness<'static, Held>| {
+        let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().view);
+        let shapes = scene.output().shapes.iter();
+        let hollow = shapes.filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Circle(circle) if circle.fill == egui::Color32::TRANSPARENT => Some(circle.center),
+            _ => None,
+        });
+        hollow.map(|at| view.to_scene(rect, at)).collect::<Vec<Place>>()
+    };
+    let without = rings(&panel(Scene::of_points([(3.0, 20.0)]))).len();
+    let rings = rings(&panel(mirrored.clone()));
+    assert_eq!(rings.len(), without + 3);
+    for ghost in &mirrored.echoing(&Radar::default())[1..] {
+        let is_there = |place: &Place| (place.x_metres - ghost.x_metres).hypot(place.y_metres - ghost.y_metres) < 1e-3;
+        assert!(rings.iter().any(is_there), "{ghost:?} of {rings:?}");
+    }
+}
+
+#[test]
 fn labels_stand_around_the_half_disc_and_none_is_cut() {
     for size in [[280.0, 170.0], [480.0, 300.0], [1400.0, 800.0]] {
         let radar = Radar::default();
