@@ -63,7 +63,9 @@ impl Kernel for Sum<'_> {
             for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
                 fill_factors::<f64, W, FMA>(self.model, self.element_x, reflector, f);
                 let gain = ComplexLanes { re: Lanes::splat(gain.re), im: Lanes::splat(gain.im) };
-                f.rows.iter_mut().for_each(|row| *row = row.times::<FMA>(gain));
+                for row in &mut f.rows {
+                    *row = row.times::<FMA>(gain);
+                }
             }
             add_product::<f64, W, FMA>(&factors[..chunk.len()], &mut sum);
         }

@@ -154,8 +154,11 @@ impl Kernel for Correlate<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Complex64 {
-        let of = |(s, y): (&Series, &[Complex64])| s.start.conj() * polynomial::<FMA>(s.step.conj(), y);
-        self.echo.series.iter().zip(self.y.chunks_exact(self.echo.samples)).map(of).sum()
+        let mut sum = Complex64::default();
+        for (s, y) in self.echo.series.iter().zip(self.y.chunks_exact(self.echo.samples)) {
+            sum += s.start.conj() * polynomial::<FMA>(s.step.conj(), y);
+        }
+        sum
     }
 }
 

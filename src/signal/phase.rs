@@ -47,6 +47,21 @@ fn product<const W: usize, const FMA: bool>(a: Lanes<f64, W>, b: Lanes<f64, W>) 
     Pair { hi, lo: ((ah * bh - hi) + ah * bl + al * bh) + al * bl }
 }
 
+/// `rate * distance` less the nearest multiple of `period`, a small whole number.
+#[inline(always)]
+fn rest<const W: usize, const FMA: bool>(
+    distance: Pair<Lanes<f64, W>>,
+    rate: Pair<f64>,
+    period: f64,
+) -> Pair<Lanes<f64, W>> {
+    let rate = rate.splat();
+    let p = product::<W, FMA>(distance.hi, rate.hi);
+    let low = p.lo + distance.hi * rate.lo + distance.lo * rate.hi;
+    let turns = (p.hi * Lanes::splat(1.0 / period)).nearest();
+    // The product of two whole numbers is exact.
+    Pair { hi: p.hi - turns * Lanes::splat(period), lo: low }
+}
+
 fn reciprocal(a: f64) -> Pair<f64> {
     let hi = 1.0 / a;
     Pair { hi, lo: (-hi).mul_add(a, 1.0) / a }
@@ -158,16 +173,8 @@ impl EchoModel {
         let residual = (s.hi - square.hi) - square.lo + low;
         let distance = sum(root, residual.zip(root, |a, b| a / (2.0 * b)));
 
-        let whole = |rate: Pair<f64>, period: f64| {
-            let rate = rate.splat();
-            let p = product::<W, FMA>(distance.hi, rate.hi);
-            let low = p.lo + distance.hi * rate.lo + distance.lo * rate.hi;
-            let turns = (p.hi * of(1.0 / period)).nearest();
-            // `period` is a small whole number: its product with a whole number of turns is exact.
-            Pair { hi: p.hi - turns * of(period), lo: low }
-        };
-        let carrier = whole(self.per_wavelength, 1.0);
-        let bins = whole(self.per_bin, self.samples);
+        let carrier = rest::<W, FMA>(distance, self.per_wavelength, 1.0);
+        let bins = rest::<W, FMA>(distance, self.per_bin, self.samples);
         let beat = bins.hi.map(|v| v / self.samples);
         let back = product::<W, FMA>(beat, of(self.samples));
         let scale = self.power * r.reflectivity;

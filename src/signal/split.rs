@@ -78,7 +78,10 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     f: &mut Factors<T, W>,
 ) {
     let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
-    let fine: [_; STEP] = std::array::from_fn(|i| phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64)));
+    let mut fine = [ComplexLanes::zero(); STEP];
+    for (i, fine) in fine.iter_mut().enumerate() {
+        *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64));
+    }
     for (i, columns) in f.columns.chunks_exact_mut(STEP).enumerate() {
         let coarse = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STEP) as f64));
         for (column, fine) in columns.iter_mut().zip(fine) {
@@ -86,8 +89,9 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
         }
     }
     let amplitude = echo.amplitude.round_to();
-    let fine: [_; STEP] =
-        std::array::from_fn(|i| phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STRIDE) as f64)).scaled(amplitude));
+    for (i, fine) in fine.iter_mut().enumerate() {
+        *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STRIDE) as f64)).scaled(amplitude);
+    }
     for (i, rows) in f.rows.chunks_exact_mut(STEP).enumerate() {
         let turns = echo.beat_turns_at::<FMA>((i * STEP * STRIDE) as f64) + echo.carrier_turns;
         let coarse = phasor::<T, W, FMA>(turns);

@@ -225,14 +225,15 @@ impl Figure for Report {
             .draw()?;
         let rows: Vec<(&str, (f64, f64))> = self.methods.iter().map(|m| m.method).zip(dots).collect();
         let places: Vec<(i32, i32)> = rows.iter().map(|(_, dot)| chart.backend_coord(dot)).collect();
-        // Names stand beside their dots, moved up or down, with a line to the dot, where they would cover a name or a dot.
+        let top = chart.plotting_area().get_pixel_range().1.start;
+        // Names stand beside their dots, moved up or down, with a line to the dot, where they would cover a name, a dot or the title.
         let mut taken: Vec<Spot> = places.iter().map(|(x, y)| Spot { x: x - 6, y: y - LABEL / 2, width: 12 }).collect();
         for (i, ((name, dot), (x, y))) in rows.iter().zip(&places).enumerate() {
             let hue = HSLColor(i as f64 / rows.len() as f64, 0.75, 0.4);
             let beside = Spot { x: x + 10, y: y - LABEL / 2, width: 8 * name.len() as i32 };
             let steps = (0..40).map(|k| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 });
             let moved = steps.map(|k| Spot { y: beside.y + k * LABEL, ..beside });
-            let spot = moved.into_iter().find(|s| !taken.iter().any(|t| t.overlaps(s))).unwrap_or(beside);
+            let spot = moved.into_iter().find(|s| s.y >= top && !taken.iter().any(|t| t.overlaps(s))).unwrap_or(beside);
             if spot.y != beside.y {
                 let line = vec![(*x, *y), (spot.x - 2, spot.y + LABEL / 2)];
                 area.draw(&PathElement::new(line, BLACK.mix(0.35)))?;

@@ -184,7 +184,9 @@ impl Kernel for Subtract<'_> {
                     re: Lanes(std::array::from_fn(|lane| gain(lane).re)),
                     im: Lanes(std::array::from_fn(|lane| gain(lane).im)),
                 };
-                f.rows.iter_mut().for_each(|row| *row = row.times::<FMA>(gain));
+                for row in &mut f.rows {
+                    *row = row.times::<FMA>(gain);
+                }
             }
             add_product::<f64, W, FMA>(factors, &mut residual);
         }

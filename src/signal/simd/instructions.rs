@@ -160,6 +160,9 @@ impl Simd {
 }
 
 /// Work that is compiled for several instruction sets.
+///
+/// What it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be compiled
+/// apart, without the instructions, where every fused multiply-add is a call.
 pub trait Kernel {
     /// What it returns.
     type Output;
