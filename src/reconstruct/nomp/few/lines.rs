@@ -27,6 +27,9 @@ const QUANTILE: f64 = 0.3;
 /// Starts kept of each column of the coarse grid.
 const BEST_OF_COLUMN: usize = 8;
 
+/// Starts of a column that are looked at in the order of what they promise.
+const SORTED: usize = 64;
+
 /// A line that the residual may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineCandidate {
@@ -58,52 +61,10 @@ impl LineDetector {
 
     /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
     pub fn coarse(&self, spacing: f64, count: usize, most: usize) -> Vec<LineCandidate> {
-        let blocks = (count / BLOCK).max(1);
         let columns = (2.0 * 0.82 * self.extent_metres / X_STEP_METRES) as usize;
-        let starts = (self.extent_metres / spacing) as usize;
-        let mut found: Vec<LineCandidate> = (0..columns)
-            .into_par_iter()
-            .flat_map_iter(|column| {
-                let x = column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
-                let offsets: [f64; PHASES] = std::array::from_fn(|phase| spacing * phase as f64 / PHASES as f64);
-                let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self, end, x, o, spacing, starts + count)));
-                // The quantile can't exceed the mean of all over the part that lies above it: most starts need no more than that.
-                let mut trials: Vec<Trial> = Vec::with_capacity(PHASES * starts);
-                for (phase, ends) in ends.iter().enumerate() {
-                    trials.extend((0..starts).map(|start| {
-                        let [a, b] = [0, 1].map(|end| ends[end].totals(start, blocks));
-                        let (sum, weight) = (a[0] + b[0], a[1] + b[1]);
-                        let bound = sum / (2 * blocks) as f64 / (1.0 - QUANTILE);
-                        Trial { bound: bound * bound * weight, weight, phase, start }
-                    }));
-                }
-                trials.sort_unstable_by(|a, b| {
-                    b.bound.total_cmp(&a.bound).then((a.phase, a.start).cmp(&(b.phase, b.start)))
-                });
-                let mut best: Vec<LineCandidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
-                let mut gains = Vec::with_capacity(2 * blocks);
-                for Trial { bound, weight, phase, start } in trials {
-                    let least = if best.len() < BEST_OF_COLUMN { 0.0 } else { best[BEST_OF_COLUMN - 1].score };
-                    if bound <= least {
-                        break;
-                    }
-                    gains.clear();
-                    for end in &ends[phase] {
-                        gains.extend((0..blocks).map(|b| end.gain[start + b * BLOCK]));
-                    }
-                    let at = (gains.len() as f64 * QUANTILE) as usize;
-                    let gain = *gains.select_nth_unstable_by(at, f64::total_cmp).1;
-                    let score = gain * gain * weight;
-                    if score > least {
-                        let start = offsets[phase] + start as f64 * spacing;
-                        best.push(LineCandidate { atom: Atom::Line { x, start, spacing, count }, score });
-                        best.sort_by(|a, b| b.score.total_cmp(&a.score));
-                        best.truncate(BEST_OF_COLUMN);
-                    }
-                }
-                best
-            })
-            .collect();
+        let x = |column: usize| column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
+        let mut found: Vec<LineCandidate> =
+            (0..columns).into_par_iter().flat_map_iter(|column| self.best_at(x(column), spacing, count)).collect();
         found.sort_by(|a, b| b.score.total_cmp(&a.score));
         let mut apart: Vec<LineCandidate> = Vec::new();
         for candidate in found {
@@ -115,6 +76,41 @@ impl LineDetector {
             }
         }
         apart
+    }
+
+    /// The best lines of the coarse grid at x, metres.
+    fn best_at(&self, x: f64, spacing: f64, count: usize) -> Vec<LineCandidate> {
+        let blocks = (count / BLOCK).max(1);
+        let starts = (self.extent_metres / spacing) as usize;
+        let offsets: [f64; PHASES] = std::array::from_fn(|phase| spacing * phase as f64 / PHASES as f64);
+        let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self, end, x, o, spacing, starts + count)));
+        let at = (2.0 * blocks as f64 * QUANTILE) as usize;
+        let mut best: Vec<LineCandidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
+        let mut gains = Vec::with_capacity(2 * blocks);
+        for Trial { bound, weight, phase, start } in trials(&ends, starts, blocks) {
+            let least = if best.len() < BEST_OF_COLUMN { 0.0 } else { best[BEST_OF_COLUMN - 1].score };
+            if bound <= least {
+                continue;
+            }
+            gains.clear();
+            for end in &ends[phase] {
+                gains.extend((0..blocks).map(|b| end.gain[start + b * BLOCK]));
+            }
+            // Counting tells sooner than finding it whether the quantile is large enough.
+            let needed = (least / weight).sqrt();
+            if gains.iter().filter(|gain| **gain <= needed).count() > at {
+                continue;
+            }
+            let gain = *gains.select_nth_unstable_by(at, f64::total_cmp).1;
+            let score = gain * gain * weight;
+            if score > least {
+                let start = offsets[phase] + start as f64 * spacing;
+                best.push(LineCandidate { atom: Atom::Line { x, start, spacing, count }, score });
+                best.sort_by(|a, b| b.score.total_cmp(&a.score));
+                best.truncate(BEST_OF_COLUMN);
+            }
+        }
+        best
     }
 
     /// Energy that a line explains when all its points at one end are added with their phases; the sum over both ends.
@@ -158,6 +154,27 @@ struct Trial {
     start: usize,
 }
 
+/// Every start of every phase with the most that its score can be: those that promise most first, hardly any of the others is looked at.
+fn trials(ends: &[[Blocks; 2]; PHASES], starts: usize, blocks: usize) -> Vec<Trial> {
+    let mut trials: Vec<Trial> = Vec::with_capacity(PHASES * starts);
+    for (phase, ends) in ends.iter().enumerate() {
+        trials.extend((0..starts).map(|start| {
+            let [a, b] = [0, 1].map(|end| ends[end].totals(start, blocks));
+            let (sum, weight) = (a[0] + b[0], a[1] + b[1]);
+            // The quantile can't exceed the mean of all over the part that lies above it.
+            let bound = sum / (2 * blocks) as f64 / (1.0 - QUANTILE);
+            Trial { bound: bound * bound * weight, weight, phase, start }
+        }));
+    }
+    let by_bound = |a: &Trial, b: &Trial| b.bound.total_cmp(&a.bound).then((a.phase, a.start).cmp(&(b.phase, b.start)));
+    if trials.len() > SORTED {
+        trials.select_nth_unstable_by(SORTED, by_bound);
+    }
+    let sorted = trials.len().min(SORTED);
+    trials[..sorted].sort_unstable_by(by_bound);
+    trials
+}
+
 /// What a column of reflectors would have left at one end.
 struct Column<'a> {
     detector: &'a LineDetector,
@@ -198,7 +215,7 @@ impl Blocks {
         for i in first {
             let last = (i + BLOCK).min(points);
             let weight = prefix[last].1 - prefix[i].1;
-            let gain = (prefix[last].0 - prefix[i].0).norm() / weight;
+            let gain = (prefix[last].0 - prefix[i].0).norm_sqr().sqrt() / weight;
             let before = if i >= BLOCK { blocks.running[i - BLOCK] } else { [0.0; 2] };
             blocks.gain.push(gain);
             blocks.running.push([before[0] + gain, before[1] + weight]);

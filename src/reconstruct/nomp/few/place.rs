@@ -65,14 +65,18 @@ impl Placer<'_> {
         if far.cost < 0.5 * near.cost { far } else { near }
     }
 
-    /// The best line of about `shape` in `residual` (not windowed), moved to its best place.
-    pub fn line(&self, residual: &[Complex64], shape: LineShape) -> Option<Fit> {
+    /// The best line of about `shape` in `residual` (not windowed), moved to its best place; `None` where it leaves more than `most_cost` before
+    /// it is moved.
+    pub fn line(&self, residual: &[Complex64], shape: LineShape, most_cost: f64) -> Option<Fit> {
         let detector = LineDetector::new(self.radar, residual);
         let spacing = shape.spacing_bins * self.radar.range_resolution_metres();
         let coarse = detector.coarse(spacing, shape.points, 8);
         let mut fine: Vec<LineCandidate> = coarse.iter().map(|c| detector.fine(&c.atom, 0.06, 0.004)).collect();
         fine.sort_by(|a, b| b.score.total_cmp(&a.score));
         fine.truncate(3);
+        if !fine.iter().any(|line| self.problem.solve(&[line.atom], Tie::PerEnd).cost <= most_cost) {
+            return None;
+        }
         let placed: Vec<Fit> = fine.par_iter().map(|line| self.refined(line.atom, ALONE)).collect();
         cheapest(placed).map(|line| self.slid(line.atoms[0]))
     }
