@@ -171,7 +171,7 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
             ("x", millimetres(bound.x_metres)),
             ("y", millimetres(bound.y_metres)),
             ("range", millimetres(bound.range_metres)),
-            ("cos θ", format!("{} columns", significant(bound.cos_theta / column))),
+            ("column", significant(bound.cos_theta / column)),
         ]
         .into_iter()
         .enumerate()

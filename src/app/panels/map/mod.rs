@@ -179,15 +179,7 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         // What is said in the place of the map stays readable.
         return;
     }
-    if input.veil.is_none() {
-        let pointer = response.hover_pos().filter(|_| input.numbers);
-        overlay::marks(inner, frame, &input.marks, pointer);
-        overlay::selected(inner, frame, input.scene, input.selection);
-        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame));
-        if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
-            kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
-        }
-    }
+    // Beneath all that is to be read.
     if let Some(cursor) = &input.cursor {
         let told = input.veil.is_none() && input.numbers;
         let beneath = input.cells.as_ref();
@@ -196,6 +188,15 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
             None => beneath,
         };
         overlay::cursor(inner, frame, cursor, cells.filter(|_| told));
+    }
+    if input.veil.is_none() {
+        let pointer = response.hover_pos().filter(|_| input.numbers);
+        overlay::marks(inner, frame, &input.marks, pointer);
+        overlay::selected(inner, frame, input.scene, input.selection);
+        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame));
+        if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
+            kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
+        }
     }
     if is_old {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
