@@ -252,8 +252,8 @@ mod tests {
         assert_eq!(bounds.state().1, [Command::SetBounds(all)]);
     }
 
-    #[test]
-    fn the_ellipse_has_a_scale_and_likeness_a_colour_bar() {
+    /// The panel with the bounds of one point.
+    fn panel(size: [f32; 2]) -> Harness<'static, Memory> {
         let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
         let reflector = Reflector { x_metres: 1.5, y_metres: 9.0, reflectivity: 1.0 };
         let request = BoundsRequest {
@@ -266,16 +266,19 @@ mod tests {
             columns: 12.0,
             bins: 4.0,
         };
+        let result = crate::app::jobs::bounds_of(request);
+        let draw = move |ui: &mut Ui, memory: &mut Memory| {
+            let (settings, result) = (BoundsSettings::default(), result.as_ref().ok());
+            let input = Input { settings, elements: 64, has_subject: true, result, error: None };
+            _ = show(ui, input, memory);
+        };
+        Harness::builder().with_size(size).build_ui_state(draw, Memory::default())
+    }
+
+    #[test]
+    fn the_ellipse_has_a_scale_and_likeness_a_colour_bar() {
         for size in [[460.0, 640.0], [1400.0, 800.0]] {
-            let result = crate::app::jobs::bounds_of(request.clone());
-            let bounds = Harness::builder().with_size(size).build_ui_state(
-                move |ui, memory: &mut Memory| {
-                    let (settings, result) = (BoundsSettings::default(), result.as_ref().ok());
-                    let input = Input { settings, elements: 64, has_subject: true, result, error: None };
-                    _ = show(ui, input, memory);
-                },
-                Memory::default(),
-            );
+            let bounds = panel(size);
             seen::assert_readable(bounds.output());
             let texts = seen::texts(bounds.output());
             let has = |text: &str| texts.iter().any(|t| t.text == text);
@@ -283,7 +286,26 @@ mod tests {
             let ellipse = bounds.get_by_label("Ellipse of one standard deviation").rect();
             let below = texts.iter().filter(|t| t.rect.top() > ellipse.bottom() && t.text.parse::<f64>().is_ok());
             assert!(below.count() >= 2, "numbers along the ellipse: {texts:?}");
+            let numbers = texts.iter().filter(|t| ellipse.expand(60.0).contains_rect(t.rect));
+            let number = |t: &seen::Seen| t.text.replace('−', "-").parse::<f64>().ok();
+            let upwards = numbers.clone().filter(|t| t.rect.right() < ellipse.left());
+            let across = numbers.filter(|t| t.rect.top() > ellipse.bottom());
+            let upwards = upwards.filter_map(|t| Some((number(t)?, -t.rect.center().y)));
+            let across = across.filter_map(|t| Some((number(t)?, t.rect.center().x)));
+            let [up, along] = [upwards.collect::<Vec<_>>(), across.collect()].map(|ticks| {
+                let [a, .., b] = ticks[..] else { panic!("{ticks:?}") };
+                f64::from(b.1 - a.1) / (b.0 - a.0)
+            });
+            assert!((up / along - 1.0).abs() < 0.03, "a millimetre is {up} points upwards and {along} across");
         }
+    }
+
+    #[test]
+    fn a_narrow_panel_cuts_nothing_off() {
+        let bounds = panel([410.0, 200.0]);
+        seen::assert_readable(bounds.output());
+        let texts = seen::texts(bounds.output());
+        assert!(["likeness", "cos θ off, columns"].into_iter().all(|text| texts.iter().any(|t| t.text == text)));
     }
 
     #[test]

@@ -96,6 +96,9 @@ fn clicks_place_markers_drags_move_them_and_their_difference_is_told() {
     assert!((moved / extent - 0.75).abs() < 5e-3, "{moved}");
     assert!(cuts.state().memory.views[&Cut::Range].span.is_none(), "the cut itself was not dragged");
     let _width = cuts.get_by_label_contains("3 dB width at B: ");
+    let is_end = |shape: &egui::Shape| matches!(shape, egui::Shape::Circle(circle) if circle.radius == 3.0);
+    let ends = cuts.output().shapes.iter().filter(|clipped| is_end(&clipped.shape)).count();
+    assert!(ends >= 2 && ends % 2 == 0, "both ends of each width are drawn, {ends}");
 }
 
 #[test]
