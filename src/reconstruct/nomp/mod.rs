@@ -20,6 +20,7 @@
 //! | `strides` | rows of reflectors from their first two |
 //! | `walls` | rows of points followed to where they end |
 //! | `end_beams` | each end's plain beams |
+//! | `registered` | both ends' beams laid over each other |
 //! | `peaks` | where a residual stands out, both ends registered |
 //! | `groups` | atoms that are neighbours in range |
 //! | `profile` | what is unexplained over range |
@@ -50,6 +51,7 @@ mod phased;
 mod profile;
 mod prune;
 mod refine;
+mod registered;
 mod search;
 mod sensor;
 mod settings;

@@ -1,11 +1,11 @@
 //! Where a residual still holds reflectors: both ends' beams laid over each other on the polar grid of the array's centre.
 //!
-//! The ends see a reflector at different ranges and angles, so each cell looks up its own range and angle at each end. Magnitudes are
-//! multiplied, not amplitudes added: the phase between the ends changes with every column of the full map, and what stands in one end
+//! Magnitudes are multiplied, not amplitudes added: the phase between the ends changes with every column of the full map, and what stands in one end
 //! alone is a ghost.
 
-use super::end_beams::{beam_of_cos, end_beams};
-use crate::radar::{End, Radar};
+use super::end_beams::end_beams;
+use super::registered::Registered;
+use crate::radar::Radar;
 use num_complex::Complex64;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -31,12 +31,9 @@ pub struct Candidate {
     rows: [i32; 2],
 }
 
-/// Where every cell of the common grid lies in the beams of each end.
+/// Looks for what stands out on the common grid.
 pub struct Detector {
-    /// Centre (x, y) of every cell, metres; one wrap beyond the maximum range included.
-    places_metres: Vec<[f64; 2]>,
-    /// `[beam * range bins + range bin]` for each end.
-    cells: [Vec<u32>; 2],
+    grid: Registered,
     beams: usize,
     columns: usize,
     bins: usize,
@@ -60,25 +57,8 @@ impl Detector {
 
     /// For the ends of `radar`.
     fn new(radar: &Radar) -> Self {
-        let (bins, bin_metres) = (radar.samples, radar.range_resolution_metres());
         let (beams, columns) = (BEAMS_PER_ELEMENT * radar.end_elements, COLUMNS_PER_ELEMENT * radar.end_elements);
-        let place = |i: usize| {
-            let range = (i / columns) as f64 * bin_metres;
-            let cos = ((i % columns) as f64 + 0.5) / columns as f64 * 2.0 - 1.0;
-            [range * cos, range * (1.0 - cos * cos).sqrt()]
-        };
-        let places_metres: Vec<[f64; 2]> = (0..2 * bins * columns).map(place).collect();
-        let cells = End::BOTH.map(|end| {
-            let centre = radar.end_centre_metres(end);
-            let cell = |[x, y]: &[f64; 2]| {
-                let dx = x - centre;
-                let range = (dx * dx + y * y).sqrt().max(1e-9);
-                let row = (range / bin_metres).round() as usize % bins;
-                (beam_of_cos(dx / range, beams) * bins + row) as u32
-            };
-            places_metres.iter().map(cell).collect()
-        });
-        Detector { places_metres, cells, beams, columns, bins }
+        Detector { grid: Registered::new(radar, beams, columns), beams, columns, bins: radar.samples }
     }
 
     /// Up to `most` places whose power exceeds `least`, strongest first, none of which may be a side lobe of a stronger one.
@@ -92,9 +72,9 @@ impl Detector {
         most: usize,
         closed: impl Fn(usize) -> bool,
     ) -> Vec<Candidate> {
-        let magnitudes: [Vec<f32>; 2] =
-            end_beams(radar, residual, self.beams).map(|beams| beams.iter().map(|v| v.norm() as f32).collect());
-        let [first, last] = &self.cells;
+        let magnitudes: [Vec<f32>; 2] = end_beams(radar, residual, self.beams)
+            .map(|beams| beams.iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
+        let [first, last] = &self.grid.cells;
         let power = |i: usize| magnitudes[0][first[i] as usize] * magnitudes[1][last[i] as usize];
         let mut strong: Vec<(f32, u32)> =
             (0..first.len()).map(|i| (power(i), i as u32)).filter(|(p, _)| f64::from(*p) > least).collect();
@@ -108,7 +88,7 @@ impl Detector {
             }
             let rows = [first, last].map(|cells| (cells[i] as usize % self.bins) as i32);
             if found.iter().all(|f| power > f.power * self.side_lobe(f.rows, rows)) {
-                let [x_metres, y_metres] = self.places_metres[i];
+                let [x_metres, y_metres] = self.grid.places_metres[i];
                 found.push(Candidate { x_metres, y_metres, power, rows });
                 if found.len() == most {
                     break;

@@ -6,10 +6,10 @@
 
 use super::atom::Atom;
 use crate::reconstruct::nomp::sensor::Sensor;
+use crate::reconstruct::nomp::solver::{Ridge, damped_step};
 use crate::reconstruct::nomp::work::Work;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::solvers::Solve;
-use faer::{Accum, Mat, MatRef, Par, Side};
+use faer::{Accum, Mat, MatRef, Par};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -57,6 +57,9 @@ impl Fit {
 
 /// Most atoms of a fit that may run beside others.
 const MOST_IN_PARALLEL: usize = 1;
+
+/// No parameter moves by more in one step, metres.
+const LONGEST_STEP: f64 = 1e3;
 
 /// Everything known about one set of atoms.
 struct State {
@@ -114,7 +117,7 @@ impl Problem<'_> {
             .map(|(block, (residual, gram))| {
                 let column = |j: usize| &flat[j * rows + block * block_len..][..block_len];
                 let values = Mat::from_fn(atoms.len(), atoms.len(), |i, j| gram[(first_column[i], first_column[j])]);
-                let solver = Ridge::new(&values);
+                let solver = Ridge::new(&values, 0.0);
                 let mut gains = vec![Complex64::default(); atoms.len()];
                 // The second pass removes what the squared condition number of the normal equations left.
                 for _ in 0..2 {
@@ -149,7 +152,8 @@ impl Problem<'_> {
             let (hessian, gradient) = self.normal_equations(&state, moving);
             let mut accepted = None;
             for _ in 0..6 {
-                let Some(step) = damped_step(&hessian, &gradient, damping) else {
+                let step = damped_step(&hessian, &gradient, damping);
+                let Some(step) = step.filter(|step| step.iter().all(|s| s.abs() < LONGEST_STEP)) else {
                     damping *= 10.0;
                     continue;
                 };
@@ -204,7 +208,7 @@ impl Problem<'_> {
             let cross = Mat::from_fn(atoms.len(), size, |i, j| {
                 gram[(state.first_column[i], parameters[j].1)] * gain(parameters[j].0)
             });
-            let projected = Ridge::new(&values).solve(&cross);
+            let projected = Ridge::new(&values, 0.0).solve(&cross);
             let explained = cross.adjoint() * &projected;
             for (j, &(aj, cj)) in parameters.iter().enumerate() {
                 gradient[j] += (gain(aj).conj() * state.slopes[b][cj]).re;
@@ -230,46 +234,6 @@ pub struct Limits {
 impl Limits {
     /// Of a refinement that only tells good starts from bad ones.
     pub const GLANCE: Limits = Limits { iterations: 12, least_gain: 1e-2 };
-}
-
-/// Solver of a positive semi-definite system, scaled to unit diagonal, with a ridge of rounding size.
-struct Ridge {
-    factor: Option<faer::linalg::solvers::Llt<Complex64>>,
-    scale: Vec<f64>,
-}
-
-impl Ridge {
-    fn new(matrix: &Mat<Complex64>) -> Self {
-        let n = matrix.nrows();
-        let scale: Vec<f64> =
-            (0..n).map(|i| if matrix[(i, i)].re > 0.0 { matrix[(i, i)].re.sqrt().recip() } else { 0.0 }).collect();
-        let factor = [1e-14, 1e-11, 1e-8, 1e-4].iter().find_map(|ridge| {
-            let scaled =
-                Mat::from_fn(n, n, |i, j| matrix[(i, j)] * (scale[i] * scale[j]) + if i == j { *ridge } else { 0.0 });
-            scaled.llt(Side::Lower).ok()
-        });
-        Ridge { factor, scale }
-    }
-
-    /// The solution, or zeros for a system that has none.
-    fn solve(&self, rhs: &Mat<Complex64>) -> Mat<Complex64> {
-        let Some(factor) = &self.factor else { return Mat::zeros(rhs.nrows(), rhs.ncols()) };
-        let scaled = Mat::from_fn(rhs.nrows(), rhs.ncols(), |i, j| rhs[(i, j)] * self.scale[i]);
-        let x = factor.solve(&scaled);
-        Mat::from_fn(rhs.nrows(), rhs.ncols(), |i, j| x[(i, j)] * self.scale[i])
-    }
-}
-
-/// Solution of `(H + damping diag H) step = gradient`, or `None` where H is not positive definite.
-fn damped_step(hessian: &Mat<f64>, gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
-    let n = gradient.len();
-    let scale: Vec<f64> = (0..n).map(|i| hessian[(i, i)].abs().max(f64::MIN_POSITIVE).sqrt().recip()).collect();
-    let scaled =
-        Mat::from_fn(n, n, |i, j| hessian[(i, j)] * scale[i] * scale[j] + if i == j { damping + 1e-14 } else { 0.0 });
-    let rhs = Mat::from_fn(n, 1, |i, _| gradient[i] * scale[i]);
-    let step = scaled.llt(Side::Lower).ok()?.solve(&rhs);
-    let step: Vec<f64> = (0..n).map(|i| step[(i, 0)] * scale[i]).collect();
-    step.iter().all(|s| s.is_finite() && s.abs() < 1e3).then_some(step)
 }
 
 /// `A^H A`, on one thread: the other end's has the next.
