@@ -1,0 +1,37 @@
+//! Both ends' beams laid over each other on the polar grid of the array's centre: the ends see a reflector at different ranges and angles, so
+//! each cell looks up its own range and angle at each end.
+
+use super::end_beams::beam_of_cos;
+use crate::radar::{End, Radar};
+
+/// Where every cell of a polar grid lies in the beams of each end.
+pub struct Registered {
+    /// Centre (x, y) of every cell, metres, range after range; one wrap beyond the maximum range included.
+    pub places_metres: Vec<[f64; 2]>,
+    /// `[beam * range bins + range bin]` for each end.
+    pub cells: [Vec<u32>; 2],
+}
+
+impl Registered {
+    /// For the ends of `radar`, each with so many `beams`; the grid has so many `columns` over cos(theta).
+    pub fn new(radar: &Radar, beams: usize, columns: usize) -> Self {
+        let (bins, bin_metres) = (radar.samples, radar.range_resolution_metres());
+        let place = |i: usize| {
+            let range = (i / columns) as f64 * bin_metres;
+            let cos = ((i % columns) as f64 + 0.5) / columns as f64 * 2.0 - 1.0;
+            [range * cos, range * (1.0 - cos * cos).sqrt()]
+        };
+        let places_metres: Vec<[f64; 2]> = (0..2 * bins * columns).map(place).collect();
+        let cells = End::BOTH.map(|end| {
+            let centre = radar.end_centre_metres(end);
+            let cell = |[x, y]: &[f64; 2]| {
+                let dx = x - centre;
+                let range = (dx * dx + y * y).sqrt().max(1e-9);
+                let row = (range / bin_metres).round() as usize % bins;
+                (beam_of_cos(dx / range, beams) * bins + row) as u32
+            };
+            places_metres.iter().map(cell).collect()
+        });
+        Registered { places_metres, cells }
+    }
+}
