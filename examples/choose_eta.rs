@@ -1,12 +1,12 @@
 //! How the methods' thresholds and settings were chosen, on validation scenes: prints the figures, and fails where a method's own setting is
 //! not the best of those tried.
 //!
-//! `cargo run --release --example choose_eta -- thresholds|penalty|weights`; minutes each.
+//! `cargo run --release --example choose_eta -- thresholds|live|penalty|weights`; minutes each.
 
 use apertura::evaluate::trial::Trial;
-use apertura::evaluate::{Roc, squared_error};
+use apertura::evaluate::{Roc, detection_rates, squared_error};
 use apertura::methods;
-use apertura::radar::Radar;
+use apertura::radar::{Decibels, Radar};
 use apertura::reconstruct::nomp::{Settings, find};
 use apertura::reconstruct::{Fista, Reconstructor, Request, on_one_scale};
 use apertura::scene::Scene;
@@ -35,6 +35,8 @@ enum Choice {
         /// Methods; all where none is named
         methods: Vec<String>,
     },
+    /// For live, P_D and P_FA over how far below the peak its threshold lies, on validation scenes of every kind and over all floors
+    Live,
     /// Squared error of FISTA over its penalty
     Penalty,
     /// Weight of the hybrid's fallback over the parts of a cell's power and of a scene's energy that are unexplained, on validation scenes
@@ -47,6 +49,7 @@ type Outcome<T = ()> = Result<T, Box<dyn Error>>;
 fn main() -> Outcome {
     match Choice::parse() {
         Choice::Thresholds { methods } => thresholds(&methods),
+        Choice::Live => live(),
         Choice::Penalty => penalty(),
         Choice::Weights => weights(),
     }
@@ -111,6 +114,49 @@ fn thresholds(names: &[String]) -> Outcome {
         );
     }
     Ok(())
+}
+
+/// Thresholds that are tried for live, as parts of its own distance below the peak.
+const PARTS: [f64; 13] = [0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15, 1.2, 1.25, 1.3];
+
+/// The mean false-alarm rate of live over all kinds and floors.
+const LIVE_FALSE_ALARM: f64 = 0.01;
+
+fn live() -> Outcome {
+    let radar = Radar::default();
+    let method = methods::by_name("live")?;
+    let thermal = [40.0, 20.0].map(|db| Floor::Snr(Decibels(db)));
+    let over_thesis = Kind::all().map(|kind| (kind, Floor::Thesis));
+    let over_thermal = Kind::TEST_SETS.into_iter().flat_map(|kind| thermal.map(|floor| (kind, floor)));
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
+    let mut means = [[0.0; 2]; PARTS.len()];
+    let mut rows = 0.0;
+    println!(
+        "P_D / P_FA in %, its own threshold in the middle\n{:24}{}",
+        "",
+        PARTS.map(|p| format!("{p:>14}")).concat()
+    );
+    for (kind, floor) in over_thesis.chain(over_thermal) {
+        let mut rates = [[0.0; 2]; PARTS.len()];
+        for number in 0..SCENES {
+            let trial = Trial::new(&radar, &generator.scene(kind, number), floor, Request::default().normalisation)?;
+            let answer = trial.ask(method.as_ref(), &Request { floor, ..Request::default() })?;
+            for (rates, part) in rates.iter_mut().zip(PARTS) {
+                let eta = 1.0 - part as f32 * (1.0 - answer.eta);
+                let (detection, false_alarm) = detection_rates(&trial.target, &answer.found.lambda, eta);
+                for (rate, own) in rates.iter_mut().zip([detection.unwrap_or(1.0), false_alarm]) {
+                    *rate += own / f64::from(SCENES);
+                }
+            }
+        }
+        rows += 1.0;
+        let cells = rates.map(|[d, f]| format!("{:>8.2} /{:>4.2}", 100.0 * d, 100.0 * f));
+        println!("{:24}{}", format!("{kind}, {floor}"), cells.concat());
+        means.iter_mut().flatten().zip(rates.iter().flatten()).for_each(|(mean, rate)| *mean += rate);
+    }
+    let best = (0..PARTS.len()).rev().find(|i| means[*i][1] / rows <= LIVE_FALSE_ALARM).ok_or("all alarm too often")?;
+    println!("P_FA {:.2} % on average at {} of its own", 100.0 * means[best][1] / rows, PARTS[best]);
+    if (PARTS[best] - 1.0).abs() < 0.06 { Ok(()) } else { Err(format!("{} of it would be better", PARTS[best]).into()) }
 }
 
 fn penalty() -> Outcome {

@@ -63,11 +63,16 @@ impl Args {
             Samples::MagPhase(array) => {
                 let started = Instant::now();
                 let map = method.reconstruct_mag_phase(radar, array).map_err(CommandError::on(&self.input))?;
-                Answer { map: map.lambda, milliseconds: started.elapsed().as_secs_f64() * 1e3, found: Vec::new() }
+                Answer {
+                    map: map.lambda,
+                    eta: method.eta(),
+                    milliseconds: started.elapsed().as_secs_f64() * 1e3,
+                    found: Vec::new(),
+                }
             }
             Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
         };
-        self.write(&answer, method.eta()).map_err(CommandError::on(&self.output))?;
+        self.write(&answer).map_err(CommandError::on(&self.output))?;
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
     }
 
@@ -126,14 +131,14 @@ impl Args {
             // Where a single sample's echoes come from is only known from elsewhere.
             found.iter_mut().for_each(|f| f.range_metres = range_metres.unwrap_or(f64::NAN));
         }
-        Ok(Answer { map: answer.lambda.lambda, milliseconds, found })
+        Ok(Answer { eta: method.eta_of(&answer), map: answer.lambda.lambda, milliseconds, found })
     }
 
-    fn write(&self, answer: &Answer, eta: f32) -> Result<(), NpzError> {
+    fn write(&self, answer: &Answer) -> Result<(), NpzError> {
         let list = |of: fn(&Detection) -> f64| answer.found.iter().map(of).collect::<Array1<f64>>();
         write_npz(&self.output, |out| {
             out.add("net_output", &answer.map)?;
-            out.add("eta", &arr0(f64::from(eta)))?;
+            out.add("eta", &arr0(f64::from(answer.eta)))?;
             out.add("milliseconds", &arr0(answer.milliseconds))?;
             out.add("found_cos_theta", &list(|f| f.cos_theta))?;
             out.add("found_range_metres", &list(|f| f.range_metres))?;
@@ -160,6 +165,7 @@ enum Samples {
 /// What is written.
 struct Answer {
     map: Array2<f32>,
+    eta: f32,
     milliseconds: f64,
     found: Vec<Detection>,
 }

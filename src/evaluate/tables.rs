@@ -66,9 +66,10 @@ impl Tally {
         self.rows.len()
     }
 
-    /// Threshold of the method.
+    /// Threshold of the method: the mean of its answers', to three digits.
     pub fn eta(&self) -> f32 {
-        self.rows.first().map_or(f32::NAN, |row| row.eta)
+        let sum: f64 = self.rows.iter().map(|row| f64::from(row.eta)).sum();
+        (1e3 * sum / self.rows.len() as f64).round() as f32 / 1e3
     }
 
     /// SE.

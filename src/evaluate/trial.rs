@@ -73,7 +73,7 @@ impl Trial {
         let start = Instant::now();
         let found = method.reconstruct(&self.radar, &self.ends, request)?;
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-        let eta = method.eta();
+        let eta = method.eta_of(&found);
         Ok(Answer { metrics: Metrics::of(&self.target, &found.lambda, eta), found, milliseconds, eta })
     }
 

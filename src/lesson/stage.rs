@@ -68,7 +68,7 @@ pub struct Stage {
     pub scene: Scene,
     maps: [RangeAngleMap; 3],
     output: Result<RangeAngleMap, String>,
-    /// The method's threshold.
+    /// The output's threshold.
     pub eta: f32,
 }
 
@@ -82,11 +82,13 @@ impl Stage {
         let log = LogMaps::of_signal(radar, &signal);
         let maps = [log.first, log.last, log.full].map(|m| m.normalise(view.normalisation));
         let method = methods::by_name(&view.method).map_err(|e| e.to_string());
-        let eta = method.as_ref().map_or(crate::evaluate::TARGET_ETA, |m| m.eta());
+        let mut eta = method.as_ref().map_or(crate::evaluate::TARGET_ETA, |m| m.eta());
         let output = if with_output {
             let request = Request { floor: view.floor, normalisation: view.normalisation, ..Request::default() };
             method.and_then(|m| {
-                m.reconstruct(radar, &signal.two_ends(radar), &request).map(|r| r.lambda).map_err(|e| e.to_string())
+                let answer = m.reconstruct(radar, &signal.two_ends(radar), &request).map_err(|e| e.to_string())?;
+                eta = m.eta_of(&answer);
+                Ok(answer.lambda)
             })
         } else {
             Err("the output was not asked for".to_owned())

@@ -71,7 +71,7 @@ impl Reconstructor for ThesisMethod {
         let tables = Thesis::tables(&self.config, radar)?;
         let input = Thesis::input(&tables, ends)?;
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
-        Ok(Reconstruction { lambda: RangeAngleMap::stretched(map), reflectors: Vec::new() })
+        Ok(Reconstruction { lambda: RangeAngleMap::stretched(map), reflectors: Vec::new(), eta: None })
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
@@ -132,7 +132,7 @@ impl Reconstructor for UnetMethod {
         let cartesian =
             estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
         let lambda = to_polar(radar, &cartesian);
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new() })
+        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: None })
     }
 }
 

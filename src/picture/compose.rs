@@ -87,7 +87,7 @@ pub fn compose(
         target: Some(&maps.full.normalise(normalisation)),
         output: &output.lambda,
         method: method.name(),
-        eta: eta.unwrap_or_else(|| method.eta()),
+        eta: eta.unwrap_or_else(|| method.eta_of(&output)),
         colours,
     };
     Ok(match format {

@@ -105,7 +105,7 @@ fn panels(
         target: target.as_ref(),
         output: &output.lambda,
         method: method.name(),
-        eta: style.eta.unwrap_or_else(|| method.eta()),
+        eta: style.eta.unwrap_or_else(|| method.eta_of(&output)),
         colours: style.colours,
     };
     bytes_of(&panels, format)

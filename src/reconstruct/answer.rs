@@ -44,6 +44,8 @@ pub struct Reconstruction {
     pub lambda: RangeAngleMap,
     /// The reflectors it believes in, where the method finds any.
     pub reflectors: Vec<Reflector>,
+    /// The threshold that fits this very answer, where the method reads one off what it measured.
+    pub eta: Option<f32>,
 }
 
 /// A reflector as the array's centre hears it.
@@ -70,7 +72,7 @@ impl Reconstruction {
     /// The answer to silence: Lambda 0 everywhere, no reflector.
     pub fn silence(radar: &Radar) -> Self {
         let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
-        Reconstruction { lambda, reflectors: Vec::new() }
+        Reconstruction { lambda, reflectors: Vec::new(), eta: None }
     }
 
     /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.

@@ -47,5 +47,5 @@ pub(super) fn lambda_of_power(
 
 /// A reconstruction that knows no reflectors, only power.
 pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, request: &Request) -> Reconstruction {
-    Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors: Vec::new() }
+    Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors: Vec::new(), eta: None }
 }

@@ -19,7 +19,8 @@ pub struct About {
     /// What the method knows beside the samples and the radar they were taken with: assumptions that a user's own scene may not
     /// meet, or that the scenes of the tables happen to.
     pub told: &'static str,
-    /// Threshold at which its output is turned into detections. Chosen on validation scenes, never on test scenes.
+    /// Threshold at which its output is turned into detections, where an answer brings none of its own
+    /// ([`Reconstruction::eta`]). Chosen on validation scenes, never on test scenes.
     pub eta: f32,
 }
 
@@ -116,6 +117,16 @@ pub trait Reconstructor: Send + Sync {
     /// The method's [`About::eta`].
     fn eta(&self) -> f32 {
         self.about().eta
+    }
+
+    /// Whether its answers bring thresholds of their own.
+    fn reads_eta(&self) -> bool {
+        false
+    }
+
+    /// The threshold for an answer of this method: its own, or [`About::eta`].
+    fn eta_of(&self, answer: &Reconstruction) -> f32 {
+        answer.eta.unwrap_or_else(|| self.eta())
     }
 
     /// The error that says in the method's name why it can't work.

@@ -4,7 +4,7 @@ use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::Tally;
 use apertura::methods;
-use apertura::radar::{Carrier, Radar};
+use apertura::radar::{Carrier, Decibels, Radar};
 use apertura::reconstruct::Request;
 use apertura::scene::generate::{Kind, Purpose};
 use apertura::scene::{Reflector, Scene};
@@ -14,8 +14,12 @@ use rayon::prelude::*;
 use std::time::Duration;
 
 fn tally(kind: Kind, count: u32) -> Tally {
+    tally_over(Floor::Thesis, kind, count)
+}
+
+fn tally_over(floor: Floor, kind: Kind, count: u32) -> Tally {
     let live = methods::by_name("live").expect("the live network ships with the program");
-    let campaign = Campaign { purpose: Purpose::Validation, seed: 77, count, ..Campaign::default() };
+    let campaign = Campaign { purpose: Purpose::Validation, seed: 77, count, floor, ..Campaign::default() };
     let sets = [SceneSet::Generated(kind)];
     Tally::of(&campaign.run(&sets, &[live.as_ref()], &Task::default(), |_| ()).expect("validation scenes are valid"))
 }
@@ -28,6 +32,14 @@ fn is_as_good_on_every_set_as_when_it_was_trained() {
         assert!(error < at_most, "{kind:?}: SE {error}");
         assert!(tally.detection().mean > 0.96, "{kind:?}: P_D {}", tally.detection().mean);
     }
+}
+
+#[test]
+fn its_threshold_follows_the_floor() {
+    let thermal = tally_over(Floor::Snr(Decibels(40.0)), Kind::Set2, 3);
+    assert!(thermal.eta() < tally(Kind::Set2, 3).eta() - 0.1, "{}", thermal.eta());
+    let (detection, false_alarm) = (thermal.detection().mean, thermal.false_alarm().mean);
+    assert!(detection > 0.9 && false_alarm < 0.02, "P_D {detection}, P_FA {false_alarm}");
 }
 
 #[test]

@@ -81,7 +81,7 @@ fn open_row(state: &mut State, jobs: &Jobs, index: usize) {
             state.settings.method = row.method.clone();
             // Its own threshold, or the one that the row was judged at.
             let eta = &mut state.settings.method_eta;
-            match method.eta() == row.eta {
+            match method.reads_eta() || method.eta() == row.eta {
                 true => _ = eta.remove(&row.method),
                 false => _ = eta.insert(row.method.clone(), row.eta),
             }

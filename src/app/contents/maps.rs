@@ -48,7 +48,7 @@ impl Contents<'_> {
         let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
         let method = pipeline.output().map_or("output", |o| o.method);
         let refusal = pipeline.refusal().map(|r| r.reason.as_str());
-        let eta = self.state.output_eta();
+        let eta = pipeline.eta(self.state, MethodSlot::First);
         let is_now = shown.is_some_and(|r| r.request.etas[0] == eta);
         let metrics = pipeline.scores().filter(|_| is_now).map(|scores| scores.metrics);
         roc::show(ui, roc::Input { points, method, eta, metrics, refusal })
@@ -122,7 +122,7 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
         updating: is_updating(jobs, kind),
         metrics: pipeline.scores_in(slot).map(|s| s.metrics).filter(|_| !state.is_predicting()),
         target_eta: state.settings.target_eta,
-        output_eta: state.eta_in(slot),
+        output_eta: pipeline.eta(state, slot),
         explained: pipeline.unexplained().map(|u| u.explained),
     })
 }

@@ -2,7 +2,7 @@
 
 use super::Contents;
 use crate::app::panels::{bounds, controls, evaluation, found, lesson, run_time, several, timing, training};
-use crate::app::state::Command;
+use crate::app::state::{Command, MethodSlot};
 use eframe::egui::{TextureOptions, Ui};
 
 impl Contents<'_> {
@@ -23,7 +23,7 @@ impl Contents<'_> {
             noise_seed: state.editor.scene().noise_seed,
             methods: &state.methods.all,
             method: state.method().map(|m| m.as_ref()),
-            eta: state.output_eta(),
+            eta: pipeline.eta(state, MethodSlot::First),
             run,
         };
         controls::show(ui, input)

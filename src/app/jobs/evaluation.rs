@@ -150,7 +150,7 @@ fn run(plan: &Plan, teller: &Teller<'_, EvaluationRow>) -> Result<(), Stopped> {
             teller.row(EvaluationRow {
                 set,
                 method: method.name(),
-                eta: method.eta(),
+                eta: tally.eta(),
                 scenes: tally.scenes(),
                 squared_error: tally.squared_error(),
                 detection: tally.detection(),

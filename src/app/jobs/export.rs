@@ -3,7 +3,7 @@
 use super::failures::{RowTable, write_rows_to};
 use super::pipeline::Pipeline;
 use super::recorded::seen_by;
-use crate::app::state::State;
+use crate::app::state::{MethodSlot, State};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
@@ -93,7 +93,7 @@ impl Exports {
             floor: if recording.is_some() { recording::FLOOR } else { state.settings.floor },
             normalisation: state.settings.normalisation,
             colours: state.settings.colours,
-            eta: Some(state.output_eta()),
+            eta: state.settings.method_eta.get(method.name()).copied(),
         };
         self.begin(path, move |path| {
             let bytes = match recording {
@@ -235,7 +235,7 @@ fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
         output.method,
         state.settings.floor,
         state.settings.normalisation,
-        state.output_eta(),
+        pipeline.eta(state, MethodSlot::First),
         m.squared_error,
         m.false_alarm,
         scores.target_blobs,

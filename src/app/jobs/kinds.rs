@@ -113,7 +113,7 @@ impl Kinds {
         let output = |slot| {
             let pair = pipeline.method(slot).output().map(|o| &o.pair)?;
             let of_it = pair.target.as_ref().is_some_and(|target| Arc::ptr_eq(target, &truth.target.lambda));
-            of_it.then(|| Output { lambda: pair.output.clone(), eta: state.eta_in(slot) })
+            of_it.then(|| Output { lambda: pair.output.clone(), eta: pipeline.eta(state, slot) })
         };
         let request = Request { outputs: MethodSlot::BOTH.map(output), truth };
         let is_new = !self.asked.as_ref().is_some_and(|asked| asked.same(&request));

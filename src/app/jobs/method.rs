@@ -80,6 +80,8 @@ pub struct MethodResult {
     pub method: &'static str,
     /// Its map, and the one it aimed for.
     pub pair: Pair,
+    /// The threshold that fits it, where the method read one off the samples.
+    pub eta: Option<f32>,
     /// What it found, the strongest first, where a list was asked for.
     pub found: Option<Vec<Detection>>,
     /// Where it found reflectors.
@@ -191,14 +193,14 @@ impl MethodJob {
         latest: Option<&MapsResult>,
     ) {
         let MethodRequest { basis, target, method, .. } = request;
-        let Reconstruction { lambda, mut reflectors } = answer;
+        let Reconstruction { lambda, mut reflectors, eta } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }
         let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
         let pair = Pair { target: latest.and_then(MapsResult::target).or(target), output: Arc::new(lambda) };
         self.refusal = None;
-        self.output = Some(MethodResult { method: method.name(), pair, found, reflectors, took, basis });
+        self.output = Some(MethodResult { method: method.name(), pair, eta, found, reflectors, took, basis });
     }
 
     /// There is no output, and the last one is not its own: nothing of it stays.

@@ -72,6 +72,13 @@ impl Pipeline {
         })
     }
 
+    /// The threshold of either method's output: the user's, or what fits the output on screen, or the method's own.
+    pub fn eta(&self, state: &State, slot: MethodSlot) -> f32 {
+        let method = state.method_in(slot).map(|method| method.name());
+        let output = self.method(slot).output().filter(|output| Some(output.method) == method);
+        state.eta_in(slot, output.and_then(|output| output.eta))
+    }
+
     /// Takes in what the workers made since the last frame. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         let mut messages = Vec::new();
@@ -164,7 +171,7 @@ impl Pipeline {
             difference: settings.difference,
             dark: state.dark,
             target_eta: settings.target_eta,
-            etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { state.eta_in(slot) } else { TARGET_ETA }),
+            etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
             scores: output && (recording.is_some() || !scene.objects.is_empty()),
             roc: looked_at.roc,
             recording,

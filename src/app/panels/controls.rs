@@ -144,7 +144,11 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
                 asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
                 let own = input.settings.method_eta.contains_key(method.name());
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
-                if reset.on_hover_text(format!("Back to the method's own η = {}", method.eta())).clicked() {
+                let back = match method.reads_eta() {
+                    true => "Back to the η that fits each output".to_owned(),
+                    false => format!("Back to the method's own η = {}", method.eta()),
+                };
+                if reset.on_hover_text(back).clicked() {
                     asked.push(Command::SetMethodEta(method.name(), None));
                 }
                 slider

@@ -221,15 +221,10 @@ impl State {
         }
     }
 
-    /// eta of the method in use: the user's, or the method's own.
-    pub fn output_eta(&self) -> f32 {
-        self.eta_in(MethodSlot::First)
-    }
-
-    /// eta of either of the two methods: the user's, or the method's own.
-    pub fn eta_in(&self, slot: MethodSlot) -> f32 {
+    /// eta of either of the two methods: the user's, or what fits the `answer` on screen, or the method's own.
+    pub fn eta_in(&self, slot: MethodSlot, answer: Option<f32>) -> f32 {
         let Some(method) = self.method_in(slot) else { return crate::evaluate::TARGET_ETA };
-        self.settings.method_eta.get(method.name()).copied().unwrap_or_else(|| method.eta())
+        self.settings.method_eta.get(method.name()).copied().or(answer).unwrap_or_else(|| method.eta())
     }
 
     /// The maps that a panel in sight draws.

@@ -76,14 +76,22 @@ impl LiveMethod {
     }
 }
 
+/// Cells this far below the strongest are no detections: on validation scenes over all floors the threshold in decades moves little, that in
+/// Lambda by a third (`choose_eta live`).
+const BELOW_PEAK_DECADES: f64 = 3.0;
+
 impl Reconstructor for LiveMethod {
     fn about(&self) -> About {
         About {
             name: NAME,
             description: "a small network that draws the whole array's map from matched filters of both ends",
-            told: "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor",
+            told: "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise",
             eta: self.eta,
         }
+    }
+
+    fn reads_eta(&self) -> bool {
+        true
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -97,6 +105,7 @@ impl Reconstructor for LiveMethod {
         let lambda = map.into_iter().map(|v| scale.lambda(v.into()) as f32).collect();
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), lambda)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new() })
+        let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
+        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: Some(eta) })
     }
 }

@@ -150,6 +150,6 @@ impl Found {
         };
         let lambda = expected_lambda(radar, &objects, noise, request);
         let reflectors = objects.iter().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors }
+        Reconstruction { lambda, reflectors, eta: None }
     }
 }
