@@ -8,8 +8,11 @@ use std::io::{self, Read};
 /// Longest header that is read, bytes; NumPy's own have some 120.
 const MAX_HEADER_BYTES: usize = 4096;
 
-/// Most brackets in a header: each nests the parser once.
+/// Most brackets in a header.
 const MAX_BRACKETS: usize = 16;
+
+/// Most brackets within each other: a dictionary of a list of tuples with shapes. The parser takes several times the memory for one more.
+const MAX_DEPTH: usize = 4;
 
 /// Magic number, version and dictionary, so long and so nested as NumPy would write them.
 ///
@@ -33,8 +36,16 @@ pub fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
     let start = bytes.len();
     bytes.resize(start + length, 0);
     file.read_exact(&mut bytes[start..])?;
-    if bytes[start..].iter().filter(|b| b"([{".contains(b)).count() > MAX_BRACKETS {
-        return Err(invalid("its header is nested too deep"));
+    let (mut brackets, mut depth) = (0, 0usize);
+    for byte in &bytes[start..] {
+        match byte {
+            b'(' | b'[' | b'{' => (brackets, depth) = (brackets + 1, depth + 1),
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if brackets > MAX_BRACKETS || depth > MAX_DEPTH {
+            return Err(invalid("its header is nested too deep"));
+        }
     }
     Ok(bytes)
 }
@@ -106,6 +117,7 @@ mod tests {
             (file(1, &shape("(4294967296, 4294967296, 2)"), 24), "promises"),
             (file(1, &shape("(-1,)"), 24), "shape"),
             (file(1, &shape(&"(".repeat(100)), 24), "nested"),
+            (file(1, &"{'descr': '<f8', 'fortran_order': Fa".repeat(6), 24), "nested"),
             (file(2, &" ".repeat(5000), 24), "longer than"),
             (file(1, "{}\n", 0)[..11].to_vec(), "fill whole buffer"),
         ] {
