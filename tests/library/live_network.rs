@@ -26,11 +26,12 @@ fn tally_over(floor: Floor, kind: Kind, count: u32) -> Tally {
 
 #[test]
 fn is_as_good_on_every_set_as_when_it_was_trained() {
-    for (kind, at_most) in Kind::TEST_SETS.into_iter().zip([350.0, 620.0, 650.0]) {
+    let sets = [(Kind::Set1, 270.0), (Kind::Set2, 390.0), (Kind::Set3, 600.0)];
+    for (kind, at_most) in sets.into_iter().chain([(Kind::Crowd, 930.0), (Kind::Near, 640.0)]) {
         let tally = tally(kind, 4);
         let error = tally.squared_error().mean;
         assert!(error < at_most, "{kind:?}: SE {error}");
-        assert!(tally.detection().mean > 0.96, "{kind:?}: P_D {}", tally.detection().mean);
+        assert!(tally.detection().mean > 0.97, "{kind:?}: P_D {}", tally.detection().mean);
     }
 }
 
