@@ -13,6 +13,12 @@ use std::f64::consts::PI;
 /// Most reflectors that are drawn of one object.
 const DOTS: usize = 400;
 
+/// What the marks of both ends take beside the middle of the array, points.
+const ENDS_MARKS: f32 = 22.0;
+
+/// Least gap between the labels of two rings, points.
+const BETWEEN_LABELS: f32 = 5.0;
+
 /// Where the canvas is, and what part of the scene it shows.
 #[derive(Clone, Copy)]
 pub struct Canvas<'a> {
@@ -92,13 +98,20 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
     let ranges = axes::ticks(0.0, extent, (0.5 * extent * 8.0 / visible.max(1e-3)).clamp(4.0, 60.0) as f32);
     let step = ranges.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
     let last = ranges.last().copied();
-    for range in ranges.into_iter().filter(|r| *r > 0.0) {
+    let origin = view.to_screen(rect, Place::new(0.0, 0.0));
+    // How far from the middle the next label may reach: the outermost first, and none into the ends' marks.
+    let mut free = f32::INFINITY;
+    for range in ranges.into_iter().rev().filter(|r| *r > 0.0) {
         painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), range), thin));
-        for side in [-range, range] {
-            let at = view.to_screen(rect, Place::new(side, 0.0));
-            let unit = if Some(range) == last { " m" } else { "" };
-            let label = format!("{}{unit}", axes::tick_text(range, step));
-            axes::text(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &label, inks.grid_text);
+        let unit = if Some(range) == last { " m" } else { "" };
+        let label = format!("{}{unit}", axes::tick_text(range, step));
+        let half = axes::width(painter, &label) / 2.0;
+        let off = (view.to_screen(rect, Place::new(range, 0.0)) - origin).x;
+        if off + half <= free && off - half >= ENDS_MARKS {
+            free = off - half - BETWEEN_LABELS;
+            for at in [origin - vec2(off, -3.0), origin + vec2(off, 3.0)] {
+                axes::text(painter, at, Align2::CENTER_TOP, &label, inks.grid_text);
+            }
         }
     }
 }

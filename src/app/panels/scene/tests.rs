@@ -75,7 +75,10 @@ fn ghosts_stand_where_the_radar_hears_them() {
 
 #[test]
 fn labels_stand_around_the_half_disc_and_none_is_cut() {
-    for size in [[280.0, 170.0], [480.0, 300.0], [1400.0, 800.0]] {
+    // The last also shows what stands far behind the array: the half disc is small.
+    for (size, y_metres) in
+        [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
+    {
         let radar = Radar::default();
         let mut state = (Editor::new(Scene::default()), SceneView::default());
         let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
@@ -87,7 +90,7 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
                 Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error, numbers };
             _ = show(ui, input, editor, view);
         };
-        state.0.add(crate::scene::Object::Point(crate::scene::Point::new(0.0, 20.0)));
+        state.0.add(crate::scene::Object::Point(crate::scene::Point::new(-12.0, y_metres)));
         let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
         seen::assert_readable(scene.output());
         let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().1);
