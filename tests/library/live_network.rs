@@ -38,7 +38,7 @@ fn is_as_good_on_every_set_as_when_it_was_trained() {
 #[test]
 fn its_threshold_follows_the_floor() {
     let thermal = tally_over(Floor::Snr(Decibels(40.0)), Kind::Set2, 3);
-    assert!(thermal.eta() < tally(Kind::Set2, 3).eta() - 0.1, "{}", thermal.eta());
+    assert!(thermal.eta() < tally(Kind::Set2, 3).eta() - 0.03, "{}", thermal.eta());
     let (detection, false_alarm) = (thermal.detection().mean, thermal.false_alarm().mean);
     assert!(detection > 0.9 && false_alarm < 0.02, "P_D {detection}, P_FA {false_alarm}");
 }

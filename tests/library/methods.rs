@@ -100,6 +100,8 @@ fn silence_is_answered_with_nothing() {
 fn a_single_sample_and_noise_alone_have_an_answer() {
     let mut single = BeatSignal::silence(&radar()).two_ends(&radar());
     single.first[[3, 100]] = Complex64::new(0.0, 1.0);
+    // An end that heard nothing at all is refused.
+    single.last[[3, 100]] = Complex64::new(0.0, 1e-9);
     let mut noise = BeatSignal::silence(&radar());
     apertura::signal::floor::add_noise(&mut noise, &vec![1.0; 1024], 9);
     let noise = noise.two_ends(&radar());
