@@ -1,5 +1,6 @@
 //! Files that are either whole or not there, and NumPy archives with errors that name the key.
 
+pub mod entries;
 pub mod memory;
 pub mod npy;
 pub mod npz;

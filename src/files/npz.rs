@@ -1,5 +1,6 @@
 //! NumPy archives (`.npz`): reading by key with errors that name key, shape and type, and writing in one step.
 
+use super::entries::check_entries;
 use super::{npy, write_atomically};
 use ndarray::{Array, ArrayRef, Dimension};
 use ndarray_npy::{NpzWriter, ReadNpyError, ReadNpyExt, ReadableElement, WritableElement, WriteNpzError};
@@ -109,12 +110,13 @@ impl Npz {
     /// # Errors
     /// [`NpzError::Io`] or [`NpzError::Archive`].
     pub fn open(path: &Path) -> Result<Npz, NpzError> {
-        let file = File::open(path)?;
+        let mut file = File::open(path)?;
         if !file.metadata()?.is_file() {
             let message = "is a folder, device or pipe; expected an .npz file";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message).into());
         }
         let not_whole = |error: ZipError| NpzError::Archive(error.to_string());
+        check_entries(&mut file).map_err(|e| NpzError::Archive(e.to_string()))?;
         let archive = ZipArchive::new(BufReader::new(file)).map_err(not_whole)?;
         // NumPy leaves the ending off its keys.
         let keys = archive.file_names().map(|name| name.strip_suffix(".npy").unwrap_or(name).to_owned()).collect();

@@ -1,6 +1,7 @@
 //! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
+use crate::files::entries::check_entries;
 use crate::files::npy::header_bytes;
 use ndarray::ArrayD;
 use ndarray_npy::npy::header::Header;
@@ -56,7 +57,8 @@ pub enum NumpyError {
 ///
 /// # Errors
 /// [`NumpyError`] names the key, and what was expected of it.
-pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, NumpyError> {
+pub(super) fn read_npz(mut file: impl Read + Seek, key: &str) -> Result<Numbers, NumpyError> {
+    check_entries(&mut file).map_err(|e| NumpyError::Archive(e.to_string()))?;
     let mut archive = ZipArchive::new(file).map_err(|e| NumpyError::Archive(e.to_string()))?;
     let name = format!("{key}.npy");
     if archive.index_for_name(&name).is_none() {
