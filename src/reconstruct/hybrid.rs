@@ -194,7 +194,7 @@ mod tests {
         let ends = ends_of(&radar, &scene);
         let request = Request::default();
         // One point can't explain a cloud: over the cloud the map is the fallback's, and nomp's own where it does.
-        let few = Settings { most_atoms: 1, most_line_work: 0, ..Settings::default() };
+        let few = Settings { most_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let found = find(&radar, &ends, &request, &few).unwrap();
         let parts = found.unexplained_cells(&radar, &ends);

@@ -96,6 +96,12 @@ impl Atom {
     }
 }
 
+impl From<&Reflector> for Atom {
+    fn from(r: &Reflector) -> Self {
+        Atom::Point { x_metres: r.x_metres, y_metres: r.y_metres }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,6 +18,7 @@
 //! | `chains` | points that stand in a row at equal steps |
 //! | `phased` | each end's beams with their phases, and rows of reflectors looked up in them |
 //! | `strides` | rows of reflectors from their first two |
+//! | `lines` | long lines along y, looked up as a whole |
 //! | `walls` | rows of points followed to where they end |
 //! | `end_beams` | each end's plain beams |
 //! | `registered` | both ends' beams laid over each other |
@@ -26,7 +27,6 @@
 //! | `profile` | what is unexplained over range |
 //! | `grow` | the greedy loop over points |
 //! | `prune` | atoms that the rest can do without |
-//! | `few` | long vertical lines, every sample of every atom written out |
 //! | `search` | the search as a whole |
 //! | `settings`, `work` | bounds on time and memory |
 //! | `finish` | one gain for both ends, reflectivities |
@@ -39,11 +39,11 @@ mod draw;
 mod echoes;
 mod end_beams;
 mod explained;
-mod few;
 mod finish;
 mod gram;
 mod groups;
 mod grow;
+mod lines;
 mod moments;
 mod pairs;
 mod peaks;

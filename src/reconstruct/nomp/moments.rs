@@ -15,7 +15,7 @@ const NODES_PER_BIN: usize = 8;
 const TERMS: usize = 12;
 
 /// Bins beyond which echoes under a Hann window count as orthogonal: the square of the window falls by 180 dB there.
-const HANN_REACH_BINS: f64 = 40.0;
+const HANN_REACH_BINS: f64 = 12.0;
 
 /// `sum over t of w(t)^2 tau^m exp(2 pi j d tau)` for m = 0, 1, 2 over the difference d in range bins, with tau = (t - middle) / samples.
 #[derive(Debug, Clone)]

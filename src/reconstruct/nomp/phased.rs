@@ -79,6 +79,19 @@ impl PhasedBeams {
         }
     }
 
+    /// Energy of all elements' profiles in each range bin of an end, summed up to it: one entry more than there are bins.
+    pub fn running_energy(&self, end: usize) -> Vec<f64> {
+        let mut running = vec![0.0; self.bins + 1];
+        for beam in self.beams[end].chunks_exact(self.bins) {
+            // By Parseval's theorem, as the beams are evenly spaced.
+            running[1..].iter_mut().zip(beam).for_each(|(sum, v)| *sum += v.norm_sqr() / BEAMS as f64);
+        }
+        for bin in 0..self.bins {
+            running[bin + 1] += running[bin];
+        }
+        running
+    }
+
     /// What each reflector of `row`, one for each of `heard`, would have left at an end.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {

@@ -1,16 +1,15 @@
-//! The search as a whole: both ends' tones paired, walls from them, long lines sample by sample, then more points until nothing stands
-//! out.
+//! The search as a whole: both ends' tones paired, long lines, walls from the pairs, then more points until nothing stands out.
 
 use super::atom::Atom;
 use super::echoes::Samples;
-use super::few;
 use super::finish::{Found, finish};
 use super::grow::Grower;
+use super::lines::lines_in;
 use super::pairs::{Pairs, paired_points};
 use super::peaks::Detector;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use super::settings::Settings;
-use super::walls::is_on;
+use super::walls::{Seeds, is_on};
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::noise::noise_variance;
@@ -21,7 +20,7 @@ use ndarray::ArrayView1;
 use num_complex::Complex64;
 
 /// Range bins in a row that only something longer than a few reflectors fills.
-const LONG_RUN_BINS: usize = 48;
+const LONG_RUN_BINS: usize = 18;
 
 /// Takes the samples apart into atoms.
 ///
@@ -59,8 +58,7 @@ fn find_with(
     let bench = Workbench::new(radar, &window, &request.task, settings.most_work).hearing(&flat);
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
-    let search =
-        Search { radar, bench: &bench, detector: &detector, flat: &flat, samples: &samples, request, settings };
+    let search = Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let answer = followed.map_or_else(|| search.run(), Ok)?;
     request.task.check()?;
@@ -78,7 +76,6 @@ struct Search<'a> {
     radar: &'a Radar,
     bench: &'a Workbench<'a>,
     detector: &'a Detector,
-    flat: &'a [Complex64],
     samples: &'a Samples,
     request: &'a Request,
     settings: &'a Settings,
@@ -95,8 +92,8 @@ impl Search<'_> {
         }
     }
 
-    /// Points that both ends' tones lead to; where those are not all, walls from them, and what stands beside. Long vertical lines are
-    /// told apart sample by sample where that is not enough; then whatever still stands out.
+    /// Points that both ends' tones lead to; where those are not all, long lines along y, walls from the points, and what stands beside;
+    /// then whatever still stands out.
     fn run(&self) -> Result<Answer, ReconstructError> {
         let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
         let pairs = self.pairs(&nothing);
@@ -104,21 +101,41 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let all = nothing.cost();
-        let (walls, pairs) = self.walls(nothing, pairs)?;
-        let is_long = self.longest_run() >= LONG_RUN_BINS;
-        let mut answer = self.paired_again(walls, pairs, is_long)?;
-        if is_long && !answer.is_sure && answer.fit.cost() > NEARLY_NOTHING * all {
-            let few = self.with_few()?;
-            if few.is_sure || few.fit.cost() < answer.fit.cost() {
-                answer = few;
-            }
-        }
+        let (all, is_long) = (nothing.cost(), self.has_long_run(&nothing));
+        let lines = self.long_lines(nothing)?;
+        let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
+        let (walls, pairs) = self.walls(lines, pairs)?;
+        let answer = self.paired_again(walls, pairs, is_long)?;
         if answer.is_sure {
             return Ok(answer);
         }
-        let fit = self.completed(answer.fit)?;
+        let mut fit = answer.fit;
+        if fit.cost() < NEARLY_NOTHING * all {
+            // All is there, and not yet quite in its place.
+            fit = self.grower().refined_where_needed(fit)?;
+            if self.is_explained(&fit) {
+                return Ok(Answer { fit, is_sure: true });
+            }
+        }
+        let fit = self.completed(fit)?;
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
+    }
+
+    /// `fit` and long lines along y, looked for as a whole as long as something long is left.
+    fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_ROUNDS {
+            if !self.has_long_run(&fit) {
+                break;
+            }
+            let before = fit.atoms.len();
+            self.bench.spend(LOOK_FOR_LINES);
+            let lines = lines_in(self.radar, &fit.residual.flat(&self.bench.sensor), &self.request.task);
+            fit = self.grower().more_walls(self.samples, fit, Seeds::LongLines(lines))?;
+            if fit.atoms.len() == before {
+                break;
+            }
+        }
+        Ok(fit)
     }
 
     /// Walls that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found may have
@@ -126,7 +143,7 @@ impl Search<'_> {
     fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<(Fit, Pairs), ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
-            fit = self.grower().more_walls(self.samples, fit, pairs.guesses_metres.clone())?;
+            fit = self.grower().more_walls(self.samples, fit, Seeds::Points(pairs.guesses_metres.clone()))?;
             let sure = pairs.points.iter().filter(|point| point.apart < SURELY_ONE && point.is_alone);
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
@@ -172,15 +189,6 @@ impl Search<'_> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let noise = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
         paired_points(self.radar, &flat, noise)
-    }
-
-    /// What a search for long vertical lines and a few points finds, every sample of each written out.
-    fn with_few(&self) -> Result<Answer, ReconstructError> {
-        let found = few::find(self.radar, self.flat, self.request, self.settings.most_line_work)?;
-        let atoms: Vec<Atom> = found.atoms.iter().map(few::atom::Atom::outside).collect();
-        let left = self.bench.without(self.samples, &atoms, &found.gains);
-        let fit = Fit { atoms, gains: found.gains, residual: left.residual, energy: left.energy };
-        Ok(Answer { fit, is_sure: found.complete })
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
@@ -256,10 +264,10 @@ impl Search<'_> {
         self.grower().candidates(&fit.residual.flat(&self.bench.sensor), 1, |_| false).is_empty()
     }
 
-    /// Most neighbouring range bins with an echo at either end: above the noise, and no more than 60 dB below the strongest when
-    /// ranges are evened out by the 1/R^2 law.
-    fn longest_run(&self) -> usize {
-        let ends = TwoEnds::of_flat(self.radar, self.flat);
+    /// Whether many neighbouring range bins hold an echo of what `fit` leaves at an end: above the noise, and no more than 60 dB below the
+    /// strongest when ranges are evened out by the 1/R^2 law.
+    fn has_long_run(&self, fit: &Fit) -> bool {
+        let ends = TwoEnds::of_flat(self.radar, &fit.residual.flat(&self.bench.sensor));
         let weights = self.radar.window.weights(self.radar.samples);
         let window = weights.iter().map(|w| w * w).sum::<f64>() / self.radar.samples as f64;
         let channels = End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter());
@@ -274,12 +282,15 @@ impl Search<'_> {
             let echoes: Vec<bool> = (0..powers.len()).map(is_echo).collect();
             echoes.split(|echo| !*echo).map(<[bool]>::len).max().unwrap_or(0)
         };
-        End::BOTH.map(run_of).into_iter().max().unwrap_or(0)
+        End::BOTH.into_iter().any(|end| run_of(end) >= LONG_RUN_BINS)
     }
 }
 
-/// Part of the samples' energy: what is left beneath it shows little, and a search for long lines doesn't begin.
+/// Part of the samples' energy that is left where all is found but for its exact place.
 const NEARLY_NOTHING: f64 = 1e-5;
+
+/// Work that a look for long lines amounts to.
+const LOOK_FOR_LINES: usize = 3000;
 
 /// Most atoms that appear from one answer to the next.
 const MOST_APPEARING: usize = 2;

@@ -16,20 +16,10 @@ pub struct Settings {
     pub trials: usize,
     /// Work granted to the search: about ten microseconds a unit, counted and not timed.
     pub most_work: usize,
-    /// Work granted to the search for long lines.
-    pub most_line_work: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings {
-            most_atoms: 150,
-            least_prominence: 14.0,
-            rounds: 6,
-            gain_price: 0.3,
-            trials: 4,
-            most_work: 40_000,
-            most_line_work: 100_000,
-        }
+        Settings { most_atoms: 150, least_prominence: 14.0, rounds: 6, gain_price: 0.3, trials: 4, most_work: 40_000 }
     }
 }

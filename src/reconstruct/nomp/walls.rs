@@ -45,11 +45,18 @@ const MOST_WALLS: usize = 8;
 /// Rows that are held against the samples themselves, at each look.
 const MOST_TRIED: usize = 24;
 
-/// Part of the energy in its range bins that a row must explain to be followed to its ends.
+/// What a row must explain of the energy in its range bins to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
 
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
 const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
+
+/// The same of a line that was found as a whole, to be followed and then: so many reflectors explain nothing that they are not, and much
+/// else may stand in their range bins.
+const LEAST_OF_LINE: [f64; 2] = [0.3, 0.45];
+
+/// Fewest reflectors of such a line.
+const LEAST_LONG: usize = 50;
 
 /// Part of the work granted that the search for walls may take.
 const MOST_SPENT: f64 = 0.5;
@@ -66,30 +73,41 @@ const WORTH_ANOTHER_TURN: f64 = 0.9;
 /// Echoes that the look for rows over one point takes as long as.
 const LOOK_A_POINT: usize = 20;
 
+/// Where walls may begin.
+pub enum Seeds {
+    /// At points (x, y; metres), over neighbouring ones.
+    Points(Vec<[f64; 2]>),
+    /// At these lines along y, too long to be found by their ends.
+    LongLines(Vec<Atom>),
+}
+
+impl Seeds {
+    /// Whether a wall from one of them that explains this part of the energy in its range bins can be believed.
+    fn are_borne_out(&self, wall: &Atom, explained: f64) -> bool {
+        let count = wall.reflector_count();
+        match self {
+            Seeds::Points(_) => LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part),
+            Seeds::LongLines(_) => count >= LEAST_LONG && explained >= LEAST_OF_LINE[1],
+        }
+    }
+}
+
 impl Grower<'_> {
-    /// `fit` and the walls that lead from one of `points` (x, y; metres) over another, as long as each explains much of what there is in its range
-    /// bins; without those that have not explained nearly all of it in the end.
+    /// `fit` and the walls that begin at `seeds`, as long as each explains much of what there is in its range bins; without those that
+    /// have not explained nearly all of it in the end.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn more_walls(
-        &self,
-        samples: &Samples,
-        mut fit: Fit,
-        mut points: Vec<[f64; 2]>,
-    ) -> Result<Fit, ReconstructError> {
-        let known = fit.atoms.len();
-        while fit.atoms.len() < known + MOST_WALLS && self.bench.spent() < MOST_SPENT {
+    pub fn more_walls(&self, samples: &Samples, mut fit: Fit, mut seeds: Seeds) -> Result<Fit, ReconstructError> {
+        let (known, before) = (fit.atoms.len(), self.bench.spent());
+        while fit.atoms.len() < known + MOST_WALLS && self.bench.spent() < before + MOST_SPENT {
             self.task.check()?;
-            points.retain(|&[x_metres, y_metres]| {
-                !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
-            });
-            let Some((begun, seed)) = self.begun_wall(&fit, &points) else { break };
+            let Some((begun, seed)) = self.begun_wall(&fit, &mut seeds) else { break };
             let profile = Profile::new(self.radar, &fit.residual.flat(&self.bench.sensor));
             let wall = self.followed_to_its_ends(&fit.residual, seed);
             let explained = (fit.cost() - wall.cost()) / profile.at(&rows_of(self.radar, &wall.atoms[0]));
             tracing::debug!(explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
-            if !is_wall(&wall.atoms[0], begun.max(explained)) {
+            if !seeds.are_borne_out(&wall.atoms[0], begun.max(explained)) {
                 break;
             }
             fit.atoms.push(wall.atoms[0]);
@@ -100,7 +118,10 @@ impl Grower<'_> {
             return Ok(fit);
         }
         let fit = self.with_settled_ends(samples, fit)?;
-        Ok(self.without_doubtful_walls(samples, fit, known))
+        Ok(match seeds {
+            Seeds::Points(_) => self.without_doubtful_walls(samples, fit, known),
+            Seeds::LongLines(_) => fit,
+        })
     }
 
     /// Every wall followed to its ends once more, now that the others are known, and all moved together; by turns, as long as it helps.
@@ -143,21 +164,37 @@ impl Grower<'_> {
         if doubtful.is_empty() { fit } else { self.bench.less(fit, &doubtful) }
     }
 
-    /// The row from one of `points` over another that explains most of what `fit` leaves in its range bins, and the part that it explains.
-    fn begun_wall(&self, fit: &Fit, points: &[[f64; 2]]) -> Option<(f64, Atom)> {
+    /// The row from one of `seeds` that explains most of what `fit` leaves in its range bins, and the part that it explains.
+    fn begun_wall(&self, fit: &Fit, seeds: &mut Seeds) -> Option<(f64, Atom)> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let beams = PhasedBeams::new(self.radar, &flat);
-        self.bench.spend(LOOK_A_POINT * points.len());
-        let strides = rows_over_pairs(&beams, points, self.task);
-        let tried = strides.par_iter().take(MOST_TRIED).map(|Stride { atom, .. }| {
-            let wall = self.bench.solve(&fit.residual, vec![*atom], Tie::PerEnd, 0.0);
-            let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
-            ((fit.cost() - wall.cost()) / all, *atom)
-        });
-        let best = tried.max_by(|a, b| a.0.total_cmp(&b.0));
-        tracing::debug!(points = points.len(), strides = strides.len(), ?best, "rows");
-        best.filter(|(part, _)| *part > LEAST_BEGUN)
+        let best_of = |rows: &[Atom]| {
+            let tried = rows.par_iter().take(MOST_TRIED).map(|atom| {
+                let wall = self.bench.solve(&fit.residual, vec![*atom], Tie::PerEnd, 0.0);
+                let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
+                ((fit.cost() - wall.cost()) / all, *atom)
+            });
+            let best = tried.max_by(|a, b| a.0.total_cmp(&b.0));
+            tracing::debug!(rows = rows.len(), ?best, "rows");
+            best
+        };
+        match seeds {
+            Seeds::Points(points) => {
+                points.retain(|&[x_metres, y_metres]| {
+                    !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
+                });
+                self.bench.spend(LOOK_A_POINT * points.len());
+                let strides = rows_over_pairs(&PhasedBeams::new(self.radar, &flat), points, self.task);
+                let rows: Vec<Atom> = strides.into_iter().map(|Stride { atom, .. }| atom).collect();
+                best_of(&rows).filter(|(part, _)| *part > LEAST_BEGUN)
+            }
+            Seeds::LongLines(lines) => {
+                // What a line that is not quite right yet has left is no other.
+                let along = |a: &Atom, b: &Atom| a.reflectors(1.0).filter(|r| is_on(b, &Atom::from(r))).count();
+                lines.retain(|line| !fit.atoms.iter().any(|wall| 2 * along(line, wall) > line.reflector_count()));
+                best_of(lines).filter(|(part, _)| *part > LEAST_OF_LINE[0])
+            }
+        }
     }
 
     /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.
@@ -274,11 +311,6 @@ fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
     let [x_metres, y_metres] = wall.position_metres(-(before as f64));
     let count = count + before + after;
     (count <= MOST_REFLECTORS).then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
-}
-
-/// Whether so many reflectors that explain this part of the energy in their range bins can be believed.
-fn is_wall(atom: &Atom, explained: f64) -> bool {
-    LEAST_EXPLAINED.iter().any(|&(count, part)| atom.reflector_count() >= count && explained >= part)
 }
 
 /// `wall` without this many reflectors at its first and at its last end.

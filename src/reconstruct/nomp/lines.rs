@@ -1,0 +1,325 @@
+//! Where the residual may hold a line of reflectors.
+//!
+//! A line far off broadside packs its points closer than a range bin: no single point stands out, the line does. Each end's beams
+//! are laid along every candidate line; the points' echoes are added with the phases the line predicts, a few neighbours at a time,
+//! so that a coarse grid of (x, start) still meets them. A true line shows the same gain everywhere along its length and at both
+//! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
+
+use super::atom::Atom;
+use super::phased::{Heard, PhasedBeams, Row};
+use crate::radar::Radar;
+use crate::signal::simd::{Kernel, Simd};
+use crate::task::Task;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Points added with their phases before magnitudes are taken.
+const BLOCK: usize = 5;
+
+/// Starts tried between one point and the next.
+const PHASES: usize = 2;
+
+/// Step of the coarse grid in x, metres.
+const X_STEP_METRES: f64 = 0.12;
+
+/// Part of the blocks that may be weaker than the gain a line is credited with.
+const QUANTILE: f64 = 0.3;
+
+/// Part of the energy in its range bins that a line must explain to be looked at.
+const LEAST_PART: f64 = 0.06;
+
+/// What another line must explain, against the best one, to be looked at beside it.
+const KEPT_PART: f64 = 0.3;
+
+/// Lines that begin this near to an end are not looked for, metres: their first point alone would speak for all.
+const NEAREST_METRES: f64 = 1.5;
+
+/// Lines nearer to a better one than this, in x and along y, are its side lobes for now, metres.
+const APART_METRES: f64 = 1.0;
+
+/// Starts kept of each column of the coarse grid.
+const BEST_OF_COLUMN: usize = 8;
+
+/// Starts of a column that are looked at in the order of what they promise.
+const SORTED: usize = 64;
+
+/// A line to look for: its points stand one behind the other along y. What is found may become longer or shorter, and turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shape {
+    /// Distance between neighbours, range bins.
+    spacing_bins: f64,
+    /// Points at least.
+    count: usize,
+}
+
+/// Lines that are looked for: at the spacings of the tables' scenes as the author's program makes them, and as the text says.
+const SHAPES: [Shape; 2] = [Shape { spacing_bins: 1.5, count: 75 }, Shape { spacing_bins: 1.0, count: 75 }];
+
+/// Lines of one shape that are moved to the best place near them, and those of them that are kept.
+const MOST_FINE: [usize; 2] = [4, 3];
+
+/// How far around a line of the coarse grid the fine one reaches, and its step, metres.
+const FINE_METRES: [f64; 2] = [0.06, 0.005];
+
+/// A line that the residual may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Candidate {
+    /// The line.
+    atom: Atom,
+    /// Part of the energy in its range bins that it would explain, more or less.
+    part: f64,
+    /// What [`LineDetector::coherent`] comes to where it explains all of it.
+    score: f64,
+}
+
+/// The line along y from (x, y) on.
+fn vertical(x_metres: f64, y_metres: f64, dy_metres: f64, count: usize) -> Atom {
+    Atom::Segment { x_metres, y_metres, dx_metres: 0.0, dy_metres, count }
+}
+
+/// Long lines along y that `residual` (all samples of both ends, not windowed) may hold.
+pub fn lines_in(radar: &Radar, residual: &[Complex64], task: &Task) -> Vec<Atom> {
+    let beams = &PhasedBeams::new(radar, residual);
+    let weights = radar.window.weights(radar.samples);
+    let [sum, square] = weights.iter().fold([0.0; 2], |[sum, square], w| [sum + w, square + w * w]);
+    let detector = LineDetector {
+        beams,
+        extent_metres: radar.max_range_metres(),
+        bins: radar.samples,
+        running: [0, 1].map(|end| beams.running_energy(end)),
+        score_of_energy: radar.end_elements as f64 * sum * sum / (radar.samples as f64 * square),
+    };
+    let (mut found, mut best) = (Vec::new(), LEAST_PART / KEPT_PART);
+    for Shape { spacing_bins, count } in SHAPES {
+        if task.is_cancelled() {
+            break;
+        }
+        let coarse = detector.coarse(spacing_bins * radar.range_resolution_metres(), count, KEPT_PART * best);
+        best = coarse.iter().map(|c| c.part).fold(best, f64::max);
+        let mut fine: Vec<Candidate> = coarse.iter().map(|c| detector.fine(c)).collect();
+        fine.sort_by(|a, b| b.part.total_cmp(&a.part));
+        found.extend(fine.iter().take(MOST_FINE[1]).map(|line| line.atom));
+    }
+    found
+}
+
+/// Looks for lines in the beams of both ends.
+struct LineDetector<'a> {
+    beams: &'a PhasedBeams,
+    extent_metres: f64,
+    bins: usize,
+    /// Energy of the range bins up to each, at both ends.
+    running: [Vec<f64>; 2],
+    /// Score of a line that explains energy 1.
+    score_of_energy: f64,
+}
+
+impl LineDetector<'_> {
+    /// What each of `count` reflectors of a row would have left at an end.
+    fn echoes(&self, end: usize, row: Row, count: usize) -> Vec<Heard> {
+        let mut heard = vec![Heard::default(); count];
+        Simd::chosen().run(Column { beams: self.beams, end, row, heard: &mut heard });
+        heard
+    }
+
+    /// The best lines of `count` points at `spacing` metres on the coarse grid that explain more than the part `least`, best first, none
+    /// beside another.
+    fn coarse(&self, spacing: f64, count: usize, least: f64) -> Vec<Candidate> {
+        let columns = (2.0 * 0.82 * self.extent_metres / X_STEP_METRES) as usize;
+        let x = |column: usize| column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
+        let mut found: Vec<Candidate> = (0..columns)
+            .into_par_iter()
+            .flat_map_iter(|column| self.best_at(x(column), spacing, count, least))
+            .collect();
+        found.sort_by(|a, b| b.part.total_cmp(&a.part));
+        let mut apart: Vec<Candidate> = Vec::new();
+        for candidate in found {
+            if apart.iter().all(|a| distance(&a.atom, &candidate.atom) > APART_METRES) {
+                apart.push(candidate);
+                if apart.len() == MOST_FINE[0] {
+                    break;
+                }
+            }
+        }
+        apart
+    }
+
+    /// What [`LineDetector::coherent`] comes to where a line along y at x explains all that there is in its range bins; infinite where one
+    /// point would speak for all.
+    fn score_of_all(&self, x: f64, along: [f64; 2]) -> f64 {
+        let energy = [0, 1].map(|end| {
+            let [near, far] = along.map(|y| (x - self.beams.centres_metres[end]).hypot(y));
+            if near < NEAREST_METRES {
+                return f64::INFINITY;
+            }
+            let [near, far] = [near, far].map(|range| (range * self.bins as f64 / self.extent_metres) as usize);
+            let running = &self.running[end];
+            let up_to = |bin: usize| (bin / self.bins) as f64 * running[self.bins] + running[bin % self.bins];
+            up_to(far + 1) - up_to(near)
+        });
+        self.score_of_energy * (energy[0] + energy[1]).max(f64::MIN_POSITIVE)
+    }
+
+    /// The best lines of the coarse grid at x, metres, that explain more than the part `least`.
+    fn best_at(&self, x: f64, spacing: f64, count: usize, least: f64) -> Vec<Candidate> {
+        let blocks = (count / BLOCK).max(1);
+        let starts = (self.extent_metres / spacing) as usize;
+        let y = |start: usize| start as f64 * spacing;
+        let scores: Vec<f64> =
+            (0..starts).step_by(BLOCK).map(|start| self.score_of_all(x, [y(start), y(start + count)])).collect();
+        let offsets: [f64; PHASES] = std::array::from_fn(|phase| spacing * phase as f64 / PHASES as f64);
+        let row = |offset: f64| Row { first_metres: [x, offset], step_metres: [0.0, spacing] };
+        let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self, end, row(o), starts + count)));
+        let at = (2.0 * blocks as f64 * QUANTILE) as usize;
+        let mut best: Vec<Candidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
+        let mut gains = Vec::with_capacity(2 * blocks);
+        for Trial { bound, weight, phase, start } in trials(&ends, &scores, starts, blocks) {
+            let least = if best.len() < BEST_OF_COLUMN { least } else { best[BEST_OF_COLUMN - 1].part };
+            if bound <= least {
+                continue;
+            }
+            gains.clear();
+            for end in &ends[phase] {
+                gains.extend((0..blocks).map(|b| end.gain[start + b * BLOCK]));
+            }
+            // Counting tells sooner than finding it whether the quantile is large enough.
+            let needed = (least * scores[start / BLOCK] / weight).sqrt();
+            if gains.iter().filter(|gain| **gain <= needed).count() > at {
+                continue;
+            }
+            let gain = *gains.select_nth_unstable_by(at, f64::total_cmp).1;
+            let score = scores[start / BLOCK];
+            let part = gain * gain * weight / score;
+            if part > least {
+                let start = offsets[phase] + start as f64 * spacing;
+                best.push(Candidate { atom: vertical(x, start, spacing, count), part, score });
+                best.sort_by(|a, b| b.part.total_cmp(&a.part));
+                best.truncate(BEST_OF_COLUMN);
+            }
+        }
+        best
+    }
+
+    /// Energy that a line explains when all its points at one end are added with their phases; the sum over both ends.
+    fn coherent(&self, atom: &Atom) -> f64 {
+        let Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count } = *atom else { return 0.0 };
+        let row = Row { first_metres: [x_metres, y_metres], step_metres: [dx_metres, dy_metres] };
+        let mut energy = 0.0;
+        for end in 0..2 {
+            let (mut sum, mut weight) = (Complex64::default(), 0.0);
+            for echo in self.echoes(end, row, count) {
+                sum += echo.weighted;
+                weight += echo.weight;
+            }
+            energy += sum.norm_sqr() / weight;
+        }
+        energy
+    }
+
+    /// The best place for `atom` on a fine grid around it, all points added with their phases.
+    fn fine(&self, candidate: &Candidate) -> Candidate {
+        let score = candidate.score;
+        let [reach, step] = FINE_METRES;
+        let steps = (reach / step).round() as i32;
+        (-steps..=steps)
+            .into_par_iter()
+            .flat_map_iter(|i| (-steps..=steps).map(move |j| (i, j)))
+            .map(|(i, j)| {
+                let atom = candidate.atom.moved(&[f64::from(i) * step, f64::from(j) * step, 0.0, 0.0]);
+                Candidate { atom, part: self.coherent(&atom) / score, score }
+            })
+            .reduce(|| Candidate { part: 0.0, ..*candidate }, |a, b| if b.part > a.part { b } else { a })
+    }
+}
+
+/// A start of the coarse grid and the most that its score can be.
+#[derive(Debug, Clone, Copy)]
+struct Trial {
+    bound: f64,
+    weight: f64,
+    phase: usize,
+    start: usize,
+}
+
+/// Every start of every phase with the most that its score can be: those that promise most first, hardly any of the others is looked at.
+fn trials(ends: &[[Blocks; 2]; PHASES], scores: &[f64], starts: usize, blocks: usize) -> Vec<Trial> {
+    let mut trials: Vec<Trial> = Vec::with_capacity(PHASES * starts);
+    for (phase, ends) in ends.iter().enumerate() {
+        trials.extend((0..starts).map(|start| {
+            let [a, b] = [0, 1].map(|end| ends[end].totals(start, blocks));
+            let (sum, weight) = (a[0] + b[0], a[1] + b[1]);
+            // The quantile can't exceed the mean of all over the part that lies above it.
+            let bound = sum / (2 * blocks) as f64 / (1.0 - QUANTILE);
+            Trial { bound: bound * bound * weight / scores[start / BLOCK], weight, phase, start }
+        }));
+    }
+    let by_bound = |a: &Trial, b: &Trial| b.bound.total_cmp(&a.bound).then((a.phase, a.start).cmp(&(b.phase, b.start)));
+    if trials.len() > SORTED {
+        trials.select_nth_unstable_by(SORTED, by_bound);
+    }
+    let sorted = trials.len().min(SORTED);
+    trials[..sorted].sort_unstable_by(by_bound);
+    trials
+}
+
+/// What a column of reflectors would have left at one end.
+struct Column<'a> {
+    beams: &'a PhasedBeams,
+    end: usize,
+    row: Row,
+    heard: &'a mut [Heard],
+}
+
+impl Kernel for Column<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        self.beams.listen::<FMA>(self.end, &self.row, self.heard);
+    }
+}
+
+/// Blocks of neighbouring points in one column of the grid as one end sees them, one for every first point.
+struct Blocks {
+    /// Magnitude of each block's gain.
+    gain: Vec<f64>,
+    /// Running sums of gain and weight (sum of squared amplitudes) in steps of [`BLOCK`] points.
+    running: Vec<[f64; 2]>,
+}
+
+impl Blocks {
+    fn new(detector: &LineDetector, end: usize, row: Row, points: usize) -> Self {
+        let (mut sum, mut weight) = (Complex64::default(), 0.0);
+        let mut prefix = Vec::with_capacity(points + 1);
+        prefix.push((sum, weight));
+        for echo in detector.echoes(end, row, points) {
+            sum += echo.weighted;
+            weight += echo.weight;
+            prefix.push((sum, weight));
+        }
+        let first = 0..=points.saturating_sub(BLOCK);
+        let mut blocks = Blocks { gain: Vec::with_capacity(points), running: Vec::with_capacity(points) };
+        for i in first {
+            let last = (i + BLOCK).min(points);
+            let weight = prefix[last].1 - prefix[i].1;
+            let gain = (prefix[last].0 - prefix[i].0).norm_sqr().sqrt() / weight;
+            let before = if i >= BLOCK { blocks.running[i - BLOCK] } else { [0.0; 2] };
+            blocks.gain.push(gain);
+            blocks.running.push([before[0] + gain, before[1] + weight]);
+        }
+        blocks
+    }
+
+    /// Sum of gains and of weights of `count` blocks, one behind the other from point `start`.
+    fn totals(&self, start: usize, count: usize) -> [f64; 2] {
+        let last = self.running[start + (count - 1) * BLOCK];
+        let before = if start >= BLOCK { self.running[start - BLOCK] } else { [0.0; 2] };
+        [last[0] - before[0], last[1] - before[1]]
+    }
+}
+
+/// Larger of the distances in x and in start, metres.
+fn distance(a: &Atom, b: &Atom) -> f64 {
+    let ([ax, ay], [bx, by]) = (a.position_metres(0.0), b.position_metres(0.0));
+    (ax - bx).abs().max((ay - by).abs())
+}
