@@ -45,6 +45,21 @@ pub const PRINTED_EXPERIMENT_2: [Printed; 3] = [
     Printed { squared_error: 1613.29, detection: 0.9197, false_alarm: 0.0102 },
 ];
 
+/// What counts as near the best in [`part_near_best`].
+pub const NEAR_BEST: f64 = 1.2;
+
+/// Part of the scenes on which the SE of `method` is at most [`NEAR_BEST`] times the least of the other methods'; `None` where no scene
+/// has another method's. `rows` are those of one set.
+pub fn part_near_best(rows: &[&Row], method: &str) -> Option<f64> {
+    let is_near = |row: &&&Row| {
+        let others = rows.iter().filter(|r| (r.seed, r.index) == (row.seed, row.index) && r.method != method);
+        let least = others.map(|r| r.squared_error).reduce(f64::min)?;
+        Some(row.squared_error <= NEAR_BEST * least)
+    };
+    let near: Vec<bool> = rows.iter().filter(|row| row.method == method).filter_map(|row| is_near(&row)).collect();
+    (!near.is_empty()).then(|| near.iter().filter(|n| **n).count() as f64 / near.len() as f64)
+}
+
 /// One method on one set: means of its rows.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
@@ -113,6 +128,23 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::rows::tests::row;
+
+    #[test]
+    fn near_the_best_is_held_against_the_other_methods_scene_by_scene() {
+        let row = |index, method: &str, squared_error| Row { squared_error, ..row("1", index, method) };
+        let rows = [
+            row(0, "a", 119.0),
+            row(0, "b", 100.0),
+            row(0, "c", 130.0),
+            row(1, "a", 121.0),
+            row(1, "b", 100.0),
+            row(2, "a", 1.0),
+        ];
+        let rows: Vec<&Row> = rows.iter().collect();
+        assert_eq!(["a", "b", "c", "d"].map(|m| part_near_best(&rows, m)), [Some(0.5), Some(1.0), Some(0.0), None]);
+        assert_eq!(part_near_best(&rows[5..], "a"), None);
+    }
 
     #[test]
     fn deviations_allow_for_the_printed_digits() {

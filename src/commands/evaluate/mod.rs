@@ -23,13 +23,14 @@ use std::path::{Path, PathBuf};
 ///
 /// P_D and P_FA are at the threshold that each method ships with, chosen on validation scenes: what a user gets. Beside them stands
 /// P_D where every scene has a threshold of its own that holds its P_FA to the printed one. An object is missed when less than half of where
-/// the whole array sees it is above the threshold; a ghost is a blob where the whole array sees nothing.
+/// the whole array sees it is above the threshold; a ghost is a blob where the whole array sees nothing. "Near best" is the part of the
+/// scenes on which the squared error is at most 1.2 times the least of the other methods'.
 ///
 /// With --json one object is printed: count, seed, floor, carrier (floor and carrier null with --merge, as rows don't say), and sets,
 /// each with its name (set: a number for the thesis' sets), what the thesis prints there (printed: baseline, experiment_1, experiment_2; null
 /// for other scenes), false_alarm (the printed rate, experiment 2's; 1 % for other scenes) and methods, each with name, eta, scenes,
 /// squared_error, detection, false_alarm, missed and ghosts (mean and standard_error), detection_at_printed_false_alarm (false_alarm,
-/// detection, standard_error) and median_milliseconds. Rates are fractions, not percent.
+/// detection, standard_error), median_milliseconds and near_best (null with one method). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Methods, separated by commas

@@ -3,7 +3,9 @@
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::false_alarm;
-use crate::evaluate::tables::{PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
+use crate::evaluate::tables::{
+    PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally, part_near_best,
+};
 use crate::radar::Carrier;
 use crate::scene::generate::Kind;
 use crate::signal::Floor;
@@ -57,6 +59,8 @@ struct MethodReport {
     missed: Estimate,
     ghosts: Estimate,
     median_milliseconds: f64,
+    /// Part of the scenes on which no other method is much better; `None` beside no other.
+    near_best: Option<f64>,
 }
 
 /// P_D where every scene's P_FA is held to a rate.
@@ -135,10 +139,7 @@ impl SetReport {
             experiment_2: PRINTED_EXPERIMENT_2[number - 1],
         });
         let false_alarm = false_alarm(test_set);
-        let method = |name: &&str| {
-            let tally = Tally::of(rows.iter().copied().filter(|row| row.method == **name));
-            MethodReport::of(name, &tally, false_alarm)
-        };
+        let method = |name: &&str| MethodReport::of(name, rows, false_alarm);
         let methods = names(rows, |row| &row.method).iter().map(method).collect();
         SetReport { set: set.to_owned(), printed, false_alarm, methods }
     }
@@ -153,8 +154,8 @@ impl SetReport {
         let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>9}",
-            "", "SE", "P_D %", "P_FA %", rate, "missed", "ghosts", "ms a map"
+            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>9} {:>11}",
+            "", "SE", "P_D %", "P_FA %", rate, "missed", "ghosts", "ms a map", "near best %"
         );
         if let Some(printed) = &self.printed {
             printed.write(text);
@@ -182,7 +183,8 @@ impl PrintedColumns {
 }
 
 impl MethodReport {
-    fn of(name: &str, tally: &Tally, false_alarm: f64) -> Self {
+    fn of(name: &str, rows: &[&Row], false_alarm: f64) -> Self {
+        let tally = Tally::of(rows.iter().copied().filter(|row| row.method == name));
         let at = tally.detection_at_printed();
         MethodReport {
             name: name.to_owned(),
@@ -199,6 +201,7 @@ impl MethodReport {
             missed: tally.missed(),
             ghosts: tally.ghosts(),
             median_milliseconds: tally.median_milliseconds(),
+            near_best: part_near_best(rows, name),
         }
     }
 
@@ -211,7 +214,7 @@ impl MethodReport {
         let at = &self.detection_at_printed_false_alarm;
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>9.1}",
+            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>9.1} {:>11}",
             format!("{} (eta {})", self.name, self.eta),
             format!("{:.1} \u{b1} {:.1}", self.squared_error.mean, self.squared_error.standard_error),
             rate(self.detection),
@@ -219,7 +222,8 @@ impl MethodReport {
             percent(at.detection, at.standard_error),
             self.missed.mean,
             self.ghosts.mean,
-            self.median_milliseconds
+            self.median_milliseconds,
+            self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part))
         );
     }
 

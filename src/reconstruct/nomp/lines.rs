@@ -28,9 +28,6 @@ const QUANTILE: f64 = 0.3;
 /// Part of the energy in its range bins that a line must explain to be looked at.
 const LEAST_PART: f64 = 0.06;
 
-/// What another line must explain, against the best one, to be looked at beside it.
-const KEPT_PART: f64 = 0.3;
-
 /// Lines that begin this near to an end are not looked for, metres: their first point alone would speak for all.
 const NEAREST_METRES: f64 = 1.5;
 
@@ -89,13 +86,12 @@ pub fn lines_in(radar: &Radar, residual: &[Complex64], task: &Task) -> Vec<Atom>
         running: [0, 1].map(|end| beams.running_energy(end)),
         score_of_energy: radar.end_elements as f64 * sum * sum / (radar.samples as f64 * square),
     };
-    let (mut found, mut best) = (Vec::new(), LEAST_PART / KEPT_PART);
+    let mut found = Vec::new();
     for Shape { spacing_bins, count } in SHAPES {
         if task.is_cancelled() {
             break;
         }
-        let coarse = detector.coarse(spacing_bins * radar.range_resolution_metres(), count, KEPT_PART * best);
-        best = coarse.iter().map(|c| c.part).fold(best, f64::max);
+        let coarse = detector.coarse(spacing_bins * radar.range_resolution_metres(), count);
         let mut fine: Vec<Candidate> = coarse.iter().map(|c| detector.fine(c)).collect();
         fine.sort_by(|a, b| b.part.total_cmp(&a.part));
         found.extend(fine.iter().take(MOST_FINE[1]).map(|line| line.atom));
@@ -122,15 +118,12 @@ impl LineDetector<'_> {
         heard
     }
 
-    /// The best lines of `count` points at `spacing` metres on the coarse grid that explain more than the part `least`, best first, none
-    /// beside another.
-    fn coarse(&self, spacing: f64, count: usize, least: f64) -> Vec<Candidate> {
+    /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
+    fn coarse(&self, spacing: f64, count: usize) -> Vec<Candidate> {
         let columns = (2.0 * 0.82 * self.extent_metres / X_STEP_METRES) as usize;
         let x = |column: usize| column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
-        let mut found: Vec<Candidate> = (0..columns)
-            .into_par_iter()
-            .flat_map_iter(|column| self.best_at(x(column), spacing, count, least))
-            .collect();
+        let mut found: Vec<Candidate> =
+            (0..columns).into_par_iter().flat_map_iter(|column| self.best_at(x(column), spacing, count)).collect();
         found.sort_by(|a, b| b.part.total_cmp(&a.part));
         let mut apart: Vec<Candidate> = Vec::new();
         for candidate in found {
@@ -160,8 +153,8 @@ impl LineDetector<'_> {
         self.score_of_energy * (energy[0] + energy[1]).max(f64::MIN_POSITIVE)
     }
 
-    /// The best lines of the coarse grid at x, metres, that explain more than the part `least`.
-    fn best_at(&self, x: f64, spacing: f64, count: usize, least: f64) -> Vec<Candidate> {
+    /// The best lines of the coarse grid at x, metres.
+    fn best_at(&self, x: f64, spacing: f64, count: usize) -> Vec<Candidate> {
         let blocks = (count / BLOCK).max(1);
         let starts = (self.extent_metres / spacing) as usize;
         let y = |start: usize| start as f64 * spacing;
@@ -174,7 +167,7 @@ impl LineDetector<'_> {
         let mut best: Vec<Candidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
         let mut gains = Vec::with_capacity(2 * blocks);
         for Trial { bound, weight, phase, start } in trials(&ends, &scores, starts, blocks) {
-            let least = if best.len() < BEST_OF_COLUMN { least } else { best[BEST_OF_COLUMN - 1].part };
+            let least = if best.len() < BEST_OF_COLUMN { LEAST_PART } else { best[BEST_OF_COLUMN - 1].part };
             if bound <= least {
                 continue;
             }
@@ -322,4 +315,31 @@ impl Blocks {
 fn distance(a: &Atom, b: &Atom) -> f64 {
     let ([ax, ay], [bx, by]) = (a.position_metres(0.0), b.position_metres(0.0));
     (ax - bx).abs().max((ay - by).abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Line, Object, Point, Scene};
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn lines_of_both_spacings_are_seen_behind_a_near_point() {
+        let radar = Radar::default();
+        for [x, y, bins] in [[-17.3, 6.0, 1.5], [9.6, 24.0, 1.0]] {
+            let step = bins * radar.range_resolution_metres();
+            let line = Object::Line(Line::vertical(x, y, step, 90));
+            let point = Object::Point(Point { x_metres: 2.0, y_metres: 6.0, reflectivity: 0.5 });
+            let scene = Scene { objects: vec![line, point], ..Scene::default() };
+            let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+            let seen = lines_in(&radar, &ends.flat(), &Task::default());
+            // 75 of the line's 90 reflectors, whichever end they are nearer to.
+            let is_part = |atom: &Atom| {
+                let [first, last] = [0.0, 74.0].map(|i| atom.position_metres(i));
+                let begins = (y - 0.2..y + 15.0 * step + 0.2).contains(&first[1]);
+                (first[0] - x).abs() < 0.15 && begins && (last[1] - first[1] - 74.0 * step).abs() < 1e-9
+            };
+            assert!(seen.iter().any(is_part), "x {x}: {seen:?}");
+        }
+    }
 }
