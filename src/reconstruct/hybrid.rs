@@ -109,14 +109,14 @@ impl Reconstructor for Following {
 
 /// Parts of a cell's power that are unexplained, in decades: up to the first the drawn map stays as it is, from the second on the fallback
 /// has all the weight that it gets in the scene. By `examples/choose_eta.rs weights`, as the next two.
-const CELL_DECADES: [f32; 2] = [-3.2, -0.9];
+const CELL_DECADES: [f32; 2] = [-4.0, -0.6];
 
 /// Parts of a scene's energy that are left, in decades, between which the fallback's weight grows from [`LEAST_WEIGHT`] to 1: what makes
 /// up for nearly all of a scene draws a map that is as good as the fallback's, and what leaves much of it a worse one.
 const SCENE_DECADES: [f32; 2] = [-3.0, -1.5];
 
 /// Weight of the fallback where little of the scene's energy is left. The two maps err in different ways: their mean is better than either.
-const LEAST_WEIGHT: f32 = 0.62;
+const LEAST_WEIGHT: f32 = 0.7;
 
 /// Cells beyond which a difference between the maps is believed to be one of scale.
 const CELLS_TO_BELIEVE: f64 = 5000.0;
@@ -205,7 +205,7 @@ mod tests {
         for (i, (h, part)) in hybrid.lambda.lambda.iter().zip(&parts).enumerate() {
             let [drawn, fallback] = [&drawn, &fallback].map(|m| m.lambda.as_slice().unwrap()[i]);
             assert!(*h >= drawn.min(fallback) - 1e-6 && *h <= drawn.max(fallback) + 1e-6);
-            assert!(*part > 6e-4 || *h == drawn);
+            assert!(*part > 1e-4 || *h == drawn);
             taken += u32::from(*part > 0.2 && (h - fallback).abs() < 1e-6);
         }
         assert!(taken > 1000, "{taken} cells are the fallback's");
