@@ -217,7 +217,7 @@ fn weights() -> Outcome {
             let drawn = found.reconstruction(&radar, &request).lambda;
             let unexplained = found.unexplained_cells(&radar, &trial.ends);
             let filled = fallback.reconstruct(&radar, &trial.ends, &request)?.lambda;
-            let filled = on_one_scale(&drawn, filled, &unexplained);
+            let filled = on_one_scale(&drawn, filled, &unexplained, found.energy_left() as f32);
             let group = &mut all[LEFT.partition_point(|left| *left < found.energy_left())];
             let cells = unexplained.iter().zip(&trial.target.lambda).zip(drawn.lambda.iter().zip(&filled.lambda));
             for ((part, target), (drawn, filled)) in cells {

@@ -43,7 +43,7 @@ impl Hybrid {
         }
         let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;
         let unexplained = found.unexplained_cells(radar, ends);
-        let filled = on_one_scale(&drawn.lambda, filled, &unexplained);
+        let filled = on_one_scale(&drawn.lambda, filled, &unexplained, found.energy_left() as f32);
         drawn.lambda = blended(&drawn.lambda, &filled, &unexplained, most_weight(found.energy_left() as f32));
         Ok(drawn)
     }
@@ -145,15 +145,21 @@ fn blended(drawn: &RangeAngleMap, filled: &RangeAngleMap, unexplained: &Array2<f
 }
 
 /// `filled` moved to the scale of `drawn`: each knows the weakest and the strongest cell in its own way, and where nearly all is explained
-/// the two should be one. Where few cells are, it stays nearly as it is.
-pub fn on_one_scale(drawn: &RangeAngleMap, filled: RangeAngleMap, unexplained: &Array2<f32>) -> RangeAngleMap {
+/// the two should be one. Where few cells are, or much of the scene's energy is left, it stays nearly as it is: what lacks a strong object
+/// has no scale.
+pub fn on_one_scale(
+    drawn: &RangeAngleMap,
+    filled: RangeAngleMap,
+    unexplained: &Array2<f32>,
+    energy_left: f32,
+) -> RangeAngleMap {
     let (mut sum, mut cells) = (0.0, 0.0);
     for ((drawn, filled), part) in drawn.lambda.iter().zip(&filled.lambda).zip(unexplained) {
         let weight = f64::from((1.0 - part / SAYS_NOTHING).max(0.0));
         sum += weight * f64::from(filled - drawn);
         cells += weight;
     }
-    let brighter = (sum / (cells + CELLS_TO_BELIEVE)) as f32;
+    let brighter = (1.0 - between(SCENE_DECADES, energy_left)) * (sum / (cells + CELLS_TO_BELIEVE)) as f32;
     RangeAngleMap { lambda: filled.lambda.mapv_into(|v| (v - brighter).clamp(0.0, 1.0)) }
 }
 
@@ -200,7 +206,7 @@ mod tests {
         let parts = found.unexplained_cells(&radar, &ends);
         let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;
-        let fallback = on_one_scale(&drawn, fallback, &parts);
+        let fallback = on_one_scale(&drawn, fallback, &parts, found.energy_left() as f32);
         let mut taken = 0;
         for (i, (h, part)) in hybrid.lambda.lambda.iter().zip(&parts).enumerate() {
             let [drawn, fallback] = [&drawn, &fallback].map(|m| m.lambda.as_slice().unwrap()[i]);
@@ -228,7 +234,7 @@ mod tests {
         let brighter = RangeAngleMap { lambda: drawn.lambda.mapv(|v| v + 0.05) };
         let largest = |unexplained: f32| {
             let parts = Array2::from_elem(drawn.lambda.dim(), unexplained);
-            let moved = on_one_scale(&drawn, brighter.clone(), &parts);
+            let moved = on_one_scale(&drawn, brighter.clone(), &parts, 0.0);
             moved.lambda.iter().zip(&drawn.lambda).map(|(m, d)| (m - d).abs()).fold(0.0, f32::max)
         };
         assert!(largest(0.0) < 1e-3, "{}", largest(0.0));

@@ -19,8 +19,12 @@ const BLOCK: usize = 5;
 /// Starts tried between one point and the next.
 const PHASES: usize = 2;
 
-/// Step of the coarse grid in x, metres.
-const X_STEP_METRES: f64 = 0.12;
+/// Step of the coarse grid in x, as a part of x, and the least and the most of it, metres: the nearer a line, the finer its phases follow its place.
+const X_STEP: f64 = 0.006;
+const X_STEP_METRES: [f64; 2] = [0.04, 0.12];
+
+/// Part of the maximum range up to which lines are looked for to each side.
+const WIDEST: f64 = 0.82;
 
 /// Part of the blocks that may be weaker than the gain a line is credited with.
 const QUANTILE: f64 = 0.3;
@@ -120,10 +124,12 @@ impl LineDetector<'_> {
 
     /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
     fn coarse(&self, spacing: f64, count: usize) -> Vec<Candidate> {
-        let columns = (2.0 * 0.82 * self.extent_metres / X_STEP_METRES) as usize;
-        let x = |column: usize| column as f64 * X_STEP_METRES - 0.82 * self.extent_metres;
+        let [least, most] = X_STEP_METRES;
+        let next = |x: &f64| Some(x + (X_STEP * x).clamp(least, most)).filter(|x| *x < WIDEST * self.extent_metres);
+        let right: Vec<f64> = std::iter::successors(Some(0.0), next).collect();
+        let columns: Vec<f64> = right[1..].iter().rev().map(|x| -x).chain(right.iter().copied()).collect();
         let mut found: Vec<Candidate> =
-            (0..columns).into_par_iter().flat_map_iter(|column| self.best_at(x(column), spacing, count)).collect();
+            columns.into_par_iter().flat_map_iter(|x| self.best_at(x, spacing, count)).collect();
         found.sort_by(|a, b| b.part.total_cmp(&a.part));
         let mut apart: Vec<Candidate> = Vec::new();
         for candidate in found {

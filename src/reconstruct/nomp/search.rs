@@ -105,7 +105,16 @@ impl Search<'_> {
         let lines = self.long_lines(nothing)?;
         let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
         let (walls, pairs) = self.walls(lines, pairs)?;
-        let answer = self.paired_again(walls, pairs, is_long)?;
+        let mut answer = self.paired_again(walls, pairs, is_long)?;
+        if !answer.is_sure {
+            // What was found may have hidden a weaker line.
+            let before = answer.fit.atoms.len();
+            let lines = self.long_lines(answer.fit.clone())?;
+            if lines.atoms.len() > before {
+                let pairs = self.pairs(&lines);
+                answer = self.paired_again(lines, pairs, is_long)?;
+            }
+        }
         if answer.is_sure {
             return Ok(answer);
         }
@@ -290,7 +299,7 @@ impl Search<'_> {
 const NEARLY_NOTHING: f64 = 1e-5;
 
 /// Work that a look for long lines amounts to.
-const LOOK_FOR_LINES: usize = 3000;
+const LOOK_FOR_LINES: usize = 2000;
 
 /// Most atoms that appear from one answer to the next.
 const MOST_APPEARING: usize = 2;
