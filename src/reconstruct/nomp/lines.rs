@@ -60,7 +60,7 @@ const SHAPES: [Shape; 2] = [Shape { spacing_bins: 1.5, count: 75 }, Shape { spac
 const MOST_FINE: [usize; 2] = [4, 3];
 
 /// How far around a line of the coarse grid the fine one reaches, and its step, metres.
-const FINE_METRES: [f64; 2] = [0.06, 0.005];
+const FINE_METRES: [f64; 2] = [0.08, 0.005];
 
 /// A line that the residual may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
