@@ -129,6 +129,11 @@ impl<'a> Workbench<'a> {
         self.work.spend(echoes);
     }
 
+    /// Grants so much work that at least this is left.
+    pub fn grant(&self, echoes: usize) {
+        self.work.grant(echoes);
+    }
+
     /// Part of the work granted that is done.
     pub fn spent(&self) -> f64 {
         self.work.spent()

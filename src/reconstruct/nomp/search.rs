@@ -120,7 +120,8 @@ impl Search<'_> {
         }
         let mut fit = answer.fit;
         if fit.cost() < NEARLY_NOTHING * all {
-            // All is there, and not yet quite in its place.
+            // All is there, and not yet quite in its place: a map shows even what little is left.
+            self.bench.grant(self.settings.most_work / 4);
             fit = self.grower().refined_where_needed(fit)?;
             if self.is_explained(&fit) {
                 return Ok(Answer { fit, is_sure: true });

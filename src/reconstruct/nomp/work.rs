@@ -20,6 +20,12 @@ impl Work {
         self.done.fetch_add(units, Ordering::Relaxed);
     }
 
+    /// Grants so much that at least this is left.
+    pub fn grant(&self, units: usize) {
+        let done = self.most.saturating_sub(units);
+        self.done.fetch_min(done, Ordering::Relaxed);
+    }
+
     /// Part of what was granted that is done; to be asked where nothing runs in parallel.
     pub fn spent(&self) -> f64 {
         self.done.load(Ordering::Relaxed) as f64 / self.most.max(1) as f64
@@ -39,6 +45,11 @@ mod tests {
     fn what_is_granted_is_spent() {
         let work = Work::granted(10);
         work.spend(9);
+        assert!(!work.is_spent());
+        work.spend(1);
+        assert!(work.is_spent());
+        work.grant(3);
+        work.spend(2);
         assert!(!work.is_spent());
         work.spend(1);
         assert!(work.is_spent());
