@@ -154,8 +154,8 @@ impl SetReport {
         let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>9} {:>11}",
-            "", "SE", "P_D %", "P_FA %", rate, "missed", "ghosts", "ms a map", "near best %"
+            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>11} {:>9}",
+            "", "SE", "P_D %", "P_FA %", rate, "missed", "ghosts", "near best %", "ms a map"
         );
         if let Some(printed) = &self.printed {
             printed.write(text);
@@ -214,7 +214,7 @@ impl MethodReport {
         let at = &self.detection_at_printed_false_alarm;
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>9.1} {:>11}",
+            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>11} {:>9.1}",
             format!("{} (eta {})", self.name, self.eta),
             format!("{:.1} \u{b1} {:.1}", self.squared_error.mean, self.squared_error.standard_error),
             rate(self.detection),
@@ -222,8 +222,8 @@ impl MethodReport {
             percent(at.detection, at.standard_error),
             self.missed.mean,
             self.ghosts.mean,
-            self.median_milliseconds,
-            self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part))
+            self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part)),
+            self.median_milliseconds
         );
     }
 
