@@ -36,16 +36,16 @@ def validation_scenes(seed, count, entry, kinds=tuple(P_FA)):
 def figures(estimate, sets):
     """SE, and P_D with its threshold at `false_alarm(kind)`, for each kind; `eta` is where the mean P_FA is the mean of these.
 
-    `estimate` turns a list of entries into Lambda of output and target, [n, 512, 1024] each."""
+    `estimate` turns a list of entries into Lambda of output and target, and what is held against a threshold, [n, 512, 1024] each."""
     etas = np.linspace(0.5, 1.0, 251)
     report, alarms = {}, []
     for k, entries in sets.items():
         se, pd, pfa = [], [], []
         for i in range(0, len(entries), 4):
-            for o, t in zip(*estimate(entries[i : i + 4])):
-                se.append(float(((o - t) ** 2).sum()))
-                mask = t > 0.9
-                on, off = np.sort(o[mask].numpy()), np.sort(o[~mask].numpy())
+            for output, target, shown in zip(*estimate(entries[i : i + 4])):
+                se.append(float(((output - target) ** 2).sum()))
+                mask = target > 0.9
+                on, off = np.sort(shown[mask].numpy()), np.sort(shown[~mask].numpy())
                 pd.append(1 - np.searchsorted(on, etas, "right") / on.size)
                 pfa.append(1 - np.searchsorted(off, etas, "right") / off.size)
         pd, pfa = np.mean(pd, 0), np.mean(pfa, 0)

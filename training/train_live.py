@@ -76,10 +76,11 @@ def loss_of(log, minimum, target, edge_weight):
 
 
 def estimate_with(model):
-    """For `common.figures`: Lambda of output and target."""
+    """For `common.figures`."""
     def estimate(entries):
         inputs, target = batch_of(entries)
-        return normalise(*model(*inputs)).clamp(0, 1), unit(target)
+        output = normalise(*model(*inputs)).clamp(0, 1)
+        return output, unit(target), output
     return estimate
 
 

@@ -90,13 +90,13 @@ def loss_of(experiment, output, target):
 
 
 def estimate_with(model):
-    """For `common.figures`: Lambda of output and target."""
+    """For `common.figures`. The output is Lambda as it stands; for a threshold the thesis stretches it to [0, 1]."""
     def estimate(entries):
         inputs, target = batch_of(entries)
         model.eval()
         output = model(inputs)[:, 0]
         model.train()
-        return unit(output), target
+        return output.clamp(0, 1), target, unit(output)
     return estimate
 
 

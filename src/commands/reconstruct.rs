@@ -62,10 +62,10 @@ impl Args {
         let answer = match &input.samples {
             Samples::MagPhase(array) => {
                 let started = Instant::now();
-                let map = method.reconstruct_mag_phase(radar, array).map_err(CommandError::on(&self.input))?;
+                let answer = method.reconstruct_mag_phase(radar, array).map_err(CommandError::on(&self.input))?;
                 Answer {
-                    map: map.lambda,
-                    eta: method.eta(),
+                    eta: method.eta_of(&answer),
+                    map: answer.lambda.lambda,
                     milliseconds: started.elapsed().as_secs_f64() * 1e3,
                     found: Vec::new(),
                 }

@@ -52,9 +52,14 @@ pub trait Student: Module + Clone {
     /// Estimates the maps of a batch, `[batch, rows, columns]`.
     fn estimate(&self, inputs: &[Self::Input], device: &Device) -> Tensor<3>;
 
-    /// The map that is judged: an estimate with every cell in [0, 1].
+    /// The map whose squared error counts: an estimate with every cell in [0, 1].
     fn finish(estimate: Array2<f32>) -> RangeAngleMap {
         RangeAngleMap { lambda: estimate.mapv(|v| v.clamp(0.0, 1.0)) }
+    }
+
+    /// The map whose cells are held against a threshold; the thesis stretches its networks' answers to [0, 1] for that.
+    fn thresholded(estimate: Array2<f32>) -> RangeAngleMap {
+        Self::finish(estimate)
     }
 }
 
@@ -106,8 +111,7 @@ impl Student for Thesis {
         self.forward(x).reshape([inputs.len(), rows, columns])
     }
 
-    /// Stretched to [0, 1], as the thesis does before it is thresholded.
-    fn finish(estimate: Array2<f32>) -> RangeAngleMap {
+    fn thresholded(estimate: Array2<f32>) -> RangeAngleMap {
         RangeAngleMap::stretched(estimate)
     }
 }

@@ -20,7 +20,8 @@ const THESIS_ETA: f32 = 0.7;
 /// What the thesis' networks learned beside the samples.
 const TOLD: &str = "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor";
 
-/// The thesis' encoder-decoder with weights; its output is stretched to [0, 1] as the thesis does before it is thresholded.
+/// The thesis' encoder-decoder with weights. Its output is Lambda as it stands: what it learned to answer, and what the thesis takes the
+/// squared error of. Its threshold is one for the output stretched to [0, 1], as the thesis' is.
 #[derive(Debug)]
 pub struct ThesisMethod {
     network: Thesis,
@@ -58,9 +59,23 @@ impl ThesisMethod {
     }
 }
 
+impl ThesisMethod {
+    /// The network's answer with the threshold that means [`ThesisMethod::eta`] once it is stretched.
+    fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
+        let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
+        let (least, most) = map.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+        let eta = (least + self.eta * (most - least)).clamp(0.0, 1.0);
+        Ok(Reconstruction { lambda: Thesis::finish(map), reflectors: Vec::new(), eta: Some(eta) })
+    }
+}
+
 impl Reconstructor for ThesisMethod {
     fn about(&self) -> About {
         About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
+    }
+
+    fn reads_eta(&self) -> bool {
+        true
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -70,11 +85,10 @@ impl Reconstructor for ThesisMethod {
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let tables = Thesis::tables(&self.config, radar)?;
         let input = Thesis::input(&tables, ends)?;
-        let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
-        Ok(Reconstruction { lambda: RangeAngleMap::stretched(map), reflectors: Vec::new(), eta: None })
+        self.answer(input, radar)
     }
 
-    fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+    fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
         check_radar(self.name, radar)?;
         let size = [radar.samples, radar.elements];
         let expected = vec![4, size[0], size[1]];
@@ -84,7 +98,7 @@ impl Reconstructor for ThesisMethod {
         }
         Thesis::tables(&self.config, radar)?;
         let input = ThesisInput { values: input.iter().map(|v| *v as f32).collect(), size };
-        estimate(&self.network, self.name, input, size, &self.device).map(RangeAngleMap::stretched)
+        self.answer(input, radar)
     }
 }
 

@@ -5,7 +5,7 @@ use super::recipe::Recipe;
 use super::run::{Progress, Run, TrainError};
 use super::students::Student;
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
-use crate::evaluate::{Metrics, Roc, TARGET_ETA};
+use crate::evaluate::{Roc, squared_error};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::Floor;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
@@ -49,11 +49,10 @@ pub fn validate<S: Student>(
             let (input, target) = lesson::<S>(&tables, config, run, &generator, (kind, number), |_| Floor::Thesis)?;
             let estimate = network.estimate(&[input], &run.device);
             let values = estimate.into_data().try_into_vec::<f32>().unwrap_or_default();
-            let lambda = Array2::from_shape_vec(target.lambda.dim(), values)
+            let answer = Array2::from_shape_vec(target.lambda.dim(), values)
                 .unwrap_or_else(|_| Array2::zeros(target.lambda.dim()));
-            let out = S::finish(lambda);
-            error += Metrics::of(&target, &out, TARGET_ETA).squared_error / f64::from(recipe.validation_scenes);
-            roc.add(&target, &out);
+            error += squared_error(&target, &S::finish(answer.clone())) / f64::from(recipe.validation_scenes);
+            roc.add(&target, &S::thresholded(answer));
         }
         let detection = roc.at_false_alarm(printed.false_alarm).map(|point| point.detection);
         sets.push(SetFigures { squared_error: error, detection });

@@ -2,7 +2,6 @@
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
-use crate::maps::RangeAngleMap;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
 use ndarray::Array3;
@@ -98,7 +97,7 @@ pub trait Reconstructor: Send + Sync {
     ///
     /// # Errors
     /// [`ReconstructError::Unusable`] from every method that needs the samples themselves; [`ReconstructError::Shape`].
-    fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<RangeAngleMap, ReconstructError> {
+    fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
         let reason =
             "it needs sub0 and sub1; polar_partial_mag_phase is the input of the thesis' networks alone".into();
         Err(self.unusable(reason))

@@ -7,6 +7,7 @@
 
 use super::atom::Atom;
 use super::phased::{Heard, PhasedBeams, Row};
+use super::runs::EchoBins;
 use crate::radar::Radar;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -34,6 +35,9 @@ const LEAST_PART: f64 = 0.06;
 
 /// Lines that begin this near to an end are not looked for, metres: their first point alone would speak for all.
 const NEAREST_METRES: f64 = 1.5;
+
+/// Part of a line's range bins that hold an echo at either end.
+const LEAST_ECHOES: f64 = 0.7;
 
 /// Lines nearer to a better one than this, in x and along y, are its side lobes for now, metres.
 const APART_METRES: f64 = 1.0;
@@ -78,13 +82,14 @@ fn vertical(x_metres: f64, y_metres: f64, dy_metres: f64, count: usize) -> Atom 
     Atom::Segment { x_metres, y_metres, dx_metres: 0.0, dy_metres, count }
 }
 
-/// Long lines along y that `residual` (all samples of both ends, not windowed) may hold.
-pub fn lines_in(radar: &Radar, residual: &[Complex64], task: &Task) -> Vec<Atom> {
+/// Long lines along y that `residual` (all samples of both ends, not windowed) may hold, where it has `echoes`.
+pub fn lines_in(radar: &Radar, residual: &[Complex64], echoes: &EchoBins, task: &Task) -> Vec<Atom> {
     let beams = &PhasedBeams::new(radar, residual);
     let weights = radar.window.weights(radar.samples);
     let [sum, square] = weights.iter().fold([0.0; 2], |[sum, square], w| [sum + w, square + w * w]);
     let detector = LineDetector {
         beams,
+        echoes,
         extent_metres: radar.max_range_metres(),
         bins: radar.samples,
         running: [0, 1].map(|end| beams.running_energy(end)),
@@ -106,6 +111,7 @@ pub fn lines_in(radar: &Radar, residual: &[Complex64], task: &Task) -> Vec<Atom>
 /// Looks for lines in the beams of both ends.
 struct LineDetector<'a> {
     beams: &'a PhasedBeams,
+    echoes: &'a EchoBins,
     extent_metres: f64,
     bins: usize,
     /// Energy of the range bins up to each, at both ends.
@@ -144,7 +150,7 @@ impl LineDetector<'_> {
     }
 
     /// What [`LineDetector::coherent`] comes to where a line along y at x explains all that there is in its range bins; infinite where one
-    /// point would speak for all.
+    /// point would speak for all, and where too few of the bins hold an echo.
     fn score_of_all(&self, x: f64, along: [f64; 2]) -> f64 {
         let energy = [0, 1].map(|end| {
             let [near, far] = along.map(|y| (x - self.beams.centres_metres[end]).hypot(y));
@@ -152,6 +158,9 @@ impl LineDetector<'_> {
                 return f64::INFINITY;
             }
             let [near, far] = [near, far].map(|range| (range * self.bins as f64 / self.extent_metres) as usize);
+            if self.echoes.part(end, [near, far]) < LEAST_ECHOES {
+                return f64::INFINITY;
+            }
             let running = &self.running[end];
             let up_to = |bin: usize| (bin / self.bins) as f64 * running[self.bins] + running[bin % self.bins];
             up_to(far + 1) - up_to(near)
@@ -166,13 +175,19 @@ impl LineDetector<'_> {
         let y = |start: usize| start as f64 * spacing;
         let scores: Vec<f64> =
             (0..starts).step_by(BLOCK).map(|start| self.score_of_all(x, [y(start), y(start + count)])).collect();
-        let offsets: [f64; PHASES] = std::array::from_fn(|phase| spacing * phase as f64 / PHASES as f64);
+        // From the first start that may be one to the last.
+        let may_be = |score: &f64| score.is_finite();
+        let Some(skipped) = scores.iter().position(may_be) else { return Vec::new() };
+        let scores = &scores[skipped..=scores.iter().rposition(may_be).unwrap_or(skipped)];
+        let first_y = y(skipped * BLOCK);
+        let starts = (scores.len() * BLOCK).min(starts - skipped * BLOCK);
+        let offsets: [f64; PHASES] = std::array::from_fn(|phase| first_y + spacing * phase as f64 / PHASES as f64);
         let row = |offset: f64| Row { first_metres: [x, offset], step_metres: [0.0, spacing] };
         let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self, end, row(o), starts + count)));
         let at = (2.0 * blocks as f64 * QUANTILE) as usize;
         let mut best: Vec<Candidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
         let mut gains = Vec::with_capacity(2 * blocks);
-        for Trial { bound, weight, phase, start } in trials(&ends, &scores, starts, blocks) {
+        for Trial { bound, weight, phase, start } in trials(&ends, scores, starts, blocks) {
             let least = if best.len() < BEST_OF_COLUMN { LEAST_PART } else { best[BEST_OF_COLUMN - 1].part };
             if bound <= least {
                 continue;
@@ -338,7 +353,8 @@ mod tests {
             let point = Object::Point(Point { x_metres: 2.0, y_metres: 6.0, reflectivity: 0.5 });
             let scene = Scene { objects: vec![line, point], ..Scene::default() };
             let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-            let seen = lines_in(&radar, &ends.flat(), &Task::default());
+            let flat = ends.flat();
+            let seen = lines_in(&radar, &flat, &EchoBins::of(&radar, &flat), &Task::default());
             // 75 of the line's 90 reflectors, whichever end they are nearer to.
             let is_part = |atom: &Atom| {
                 let [first, last] = [0.0, 74.0].map(|i| atom.position_metres(i));

@@ -18,6 +18,7 @@
 //! | `chains` | points that stand in a row at equal steps |
 //! | `phased` | each end's beams with their phases, and rows of reflectors looked up in them |
 //! | `strides` | rows of reflectors from their first two |
+//! | `runs` | range bins that hold an echo |
 //! | `lines` | long lines along y, looked up as a whole |
 //! | `walls` | rows of points followed to where they end |
 //! | `end_beams` | each end's plain beams |
@@ -52,6 +53,7 @@ mod profile;
 mod prune;
 mod refine;
 mod registered;
+mod runs;
 mod search;
 mod sensor;
 mod settings;

@@ -8,16 +8,15 @@ use super::lines::lines_in;
 use super::pairs::{Pairs, paired_points};
 use super::peaks::Detector;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
+use super::runs::EchoBins;
 use super::settings::Settings;
 use super::walls::{Seeds, is_on};
-use crate::maps::channels_range_transform;
-use crate::radar::{End, Radar, hann};
+use crate::radar::{Radar, hann};
 use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
 use ndarray::ArrayView1;
-use num_complex::Complex64;
 
 /// Range bins in a row that only something longer than a few reflectors fills.
 const LONG_RUN_BINS: usize = 18;
@@ -101,7 +100,7 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let (all, is_long) = (nothing.cost(), self.has_long_run(&nothing));
+        let (all, is_long) = (nothing.cost(), self.echo_bins(&nothing).longest_run() >= LONG_RUN_BINS);
         let lines = self.long_lines(nothing)?;
         let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
         let (walls, pairs) = self.walls(lines, pairs)?;
@@ -134,12 +133,13 @@ impl Search<'_> {
     /// `fit` and long lines along y, looked for as a whole as long as something long is left.
     fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
-            if !self.has_long_run(&fit) {
+            let echoes = self.echo_bins(&fit);
+            if echoes.longest_run() < LONG_RUN_BINS {
                 break;
             }
             let before = fit.atoms.len();
             self.bench.spend(LOOK_FOR_LINES);
-            let lines = lines_in(self.radar, &fit.residual.flat(&self.bench.sensor), &self.request.task);
+            let lines = lines_in(self.radar, &fit.residual.flat(&self.bench.sensor), &echoes, &self.request.task);
             fit = self.grower().more_walls(self.samples, fit, Seeds::LongLines(lines))?;
             if fit.atoms.len() == before {
                 break;
@@ -274,25 +274,9 @@ impl Search<'_> {
         self.grower().candidates(&fit.residual.flat(&self.bench.sensor), 1, |_| false).is_empty()
     }
 
-    /// Whether many neighbouring range bins hold an echo of what `fit` leaves at an end: above the noise, and no more than 60 dB below the
-    /// strongest when ranges are evened out by the 1/R^2 law.
-    fn has_long_run(&self, fit: &Fit) -> bool {
-        let ends = TwoEnds::of_flat(self.radar, &fit.residual.flat(&self.bench.sensor));
-        let weights = self.radar.window.weights(self.radar.samples);
-        let window = weights.iter().map(|w| w * w).sum::<f64>() / self.radar.samples as f64;
-        let channels = End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter());
-        let noise = window * self.radar.end_elements as f64 * noise_variance(self.radar, channels);
-        let run_of = |end| {
-            let profiles = channels_range_transform(self.radar, ends.end(end).view()).profiles;
-            let even = |bin: usize| (bin as f64 + 10.0).powi(4);
-            let power = |bin: usize| profiles.column(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
-            let powers: Vec<f64> = (0..self.radar.samples).map(power).collect();
-            let strongest = powers.iter().enumerate().map(|(bin, p)| p * even(bin)).fold(0.0, f64::max);
-            let is_echo = |bin: usize| powers[bin] > 4.0 * noise && powers[bin] * even(bin) >= 1e-6 * strongest;
-            let echoes: Vec<bool> = (0..powers.len()).map(is_echo).collect();
-            echoes.split(|echo| !*echo).map(<[bool]>::len).max().unwrap_or(0)
-        };
-        End::BOTH.into_iter().any(|end| run_of(end) >= LONG_RUN_BINS)
+    /// Range bins that hold an echo of what `fit` leaves.
+    fn echo_bins(&self, fit: &Fit) -> EchoBins {
+        EchoBins::of(self.radar, &fit.residual.flat(&self.bench.sensor))
     }
 }
 
