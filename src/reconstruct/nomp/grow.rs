@@ -40,6 +40,12 @@ const NEEDED: f64 = 4.0;
 /// Echoes that a look at the residual takes as long as.
 const LOOK: usize = 200;
 
+/// Work after which it is seen whether growing is worth while.
+const LOOK_BACK: usize = 3000;
+
+/// It is if this part of the energy at most is left since.
+const WORTH_GOING_ON: f64 = 1.0 / 3.0;
+
 /// Most atoms refined together.
 const MOST_TOGETHER: usize = 48;
 
@@ -111,15 +117,21 @@ impl Grower<'_> {
         (self.rounding_amplitude() * radar.end_elements as f64 * window).powi(2) / radar.samples as f64
     }
 
-    /// Adds points to `fit` until nothing stands out, nothing helps or there are too many.
+    /// Adds points to `fit` until nothing stands out, nothing helps, it goes too slowly or there are too many. Points can do harm where they
+    /// are too dense: the best of all rounds counts.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         let mut trials = Trials::new(self.radar);
+        let mut best = fit.clone();
+        let mut look_back = (self.bench.work_done(), fit.cost());
         while fit.atoms.len() < self.settings.most_atoms && !self.bench.is_spent() {
             self.task.check()?;
             self.bench.spend(LOOK);
+            if fit.cost() < best.cost() {
+                best = fit.clone();
+            }
             let flat = fit.residual.flat(&self.bench.sensor);
             let profile = Profile::new(self.radar, &flat);
             let room = self.settings.most_atoms - fit.atoms.len();
@@ -135,8 +147,16 @@ impl Grower<'_> {
             fit = self.with_points(fit, &points)?;
             fit = self.settled(fit)?;
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
+            let (done, cost) = look_back;
+            if self.bench.work_done() > done + LOOK_BACK {
+                if fit.cost() > WORTH_GOING_ON * cost {
+                    // Too dense to be told apart: what more there is to gain is small and dear.
+                    self.bench.give_up();
+                }
+                look_back = (self.bench.work_done(), fit.cost());
+            }
         }
-        Ok(fit)
+        Ok(if best.cost() < fit.cost() { best } else { fit })
     }
 
     /// Cyclic refinement: all atoms with their neighbours, as long as the energy falls fast. What one group leaves blinds the others.
@@ -242,7 +262,7 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn refined_where_needed(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_SWEEPS {
+        for sweep in 0..MOST_SWEEPS {
             let before = fit.cost();
             let flat = fit.residual.flat(&self.bench.sensor);
             let profile = Profile::new(self.radar, &flat);
@@ -250,12 +270,21 @@ impl Grower<'_> {
                 self.radar,
                 noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from)),
             );
-            let stands_out = |atom: &Atom| profile.strongest(&rows_of(self.radar, atom)) > NEEDED * noise;
+            let least = NEEDED * noise.max(self.rounding_power());
+            let stands_out = |atom: &Atom| profile.strongest(&rows_of(self.radar, atom)) > least;
             let marked: Vec<bool> = fit.atoms.iter().map(stands_out).collect();
             if !marked.contains(&true) {
                 break;
             }
-            fit = self.refined(fit, &marked, LINK_BINS, POLISH)?;
+            // Groups that are far apart still hear a little of each other: all together they come to the end at once.
+            let link_bins = if sweep == 0 { LINK_BINS } else { self.radar.samples as f64 };
+            fit = self.refined(fit, &marked, link_bins, POLISH)?;
+            tracing::debug!(
+                before,
+                cost = fit.cost(),
+                marked = marked.iter().filter(|m| **m).count(),
+                "refined where needed"
+            );
             if fit.cost() > 0.3 * before {
                 break;
             }

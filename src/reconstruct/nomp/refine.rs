@@ -134,6 +134,16 @@ impl<'a> Workbench<'a> {
         self.work.grant(echoes);
     }
 
+    /// Gives back the work that is left: nothing more is refined.
+    pub fn give_up(&self) {
+        self.work.give_up();
+    }
+
+    /// Work done so far.
+    pub fn work_done(&self) -> usize {
+        self.work.done()
+    }
+
     /// Part of the work granted that is done.
     pub fn spent(&self) -> f64 {
         self.work.spent()

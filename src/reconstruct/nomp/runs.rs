@@ -50,10 +50,12 @@ impl EchoBins {
         });
         let running = bins.each_ref().map(|bins: &Vec<bool>| {
             let mut sum = 0;
-            std::iter::once(0).chain(bins.iter().map(|echo| {
-                sum += u32::from(*echo);
-                sum
-            })).collect()
+            std::iter::once(0)
+                .chain(bins.iter().map(|echo| {
+                    sum += u32::from(*echo);
+                    sum
+                }))
+                .collect()
         });
         EchoBins { count, bins, running }
     }
@@ -83,7 +85,8 @@ mod tests {
         let radar = Radar::default();
         let step = radar.range_resolution_metres();
         let line = |y| Scene { objects: vec![Object::Line(Line::vertical(0.5, y, step, 80))], ..Scene::default() };
-        let of = |y| EchoBins::of(&radar, &simulate(&radar, &line(y), Floor::Thesis, 0).unwrap().two_ends(&radar).flat());
+        let of =
+            |y| EchoBins::of(&radar, &simulate(&radar, &line(y), Floor::Thesis, 0).unwrap().two_ends(&radar).flat());
         let bins = of(10.0);
         let first = radar.bin_of_range(10.0) as usize;
         assert!((78..95).contains(&bins.longest_run()), "{}", bins.longest_run());

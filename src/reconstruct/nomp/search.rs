@@ -100,12 +100,13 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let (all, is_long) = (nothing.cost(), self.echo_bins(&nothing).longest_run() >= LONG_RUN_BINS);
+        let is_long = self.echo_bins(&nothing).longest_run() >= LONG_RUN_BINS;
         let lines = self.long_lines(nothing)?;
+        let looked_at = lines.cost();
         let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
         let (walls, pairs) = self.walls(lines, pairs)?;
         let mut answer = self.paired_again(walls, pairs, is_long)?;
-        if !answer.is_sure {
+        if !answer.is_sure && answer.fit.cost() < WORTH_ANOTHER_LOOK * looked_at {
             // What was found may have hidden a weaker line.
             let before = answer.fit.atoms.len();
             let lines = self.long_lines(answer.fit.clone())?;
@@ -117,17 +118,19 @@ impl Search<'_> {
         if answer.is_sure {
             return Ok(answer);
         }
-        let mut fit = answer.fit;
-        if fit.cost() < NEARLY_NOTHING * all {
-            // All is there, and not yet quite in its place: a map shows even what little is left.
-            self.bench.grant(self.settings.most_work / 4);
-            fit = self.grower().refined_where_needed(fit)?;
-            if self.is_explained(&fit) {
-                return Ok(Answer { fit, is_sure: true });
-            }
-        }
-        let fit = self.completed(fit)?;
+        let fit = self.completed(answer.fit)?;
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
+    }
+
+    /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
+    fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        let all = self.bench.without(self.samples, &[], &[]).energy;
+        if fit.cost() > NEARLY_NOTHING * (all[0] + all[1]) {
+            return Ok(fit);
+        }
+        self.bench.grant(self.settings.most_work / 4);
+        let grower = self.grower();
+        grower.pruned(grower.refined_where_needed(fit)?)
     }
 
     /// `fit` and long lines along y, looked for as a whole as long as something long is left.
@@ -170,6 +173,9 @@ impl Search<'_> {
                 break;
             }
             pairs = self.pairs(&fit);
+            if fit.cost() > WORTH_ANOTHER * cost {
+                break;
+            }
         }
         Ok((fit, pairs))
     }
@@ -186,6 +192,7 @@ impl Search<'_> {
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
             fit = self.grower().with_walls(self.samples, self.paired(fit, &pairs, is_polished)?)?;
+            fit = self.nearly_there(fit)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
                 break;
@@ -300,6 +307,9 @@ const MOST_ROUNDS: usize = 3;
 
 /// Another round of pairing needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.5;
+
+/// Another look for long lines needs that this part of the energy at most is left of what the last one saw.
+const WORTH_ANOTHER_LOOK: f64 = 0.3;
 
 /// Rounds in which pairs that the ends don't agree on are dropped.
 const MOST_DOUBTS: usize = 3;

@@ -26,6 +26,16 @@ impl Work {
         self.done.fetch_min(done, Ordering::Relaxed);
     }
 
+    /// Gives back what is left.
+    pub fn give_up(&self) {
+        self.done.fetch_max(self.most, Ordering::Relaxed);
+    }
+
+    /// What was done; to be asked where nothing runs in parallel.
+    pub fn done(&self) -> usize {
+        self.done.load(Ordering::Relaxed)
+    }
+
     /// Part of what was granted that is done; to be asked where nothing runs in parallel.
     pub fn spent(&self) -> f64 {
         self.done.load(Ordering::Relaxed) as f64 / self.most.max(1) as f64
@@ -49,6 +59,7 @@ mod tests {
         work.spend(1);
         assert!(work.is_spent());
         work.grant(3);
+        assert_eq!(work.done(), 7);
         work.spend(2);
         assert!(!work.is_spent());
         work.spend(1);
