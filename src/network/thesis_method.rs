@@ -63,8 +63,7 @@ impl ThesisMethod {
     /// The network's answer with the threshold that means [`ThesisMethod::eta`] once it is stretched.
     fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
-        let (least, most) = map.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
-        let eta = (least + self.eta * (most - least)).clamp(0.0, 1.0);
+        let eta = unstretched(&map, self.eta);
         Ok(Reconstruction { lambda: Thesis::finish(map), reflectors: Vec::new(), eta: Some(eta) })
     }
 }
@@ -162,4 +161,26 @@ fn estimate<S: Student>(
     let values = network.estimate(&[input], device).into_data().try_into_vec::<f32>();
     let values = values.map_err(|e| unusable(format!("its output can't be read: {e:?}")))?;
     Array2::from_shape_vec((rows, columns), values).map_err(|e| unusable(e.to_string()))
+}
+
+/// The value that `eta` is of, once `map` is stretched to [0, 1].
+fn unstretched(map: &Array2<f32>, eta: f32) -> f32 {
+    let (least, most) = map.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+    (least + eta * (most - least)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_threshold_keeps_the_cells_that_it_keeps_once_the_map_is_stretched() {
+        let map = Array2::from_shape_fn((16, 32), |(i, j)| 0.15 + 0.7 * ((i * 37 + j * 11) % 101) as f32 / 100.0);
+        let stretched = Thesis::thresholded(map.clone());
+        for eta in [0.1, 0.33, 0.701, 0.9] {
+            let kept = Thesis::finish(map.clone()).above(unstretched(&map, eta));
+            assert_eq!(kept, stretched.above(eta), "{eta}");
+            assert!((1..map.len()).contains(&kept.count()));
+        }
+    }
 }
