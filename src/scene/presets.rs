@@ -42,6 +42,7 @@ pub const ALL: &[Preset] = presets![
     "failure-thesis-missed",
     "failure-thesis-merged",
     "failure-thesis-ghost",
+    "failure-thesis-wrong-tooth",
 ];
 
 impl Preset {
