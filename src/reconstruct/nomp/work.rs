@@ -64,5 +64,8 @@ mod tests {
         assert!(!work.is_spent());
         work.spend(1);
         assert!(work.is_spent());
+        work.grant(10);
+        work.give_up();
+        assert!(work.is_spent());
     }
 }
