@@ -10,8 +10,9 @@
 Scenes and loss are those of the experiments. What differs, so that hours on two cores are enough to learn something:
 
 * AdamW in place of SGD: with it 12 minutes gave what SGD at the thesis' 0.1 gave after 42. With `--muon` the kernels follow Muon instead,
-  whose loss is 5 % lower after 250 steps on the same maps. With `--bf16` a step takes half the time where the processor has bfloat16. The learning rate rises over 100 steps and then
-  falls with the square root of the steps of this run, so that a run needs no end; a moving average of the weights is what is validated and written.
+  whose loss is 5 % lower after 250 steps on the same maps. With `--bf16` a step takes half the time where the processor has bfloat16.
+* The learning rate rises over 100 steps and then falls with the square root of the steps of this run, so that a run needs no end; a moving
+  average of the weights is what is validated and written.
 * Every scene is new, where the thesis goes over 800 or 8000 scenes a hundred times. One is simulated a step.
 * Until `--whole-from` a batch holds 8 crops of 128 range rows from the newest 64 scenes, later 2 whole maps: crops see no wrap in range.
 * The last batch norm starts at 0.45 +- 0.15, about where the targets lie. From PyTorch's 0 +- 1 half of the cells start below zero,
@@ -134,19 +135,20 @@ class Run:
     def __init__(self, args):
         self.path = os.path.join(args.out, "checkpoint.pt")
         self.model, self.average = fresh(), fresh()
-        self.optimizers = optimizers(self.model, args.lr, args.muon)
-        self.step, self.maps, self.scenes, self.parts, initial = 0, 0.0, 0, [], None
+        self.step, self.maps, self.scenes, self.parts, initial, state = 0, 0.0, 0, [], None, None
         if os.path.exists(self.path):
             state = torch.load(self.path, weights_only=True)
+            # A run goes on with the optimizers that it has.
+            self.optimizers = optimizers(self.model, args.lr, muon=len(state["optimizers"]) > 1)
             self.average.load_state_dict(state["average"])
             for optimizer, saved in zip(self.optimizers, state["optimizers"], strict=True):
                 optimizer.load_state_dict(saved)
             self.step = state["step"]
-        elif args.init:
-            initial, state = args.init, state_of(args.init)
-            self.average.load_state_dict(state.get("average", state["model"]), strict=False)
         else:
-            state = None
+            self.optimizers = optimizers(self.model, args.lr, args.muon)
+            if args.init:
+                initial, state = args.init, state_of(args.init)
+                self.average.load_state_dict(state.get("average", state["model"]), strict=False)
         if state:
             self.model.load_state_dict(state["model"], strict=False)
             self.maps, self.scenes = state.get("maps", 0.0), state.get("scenes", args.first_scene)
@@ -227,7 +229,7 @@ def main():
     ap.add_argument("--lr", type=float, default=3e-3)
     ap.add_argument("--whole-from", type=int, default=2000, help="step from which on batches hold whole maps")
     ap.add_argument("--init", help="checkpoint (.pt) or weights (.safetensors) of another run to start from")
-    ap.add_argument("--muon", action="store_true", help="Muon for the kernels, AdamW for the rest")
+    ap.add_argument("--muon", action="store_true", help="of a new run: Muon for the kernels, AdamW for the rest")
     ap.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: weights, sums and loss stay in f32")
     ap.add_argument("--first-scene", type=int, default=0, help="with --init of weights: number of the first training scene, so that none is seen twice")
     ap.add_argument("--validation", type=int, default=8, help="validation scenes a set")

@@ -57,10 +57,8 @@ impl ThesisMethod {
             provenance: file.provenance,
         })
     }
-}
 
-impl ThesisMethod {
-    /// The network's answer with the threshold that means [`ThesisMethod::eta`] once it is stretched.
+    /// The network's answer with the threshold that means the method's own once the answer is stretched.
     fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         let eta = unstretched(&map, self.eta);

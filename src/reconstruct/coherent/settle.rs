@@ -135,7 +135,7 @@ impl<'a> Settled<'a> {
 
     /// Whether nothing is left to be explained, or no work granted.
     fn is_done(&self) -> bool {
-        self.fit.cost() <= self.enough || self.bench.is_spent()
+        self.fit.cost() <= self.enough || self.bench.work.is_spent()
     }
 
     /// Energy that each of `waiting` by itself would explain of what is left.

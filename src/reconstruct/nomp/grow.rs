@@ -125,10 +125,10 @@ impl Grower<'_> {
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         let mut trials = Trials::new(self.radar);
         let mut best = fit.clone();
-        let mut look_back = (self.bench.work_done(), fit.cost());
-        while fit.atoms.len() < self.settings.most_atoms && !self.bench.is_spent() {
+        let mut look_back = (self.bench.work.done(), fit.cost());
+        while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
             self.task.check()?;
-            self.bench.spend(LOOK);
+            self.bench.work.spend(LOOK);
             if fit.cost() < best.cost() {
                 best = fit.clone();
             }
@@ -148,12 +148,12 @@ impl Grower<'_> {
             fit = self.settled(fit)?;
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
             let (done, cost) = look_back;
-            if self.bench.work_done() > done + LOOK_BACK {
+            if self.bench.work.done() > done + LOOK_BACK {
                 if fit.cost() > WORTH_GOING_ON * cost {
                     // Too dense to be told apart: what more there is to gain is small and dear.
-                    self.bench.give_up();
+                    self.bench.work.give_up();
                 }
-                look_back = (self.bench.work_done(), fit.cost());
+                look_back = (self.bench.work.done(), fit.cost());
             }
         }
         Ok(if best.cost() < fit.cost() { best } else { fit })
@@ -231,10 +231,10 @@ impl Grower<'_> {
         let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
         for group in groups(self.radar.samples, &rows, marked, link_bins, MOST_TOGETHER) {
             self.task.check()?;
-            if self.bench.is_spent() {
+            if self.bench.work.is_spent() {
                 break;
             }
-            self.bench.spend(LOOK / 2);
+            self.bench.work.spend(LOOK / 2);
             let atoms: Vec<Atom> = group.iter().map(|&i| fit.atoms[i]).collect();
             let gains: Vec<Gains> = group.iter().map(|&i| fit.gains[i]).collect();
             let back: Vec<Gains> = gains.iter().map(|g| [-g[0], -g[1]]).collect();

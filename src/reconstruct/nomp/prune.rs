@@ -27,7 +27,7 @@ impl Grower<'_> {
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             self.task.check()?;
-            if self.bench.is_spent() {
+            if self.bench.work.is_spent() {
                 break;
             }
             let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);

@@ -58,7 +58,8 @@ pub struct Workbench<'a> {
     moments: Moments,
     max_range_metres: f64,
     task: &'a Task,
-    work: Work,
+    /// What the search may do, and has done.
+    pub work: Work,
 }
 
 /// Most reflectors of a refinement that may run beside others.
@@ -124,40 +125,10 @@ impl<'a> Workbench<'a> {
         Workbench { sensor: self.sensor.hearing(flat), ..self }
     }
 
-    /// Counts what took as long as this many echoes.
-    pub fn spend(&self, echoes: usize) {
-        self.work.spend(echoes);
-    }
-
-    /// Grants so much work that at least this is left.
-    pub fn grant(&self, echoes: usize) {
-        self.work.grant(echoes);
-    }
-
-    /// Gives back the work that is left: nothing more is refined.
-    pub fn give_up(&self) {
-        self.work.give_up();
-    }
-
-    /// Work done so far.
-    pub fn work_done(&self) -> usize {
-        self.work.done()
-    }
-
-    /// Part of the work granted that is done.
-    pub fn spent(&self) -> f64 {
-        self.work.spent()
-    }
-
-    /// Whether the work that the search was granted is done; to be asked where nothing runs in parallel.
-    pub fn is_spent(&self) -> bool {
-        self.work.is_spent()
-    }
-
     /// `samples` less `atoms` times `gains`; not windowed.
     pub fn without(&self, samples: &Samples, atoms: &[Atom], gains: &[Gains]) -> Remainder {
         let reflectors = reflectors(atoms, gains);
-        self.spend(reflectors.len() + 1);
+        self.work.spend(reflectors.len() + 1);
         remainder(&self.sensor, &self.squared, samples, &reflectors, false)
     }
 
@@ -174,7 +145,7 @@ impl<'a> Workbench<'a> {
         let mut damping = 1e-3;
         let is_large = state.fit.atoms.iter().map(Atom::reflector_count).sum::<usize>() > MOST_IN_PARALLEL;
         for _ in 0..limits.iterations {
-            if is_large && self.is_spent() {
+            if is_large && self.work.is_spent() {
                 break;
             }
             if state.cost <= 0.0 || state.fit.atoms.is_empty() || self.task.is_cancelled() {
@@ -294,13 +265,13 @@ impl<'a> Workbench<'a> {
         };
         let n = atoms.len();
         let echoes: usize = atoms.iter().map(Atom::reflector_count).sum();
-        self.spend(echoes * echoes / PRODUCTS_AN_ECHO);
+        self.work.spend(echoes * echoes / PRODUCTS_AN_ECHO);
         let columns = &dictionary.first_column;
         let values = |gram: &Mat<Complex64>| Mat::from_fn(n, n, |i, j| gram[(columns[i], columns[j])]);
         let solvers: Vec<Ridge> = grams.iter().map(|gram| Ridge::new(&values(gram), ridge)).collect();
         // The second pass removes what the squared condition number of the normal equations, or a far start, left.
         for pass in 0..3 {
-            self.spend(2 * echoes + 1);
+            self.work.spend(2 * echoes + 1);
             let left = remainder(&self.sensor, &self.squared, samples, &reflectors(&atoms, &gains), true);
             let [first, last] = dictionary.slopes(&left.products);
             let mut slopes = match tie {

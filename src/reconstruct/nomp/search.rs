@@ -100,7 +100,8 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let is_long = self.echo_bins(&nothing).longest_run() >= LONG_RUN_BINS;
+        let is_long =
+            EchoBins::of(self.radar, &nothing.residual.flat(&self.bench.sensor)).longest_run() >= LONG_RUN_BINS;
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
         let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
@@ -128,7 +129,7 @@ impl Search<'_> {
         if fit.cost() > NEARLY_NOTHING * (all[0] + all[1]) {
             return Ok(fit);
         }
-        self.bench.grant(self.settings.most_work / 4);
+        self.bench.work.grant(self.settings.most_work / 4);
         let grower = self.grower();
         grower.pruned(grower.refined_where_needed(fit)?)
     }
@@ -136,13 +137,14 @@ impl Search<'_> {
     /// `fit` and long lines along y, looked for as a whole as long as something long is left.
     fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
-            let echoes = self.echo_bins(&fit);
+            let flat = fit.residual.flat(&self.bench.sensor);
+            let echoes = EchoBins::of(self.radar, &flat);
             if echoes.longest_run() < LONG_RUN_BINS {
                 break;
             }
             let before = fit.atoms.len();
-            self.bench.spend(LOOK_FOR_LINES);
-            let lines = lines_in(self.radar, &fit.residual.flat(&self.bench.sensor), &echoes, &self.request.task);
+            self.bench.work.spend(LOOK_FOR_LINES);
+            let lines = lines_in(self.radar, &flat, &echoes, &self.request.task);
             fit = self.grower().more_walls(self.samples, fit, Seeds::LongLines(lines))?;
             if fit.atoms.len() == before {
                 break;
@@ -279,11 +281,6 @@ impl Search<'_> {
     /// Whether nothing stands out of what `fit` leaves.
     fn is_explained(&self, fit: &Fit) -> bool {
         self.grower().candidates(&fit.residual.flat(&self.bench.sensor), 1, |_| false).is_empty()
-    }
-
-    /// Range bins that hold an echo of what `fit` leaves.
-    fn echo_bins(&self, fit: &Fit) -> EchoBins {
-        EchoBins::of(self.radar, &fit.residual.flat(&self.bench.sensor))
     }
 }
 

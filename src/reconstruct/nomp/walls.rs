@@ -99,8 +99,8 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn more_walls(&self, samples: &Samples, mut fit: Fit, mut seeds: Seeds) -> Result<Fit, ReconstructError> {
-        let (known, before) = (fit.atoms.len(), self.bench.spent());
-        while fit.atoms.len() < known + MOST_WALLS && self.bench.spent() < before + MOST_SPENT {
+        let (known, before) = (fit.atoms.len(), self.bench.work.spent());
+        while fit.atoms.len() < known + MOST_WALLS && self.bench.work.spent() < before + MOST_SPENT {
             self.task.check()?;
             let Some((begun, seed)) = self.begun_wall(&fit, &mut seeds) else { break };
             let profile = Profile::new(self.radar, &fit.residual.flat(&self.bench.sensor));
@@ -132,7 +132,7 @@ impl Grower<'_> {
             fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, TOGETHER);
             let joined = fit.cost();
             for i in 0..fit.atoms.len() {
-                if self.bench.is_spent() || !matches!(fit.atoms[i], Atom::Segment { .. }) {
+                if self.bench.work.is_spent() || !matches!(fit.atoms[i], Atom::Segment { .. }) {
                     continue;
                 }
                 let back = fit.gains[i].map(|g| -g);
@@ -183,7 +183,7 @@ impl Grower<'_> {
                 points.retain(|&[x_metres, y_metres]| {
                     !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
                 });
-                self.bench.spend(LOOK_A_POINT * points.len());
+                self.bench.work.spend(LOOK_A_POINT * points.len());
                 let strides = rows_over_pairs(&PhasedBeams::new(self.radar, &flat), points, self.task);
                 let rows: Vec<Atom> = strides.into_iter().map(|Stride { atom, .. }| atom).collect();
                 best_of(&rows).filter(|(part, _)| *part > LEAST_BEGUN)
@@ -204,7 +204,7 @@ impl Grower<'_> {
     pub fn with_walls(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for seed in rows_of_points(&fit.atoms, &fit.gains) {
             self.task.check()?;
-            if self.bench.is_spent() {
+            if self.bench.work.is_spent() {
                 break;
             }
             let others: Vec<usize> = (0..fit.atoms.len()).filter(|&i| !stands_on(&seed, &fit.atoms[i])).collect();
@@ -230,7 +230,7 @@ impl Grower<'_> {
             let [before, after] = [self.more_reflectors(&wall, false), self.more_reflectors(&wall, true)];
             let Some(longer) = extended(wall.atoms[0], before, after).filter(|_| before + after > 0) else { break };
             let trial = self.bench.refine(samples, vec![longer], wall.gains.clone(), Tie::PerEnd, ALONE);
-            if trial.cost() >= wall.cost() || self.bench.is_spent() {
+            if trial.cost() >= wall.cost() || self.bench.work.is_spent() {
                 break;
             }
             wall = trial;
