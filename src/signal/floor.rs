@@ -64,8 +64,20 @@ impl fmt::Display for Floor {
 /// Variance of the white complex noise, for each element, that leaves the floor of the thesis' f64 evaluation: the sum over
 /// reflectors of `1.5 * amplitude^2 * ulp(2 pi |s q| R / lambda)^2 / 12`. Measured to give the same minimum, median and metrics.
 pub fn thesis_noise_variance(radar: &Radar, reflectors: &[Reflector]) -> Vec<f64> {
-    let turns_per_metre = radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
-    powers(radar, reflectors, 1.5 / 12.0, Some(turns_per_metre * std::f64::consts::TAU))
+    powers(radar, reflectors, THESIS_ROUNDING, Some(thesis_radians_per_metre(radar)))
+}
+
+/// Variance of an echo's rounding, for each unit of its power and of the squared ulp of its phase.
+const THESIS_ROUNDING: f64 = 1.5 / 12.0;
+
+/// Phase that the thesis' program rounds, for each metre.
+fn thesis_radians_per_metre(radar: &Radar) -> f64 {
+    std::f64::consts::TAU * radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres()
+}
+
+/// Mean power over both ends' channels of the rounding that [`thesis_noise_variance`] gives an echo of this power from this range.
+pub fn thesis_noise_of_echo(radar: &Radar, power: f64, range_metres: f64) -> f64 {
+    power * THESIS_ROUNDING * ulp(thesis_radians_per_metre(radar) * range_metres).powi(2)
 }
 
 /// Variance of thermal noise at `snr`, the same for every element: the reflectors' own powers, added up and averaged over the

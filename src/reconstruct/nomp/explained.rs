@@ -6,10 +6,9 @@
 use super::end_beams::{beam_noise_power, beam_of_cos, end_beams};
 use super::finish::Found;
 use crate::radar::{End, Radar};
-use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::seen::seen_from;
 use crate::signal::TwoEnds;
-use ndarray::{Array2, ArrayView1, Axis};
+use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -37,8 +36,7 @@ impl Found {
         let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
         let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| smoothed(&b.mapv(|v| v.norm_sqr())));
         let (all, left) = rayon::join(|| powers(&samples), || powers(&self.not_agreed));
-        let channels = self.not_agreed.chunks_exact(radar.samples).map(ArrayView1::from);
-        let noise = NOISE_MARGIN * beam_noise_power(radar, noise_variance(radar, channels));
+        let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
         parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
             let range = radar.range_of_bin_metres(bin as f64);
             for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {

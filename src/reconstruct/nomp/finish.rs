@@ -4,10 +4,8 @@ use super::atom::Atom;
 use super::echoes::Samples;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use crate::radar::Radar;
-use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::Floor;
-use ndarray::ArrayView1;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -91,6 +89,7 @@ pub(super) fn finish(
     scale: f64,
 ) -> Result<Found, ReconstructError> {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
+    let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
     let flat_bench = (complete && reflectors <= MOST_UNWINDOWED)
         .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, MOST_WORK))
@@ -110,7 +109,7 @@ pub(super) fn finish(
     }
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
-    let noise_variance = noise_variance(radar, residual.chunks_exact(radar.samples).map(ArrayView1::from));
+    let noise_variance = hearing.noise_variance(radar, &residual);
     let silence = bench.without(samples, &[], &[]);
     let all = silence.energy[0] + silence.energy[1];
     let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;

@@ -10,9 +10,7 @@ use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use super::settings::Settings;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::noise::noise_variance;
 use crate::task::Task;
-use ndarray::ArrayView1;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -96,9 +94,7 @@ pub struct Grower<'a> {
 impl Grower<'_> {
     /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
     pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool) -> Vec<Candidate> {
-        let samples = self.radar.samples;
-        let channels = flat.chunks_exact(samples).map(ArrayView1::from);
-        let noise = beam_noise_power(self.radar, noise_variance(self.radar, channels));
+        let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, flat));
         let least = (noise * self.settings.least_prominence).max(self.rounding_power());
         self.detector.peaks(self.radar, flat, least, most, closed)
     }
@@ -266,10 +262,7 @@ impl Grower<'_> {
             let before = fit.cost();
             let flat = fit.residual.flat(&self.bench.sensor);
             let profile = Profile::new(self.radar, &flat);
-            let noise = beam_noise_power(
-                self.radar,
-                noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from)),
-            );
+            let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
             let least = NEEDED * noise.max(self.rounding_power());
             let stands_out = |atom: &Atom| profile.strongest(&rows_of(self.radar, atom)) > least;
             let marked: Vec<bool> = fit.atoms.iter().map(stands_out).collect();

@@ -341,6 +341,7 @@ fn distance(a: &Atom, b: &Atom) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reconstruct::nomp::hearing::Hearing;
     use crate::scene::{Line, Object, Point, Scene};
     use crate::signal::{Floor, simulate};
 
@@ -354,7 +355,8 @@ mod tests {
             let scene = Scene { objects: vec![line, point], ..Scene::default() };
             let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
             let flat = ends.flat();
-            let seen = lines_in(&radar, &flat, &EchoBins::of(&radar, &flat), &Task::default());
+            let echoes = EchoBins::of(&radar, &flat, Hearing::any().noise_variance(&radar, &flat));
+            let seen = lines_in(&radar, &flat, &echoes, &Task::default());
             // 75 of the line's 90 reflectors, whichever end they are nearer to.
             let is_part = |atom: &Atom| {
                 let [first, last] = [0.0, 74.0].map(|i| atom.position_metres(i));

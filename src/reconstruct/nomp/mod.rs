@@ -44,6 +44,7 @@ mod finish;
 mod gram;
 mod groups;
 mod grow;
+mod hearing;
 mod lines;
 mod moments;
 mod pairs;

@@ -26,6 +26,12 @@ impl Profile {
         Profile { energy }
     }
 
+    /// Of every bin, both ends together.
+    pub fn of_both_ends(&self) -> impl Iterator<Item = f64> {
+        let [first, last] = &self.energy;
+        first.iter().zip(last).map(|(a, b)| a + b)
+    }
+
     /// The most that any bin at or beside these rows holds.
     pub fn strongest(&self, rows: &Rows) -> f64 {
         let bins = |low: f64, high: f64| ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);

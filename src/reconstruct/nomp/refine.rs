@@ -7,16 +7,15 @@
 use super::atom::Atom;
 use super::echoes::{Remainder, Samples, remainder};
 use super::gram::Dictionary;
+use super::hearing::Hearing;
 use super::moments::Moments;
 use super::sensor::Sensor;
 use super::solver::{Ridge, damped_step};
 use super::work::Work;
 use crate::radar::Radar;
-use crate::reconstruct::noise::noise_variance;
 use crate::scene::Reflector;
 use crate::task::Task;
 use faer::Mat;
-use ndarray::ArrayView1;
 use num_complex::Complex64;
 
 /// Which samples share one gain for each atom.
@@ -57,6 +56,8 @@ pub struct Workbench<'a> {
     pub squared: Vec<f64>,
     moments: Moments,
     max_range_metres: f64,
+    /// The noise beneath the samples.
+    pub hearing: Hearing,
     task: &'a Task,
     /// What the search may do, and has done.
     pub work: Work,
@@ -115,6 +116,7 @@ impl<'a> Workbench<'a> {
             squared: window.iter().map(|w| w * w).collect(),
             moments: Moments::new(window),
             max_range_metres: radar.max_range_metres(),
+            hearing: Hearing::any(),
             task,
             work: Work::granted(most_work),
         }
@@ -123,6 +125,11 @@ impl<'a> Workbench<'a> {
     /// The same where those channels alone hear of which `flat`, the samples channel by channel, holds something.
     pub fn hearing(self, flat: &[Complex64]) -> Self {
         Workbench { sensor: self.sensor.hearing(flat), ..self }
+    }
+
+    /// The same over noise of which this much is known.
+    pub fn over(self, hearing: Hearing) -> Self {
+        Workbench { hearing, ..self }
     }
 
     /// `samples` less `atoms` times `gains`; not windowed.
@@ -231,7 +238,7 @@ impl<'a> Workbench<'a> {
     /// Energy that the noise heard in what `fit` leaves gives to one gain under the window.
     pub fn gain_noise(&self, radar: &Radar, fit: &Fit) -> f64 {
         let flat = fit.residual.flat(&self.sensor);
-        let variance = noise_variance(radar, flat.chunks_exact(radar.samples).map(ArrayView1::from));
+        let variance = self.hearing.noise_variance(radar, &flat);
         let [square, fourth] = self.squared.iter().fold([0.0; 2], |[s, f], w| [s + w, f + w * w]);
         variance * fourth / square
     }

@@ -2,7 +2,6 @@
 
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
-use crate::reconstruct::noise::noise_variance;
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
@@ -30,14 +29,13 @@ pub struct EchoBins {
 }
 
 impl EchoBins {
-    /// The bins of `residual` (all samples of both ends, not windowed) that stand out of the noise, and no more than 60 dB below the
+    /// The bins of `residual` (all samples of both ends, not windowed) that stand out of noise of `noise_variance`, and no more than 60 dB below the
     /// strongest when ranges are evened out.
-    pub fn of(radar: &Radar, residual: &[Complex64]) -> Self {
+    pub fn of(radar: &Radar, residual: &[Complex64], noise_variance: f64) -> Self {
         let ends = TwoEnds::of_flat(radar, residual);
         let weights = radar.window.weights(radar.samples);
         let window = weights.iter().map(|w| w * w).sum::<f64>() / radar.samples as f64;
-        let channels = End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter());
-        let noise = window * radar.end_elements as f64 * noise_variance(radar, channels);
+        let noise = window * radar.end_elements as f64 * noise_variance;
         let count = radar.samples;
         let bins = End::BOTH.map(|end| {
             let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
@@ -77,6 +75,7 @@ impl EchoBins {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reconstruct::nomp::hearing::Hearing;
     use crate::scene::{Line, Object, Scene};
     use crate::signal::{Floor, simulate};
 
@@ -85,8 +84,10 @@ mod tests {
         let radar = Radar::default();
         let step = radar.range_resolution_metres();
         let line = |y| Scene { objects: vec![Object::Line(Line::vertical(0.5, y, step, 80))], ..Scene::default() };
-        let of =
-            |y| EchoBins::of(&radar, &simulate(&radar, &line(y), Floor::Thesis, 0).unwrap().two_ends(&radar).flat());
+        let of = |y| {
+            let flat = simulate(&radar, &line(y), Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
+            EchoBins::of(&radar, &flat, Hearing::any().noise_variance(&radar, &flat))
+        };
         let bins = of(10.0);
         let first = radar.bin_of_range(10.0) as usize;
         assert!((78..95).contains(&bins.longest_run()), "{}", bins.longest_run());

@@ -4,6 +4,7 @@ use super::atom::Atom;
 use super::echoes::Samples;
 use super::finish::{Found, finish};
 use super::grow::Grower;
+use super::hearing::Hearing;
 use super::lines::lines_in;
 use super::pairs::{Pairs, paired_points};
 use super::peaks::Detector;
@@ -12,11 +13,10 @@ use super::runs::EchoBins;
 use super::settings::Settings;
 use super::walls::{Seeds, is_on};
 use crate::radar::{Radar, hann};
-use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
-use ndarray::ArrayView1;
+use num_complex::Complex64;
 
 /// Range bins in a row that only something longer than a few reflectors fills.
 const LONG_RUN_BINS: usize = 18;
@@ -54,7 +54,8 @@ fn find_with(
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
     let flat = ends.flat();
     let window = hann(radar.samples);
-    let bench = Workbench::new(radar, &window, &request.task, settings.most_work).hearing(&flat);
+    let bench = Workbench::new(radar, &window, &request.task, settings.most_work).hearing(&flat)
+        .over(Hearing::beneath(radar, &flat, request.floor));
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let search = Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings };
@@ -100,8 +101,7 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let is_long =
-            EchoBins::of(self.radar, &nothing.residual.flat(&self.bench.sensor)).longest_run() >= LONG_RUN_BINS;
+        let is_long = self.echoes_in(&nothing.residual.flat(&self.bench.sensor)).longest_run() >= LONG_RUN_BINS;
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
         let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
@@ -138,7 +138,7 @@ impl Search<'_> {
     fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let flat = fit.residual.flat(&self.bench.sensor);
-            let echoes = EchoBins::of(self.radar, &flat);
+            let echoes = self.echoes_in(&flat);
             if echoes.longest_run() < LONG_RUN_BINS {
                 break;
             }
@@ -203,10 +203,14 @@ impl Search<'_> {
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
     }
 
+    fn echoes_in(&self, flat: &[Complex64]) -> EchoBins {
+        EchoBins::of(self.radar, flat, self.bench.hearing.noise_variance(self.radar, flat))
+    }
+
     /// Points whose tones both ends hear in what `fit` leaves.
     fn pairs(&self, fit: &Fit) -> Pairs {
         let flat = fit.residual.flat(&self.bench.sensor);
-        let noise = noise_variance(self.radar, flat.chunks_exact(self.radar.samples).map(ArrayView1::from));
+        let noise = self.bench.hearing.noise_variance(self.radar, &flat);
         paired_points(self.radar, &flat, noise)
     }
 
