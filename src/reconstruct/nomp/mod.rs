@@ -35,9 +35,11 @@
 //! | `draw` | expected map of the objects found |
 
 mod atom;
+mod begin;
 mod chains;
 mod draw;
 mod echoes;
+mod edges;
 mod end_beams;
 mod explained;
 mod finish;

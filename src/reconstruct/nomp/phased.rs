@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Beams formed by each end: fine enough to take the nearest.
-const BEAMS: usize = 96;
+pub const BEAMS: usize = 96;
 
 /// Nearest that a place of a row counts as, metres.
 const NEAREST_METRES: f64 = 0.05;
@@ -20,11 +20,11 @@ const W: usize = LANES_F64;
 /// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
 pub struct PhasedBeams {
     /// `[beam * bins + range bin]` for each end.
-    beams: [Vec<Complex64>; 2],
+    pub beams: [Vec<Complex64>; 2],
     /// Where the middle of each end stands on the array's axis, metres.
     pub centres_metres: [f64; 2],
-    bins: usize,
-    bins_per_metre: f64,
+    pub bins: usize,
+    pub bins_per_metre: f64,
     /// Phase of an echo at the middle of the chirp, turns a metre.
     pub turns_per_metre: f64,
     /// Referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.

@@ -1,6 +1,7 @@
 //! The search as a whole: both ends' tones paired, long lines, walls from the pairs, then more points until nothing stands out.
 
 use super::atom::Atom;
+use super::begin::Seeds;
 use super::echoes::Samples;
 use super::finish::{Found, finish};
 use super::grow::Grower;
@@ -11,7 +12,7 @@ use super::peaks::Detector;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use super::runs::EchoBins;
 use super::settings::Settings;
-use super::walls::{Seeds, is_on};
+use super::walls::is_on;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
@@ -54,7 +55,8 @@ fn find_with(
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
     let flat = ends.flat();
     let window = hann(radar.samples);
-    let bench = Workbench::new(radar, &window, &request.task, settings.most_work).hearing(&flat)
+    let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
+        .hearing(&flat)
         .over(Hearing::beneath(radar, &flat, request.floor));
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);

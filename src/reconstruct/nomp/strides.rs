@@ -15,16 +15,16 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Longest step from one reflector of a row to the next, metres.
-const MOST_STEP_METRES: f64 = 0.4;
+pub const MOST_STEP_METRES: f64 = 0.4;
 
 /// Shortest step, metres: nearer points are one that was found twice.
-const LEAST_STEP_METRES: f64 = 0.02;
+pub const LEAST_STEP_METRES: f64 = 0.02;
 
 /// Neighbours of a point that its row may lead over.
 const NEIGHBOURS: usize = 8;
 
 /// Reflectors of the first glance.
-const FIRST: usize = 8;
+pub const FIRST: usize = 8;
 
 /// Steps of the grid around a pair to each side, along the line of sight and across.
 const REACH: [i32; 2] = [10, 12];
@@ -107,13 +107,7 @@ impl Grid {
         let step = [over[0] - from[0], over[1] - from[1]];
         let range = from[0].hypot(from[1]).max(0.1);
         let sight = [from[0] / range, from[1] / range];
-        let between = (beams.centres_metres[1] - beams.centres_metres[0]).abs().max(1e-3);
-        let wavelength = beams.turns_per_metre.abs().recip();
-        let last = (FIRST - 1) as f64;
-        // Half a wavelength over all reflectors: by the range itself, by its difference between the ends, by the row's curvature.
-        let along = 0.5 * wavelength / last;
-        let curved = 0.5 * wavelength * range / (step[0].hypot(step[1]) * last * last);
-        let across = (along * range / between).min(curved);
+        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]));
         Grid {
             first,
             middle: Row { first_metres: from, step_metres: step },
@@ -132,6 +126,18 @@ impl Grid {
     fn best(&self) -> f64 {
         self.rows.first().map_or(0.0, |(_, part)| *part)
     }
+}
+
+/// How finely steps of about this length must be tried over the first few reflectors: along the line of sight, and across.
+pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64) -> [f64; 2] {
+    let range = from[0].hypot(from[1]).max(0.1);
+    let between = (beams.centres_metres[1] - beams.centres_metres[0]).abs().max(1e-3);
+    let wavelength = beams.turns_per_metre.abs().recip();
+    let last = (FIRST - 1) as f64;
+    // Half a wavelength over all reflectors: by the range itself, by its difference between the ends, by the row's curvature.
+    let along = 0.5 * wavelength / last;
+    let curved = 0.5 * wavelength * range / (step_metres * last * last);
+    [along, (along * range / between).min(curved)]
 }
 
 /// All steps of a grid tried over the first few reflectors.
@@ -177,7 +183,7 @@ impl Kernel for Glance<'_> {
 
 /// Power of the echoes added with their phases, as a row of one gain would have it, and power of all of them.
 #[inline(always)]
-fn added_up(heard: &[Heard]) -> (f64, f64) {
+pub fn added_up(heard: &[Heard]) -> (f64, f64) {
     let (mut sum, mut weight, mut all) = (Complex64::default(), 0.0, 0.0);
     for h in heard {
         sum += h.weighted;
@@ -188,7 +194,7 @@ fn added_up(heard: &[Heard]) -> (f64, f64) {
 }
 
 /// The row over more and more reflectors, as long as their echoes add up.
-fn followed(beams: &PhasedBeams, mut row: Row) -> Option<Stride> {
+pub fn followed(beams: &PhasedBeams, mut row: Row) -> Option<Stride> {
     let mut count = FIRST;
     let (mut most, mut best) = (0.0, None);
     while count <= MOST_REFLECTORS {

@@ -1,16 +1,14 @@
 //! Walls: rows of points that were found one by one, followed to where they end.
 
 use super::atom::Atom;
+use super::begin::{Seeds, is_long};
 use super::chains::rows_of_points;
 use super::echoes::Samples;
 use super::groups::rows_of;
 use super::grow::Grower;
-use super::phased::PhasedBeams;
 use super::profile::Profile;
 use super::refine::{Fit, Gains, Limits, Tie};
-use super::strides::{Stride, rows_over_pairs};
 use crate::reconstruct::ReconstructError;
-use rayon::prelude::*;
 
 /// Of a wall by itself.
 const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
@@ -42,55 +40,20 @@ const TOGETHER: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 }
 /// Most walls of one scene.
 const MOST_WALLS: usize = 8;
 
-/// Rows that are held against the samples themselves, at each look.
-const MOST_TRIED: usize = 24;
-
-/// What a row must explain of the energy in its range bins to be followed to its ends.
-const LEAST_BEGUN: f64 = 0.3;
-
-/// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
-const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
-
-/// The same of a line that was found as a whole, to be followed and then: so many reflectors explain nothing that they are not, and much
-/// else may stand in their range bins.
-const LEAST_OF_LINE: [f64; 2] = [0.3, 0.45];
-
-/// Fewest reflectors of such a line.
-const LEAST_LONG: usize = 50;
-
 /// Part of the work granted that the search for walls may take.
 const MOST_SPENT: f64 = 0.5;
 
 /// Part of the energy in its range bins that may be left where a wall is known with all that stands beside it.
 const MOST_LEFT: f64 = 0.15;
 
+/// The same of a long wall, in whose range bins much else may stand.
+const MOST_LEFT_OF_LONG: f64 = 0.5;
+
 /// Most times all ends are followed and all walls moved together.
 const MOST_TURNS: usize = 4;
 
 /// Another turn needs that the last left this part of the energy at most.
 const WORTH_ANOTHER_TURN: f64 = 0.9;
-
-/// Echoes that the look for rows over one point takes as long as.
-const LOOK_A_POINT: usize = 20;
-
-/// Where walls may begin.
-pub enum Seeds {
-    /// At points (x, y; metres), over neighbouring ones.
-    Points(Vec<[f64; 2]>),
-    /// At these lines along y, too long to be found by their ends.
-    LongLines(Vec<Atom>),
-}
-
-impl Seeds {
-    /// Whether a wall from one of them that explains this part of the energy in its range bins can be believed.
-    fn are_borne_out(&self, wall: &Atom, explained: f64) -> bool {
-        let count = wall.reflector_count();
-        match self {
-            Seeds::Points(_) => LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part),
-            Seeds::LongLines(_) => count >= LEAST_LONG && explained >= LEAST_OF_LINE[1],
-        }
-    }
-}
 
 impl Grower<'_> {
     /// `fit` and the walls that begin at `seeds`, as long as each explains much of what there is in its range bins; without those that
@@ -102,14 +65,7 @@ impl Grower<'_> {
         let (known, before) = (fit.atoms.len(), self.bench.work.spent());
         while fit.atoms.len() < known + MOST_WALLS && self.bench.work.spent() < before + MOST_SPENT {
             self.task.check()?;
-            let Some((begun, seed)) = self.begun_wall(&fit, &mut seeds) else { break };
-            let profile = Profile::new(self.radar, &fit.residual.flat(&self.bench.sensor));
-            let wall = self.followed_to_its_ends(&fit.residual, seed);
-            let explained = (fit.cost() - wall.cost()) / profile.at(&rows_of(self.radar, &wall.atoms[0]));
-            tracing::debug!(explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
-            if !seeds.are_borne_out(&wall.atoms[0], begun.max(explained)) {
-                break;
-            }
+            let Some(wall) = self.next_wall(&fit, &mut seeds) else { break };
             fit.atoms.push(wall.atoms[0]);
             fit.gains.push(wall.gains[0]);
             (fit.residual, fit.energy) = (wall.residual, wall.energy);
@@ -157,44 +113,12 @@ impl Grower<'_> {
         let (all, left) = (flat(samples), flat(&fit.residual));
         let is_doubtful = |i: &usize| {
             let rows = rows_of(self.radar, &fit.atoms[*i]);
-            left.at(&rows) > MOST_LEFT * all.at(&rows)
+            let most = if is_long(self.radar, &fit.atoms[*i]) { MOST_LEFT_OF_LONG } else { MOST_LEFT };
+            left.at(&rows) > most * all.at(&rows)
         };
         let doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
         tracing::debug!(doubtful = doubtful.len(), walls = fit.atoms.len() - known, "walls");
         if doubtful.is_empty() { fit } else { self.bench.less(fit, &doubtful) }
-    }
-
-    /// The row from one of `seeds` that explains most of what `fit` leaves in its range bins, and the part that it explains.
-    fn begun_wall(&self, fit: &Fit, seeds: &mut Seeds) -> Option<(f64, Atom)> {
-        let flat = fit.residual.flat(&self.bench.sensor);
-        let profile = Profile::new(self.radar, &flat);
-        let best_of = |rows: &[Atom]| {
-            let tried = rows.par_iter().take(MOST_TRIED).map(|atom| {
-                let wall = self.bench.solve(&fit.residual, vec![*atom], Tie::PerEnd, 0.0);
-                let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
-                ((fit.cost() - wall.cost()) / all, *atom)
-            });
-            let best = tried.max_by(|a, b| a.0.total_cmp(&b.0));
-            tracing::debug!(rows = rows.len(), ?best, "rows");
-            best
-        };
-        match seeds {
-            Seeds::Points(points) => {
-                points.retain(|&[x_metres, y_metres]| {
-                    !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
-                });
-                self.bench.work.spend(LOOK_A_POINT * points.len());
-                let strides = rows_over_pairs(&PhasedBeams::new(self.radar, &flat), points, self.task);
-                let rows: Vec<Atom> = strides.into_iter().map(|Stride { atom, .. }| atom).collect();
-                best_of(&rows).filter(|(part, _)| *part > LEAST_BEGUN)
-            }
-            Seeds::LongLines(lines) => {
-                // What a line that is not quite right yet has left is no other.
-                let along = |a: &Atom, b: &Atom| a.reflectors(1.0).filter(|r| is_on(b, &Atom::from(r))).count();
-                lines.retain(|line| !fit.atoms.iter().any(|wall| 2 * along(line, wall) > line.reflector_count()));
-                best_of(lines).filter(|(part, _)| *part > LEAST_OF_LINE[0])
-            }
-        }
     }
 
     /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.
@@ -223,7 +147,7 @@ impl Grower<'_> {
     }
 
     /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
-    fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
+    pub fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
         let seed = self.trimmed(samples, seed);
         let mut wall = self.bench.refine(samples, vec![seed], vec![Gains::default()], Tie::PerEnd, ALONE);
         for _ in 0..MOST_WALKS {

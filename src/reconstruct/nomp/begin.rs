@@ -1,0 +1,151 @@
+//! Where walls begin: rows over two points, from the edge of a wall, or long lines as a whole, and which of them are borne out.
+
+use super::atom::Atom;
+use super::edges::rows_from_edges;
+use super::groups::rows_of;
+use super::grow::Grower;
+use super::phased::PhasedBeams;
+use super::profile::Profile;
+use super::refine::{Fit, Tie};
+use super::strides::{Stride, rows_over_pairs};
+use super::walls::is_on;
+use crate::radar::Radar;
+use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+
+/// Rows that are held against the samples themselves, at each look.
+const MOST_TRIED: usize = 24;
+
+/// What a row must explain of the energy in its range bins to be followed to its ends.
+const LEAST_BEGUN: f64 = 0.3;
+
+/// Points, those first on which the ends agree best, that a wall may begin at alone.
+const MOST_EDGES: usize = 24;
+
+/// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
+const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
+
+/// The same of a long wall: so many reflectors explain nothing that they are not, and much else may stand in their range bins.
+const LEAST_OF_LONG: f64 = 0.6;
+
+/// Fewest reflectors of a long wall, and fewest range bins that it goes through.
+const LEAST_LONG: usize = 45;
+
+/// What a line that was found as a whole must explain, to be followed and then.
+const LEAST_OF_LINE: [f64; 2] = [0.3, 0.45];
+
+/// Fewest reflectors of such a line.
+const LEAST_OF_LINE_REFLECTORS: usize = 50;
+
+/// Echoes that the look for rows over one point takes as long as.
+const LOOK_A_POINT: usize = 20;
+
+/// Where walls may begin.
+pub enum Seeds {
+    /// At points (x, y; metres), over neighbouring ones.
+    Points(Vec<[f64; 2]>),
+    /// At these lines along y, too long to be found by their ends.
+    LongLines(Vec<Atom>),
+}
+
+impl Seeds {
+    /// Whether a wall from one of them that explains this part of the energy in its range bins can be believed.
+    fn are_borne_out(&self, radar: &Radar, wall: &Atom, explained: f64) -> bool {
+        let count = wall.reflector_count();
+        match self {
+            Seeds::Points(_) if is_long(radar, wall) && explained >= LEAST_OF_LONG => true,
+            Seeds::Points(_) => LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part),
+            Seeds::LongLines(_) => count >= LEAST_OF_LINE_REFLECTORS && explained >= LEAST_OF_LINE[1],
+        }
+    }
+}
+
+/// Whether `wall` has many reflectors, most of them told apart.
+pub fn is_long(radar: &Radar, wall: &Atom) -> bool {
+    let [first, last] = [0.0, wall.reflector_count() as f64 - 1.0].map(|i| wall.position_metres(i));
+    let bins = (last[0] - first[0]).hypot(last[1] - first[1]) / radar.range_resolution_metres();
+    wall.reflector_count() >= LEAST_LONG && bins >= LEAST_LONG as f64
+}
+
+/// The first reflectors of a wall.
+#[derive(Debug, Clone, Copy)]
+struct Begun {
+    atom: Atom,
+    /// Energy that they explain.
+    energy: f64,
+    /// Part of the energy in their range bins that this is.
+    part: f64,
+}
+
+impl Grower<'_> {
+    /// A wall from one of `seeds`, followed to its ends in what `fit` leaves, that is borne out by how much it explains.
+    pub fn next_wall(&self, fit: &Fit, seeds: &mut Seeds) -> Option<Fit> {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        let profile = Profile::new(self.radar, &flat);
+        match seeds {
+            Seeds::Points(points) => {
+                points.retain(|&[x_metres, y_metres]| {
+                    !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
+                });
+                let points = points.clone();
+                self.bench.work.spend(LOOK_A_POINT * points.len());
+                let beams = PhasedBeams::new(self.radar, &flat);
+                let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
+                let over_pairs = atoms(rows_over_pairs(&beams, &points, self.task));
+                self.borne_out(fit, &profile, seeds, &over_pairs).or_else(|| {
+                    let edges = self.edges(&points);
+                    let from_edges = atoms(rows_from_edges(&beams, &edges, &directions(fit), self.task));
+                    self.borne_out(fit, &profile, seeds, &from_edges)
+                })
+            }
+            Seeds::LongLines(lines) => {
+                // What a line that is not quite right yet has left is no other.
+                let along = |a: &Atom, b: &Atom| a.reflectors(1.0).filter(|r| is_on(b, &Atom::from(r))).count();
+                lines.retain(|line| !fit.atoms.iter().any(|wall| 2 * along(line, wall) > line.reflector_count()));
+                let lines = lines.clone();
+                self.borne_out(fit, &profile, seeds, &lines)
+            }
+        }
+    }
+
+    /// That of `rows` which explains the greatest part of what there is in its range bins, or else the one that explains most, if it is
+    /// borne out when it is followed to its ends.
+    fn borne_out(&self, fit: &Fit, profile: &Profile, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
+        let begun: Vec<Begun> = rows
+            .par_iter()
+            .take(MOST_TRIED)
+            .map(|atom| {
+                let wall = self.bench.solve(&fit.residual, vec![*atom], Tie::PerEnd, 0.0);
+                let energy = fit.cost() - wall.cost();
+                let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
+                Begun { part: energy / all, energy, atom: *atom }
+            })
+            .collect();
+        tracing::debug!(rows = rows.len(), "rows");
+        let by_part = begun.iter().max_by(|a, b| a.part.total_cmp(&b.part))?;
+        let by_energy =
+            begun.iter().max_by(|a, b| a.energy.total_cmp(&b.energy)).filter(|row| row.atom != by_part.atom);
+        [Some(by_part), by_energy].into_iter().flatten().filter(|row| row.part > LEAST_BEGUN).find_map(|begun| {
+            let wall = self.followed_to_its_ends(&fit.residual, begun.atom);
+            let explained = (fit.cost() - wall.cost()) / profile.at(&rows_of(self.radar, &wall.atoms[0]));
+            tracing::debug!(?begun, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
+            seeds.are_borne_out(self.radar, &wall.atoms[0], begun.part.max(explained)).then_some(wall)
+        })
+    }
+
+    /// Those of `points` that a wall may begin at alone: the first, on which the ends agree best.
+    fn edges(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let within = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
+        points.iter().filter(within).take(MOST_EDGES).copied().collect()
+    }
+}
+
+/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
+fn directions(fit: &Fit) -> Vec<f64> {
+    let of_atom = |atom: &Atom| match atom {
+        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
+        Atom::Point { .. } => None,
+    };
+    let known = std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom));
+    known.flat_map(|radians| (0..4).map(move |k| radians + f64::from(k) * FRAC_PI_2)).collect()
+}
