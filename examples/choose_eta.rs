@@ -214,8 +214,9 @@ fn weights() -> Outcome {
             if found.complete {
                 continue;
             }
-            let drawn = found.reconstruction(&radar, &request).lambda;
-            let unexplained = found.unexplained_cells(&radar, &trial.ends);
+            let expected = found.expected(&radar, &request);
+            let unexplained = found.unexplained_cells(&radar, &trial.ends, &expected);
+            let drawn = expected.map;
             let filled = fallback.reconstruct(&radar, &trial.ends, &request)?.lambda;
             let filled = on_one_scale(&drawn, filled, &unexplained, found.energy_left() as f32);
             let group = &mut all[LEFT.partition_point(|left| *left < found.energy_left())];

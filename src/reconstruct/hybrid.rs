@@ -36,16 +36,16 @@ impl Hybrid {
         ends: &TwoEnds,
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
-        let mut drawn = found.reconstruction(radar, request);
+        let expected = found.expected(radar, request);
         // Nothing fills in on a radar that the fallback doesn't know.
         if found.complete || self.fallback.check_radar(radar).is_err() {
-            return Ok(drawn);
+            return Ok(found.as_drawn(expected.map));
         }
         let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;
-        let unexplained = found.unexplained_cells(radar, ends);
-        let filled = on_one_scale(&drawn.lambda, filled, &unexplained, found.energy_left() as f32);
-        drawn.lambda = blended(&drawn.lambda, &filled, &unexplained, most_weight(found.energy_left() as f32));
-        Ok(drawn)
+        let unexplained = found.unexplained_cells(radar, ends, &expected);
+        let left = found.energy_left() as f32;
+        let filled = on_one_scale(&expected.map, filled, &unexplained, left);
+        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, most_weight(left))))
     }
 
     fn about_itself() -> About {
@@ -109,7 +109,7 @@ impl Reconstructor for Following {
 
 /// Parts of a cell's power that are unexplained, in decades: up to the first the drawn map stays as it is, from the second on the fallback
 /// has all the weight that it gets in the scene. By `examples/choose_eta.rs weights`, as the next two.
-const CELL_DECADES: [f32; 2] = [-4.0, -0.6];
+const CELL_DECADES: [f32; 2] = [-4.0, -0.3];
 
 /// Parts of a scene's energy that are left, in decades, between which the fallback's weight grows from [`LEAST_WEIGHT`] to 1: what makes
 /// up for nearly all of a scene draws a map that is as good as the fallback's, and what leaves much of it a worse one.
@@ -203,7 +203,7 @@ mod tests {
         let few = Settings { most_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let found = find(&radar, &ends, &request, &few).unwrap();
-        let parts = found.unexplained_cells(&radar, &ends);
+        let parts = found.unexplained_cells(&radar, &ends, &found.expected(&radar, &request));
         let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = on_one_scale(&drawn, fallback, &parts, found.energy_left() as f32);

@@ -11,7 +11,7 @@ use super::strides::{Stride, rows_over_pairs};
 use super::walls::is_on;
 use crate::radar::Radar;
 use rayon::prelude::*;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Rows that are held against the samples themselves, at each look.
 const MOST_TRIED: usize = 24;
@@ -21,6 +21,12 @@ const LEAST_BEGUN: f64 = 0.3;
 
 /// Points, those first on which the ends agree best, that a wall may begin at alone.
 const MOST_EDGES: usize = 24;
+
+/// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
+const LEAST_FROM_EDGE: usize = 24;
+
+/// Directions this near to each other, radians, are one.
+const ONE_DIRECTION: f64 = 0.005;
 
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
 const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
@@ -94,7 +100,8 @@ impl Grower<'_> {
                 let over_pairs = atoms(rows_over_pairs(&beams, &points, self.task));
                 self.borne_out(fit, &profile, seeds, &over_pairs).or_else(|| {
                     let edges = self.edges(&points);
-                    let from_edges = atoms(rows_from_edges(&beams, &edges, &directions(fit), self.task));
+                    let mut from_edges = atoms(rows_from_edges(&beams, &edges, &directions(fit), self.task));
+                    from_edges.retain(|row| row.reflector_count() >= LEAST_FROM_EDGE);
                     self.borne_out(fit, &profile, seeds, &from_edges)
                 })
             }
@@ -146,6 +153,14 @@ fn directions(fit: &Fit) -> Vec<f64> {
         Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
         Atom::Point { .. } => None,
     };
-    let known = std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom));
-    known.flat_map(|radians| (0..4).map(move |k| radians + f64::from(k) * FRAC_PI_2)).collect()
+    let mut directions: Vec<f64> = Vec::new();
+    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
+        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
+            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
+            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
+                directions.push(radians);
+            }
+        }
+    }
+    directions
 }

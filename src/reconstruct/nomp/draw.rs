@@ -40,8 +40,17 @@ pub struct Weighted {
     pub reflectivity: f64,
 }
 
+/// A map as it is expected, and its scale.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Lambda, `[range bins, columns]`.
+    pub map: RangeAngleMap,
+    /// Decades of amplitude from Lambda 0 to 1.
+    pub decades: f64,
+}
+
 /// Expected Lambda of the whole array over `objects`, as accurate as the floor of `request` can show.
-pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, request: &Request) -> RangeAngleMap {
+pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, request: &Request) -> Expected {
     let reflectors: Vec<Reflector> = objects
         .iter()
         .flat_map(|o| o.atom.reflectors(o.reflectivity))
@@ -93,7 +102,7 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
     Zip::from(&mut lambda)
         .and(&decades)
         .par_for_each(|out, l| *out = (1.0 - (peak - l) / range).clamp(0.0, 1.0) as f32);
-    RangeAngleMap { lambda }
+    Expected { map: RangeAngleMap { lambda }, decades: range }
 }
 
 /// Variances of all elements, scaled so that both ends have this one in the mean.

@@ -3,6 +3,7 @@
 //! A log map shows every reflector at full brightness, however little energy it has: so explained or not is decided cell by cell, in
 //! the cells of both ends' maps that a cell of the whole array's map is made from.
 
+use super::draw::Expected;
 use super::end_beams::{beam_noise_power, beam_of_cos, end_beams};
 use super::finish::Found;
 use crate::radar::{End, Radar};
@@ -25,34 +26,57 @@ const NOISE_MARGIN: f64 = 3.0;
 const COLUMNS_TOGETHER: usize = 4;
 
 impl Found {
-    /// Part of the power of each cell of the whole array's map that no object explains on which the ends agree: 0 where all is, or where
-    /// there is nothing but noise. `[range bins, columns]`; `ends` are the samples that were searched.
-    pub fn unexplained_cells(&self, radar: &Radar, ends: &TwoEnds) -> Array2<f32> {
+    /// How far each cell of the whole array's map is unexplained on which the ends agree: 0 where all is explained, or where there is
+    /// nothing but noise; 1 where nothing is. `[range bins, columns]`; `ends` are the samples that were searched, `expected` what was
+    /// found in them.
+    ///
+    /// The ends' beams are wide: what is left in one may belong to any of many cells. Two parts are weighed against each other, by their
+    /// geometric mean: what is left of the beam, and what is left beside what is drawn in the cell.
+    pub fn unexplained_cells(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
         let mut parts = Array2::zeros((radar.samples, radar.elements));
         if self.not_agreed.is_empty() {
             return parts;
         }
-        let beams = BEAMS_PER_ELEMENT * radar.end_elements;
         let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
+        let beams = BEAMS_PER_ELEMENT * radar.end_elements;
         let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| smoothed(&b.mapv(|v| v.norm_sqr())));
         let (all, left) = rayon::join(|| powers(&samples), || powers(&self.not_agreed));
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
+        let drawn = &expected.map.lambda;
+        let strongest = (0..drawn.len()).max_by(|&a, &b| flat_of(drawn, a).total_cmp(&flat_of(drawn, b))).unwrap_or(0);
+        let cos_of = |column: usize| radar.cos_of_column(column as f64);
+        let [peak_bin, peak_column] = [strongest / radar.elements, strongest % radar.elements];
+        let peak = End::BOTH.map(|end| all[end as usize][seen_at(radar, beams, end, peak_bin, cos_of(peak_column))]);
         parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
-            let range = radar.range_of_bin_metres(bin as f64);
             for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {
-                let cos = radar.cos_of_column((first + COLUMNS_TOGETHER / 2) as f64);
-                let part = End::BOTH.iter().zip(all.iter().zip(&left)).map(|(&end, (all, left))| {
-                    let seen = seen_from(radar.end_centre_metres(end), range, cos);
-                    let bin = radar.bin_of_range(seen.range_metres).round() as usize % radar.samples;
-                    let at = [beam_of_cos(seen.cos_theta, beams), bin];
-                    (left[at] - noise).max(0.0) / all[at].max(f64::MIN_POSITIVE)
-                });
-                let part = part.fold(0.0, f64::max).min(1.0) as f32;
-                row.iter_mut().skip(first).take(COLUMNS_TOGETHER).for_each(|cell| *cell = part);
+                let cos = cos_of(first + COLUMNS_TOGETHER / 2);
+                // Of the beams' power, and of that of the strongest cell.
+                let (mut of_beam, mut of_peak) = (0.0f64, f64::INFINITY);
+                for (end, (all, left)) in End::BOTH.into_iter().zip(all.iter().zip(&left)) {
+                    let at = seen_at(radar, beams, end, bin, cos);
+                    let left = (left[at] - noise).max(0.0);
+                    of_beam = of_beam.max(left / all[at].max(f64::MIN_POSITIVE)).min(1.0);
+                    of_peak = of_peak.min(left / peak[end as usize].max(f64::MIN_POSITIVE));
+                }
+                for column in first..(first + COLUMNS_TOGETHER).min(radar.elements) {
+                    let own = 10f64.powf(-2.0 * expected.decades * (1.0 - f64::from(drawn[[bin, column]])));
+                    row[column] = (of_beam * of_peak / (of_peak + own)).sqrt() as f32;
+                }
             }
         });
         parts
     }
+}
+
+/// Cell number `at` of a map, row after row.
+fn flat_of(map: &Array2<f32>, at: usize) -> f32 {
+    map[[at / map.ncols(), at % map.ncols()]]
+}
+
+/// Where a cell of the whole array's map lies in the beams of an end: beam and range bin.
+fn seen_at(radar: &Radar, beams: usize, end: End, bin: usize, cos: f64) -> [usize; 2] {
+    let seen = seen_from(radar.end_centre_metres(end), radar.range_of_bin_metres(bin as f64), cos);
+    [beam_of_cos(seen.cos_theta, beams), radar.bin_of_range(seen.range_metres).round() as usize % radar.samples]
 }
 
 /// Means over neighbouring beams and rows, `[beam, range bin]`; the rows wrap.
@@ -83,12 +107,17 @@ mod tests {
         let scene = Scene::of_points([(3.0, 11.0), (-9.0, 20.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let mut found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
-        assert!(found.unexplained_cells(&radar, &ends).iter().all(|p| *p < 1e-3));
+        let expected = found.expected(&radar, &Request::default());
+        assert!(found.unexplained_cells(&radar, &ends, &expected).iter().all(|p| *p < 1e-3));
         // Without the far reflector in the answer, its own surroundings are unexplained and the near one's are not.
         let far = Scene::of_points([(-9.0, 20.0)]);
         let missing = simulate(&radar, &far, Floor::Exact, 0).unwrap().two_ends(&radar).flat();
         found.not_agreed.iter_mut().zip(&missing).for_each(|(r, m)| *r += m * found.scale);
-        let parts = found.unexplained_cells(&radar, &ends);
+        let near = found.atoms.iter().position(|atom| atom.position_metres(0.0)[0] > 0.0).unwrap();
+        found.atoms = vec![found.atoms[near]];
+        found.reflectivities = vec![found.reflectivities[near]];
+        let expected = found.expected(&radar, &Request::default());
+        let parts = found.unexplained_cells(&radar, &ends, &expected);
         let cell = |x: f64, y: f64| {
             let at = radar.polar_of(x, y);
             [radar.bin_of_range(at.range_metres) as usize, radar.column_of_cos(at.cos_theta) as usize]

@@ -71,6 +71,7 @@ mod walls;
 mod work;
 
 pub use atom::Atom;
+pub use draw::Expected;
 pub(super) use echoes::Samples;
 pub use finish::Found;
 pub(super) use groups::{Rows, distance_bins, rows_of};
@@ -83,6 +84,7 @@ pub use settings::Settings;
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::reconstructor::{About, Reconstructor};
+use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::{Floor, TwoEnds};
 use draw::{Noise, Weighted, expected_lambda};
@@ -136,15 +138,20 @@ impl Reconstructor for Nomp {
 impl Found {
     /// The map of what was found, over the floor that `request` names.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
+        self.as_drawn(self.expected(radar, request).map)
+    }
+
+    /// What was found with a map of it.
+    pub fn as_drawn(&self, lambda: RangeAngleMap) -> Reconstruction {
+        let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
+        Reconstruction { lambda, reflectors, eta: None }
+    }
+
+    /// The expected map of what was found, and its scale.
+    pub fn expected(&self, radar: &Radar, request: &Request) -> Expected {
         if self.atoms.is_empty() {
-            return Reconstruction::silence(radar);
+            return Expected { map: Reconstruction::silence(radar).lambda, decades: 1.0 };
         }
-        let objects: Vec<Weighted> = self
-            .atoms
-            .iter()
-            .zip(&self.reflectivities)
-            .map(|(&atom, &reflectivity)| Weighted { atom, reflectivity })
-            .collect();
         let noise = match request.floor {
             Floor::Thesis if self.complete => Noise::Rounding,
             // What was found may be far from what rounds there.
@@ -153,8 +160,10 @@ impl Found {
             Floor::Snr(_) if self.complete => Noise::Variance(self.residual_variance),
             Floor::Snr(_) => Noise::Variance(self.noise_variance),
         };
-        let lambda = expected_lambda(radar, &objects, noise, request);
-        let reflectors = objects.iter().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors, eta: None }
+        expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
+    }
+
+    fn weighted(&self) -> impl Iterator<Item = Weighted> {
+        self.atoms.iter().zip(&self.reflectivities).map(|(&atom, &reflectivity)| Weighted { atom, reflectivity })
     }
 }

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Beams formed by each end: fine enough to take the nearest.
-pub const BEAMS: usize = 96;
+const BEAMS: usize = 96;
 
 /// Nearest that a place of a row counts as, metres.
 const NEAREST_METRES: f64 = 0.05;
@@ -20,11 +20,11 @@ const W: usize = LANES_F64;
 /// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
 pub struct PhasedBeams {
     /// `[beam * bins + range bin]` for each end.
-    pub beams: [Vec<Complex64>; 2],
+    beams: [Vec<Complex64>; 2],
     /// Where the middle of each end stands on the array's axis, metres.
     pub centres_metres: [f64; 2],
-    pub bins: usize,
-    pub bins_per_metre: f64,
+    bins: usize,
+    bins_per_metre: f64,
     /// Phase of an echo at the middle of the chirp, turns a metre.
     pub turns_per_metre: f64,
     /// Referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.
@@ -47,6 +47,18 @@ pub struct Heard {
     pub weighted: Complex64,
     /// Square of the amplitude.
     pub weight: f64,
+}
+
+/// Power of the strongest beam of every range bin at each end.
+pub struct Strongest([Vec<f64>; 2]);
+
+/// What the beams hold at a place: of both ends what is less.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Presence {
+    /// Power of the beam that looks there, as a part of the strongest beam's in the same range bin.
+    pub part: f64,
+    /// Power of that strongest beam, evened out over range: as much for one reflectivity everywhere.
+    pub even_power: f64,
 }
 
 impl Row {
@@ -92,6 +104,51 @@ impl PhasedBeams {
         running
     }
 
+    /// The strongest beams of all range bins.
+    pub fn strongest(&self) -> Strongest {
+        Strongest(self.beams.each_ref().map(|beams| {
+            let mut most = vec![0.0f64; self.bins];
+            for beam in beams.chunks_exact(self.bins) {
+                most.iter_mut().zip(beam).for_each(|(most, v)| *most = most.max(v.norm_sqr()));
+            }
+            most
+        }))
+    }
+
+    /// What there is at (x, y), metres.
+    pub fn presence(&self, strongest: &Strongest, [x_metres, y_metres]: [f64; 2]) -> Presence {
+        let of_end = |end: usize| {
+            let dx = x_metres - self.centres_metres[end];
+            let range = dx.hypot(y_metres).max(NEAREST_METRES);
+            let bin = (range * self.bins_per_metre).round() as usize % self.bins;
+            let own = self.beams[end][beam_of_cos(dx / range, BEAMS) * self.bins + bin].norm_sqr();
+            let most = strongest.0[end][bin].max(f64::MIN_POSITIVE);
+            Presence { part: own / most, even_power: most * range.powi(4) }
+        };
+        let (a, b) = (of_end(0), of_end(1));
+        Presence { part: a.part.min(b.part), even_power: a.even_power.min(b.even_power) }
+    }
+
+    /// Length of a range bin.
+    pub fn bin_metres(&self) -> f64 {
+        self.bins_per_metre.recip()
+    }
+
+    /// Part of the power at the places of `row`, one for each of `heard`, that adds up as a row of one gain would have it.
+    #[inline(always)]
+    pub fn part_adding_up<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
+        if row.place_metres((heard.len() - 1) as f64)[1] <= 0.0 {
+            return 0.0;
+        }
+        let (mut added, mut all) = (0.0, 0.0);
+        for end in 0..self.beams.len() {
+            self.listen::<FMA>(end, row, heard);
+            let (of_end, all_of_end) = added_up(heard);
+            (added, all) = (added + of_end, all + all_of_end);
+        }
+        added / f64::max(all, f64::MIN_POSITIVE)
+    }
+
     /// What each reflector of `row`, one for each of `heard`, would have left at an end.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {
@@ -119,6 +176,18 @@ impl PhasedBeams {
             }
         }
     }
+}
+
+/// Power of the echoes added with their phases, as a row of one gain would have it, and power of all of them.
+#[inline(always)]
+pub fn added_up(heard: &[Heard]) -> (f64, f64) {
+    let (mut sum, mut weight, mut all) = (Complex64::default(), 0.0, 0.0);
+    for h in heard {
+        sum += h.weighted;
+        weight += h.weight;
+        all += h.weighted.norm_sqr() / h.weight;
+    }
+    (sum.norm_sqr() / weight, all)
 }
 
 /// Row `k` of a beam beyond its last.

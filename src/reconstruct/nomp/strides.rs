@@ -5,7 +5,7 @@
 //! wrong ones go along.
 
 use super::atom::Atom;
-use super::phased::{Heard, PhasedBeams, Row};
+use super::phased::{Heard, PhasedBeams, Row, added_up};
 use super::solver::damped_step;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub const MOST_STEP_METRES: f64 = 0.4;
 
 /// Shortest step, metres: nearer points are one that was found twice.
-pub const LEAST_STEP_METRES: f64 = 0.02;
+const LEAST_STEP_METRES: f64 = 0.02;
 
 /// Neighbours of a point that its row may lead over.
 const NEIGHBOURS: usize = 8;
@@ -156,41 +156,26 @@ impl Kernel for Glance<'_> {
         let mut heard = [Heard::default(); FIRST];
         for (at, part) in parts.iter_mut().enumerate() {
             let row = self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-            if row.place_metres((FIRST - 1) as f64)[1] <= 0.0 {
-                continue;
-            }
-            let (mut added, mut all) = (0.0, 0.0);
-            for end in 0..2 {
-                self.beams.listen::<FMA>(end, &row, &mut heard);
-                let (a, b) = added_up(&heard);
-                (added, all) = (added + a, all + b);
-            }
-            *part = added / f64::max(all, f64::MIN_POSITIVE);
+            *part = self.beams.part_adding_up::<FMA>(&row, &mut heard);
         }
-        let is_summit = |at: usize| {
-            let (i, j) = (at / columns, at % columns);
-            let beside = (i.saturating_sub(1)..=(i + 1).min(rows - 1))
-                .flat_map(|k| (j.saturating_sub(1)..=(j + 1).min(columns - 1)).map(move |l| k * columns + l));
-            beside.into_iter().all(|other| parts[other] <= parts[at])
-        };
-        let mut summits: Vec<usize> = (0..parts.len()).filter(|&at| parts[at] > 0.0 && is_summit(at)).collect();
-        summits.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
-        summits.truncate(KEPT);
         let row = |at: usize| self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-        summits.into_iter().map(|at| (row(at), parts[at])).collect()
+        summits(&parts, rows, KEPT).into_iter().map(|at| (row(at), parts[at])).collect()
     }
 }
 
-/// Power of the echoes added with their phases, as a row of one gain would have it, and power of all of them.
-#[inline(always)]
-pub fn added_up(heard: &[Heard]) -> (f64, f64) {
-    let (mut sum, mut weight, mut all) = (Complex64::default(), 0.0, 0.0);
-    for h in heard {
-        sum += h.weighted;
-        weight += h.weight;
-        all += h.weighted.norm_sqr() / h.weight;
-    }
-    (sum.norm_sqr() / weight, all)
+/// The `most` highest of those places of a grid of so many `rows` that no neighbour exceeds, best first.
+pub fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
+    let columns = parts.len() / rows.max(1);
+    let is_summit = |at: usize| {
+        let (i, j) = (at / columns, at % columns);
+        let beside = (i.saturating_sub(1)..=(i + 1).min(rows - 1))
+            .flat_map(|k| (j.saturating_sub(1)..=(j + 1).min(columns - 1)).map(move |l| k * columns + l));
+        beside.into_iter().all(|other| parts[other] <= parts[at])
+    };
+    let mut summits: Vec<usize> = (0..parts.len()).filter(|&at| parts[at] > 0.0 && is_summit(at)).collect();
+    summits.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
+    summits.truncate(most);
+    summits
 }
 
 /// The row over more and more reflectors, as long as their echoes add up.
