@@ -16,6 +16,9 @@ const BINS_PER_LOBE: f64 = 16.0;
 /// Part of the range bins that are taken to hold noise only.
 const QUIET_PART: f64 = 0.2;
 
+/// Least part of the quiet bins' power that the quietest of them hold if it is white noise.
+const EVEN: f64 = 0.15;
+
 /// Noise that is assumed where too few samples tell it from side lobes, as a part of the samples' mean power: 60 dB down.
 const ASSUMED: f64 = 1e-6;
 
@@ -24,9 +27,23 @@ pub(super) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds) -> f64 {
     noise_variance(radar, End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter()))
 }
 
-/// Variance of white noise in the samples of `channels`: the power of the quietest range bins under a window whose side lobes are
-/// lower. Where the chirp is too short for such a window, noise 60 dB beneath the samples is assumed unless less is heard.
+/// Variance of white noise in the samples of `channels`.
 pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
+    noise_heard(radar, channels).variance
+}
+
+/// What the quietest range bins hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HeardNoise {
+    /// Variance a sample, if it is white noise.
+    pub variance: f64,
+    /// Whether they hold much the same, as they do of white noise; side lobes differ by decades from bin to bin.
+    pub is_even: bool,
+}
+
+/// Listens to `channels`: the power of the quietest range bins under a window whose side lobes are lower. Where the chirp is too short for
+/// such a window, noise 60 dB beneath the samples is assumed unless less is heard.
+pub(super) fn noise_heard<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> HeardNoise {
     let beta = beta(radar.samples);
     let window = kaiser(radar.samples, beta);
     let power: f64 = window.iter().map(|w| w * w).sum();
@@ -42,14 +59,17 @@ pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = A
         count += 1.0;
     }
     if count == 0.0 {
-        return 0.0;
+        return HeardNoise { variance: 0.0, is_even: true };
     }
     let quiet = (QUIET_PART * bins.len() as f64) as usize;
     let strongest = bins.iter().copied().fold(0.0, f64::max);
     let quantile = *bins.select_nth_unstable_by(quiet, f64::total_cmp).1;
+    let quietest = *bins[..=quiet].select_nth_unstable_by(quiet / 10, f64::total_cmp).1;
     // The mean of `count` exponential powers is nearly normal with this relative spread; its 20 % quantile is 0.84 below.
     let heard = quantile / (count * power) / (1.0 - 0.84 / f64::sqrt(count)).max(0.3);
-    if quantile < strongest * side_lobe_part(beta) * 1e2 { heard.min(energy / count * ASSUMED) } else { heard }
+    let is_side_lobe = quantile < strongest * side_lobe_part(beta) * 1e2;
+    let variance = if is_side_lobe { heard.min(energy / count * ASSUMED) } else { heard };
+    HeardNoise { variance, is_even: quietest > EVEN * quantile }
 }
 
 /// Shape of the window for chirps of `samples`: the lower its side lobes, the wider its main lobe.

@@ -2,7 +2,7 @@
 
 use super::profile::Profile;
 use crate::radar::Radar;
-use crate::reconstruct::noise::noise_variance;
+use crate::reconstruct::noise::noise_heard;
 use crate::signal::Floor;
 use crate::signal::floor::thesis_noise_of_echo;
 use ndarray::ArrayView1;
@@ -39,10 +39,47 @@ impl Hearing {
 
     /// Variance of the white noise in a sample of `flat`, laid out channel by channel.
     pub fn noise_variance(&self, radar: &Radar, flat: &[Complex64]) -> f64 {
-        let heard = noise_variance(radar, flat.chunks_exact(radar.samples).map(ArrayView1::from));
-        if heard > MARGIN * self.expected { self.expected } else { heard }
+        let heard = noise_heard(radar, flat.chunks_exact(radar.samples).map(ArrayView1::from));
+        let is_echo = !heard.is_even && heard.variance > MARGIN * self.expected;
+        if is_echo { self.expected } else { heard.variance }
     }
 }
 
 /// How much more rounding there may be than is expected: echoes from beyond the maximum range round more than their range bin tells.
 const MARGIN: f64 = 3.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Decibels;
+    use crate::scene::{Line, Object, Scene};
+    use crate::signal::floor::{snr_noise_variance, thesis_noise_variance};
+    use crate::signal::simulate;
+
+    /// Walls in nearly every range bin.
+    fn walls() -> Scene {
+        let wall = |x, y, step, count| Object::Line(Line::vertical(x, y, step, count));
+        Scene { objects: vec![wall(-3.0, 2.0, 0.16, 100), wall(6.0, 14.0, 0.2, 110)], ..Scene::default() }
+    }
+
+    #[test]
+    fn walls_in_every_range_bin_are_no_noise() {
+        let radar = Radar::default();
+        let flat = simulate(&radar, &walls(), Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
+        let true_variance = thesis_noise_variance(&radar, &walls().reflectors())[0];
+        let heard = |hearing: Hearing| hearing.noise_variance(&radar, &flat) / true_variance;
+        assert!(heard(Hearing::any()) > 1e3, "{}", heard(Hearing::any()));
+        let bounded = heard(Hearing::beneath(&radar, &flat, Floor::Thesis));
+        assert!((0.5..2.0).contains(&bounded), "{bounded}");
+    }
+
+    #[test]
+    fn noise_that_was_not_foretold_is_heard_all_the_same() {
+        let radar = Radar::default();
+        let scene = Scene::of_points([(2.0, 10.0), (-6.0, 17.0)]);
+        let flat = simulate(&radar, &scene, Floor::Snr(Decibels(20.0)), 1).unwrap().two_ends(&radar).flat();
+        let true_variance = snr_noise_variance(&radar, &scene.reflectors(), Decibels(20.0))[0];
+        let heard = Hearing::beneath(&radar, &flat, Floor::Thesis).noise_variance(&radar, &flat) / true_variance;
+        assert!((heard - 1.0).abs() < 0.2, "{heard}");
+    }
+}
