@@ -99,6 +99,9 @@ impl Grower<'_> {
                 let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
                 let over_pairs = atoms(rows_over_pairs(&beams, &points, self.task));
                 self.borne_out(fit, &profile, seeds, &over_pairs).or_else(|| {
+                    if !self.echoes_in(&flat).are_long() {
+                        return None;
+                    }
                     let edges = self.edges(&points);
                     let mut from_edges = atoms(rows_from_edges(&beams, &edges, &directions(fit), self.task));
                     from_edges.retain(|row| row.reflector_count() >= LEAST_FROM_EDGE);

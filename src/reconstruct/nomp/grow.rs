@@ -7,6 +7,7 @@ use super::groups::{Rows, groups, rows_of};
 use super::peaks::{Candidate, Detector};
 use super::profile::{Profile, union_of};
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
+use super::runs::EchoBins;
 use super::settings::Settings;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
@@ -97,6 +98,11 @@ impl Grower<'_> {
         let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, flat));
         let least = (noise * self.settings.least_prominence).max(self.rounding_power());
         self.detector.peaks(self.radar, flat, least, most, closed)
+    }
+
+    /// The range bins that hold an echo of what is left.
+    pub fn echoes_in(&self, flat: &[Complex64]) -> EchoBins {
+        EchoBins::of(self.radar, flat, self.bench.hearing.noise_variance(self.radar, flat))
     }
 
     /// Amplitude of what rounding to f64 makes of a reflector's place, if its samples are 1: many reflectors of one wall are each off

@@ -17,6 +17,9 @@ const NEAR_BINS: f64 = 10.0;
 /// Wraps of the range that are told apart: what stands beyond the maximum range may be much weaker than what it is heard among.
 const WRAPS: usize = 2;
 
+/// Range bins in a row that only something longer than a few reflectors fills.
+const LONG_RUN_BINS: usize = 18;
+
 /// Which range bins of each end hold an echo, in the first wraps of the range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EchoBins {
@@ -58,8 +61,13 @@ impl EchoBins {
         EchoBins { count, bins, running }
     }
 
+    /// Whether something longer than a few reflectors is among them.
+    pub fn are_long(&self) -> bool {
+        self.longest_run() >= LONG_RUN_BINS
+    }
+
     /// The longest row of neighbouring bins that hold an echo at one of the ends, within the maximum range.
-    pub fn longest_run(&self) -> usize {
+    fn longest_run(&self) -> usize {
         let run_of = |bins: &Vec<bool>| bins[..self.count].split(|echo| !*echo).map(<[bool]>::len).max().unwrap_or(0);
         self.bins.iter().map(run_of).max().unwrap_or(0)
     }

@@ -10,17 +10,12 @@ use super::lines::lines_in;
 use super::pairs::{Pairs, paired_points};
 use super::peaks::Detector;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
-use super::runs::EchoBins;
 use super::settings::Settings;
 use super::walls::is_on;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
-use num_complex::Complex64;
-
-/// Range bins in a row that only something longer than a few reflectors fills.
-const LONG_RUN_BINS: usize = 18;
 
 /// Takes the samples apart into atoms.
 ///
@@ -103,7 +98,7 @@ impl Search<'_> {
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
         }
-        let is_long = self.echoes_in(&nothing.residual.flat(&self.bench.sensor)).longest_run() >= LONG_RUN_BINS;
+        let is_long = self.grower().echoes_in(&nothing.residual.flat(&self.bench.sensor)).are_long();
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
         let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
@@ -140,8 +135,8 @@ impl Search<'_> {
     fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let flat = fit.residual.flat(&self.bench.sensor);
-            let echoes = self.echoes_in(&flat);
-            if echoes.longest_run() < LONG_RUN_BINS {
+            let echoes = self.grower().echoes_in(&flat);
+            if !echoes.are_long() {
                 break;
             }
             let before = fit.atoms.len();
@@ -203,10 +198,6 @@ impl Search<'_> {
             }
         }
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
-    }
-
-    fn echoes_in(&self, flat: &[Complex64]) -> EchoBins {
-        EchoBins::of(self.radar, flat, self.bench.hearing.noise_variance(self.radar, flat))
     }
 
     /// Points whose tones both ends hear in what `fit` leaves.
