@@ -18,6 +18,8 @@
 //! | `chains` | points that stand in a row at equal steps |
 //! | `phased` | each end's beams with their phases, and rows of reflectors looked up in them |
 //! | `strides` | rows of reflectors from their first two |
+//! | `edges` | rows of reflectors from their first alone |
+//! | `begin` | where walls begin, and which are borne out |
 //! | `runs` | range bins that hold an echo |
 //! | `lines` | long lines along y, looked up as a whole |
 //! | `walls` | rows of points followed to where they end |
@@ -29,6 +31,7 @@
 //! | `grow` | the greedy loop over points |
 //! | `prune` | atoms that the rest can do without |
 //! | `search` | the search as a whole |
+//! | `hearing` | how much of what is left is noise |
 //! | `settings`, `work` | bounds on time and memory |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
