@@ -17,7 +17,7 @@ const BINS_PER_LOBE: f64 = 16.0;
 const QUIET_PART: f64 = 0.2;
 
 /// Least part of the quiet bins' power that the quietest of them hold if it is white noise.
-const EVEN: f64 = 0.15;
+const EVEN: f64 = 0.03;
 
 /// Noise that is assumed where too few samples tell it from side lobes, as a part of the samples' mean power: 60 dB down.
 const ASSUMED: f64 = 1e-6;

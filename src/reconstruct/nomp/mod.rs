@@ -22,6 +22,7 @@
 //! | `begin` | where walls begin, and which are borne out |
 //! | `runs` | range bins that hold an echo |
 //! | `lines` | long lines along y, looked up as a whole |
+//! | `on_wall` | which points stand on a wall |
 //! | `walls` | rows of points followed to where they end |
 //! | `end_beams` | each end's plain beams |
 //! | `registered` | both ends' beams laid over each other |
@@ -52,6 +53,7 @@ mod grow;
 mod hearing;
 mod lines;
 mod moments;
+mod on_wall;
 mod pairs;
 mod peaks;
 mod phased;

@@ -6,6 +6,7 @@ use super::chains::rows_of_points;
 use super::echoes::Samples;
 use super::groups::rows_of;
 use super::grow::Grower;
+use super::on_wall::{MOST_REFLECTORS, stands_on};
 use super::profile::Profile;
 use super::refine::{Fit, Gains, Limits, Tie};
 use crate::reconstruct::ReconstructError;
@@ -22,14 +23,8 @@ const MOST_TRIMS: usize = 2;
 /// Fewest reflectors of a wall.
 const LEAST_REFLECTORS: usize = 8;
 
-/// Most reflectors of a wall.
-const MOST_REFLECTORS: usize = 250;
-
 /// Most times a wall is followed further and moved to its best place.
 const MOST_WALKS: usize = 8;
-
-/// Points this near to a wall's axis belong to it or stand for what belongs to it, metres.
-const BESIDE_METRES: f64 = 0.06;
 
 /// A wall must leave less than this part of what was left without it.
 const LEAST_GAINED: f64 = 0.98;
@@ -243,24 +238,4 @@ fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
     let [x_metres, y_metres] = wall.position_metres(first as f64);
     let count = count.checked_sub(first + last).filter(|count| *count >= LEAST_REFLECTORS)?;
     Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
-}
-
-/// Whether `atom` is a point on the axis of `wall`, not far beyond its ends.
-fn stands_on(wall: &Atom, atom: &Atom) -> bool {
-    let (Atom::Segment { dx_metres: dx, dy_metres: dy, .. }, Atom::Point { .. }) = (*wall, *atom) else {
-        return false;
-    };
-    let ([x, y], [point_x, point_y]) = (wall.position_metres(0.0), atom.position_metres(0.0));
-    let (to_x, to_y, step) = (point_x - x, point_y - y, dx.hypot(dy));
-    let along_steps = (to_x * dx + to_y * dy) / (step * step);
-    let beside_metres = (to_x * dy - to_y * dx).abs() / step;
-    beside_metres < BESIDE_METRES && along_steps.abs() < MOST_REFLECTORS as f64
-}
-
-/// Whether `atom` is a point on `wall`, between its ends or less than a step beyond.
-pub fn is_on(wall: &Atom, atom: &Atom) -> bool {
-    let Atom::Segment { dx_metres: dx, dy_metres: dy, count, .. } = *wall else { return false };
-    let ([x, y], [point_x, point_y]) = (wall.position_metres(0.0), atom.position_metres(0.0));
-    let along_steps = ((point_x - x) * dx + (point_y - y) * dy) / (dx * dx + dy * dy);
-    stands_on(wall, atom) && (-1.0..=count as f64).contains(&along_steps)
 }
