@@ -50,8 +50,8 @@ impl Found {
         parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
             for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {
                 let cos = cos_of(first + COLUMNS_TOGETHER / 2);
-                // Of the beams' power, and of that of the strongest cell.
-                let (mut of_beam, mut of_peak) = (0.0f64, f64::INFINITY);
+                // Of the beams' power, and of that of the strongest cell; finite even where an end is silent there.
+                let (mut of_beam, mut of_peak) = (0.0f64, f64::MAX);
                 for (end, (all, left)) in End::BOTH.into_iter().zip(all.iter().zip(&left)) {
                     let at = seen_at(radar, beams, end, bin, cos);
                     let left = (left[at] - noise).max(0.0);
