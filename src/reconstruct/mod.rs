@@ -16,6 +16,7 @@ mod echoes;
 mod error;
 pub mod found;
 mod grid;
+mod hearing;
 mod hybrid;
 mod noise;
 pub mod nomp;

@@ -1,8 +1,7 @@
 //! Listening to the noise beneath the samples.
 
 use crate::maps::Spectrum;
-use crate::radar::{End, Radar};
-use crate::signal::TwoEnds;
+use crate::radar::Radar;
 use ndarray::ArrayView1;
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -21,11 +20,6 @@ const EVEN: f64 = 0.03;
 
 /// Noise that is assumed where too few samples tell it from side lobes, as a part of the samples' mean power: 60 dB down.
 const ASSUMED: f64 = 1e-6;
-
-/// Variance of the white complex noise of a sample of either end.
-pub(super) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds) -> f64 {
-    noise_variance(radar, End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter()))
-}
 
 /// Variance of white noise in the samples of `channels`.
 pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
@@ -115,6 +109,7 @@ fn bessel_i0(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::radar::Decibels;
+    use crate::reconstruct::hearing::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::floor::{snr_noise_variance, thesis_noise_variance};
     use crate::signal::{Floor, simulate};
@@ -126,12 +121,12 @@ mod tests {
         for snr in [60.0, 0.0] {
             let signal = simulate(&radar, &scene, Floor::Snr(Decibels(snr)), 3).unwrap();
             let expected = snr_noise_variance(&radar, &scene.reflectors(), Decibels(snr))[0];
-            let found = ends_noise_variance(&radar, &signal.two_ends(&radar));
+            let found = ends_noise_variance(&radar, &signal.two_ends(&radar), Floor::Snr(Decibels(snr)));
             assert!((found / expected - 1.0).abs() < 0.15, "{snr} dB: {found:e} {expected:e}");
         }
         let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
         let expected = thesis_noise_variance(&radar, &scene.reflectors())[5];
-        let found = ends_noise_variance(&radar, &signal.two_ends(&radar));
+        let found = ends_noise_variance(&radar, &signal.two_ends(&radar), Floor::Thesis);
         // Rounding is not white: the quiet bins hold less of it than the mean.
         assert!((found / expected).log10().abs() < 0.7, "{found:e} {expected:e}");
     }
@@ -144,7 +139,7 @@ mod tests {
             let scene = Scene::of_points([(0.3 * metres, metres)]);
             let ends = simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar);
             let power = ends.first.iter().map(Complex64::norm_sqr).sum::<f64>() / ends.first.len() as f64;
-            let noise = ends_noise_variance(&radar, &ends);
+            let noise = ends_noise_variance(&radar, &ends, Floor::Exact);
             // Side lobes of few elements and samples: 55 dB beneath the echoes.
             assert!(noise <= 3e-6 * power, "{samples} samples: {noise:e} of {power:e}");
         }

@@ -10,7 +10,7 @@ use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::of_echoes;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::no_plane_waves;
 use crate::signal::TwoEnds;
@@ -61,31 +61,37 @@ impl Reconstructor for CoherentMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let task = &request.task;
-        let noise_variance = ends_noise_variance(radar, ends);
+        let hearing = Hearing::beneath(radar, ends, request.floor);
         let found = if radar.samples == 1 {
             // A single sample tells no range to move reflectors along.
-            gains(radar, &self.peaks(radar, ends, task)?, ends, task)?
+            gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
         } else {
             let mut settled = Settled::new(radar, ends, task);
             for look in 0..LOOKS {
                 task.set_progress(0.9 * look as f32 / LOOKS as f32);
-                if !settled.take(&self.peaks(radar, &settled.left(), task)?)? {
+                if !settled.take(&self.peaks(radar, &settled.left(), &hearing, task)?)? {
                     break;
                 }
             }
             settled.found(ends)?
         };
-        Ok(of_echoes(radar, &found, noise_variance, request))
+        Ok(of_echoes(radar, &found, hearing.ends_noise_variance(radar, ends), request))
     }
 }
 
 impl CoherentMethod {
     /// What stands out of the samples of both ends, the strongest first.
-    fn peaks(&self, radar: &Radar, ends: &TwoEnds, task: &Task) -> Result<Vec<Peak>, ReconstructError> {
+    fn peaks(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        hearing: &Hearing,
+        task: &Task,
+    ) -> Result<Vec<Peak>, ReconstructError> {
         let heard = Ends::new(radar, ends);
         let sectors = Sectors::new(radar, &heard);
         // The window's mean weight squared over its mean square, for each sample.
-        let noise_power = ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
+        let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
         let places = places(radar, &heard, &sectors, noise_power, task)?;
         let found: Vec<Vec<Peak>> = places
             .par_iter()

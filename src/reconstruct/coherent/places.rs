@@ -176,7 +176,7 @@ fn vertex(before: f64, here: f64, after: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::noise::ends_noise_variance;
+    use crate::reconstruct::hearing::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use crate::task::Task;
@@ -188,7 +188,7 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let heard = Ends::new(&radar, &ends);
         let sectors = Sectors::new(&radar, &heard);
-        let noise = ends_noise_variance(&radar, &ends) * 1.5 / radar.samples as f64;
+        let noise = ends_noise_variance(&radar, &ends, Floor::Thesis) * 1.5 / radar.samples as f64;
         let found = places(&radar, &heard, &sectors, noise, &Task::default()).unwrap();
         let range = 2f64.hypot(9.0);
         assert!(!found.is_empty() && found.len() < 4 * sectors.all.len(), "{} places", found.len());

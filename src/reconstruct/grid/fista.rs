@@ -6,7 +6,7 @@ use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -208,7 +208,7 @@ impl Reconstructor for Fista {
             .collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
         found.truncate(MOST_DRAWN);
-        Ok(of_echoes(radar, &found, ends_noise_variance(radar, ends), request))
+        Ok(of_echoes(radar, &found, ends_noise_variance(radar, ends, request.floor), request))
     }
 }
 

@@ -5,7 +5,7 @@ use super::cells::Cells;
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
@@ -57,7 +57,7 @@ impl Reconstructor for MatchedFilter {
                 MatchedFilter::Incoherent => (a.norm_sqr() + b.norm_sqr()) / 2.0,
             }
         });
-        Ok(of_power(radar, cells.folded(&power), ends_noise_variance(radar, ends), request))
+        Ok(of_power(radar, cells.folded(&power), ends_noise_variance(radar, ends, request.floor), request))
     }
 }
 

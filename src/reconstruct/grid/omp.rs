@@ -6,7 +6,7 @@ use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -284,7 +284,7 @@ impl Reconstructor for Omp {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let noise_variance = ends_noise_variance(radar, ends);
+        let noise_variance = ends_noise_variance(radar, ends, request.floor);
         let found = self.pursue(radar, ends, noise_variance, request)?;
         Ok(of_echoes(radar, &found, noise_variance, request))
     }

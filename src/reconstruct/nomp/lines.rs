@@ -341,7 +341,7 @@ fn distance(a: &Atom, b: &Atom) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::nomp::hearing::Hearing;
+    use crate::reconstruct::hearing::Hearing;
     use crate::scene::{Line, Object, Point, Scene};
     use crate::signal::{Floor, simulate};
 

@@ -32,7 +32,6 @@
 //! | `grow` | the greedy loop over points |
 //! | `prune` | atoms that the rest can do without |
 //! | `search` | the search as a whole |
-//! | `hearing` | how much of what is left is noise |
 //! | `settings`, `work` | bounds on time and memory |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
@@ -50,7 +49,6 @@ mod finish;
 mod gram;
 mod groups;
 mod grow;
-mod hearing;
 mod lines;
 mod moments;
 mod on_wall;

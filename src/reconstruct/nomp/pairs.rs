@@ -224,7 +224,7 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::noise::ends_noise_variance;
+    use crate::reconstruct::hearing::ends_noise_variance;
     use crate::scene::Scene;
     use crate::scene::generate::{Generator, Kind, Purpose, Reading};
     use crate::signal::{Floor, simulate};
@@ -235,7 +235,7 @@ mod tests {
         let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 3);
         let scene: Scene = generator.scene(Kind::Crowd, 0);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let found = paired_points(&radar, &ends.flat(), ends_noise_variance(&radar, &ends)).points;
+        let found = paired_points(&radar, &ends.flat(), ends_noise_variance(&radar, &ends, Floor::Thesis)).points;
         let near = |x: f64, y: f64| {
             let distance = |a: &Paired| {
                 let [fx, fy] = a.atom.position_metres(0.0);

@@ -1,8 +1,8 @@
 //! Energy of a residual over range at each end: how well each part of the scene is explained.
 
 use super::groups::Rows;
-use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
+use crate::reconstruct::hearing::range_energy;
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
@@ -19,17 +19,7 @@ impl Profile {
     /// Of samples laid out channel by channel, not windowed.
     pub fn new(radar: &Radar, flat: &[Complex64]) -> Self {
         let ends = TwoEnds::of_flat(radar, flat);
-        let energy = End::BOTH.map(|end| {
-            let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
-            (0..radar.samples).map(|bin| profiles.column(bin).iter().map(Complex64::norm_sqr).sum()).collect()
-        });
-        Profile { energy }
-    }
-
-    /// Of every bin, both ends together.
-    pub fn of_both_ends(&self) -> impl Iterator<Item = f64> {
-        let [first, last] = &self.energy;
-        first.iter().zip(last).map(|(a, b)| a + b)
+        Profile { energy: End::BOTH.map(|end| range_energy(radar, ends.end(end).view())) }
     }
 
     /// The most that any bin at or beside these rows holds.

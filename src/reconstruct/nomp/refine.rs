@@ -7,12 +7,12 @@
 use super::atom::Atom;
 use super::echoes::{Remainder, Samples, remainder};
 use super::gram::Dictionary;
-use super::hearing::Hearing;
 use super::moments::Moments;
 use super::sensor::Sensor;
 use super::solver::{Ridge, damped_step};
 use super::work::Work;
 use crate::radar::Radar;
+use crate::reconstruct::hearing::Hearing;
 use crate::scene::Reflector;
 use crate::task::Task;
 use faer::Mat;

@@ -83,7 +83,7 @@ impl EchoBins {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::nomp::hearing::Hearing;
+    use crate::reconstruct::hearing::Hearing;
     use crate::scene::{Line, Object, Scene};
     use crate::signal::{Floor, simulate};
 

@@ -5,7 +5,6 @@ use super::begin::Seeds;
 use super::echoes::Samples;
 use super::finish::{Found, finish};
 use super::grow::Grower;
-use super::hearing::Hearing;
 use super::lines::lines_in;
 use super::on_wall::is_on;
 use super::pairs::{Pairs, paired_points};
@@ -13,6 +12,7 @@ use super::peaks::Detector;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use super::settings::Settings;
 use crate::radar::{Radar, hann};
+use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
@@ -52,7 +52,7 @@ fn find_with(
     let window = hann(radar.samples);
     let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
         .hearing(&flat)
-        .over(Hearing::beneath(radar, &flat, request.floor));
+        .over(Hearing::beneath(radar, &ends, request.floor));
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let search = Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings };

@@ -6,7 +6,7 @@ use crate::maps::{Spectrum, range_transform};
 use crate::radar::{End, Radar};
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::noise::ends_noise_variance;
+use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::power::of_power;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::{no_plane_waves, too_many_folds};
@@ -42,7 +42,7 @@ impl Reconstructor for RowMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let noise_variance = ends_noise_variance(radar, ends);
+        let noise_variance = ends_noise_variance(radar, ends, request.floor);
         let [first, last] = End::BOTH.map(|end| self.end_power(radar, ends, end, noise_variance, request));
         let power = joined(radar, &[first?, last?]);
         Ok(of_power(radar, power, noise_variance, request))

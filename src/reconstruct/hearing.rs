@@ -1,12 +1,17 @@
-//! How much of what is left is noise: what its quietest range bins hold, and no more than the floor beneath the samples can be.
+//! How much of the samples is noise: what their quietest range bins hold, and no more than the floor beneath the echoes can be.
 
-use super::profile::Profile;
-use crate::radar::Radar;
-use crate::reconstruct::noise::noise_heard;
-use crate::signal::Floor;
+use super::noise::noise_heard;
+use crate::maps::channels_range_transform;
+use crate::radar::{End, Radar};
 use crate::signal::floor::thesis_noise_of_echo;
-use ndarray::ArrayView1;
+use crate::signal::{Floor, TwoEnds};
+use ndarray::{ArrayView1, ArrayView2};
 use num_complex::Complex64;
+
+/// Variance of the white complex noise of a sample of either end, over `floor`.
+pub(super) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -> f64 {
+    Hearing::beneath(radar, ends, floor).ends_noise_variance(radar, ends)
+}
 
 /// Noise beneath the samples of both ends.
 #[derive(Debug, Clone, Copy)]
@@ -21,28 +26,44 @@ impl Hearing {
         Hearing { expected: f64::INFINITY }
     }
 
-    /// Of what lies beneath `flat`, all samples channel by channel: where that is rounding, the echoes themselves tell how much of it
-    /// there is, even where they fill every range bin.
-    pub fn beneath(radar: &Radar, flat: &[Complex64], floor: Floor) -> Self {
+    /// Of what lies beneath the samples of `ends`: where that is rounding, the echoes themselves tell how much of it there is, even
+    /// where they fill every range bin.
+    pub fn beneath(radar: &Radar, ends: &TwoEnds, floor: Floor) -> Self {
         if matches!(floor, Floor::Snr(_)) {
             return Hearing::any();
         }
         let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();
-        let channels = (flat.len() / radar.samples.max(1)).max(1) as f64;
-        let profile = Profile::new(radar, flat);
+        let channels = (ends.first.nrows() + ends.last.nrows()).max(1) as f64;
         let of_bin = |(bin, energy): (usize, f64)| {
             let power = energy / (window * channels);
             thesis_noise_of_echo(radar, power, radar.range_of_bin_metres(bin as f64))
         };
-        Hearing { expected: profile.of_both_ends().enumerate().map(of_bin).sum::<f64>() }
+        let of_end =
+            |end: End| range_energy(radar, ends.end(end).view()).into_iter().enumerate().map(of_bin).sum::<f64>();
+        Hearing { expected: End::BOTH.into_iter().map(of_end).sum() }
+    }
+
+    /// Variance of the white noise in a sample of either end.
+    pub fn ends_noise_variance(&self, radar: &Radar, ends: &TwoEnds) -> f64 {
+        self.variance(radar, End::BOTH.into_iter().flat_map(|end| ends.end(end).outer_iter()))
     }
 
     /// Variance of the white noise in a sample of `flat`, laid out channel by channel.
     pub fn noise_variance(&self, radar: &Radar, flat: &[Complex64]) -> f64 {
-        let heard = noise_heard(radar, flat.chunks_exact(radar.samples).map(ArrayView1::from));
+        self.variance(radar, flat.chunks_exact(radar.samples).map(ArrayView1::from))
+    }
+
+    fn variance<'a>(&self, radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
+        let heard = noise_heard(radar, channels);
         let is_echo = !heard.is_even && heard.variance > MARGIN * self.expected;
         if is_echo { self.expected } else { heard.variance }
     }
+}
+
+/// Energy of windowed `channels`, `[channels, samples]`, in each range bin.
+pub(super) fn range_energy(radar: &Radar, channels: ArrayView2<'_, Complex64>) -> Vec<f64> {
+    let profiles = channels_range_transform(radar, channels).profiles;
+    profiles.columns().into_iter().map(|column| column.iter().map(Complex64::norm_sqr).sum()).collect()
 }
 
 /// How much more rounding there may be than is expected: echoes from beyond the maximum range round more than their range bin tells.
@@ -65,11 +86,11 @@ mod tests {
     #[test]
     fn walls_in_every_range_bin_are_no_noise() {
         let radar = Radar::default();
-        let flat = simulate(&radar, &walls(), Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
+        let ends = simulate(&radar, &walls(), Floor::Thesis, 0).unwrap().two_ends(&radar);
         let true_variance = thesis_noise_variance(&radar, &walls().reflectors())[0];
-        let heard = |hearing: Hearing| hearing.noise_variance(&radar, &flat) / true_variance;
+        let heard = |hearing: Hearing| hearing.ends_noise_variance(&radar, &ends) / true_variance;
         assert!(heard(Hearing::any()) > 1e3, "{}", heard(Hearing::any()));
-        let bounded = heard(Hearing::beneath(&radar, &flat, Floor::Thesis));
+        let bounded = heard(Hearing::beneath(&radar, &ends, Floor::Thesis));
         assert!((0.5..2.0).contains(&bounded), "{bounded}");
     }
 
@@ -77,9 +98,9 @@ mod tests {
     fn noise_that_was_not_foretold_is_heard_all_the_same() {
         let radar = Radar::default();
         let scene = Scene::of_points([(2.0, 10.0), (-6.0, 17.0)]);
-        let flat = simulate(&radar, &scene, Floor::Snr(Decibels(20.0)), 1).unwrap().two_ends(&radar).flat();
+        let ends = simulate(&radar, &scene, Floor::Snr(Decibels(20.0)), 1).unwrap().two_ends(&radar);
         let true_variance = snr_noise_variance(&radar, &scene.reflectors(), Decibels(20.0))[0];
-        let heard = Hearing::beneath(&radar, &flat, Floor::Thesis).noise_variance(&radar, &flat) / true_variance;
+        let heard = ends_noise_variance(&radar, &ends, Floor::Thesis) / true_variance;
         assert!((heard - 1.0).abs() < 0.2, "{heard}");
     }
 }
