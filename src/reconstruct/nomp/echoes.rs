@@ -111,6 +111,12 @@ impl Echo {
     }
 }
 
+/// Fewest reflectors that are shared out among processors, block by block of channels; there are few blocks.
+const LEAST_SHARED: usize = 12;
+
+/// Parts that they are shared out in.
+const SHARES: usize = 2;
+
 /// `samples` less the echoes of `reflectors` times their gains at the first and at the last end, under the squared window `squared`;
 /// with the products of all echoes with what is left where `products` is asked for.
 pub fn remainder(
@@ -120,62 +126,85 @@ pub fn remainder(
     reflectors: &[(Reflector, [Complex64; 2])],
     products: bool,
 ) -> Remainder {
-    let parts: Vec<BlockRemainder> = samples
+    let shares = if reflectors.len() < LEAST_SHARED { 1 } else { SHARES };
+    let share = reflectors.len().div_ceil(shares).max(1);
+    let simd = Simd::chosen();
+    let tasks = samples.blocks.len() * shares;
+    let sums: Vec<Summed> = (0..tasks)
+        .into_par_iter()
+        .map(|task| {
+            let reflectors = reflectors.chunks(share).nth(task % shares).unwrap_or_default();
+            simd.run(Sum { sensor, first_channel: task / shares * W, reflectors })
+        })
+        .collect();
+    let left: Vec<Left> = samples
         .blocks
-        .par_iter()
-        .enumerate()
-        .map(|(block, samples)| {
-            Simd::chosen().run(Subtract { sensor, squared, samples, first_channel: block * W, reflectors, products })
+        .iter()
+        .zip(sums.chunks(shares))
+        .map(|(samples, sums)| simd.run(Subtract { squared, samples, sums, weighted: products }))
+        .collect();
+    let mut energy = [0.0; 2];
+    for channel in 0..sensor.element_x.len() {
+        energy[channel / sensor.end_elements] += left[channel / W].energy.0[channel % W];
+    }
+    let products = if products { products_with(sensor, &sums, &left, shares) } else { Vec::new() };
+    Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
+}
+
+/// Products of every echo with what is left, from the echoes of each block of channels and share of the reflectors.
+fn products_with(sensor: &Sensor, sums: &[Summed], left: &[Left], shares: usize) -> Vec<Products> {
+    let parts: Vec<Vec<[ComplexLanes<f64, W>; 2]>> = (0..sums.len())
+        .into_par_iter()
+        .map(|task| {
+            let (echoes, weighted) = (&sums[task].echoes, &left[task / shares].weighted);
+            Simd::chosen().run(Multiply { samples: sensor.samples, echoes, weighted })
         })
         .collect();
     let channels = sensor.element_x.len();
-    let mut energy = [0.0; 2];
-    let mut all = vec![Products { zeroth: Vec::new(), first: Vec::new() }; if products { reflectors.len() } else { 0 }];
-    for channel in 0..channels {
-        let (part, lane) = (&parts[channel / W], channel % W);
-        energy[channel / sensor.end_elements] += part.energy.0[lane];
-        for (all, [zeroth, first]) in all.iter_mut().zip(&part.products) {
-            all.zeroth.push(Complex64::new(zeroth.re.0[lane], zeroth.im.0[lane]));
-            all.first.push(Complex64::new(first.re.0[lane], first.im.0[lane]));
-        }
-    }
-    let blocks = parts.into_iter().map(|p| p.residual).collect();
-    Remainder { residual: Samples { blocks }, energy, products: all }
-}
-
-/// One block of channels.
-struct Subtract<'a> {
-    sensor: &'a Sensor,
-    squared: &'a [f64],
-    samples: &'a [ComplexLanes<f64, W>],
-    first_channel: usize,
-    reflectors: &'a [(Reflector, [Complex64; 2])],
-    products: bool,
-}
-
-struct BlockRemainder {
-    residual: Vec<ComplexLanes<f64, W>>,
-    energy: Lanes<f64, W>,
-    products: Vec<[ComplexLanes<f64, W>; 2]>,
+    let of_echo = |share: usize, i: usize| {
+        let part = |channel: usize, order: usize| {
+            let v = &parts[channel / W * shares + share][i][order];
+            Complex64::new(v.re.0[channel % W], v.im.0[channel % W])
+        };
+        let [zeroth, first] = [0, 1].map(|order| (0..channels).map(|channel| part(channel, order)).collect());
+        Products { zeroth, first }
+    };
+    (0..shares).flat_map(|share| (0..sums[share].echoes.len()).map(move |i| of_echo(share, i))).collect()
 }
 
 /// Echoes taken off together: their phasors fit the first-level cache.
 const TOGETHER: usize = 4;
 
-impl Kernel for Subtract<'_> {
-    type Output = BlockRemainder;
+/// Echoes of some reflectors at one block of channels.
+struct Sum<'a> {
+    sensor: &'a Sensor,
+    first_channel: usize,
+    reflectors: &'a [(Reflector, [Complex64; 2])],
+}
+
+struct Summed {
+    /// Of each reflector, of gain 1.
+    echoes: Vec<Factors<f64, W>>,
+    /// Of all together, times minus their gains; empty where there are none.
+    sum: Vec<ComplexLanes<f64, W>>,
+}
+
+impl Kernel for Sum<'_> {
+    type Output = Summed;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> BlockRemainder {
-        let sensor = self.sensor;
+    fn run<const FMA: bool>(self) -> Summed {
+        let Sum { sensor, reflectors, .. } = self;
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
         let element_x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
-        let mut residual = self.samples.to_vec();
-        let mut factors = vec![Factors::<f64, W>::new(sensor.samples); self.reflectors.len()];
-        for (factors, reflectors) in factors.chunks_mut(TOGETHER).zip(self.reflectors.chunks(TOGETHER)) {
-            for (f, (reflector, gains)) in factors.iter_mut().zip(reflectors) {
-                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), f);
+        let mut echoes = vec![Factors::<f64, W>::new(sensor.samples); reflectors.len()];
+        let mut scaled = vec![Factors::<f64, W>::new(sensor.samples); TOGETHER];
+        let len = if reflectors.is_empty() { 0 } else { scaled[0].rows.len() * STRIDE };
+        let mut sum = vec![ComplexLanes::zero(); len];
+        for (echoes, reflectors) in echoes.chunks_mut(TOGETHER).zip(reflectors.chunks(TOGETHER)) {
+            for ((echo, scaled), (reflector, gains)) in echoes.iter_mut().zip(&mut scaled).zip(reflectors) {
+                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), echo);
                 let gain = |lane: usize| match sensor.hears[channel(lane)] {
                     true => -gains[channel(lane) / sensor.end_elements],
                     false => Complex64::default(),
@@ -184,42 +213,91 @@ impl Kernel for Subtract<'_> {
                     re: Lanes(std::array::from_fn(|lane| gain(lane).re)),
                     im: Lanes(std::array::from_fn(|lane| gain(lane).im)),
                 };
-                for row in &mut f.rows {
-                    *row = row.times::<FMA>(gain);
+                scaled.columns = echo.columns;
+                for (scaled, row) in scaled.rows.iter_mut().zip(&echo.rows) {
+                    *scaled = row.times::<FMA>(gain);
                 }
             }
-            add_product::<f64, W, FMA>(factors, &mut residual);
+            add_product::<f64, W, FMA>(&scaled[..reflectors.len()], &mut sum);
         }
-        let mut weighted = residual.clone();
+        Summed { echoes, sum }
+    }
+}
+
+/// All sums of one block of channels added to its samples.
+struct Subtract<'a> {
+    squared: &'a [f64],
+    samples: &'a [ComplexLanes<f64, W>],
+    sums: &'a [Summed],
+    /// Whether the weighted residual is asked for.
+    weighted: bool,
+}
+
+struct Left {
+    residual: Vec<ComplexLanes<f64, W>>,
+    /// The residual times the squared window; empty where it was not asked for.
+    weighted: Vec<ComplexLanes<f64, W>>,
+    energy: Lanes<f64, W>,
+}
+
+impl Kernel for Subtract<'_> {
+    type Output = Left;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Left {
+        let mut residual = self.samples.to_vec();
+        for part in self.sums {
+            for (left, echoes) in residual.iter_mut().zip(&part.sum) {
+                *left = *left + *echoes;
+            }
+        }
         let mut energy = Lanes::splat(0.0);
-        for (i, v) in weighted.iter_mut().enumerate() {
-            let w = Lanes::splat(self.squared.get(i).copied().unwrap_or(0.0));
-            energy = energy + (v.re * v.re + v.im * v.im) * w;
-            *v = v.scaled(w);
+        for (v, w) in residual.iter().zip(self.squared) {
+            energy = energy + (v.re * v.re + v.im * v.im) * Lanes::splat(*w);
         }
-        let mut products = Vec::new();
-        if self.products {
-            let samples = sensor.samples as f64;
-            let middle = (samples - 1.0) / 2.0;
-            for (f, (reflector, _)) in factors.iter_mut().zip(self.reflectors) {
-                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), f);
-                let mut sums = [ComplexLanes::zero(); 2];
-                for (a, (row, part)) in f.rows.iter().zip(weighted.chunks_exact(STRIDE)).enumerate() {
-                    let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
-                    for (b, (column, v)) in f.columns.iter().zip(part).enumerate() {
-                        let product = conjugate(*column).times::<FMA>(*v);
-                        plain = plain + product;
-                        timed = timed + product.scaled(Lanes::splat(b as f64 / samples));
-                    }
-                    let start = ((a * STRIDE) as f64 - middle) / samples;
-                    let row = conjugate(*row);
-                    sums[0] = sums[0].plus_product::<FMA>(row, plain);
-                    sums[1] = sums[1].plus_product::<FMA>(row, timed + plain.scaled(Lanes::splat(start)));
-                }
-                products.push(sums);
+        let mut weighted = Vec::new();
+        if self.weighted {
+            weighted = vec![ComplexLanes::zero(); residual.len()];
+            for (weighted, (v, w)) in weighted.iter_mut().zip(residual.iter().zip(self.squared)) {
+                *weighted = v.scaled(Lanes::splat(*w));
             }
         }
-        BlockRemainder { residual, energy, products }
+        Left { residual, weighted, energy }
+    }
+}
+
+/// Some echoes of one block of channels times what is left there, plain and times time.
+struct Multiply<'a> {
+    samples: usize,
+    echoes: &'a [Factors<f64, W>],
+    weighted: &'a [ComplexLanes<f64, W>],
+}
+
+impl Kernel for Multiply<'_> {
+    type Output = Vec<[ComplexLanes<f64, W>; 2]>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let samples = self.samples as f64;
+        let middle = (samples - 1.0) / 2.0;
+        let mut products = Vec::with_capacity(self.echoes.len());
+        for f in self.echoes {
+            let mut sums = [ComplexLanes::zero(); 2];
+            for (a, (row, part)) in f.rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
+                let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
+                for (b, (column, v)) in f.columns.iter().zip(part).enumerate() {
+                    let product = conjugate(*column).times::<FMA>(*v);
+                    plain = plain + product;
+                    timed = timed + product.scaled(Lanes::splat(b as f64 / samples));
+                }
+                let start = ((a * STRIDE) as f64 - middle) / samples;
+                let row = conjugate(*row);
+                sums[0] = sums[0].plus_product::<FMA>(row, plain);
+                sums[1] = sums[1].plus_product::<FMA>(row, timed + plain.scaled(Lanes::splat(start)));
+            }
+            products.push(sums);
+        }
+        products
     }
 }
 

@@ -30,8 +30,8 @@ pub struct Dictionary<'a> {
 /// Parameters an atom may have, and its value.
 const MOST_COLUMNS: usize = 5;
 
-/// Inner products of the columns of two atoms, at the first and at the last end.
-type BlockOfAtoms = [[[Complex64; MOST_COLUMNS]; MOST_COLUMNS]; 2];
+/// Inner products of the columns of two atoms at one end.
+type BlockOfAtoms = [[Complex64; MOST_COLUMNS]; MOST_COLUMNS];
 
 /// Value, derivative by x and derivative by half the square of y of one echo against those of another.
 type Block = [[Complex64; 3]; 3];
@@ -52,18 +52,20 @@ impl<'a> Dictionary<'a> {
 
     /// Inner products of all columns at the first and at the last end.
     pub fn grams(&self) -> [Mat<Complex64>; 2] {
-        let rows: Vec<Vec<(usize, BlockOfAtoms)>> =
-            (0..self.atoms.len()).into_par_iter().map(|i| Simd::chosen().run(Row { dictionary: self, i })).collect();
+        let n = self.atoms.len();
+        let rows: Vec<Vec<(usize, BlockOfAtoms)>> = (0..2 * n)
+            .into_par_iter()
+            .map(|at| Simd::chosen().run(Row { dictionary: self, i: at / 2, end: at % 2 }))
+            .collect();
         let mut grams = [Mat::zeros(self.columns, self.columns), Mat::zeros(self.columns, self.columns)];
-        for (i, row) in rows.into_iter().enumerate() {
-            for (j, ends) in row {
-                for (gram, block) in grams.iter_mut().zip(ends) {
-                    for (p, line) in block.iter().enumerate().take(self.width(i)) {
-                        for (q, v) in line.iter().enumerate().take(self.width(j)) {
-                            let (r, c) = (self.first_column[i] + p, self.first_column[j] + q);
-                            gram[(r, c)] = *v;
-                            gram[(c, r)] = v.conj();
-                        }
+        for (at, row) in rows.into_iter().enumerate() {
+            let (i, gram) = (at / 2, &mut grams[at % 2]);
+            for (j, block) in row {
+                for (p, line) in block.iter().enumerate().take(self.width(i)) {
+                    for (q, v) in line.iter().enumerate().take(self.width(j)) {
+                        let (r, c) = (self.first_column[i] + p, self.first_column[j] + q);
+                        gram[(r, c)] = *v;
+                        gram[(c, r)] = v.conj();
                     }
                 }
             }
@@ -140,10 +142,11 @@ impl<'a> Dictionary<'a> {
     }
 }
 
-/// One atom against all before it and itself.
+/// One atom against all before it and itself, at one end.
 struct Row<'a, 'b> {
     dictionary: &'a Dictionary<'b>,
     i: usize,
+    end: usize,
 }
 
 impl Kernel for Row<'_, '_> {
@@ -151,24 +154,29 @@ impl Kernel for Row<'_, '_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let d = self.dictionary;
+        let Row { dictionary: d, i, end } = self;
         let mut row = Vec::new();
-        for j in 0..=self.i {
-            let mut sums = [[[Complex64::default(); MOST_COLUMNS]; MOST_COLUMNS]; 2];
+        for j in 0..=i {
+            let mut sums = BlockOfAtoms::default();
             let mut touched = false;
-            for (k, a) in d.echoes[self.i].iter().enumerate() {
-                for (l, b) in d.echoes[j].iter().enumerate() {
-                    for (end, sums) in sums.iter_mut().enumerate() {
-                        if d.are_apart(a, b, end) {
-                            continue;
-                        }
-                        touched = true;
-                        let block = d.block(a, b, end);
-                        add_shared(sums, &block, (&d.atoms[self.i], k), (&d.atoms[j], l), d.derivatives);
+            for (k, a) in d.echoes[i].iter().enumerate() {
+                // Of an atom with itself every two reflectors are seen once; the other way round is the same, conjugate and transposed.
+                let others = if j == i { k } else { d.echoes[j].len() };
+                for (l, b) in d.echoes[j][..others].iter().enumerate() {
+                    if d.are_apart(a, b, end) {
+                        continue;
                     }
+                    touched = true;
+                    add_shared(&mut sums, &d.block(a, b, end), (&d.atoms[i], k), (&d.atoms[j], l), d.derivatives);
                 }
             }
-            if touched {
+            if j == i {
+                sums = plus_adjoint(sums);
+                for (k, a) in d.echoes[i].iter().enumerate() {
+                    add_shared(&mut sums, &d.block(a, a, end), (&d.atoms[i], k), (&d.atoms[i], k), d.derivatives);
+                }
+            }
+            if touched || j == i {
                 row.push((j, sums));
             }
         }
@@ -176,10 +184,15 @@ impl Kernel for Row<'_, '_> {
     }
 }
 
+/// A block and what it is conjugate and transposed.
+fn plus_adjoint(block: BlockOfAtoms) -> BlockOfAtoms {
+    std::array::from_fn(|p| std::array::from_fn(|q| block[p][q] + block[q][p].conj()))
+}
+
 /// Adds a block of two reflectors to that of their atoms' parameters.
 #[inline(always)]
 fn add_shared(
-    sums: &mut [[Complex64; MOST_COLUMNS]; MOST_COLUMNS],
+    sums: &mut BlockOfAtoms,
     block: &Block,
     (left, k): (&Atom, usize),
     (right, l): (&Atom, usize),

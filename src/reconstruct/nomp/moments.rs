@@ -49,6 +49,10 @@ impl Moments {
         let middle = (samples as f64 - 1.0) / 2.0;
         let fft = FftPlanner::new().plan_fft_inverse(nodes);
         let mut table = vec![[0.0; TERMS]; nodes];
+        // Referred to the middle of the chirp; nodes in the upper half stand for negative differences.
+        let d = |node: usize| signed(node, nodes) / NODES_PER_BIN as f64;
+        let turns: Vec<Complex64> =
+            (0..nodes).map(|node| Complex64::cis(-TAU * (d(node) * middle / samples as f64).fract())).collect();
         let mut factorial = 1.0;
         for term in 0..TERMS {
             factorial *= term.max(1) as f64;
@@ -59,9 +63,7 @@ impl Moments {
             }
             fft.process(&mut line);
             for (node, v) in line.iter().enumerate() {
-                // Referred to the middle of the chirp; nodes in the upper half stand for negative differences.
-                let d = signed(node, nodes) / NODES_PER_BIN as f64;
-                let turned = v * Complex64::cis(-TAU * (d * middle / samples as f64).fract());
+                let turned = v * turns[node];
                 // j^term times a real number, or that times j.
                 table[node][term] = match term % 4 {
                     0 => turned.re,

@@ -16,7 +16,7 @@ const BEAMS_PER_ELEMENT: usize = 4;
 const COLUMNS_PER_ELEMENT: usize = 10;
 
 /// One look at the residual finds no two places within this many range bins of each other: what the stronger leaves comes first.
-const ALONE_BINS: i32 = 8;
+const ALONE_BINS: usize = 8;
 
 /// A place where something stands out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,8 +27,6 @@ pub struct Candidate {
     pub y_metres: f64,
     /// Product of both ends' magnitudes: the power of one end's beam where both are alike.
     pub power: f64,
-    /// Range bin at each end.
-    rows: [i32; 2],
 }
 
 /// Looks for what stands out on the common grid.
@@ -76,36 +74,34 @@ impl Detector {
             .map(|beams| beams.iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
         let [first, last] = &self.grid.cells;
         let power = |i: usize| magnitudes[0][first[i] as usize] * magnitudes[1][last[i] as usize];
-        let mut strong: Vec<(f32, u32)> =
-            (0..first.len()).map(|i| (power(i), i as u32)).filter(|(p, _)| f64::from(*p) > least).collect();
-        strong.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let is_open = |i: usize| !closed(i / self.columns);
+        let strong = (0..first.len()).map(|i| (power(i), i)).filter(|(p, i)| f64::from(*p) > least && is_open(*i));
+        let mut strong: Vec<(f32, usize)> = strong.collect();
         let mut found: Vec<Candidate> = Vec::new();
-        for (power, i) in strong {
+        let weaker = |a: &&(f32, usize), b: &&(f32, usize)| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1));
+        while let Some(&(power, i)) = strong.iter().max_by(weaker) {
             let power = f64::from(power);
-            let i = i as usize;
-            if closed(i / self.columns) {
-                continue;
+            let rows = [first, last].map(|cells| cells[i] as usize % self.bins);
+            let [x_metres, y_metres] = self.grid.places_metres[i];
+            found.push(Candidate { x_metres, y_metres, power });
+            if found.len() == most {
+                break;
             }
-            let rows = [first, last].map(|cells| (cells[i] as usize % self.bins) as i32);
-            if found.iter().all(|f| power > f.power * self.side_lobe(f.rows, rows)) {
-                let [x_metres, y_metres] = self.grid.places_metres[i];
-                found.push(Candidate { x_metres, y_metres, power, rows });
-                if found.len() == most {
-                    break;
-                }
-            }
+            let [near, far] = rows.map(|own| self.side_lobes(own));
+            let lobe = |i: usize| near[first[i] as usize % self.bins] * far[last[i] as usize % self.bins];
+            strong.retain(|(other, i)| f64::from(*other) > power * lobe(*i));
         }
         found
     }
 
-    /// Power that a reflector may show in other range bins, against its own.
-    fn side_lobe(&self, own: [i32; 2], other: [i32; 2]) -> f64 {
-        let lobe = |end: usize| {
-            let apart = (own[end] - other[end]).rem_euclid(self.bins as i32);
-            let apart = apart.min(self.bins as i32 - apart);
+    /// Amplitude that a reflector in range bin `own` may show in every other at one end, against its own there.
+    fn side_lobes(&self, own: usize) -> Vec<f64> {
+        let lobe = |other: usize| {
+            let apart = own.abs_diff(other);
+            let apart = apart.min(self.bins - apart);
             // Magnitude of the Hann window's side lobes, and some margin.
-            if apart <= ALONE_BINS { f64::INFINITY } else { 4.0 / f64::from(apart - 1).powi(3) }
+            if apart <= ALONE_BINS { f64::INFINITY } else { 4.0 / (apart as f64 - 1.0).powi(3) }
         };
-        lobe(0) * lobe(1)
+        (0..self.bins).map(lobe).collect()
     }
 }
