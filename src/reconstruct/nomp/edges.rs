@@ -4,7 +4,7 @@
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
 use super::phased::{Heard, PhasedBeams, Presence, Row};
-use super::strides::{FIRST, MOST_STEP_METRES, Stride, followed, pitches_metres, summits};
+use super::strides::{Begun, FIRST, MOST_STEP_METRES, Stride, best_of_each, pitches_metres, summits};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
@@ -50,17 +50,13 @@ pub fn rows_from_edges(
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
     looks.truncate(MOST_LOOKS);
     let rows_of = |look: &Look| Simd::chosen().run(Scan { beams, fan: &look.fan });
-    let mut found: Vec<(usize, Stride)> = looks
+    let begun: Vec<Begun> = looks
         .par_iter()
         .filter(|_| !task.is_cancelled())
-        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| (look.first, row)))
-        .filter_map(|(first, row)| Some((first, followed(beams, row)?)))
+        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Begun { first: look.first, row }))
         .collect();
-    found.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
-    let mut taken = vec![false; points.len()];
-    found.retain(|(first, _)| !std::mem::replace(&mut taken[*first], true));
-    tracing::debug!(looks = looks.len(), rows = found.len(), "edges");
-    found.into_iter().map(|(_, stride)| stride).collect()
+    tracing::debug!(looks = looks.len(), begun = begun.len(), "edges");
+    best_of_each(beams, begun, task)
 }
 
 /// How clearly and how far echoes go on from `from` in a direction; `None` where they soon end.

@@ -12,6 +12,7 @@ use crate::task::Task;
 use faer::Mat;
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Longest step from one reflector of a row to the next, metres.
@@ -34,6 +35,9 @@ const KEPT: usize = 6;
 
 /// Grids whose best rows are followed further.
 const MOST_GRIDS: usize = 96;
+
+/// Reflectors of all rows together that are followed at each length.
+const MOST_FOLLOWED: usize = 5000;
 
 /// Most reflectors of a row.
 const MOST_REFLECTORS: usize = 140;
@@ -67,15 +71,36 @@ pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
     });
     grids.sort_by(|a, b| b.best().total_cmp(&a.best()));
     grids.truncate(MOST_GRIDS);
-    let mut found: Vec<(usize, Stride)> = grids
-        .par_iter()
-        .flat_map_iter(|grid| grid.rows.iter().map(move |(row, _)| (grid.first, *row)))
-        .filter(|_| !task.is_cancelled())
-        .filter_map(|(first, row)| Some((first, followed(beams, row)?)))
-        .collect();
+    let begun = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Begun { first: grid.first, row: *row }));
+    best_of_each(beams, begun.collect(), task)
+}
+
+/// A row of a few reflectors.
+#[derive(Debug, Clone, Copy)]
+pub struct Begun {
+    /// Number of the point that it begins at.
+    pub first: usize,
+    /// The row.
+    pub row: Row,
+}
+
+/// The rows as far as their echoes add up, best first; one for each first point at most.
+///
+/// All are followed over more and more reflectors, those ever fewer that add up best: every length takes about as long as the last.
+pub fn best_of_each(beams: &PhasedBeams, begun: Vec<Begun>, task: &Task) -> Vec<Stride> {
+    let mut rows: Vec<Followed> = begun.into_iter().map(Followed::new).collect();
+    let mut count = FIRST;
+    while count <= MOST_REFLECTORS && !task.is_cancelled() {
+        let most = MOST_FOLLOWED / count;
+        rows.sort_by(|a, b| b.part.total_cmp(&a.part));
+        rows.par_iter_mut().take(most).for_each(|row| row.lengthen(beams, count));
+        rows.iter_mut().skip(most).for_each(|row| row.part = 0.0);
+        count = (count as f64 * GROWTH) as usize + 1;
+    }
+    let mut found: Vec<(usize, Stride)> = rows.iter().filter_map(|row| Some((row.begun.first, row.best?))).collect();
     found.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
-    let mut taken = vec![false; points.len()];
-    found.retain(|(first, _)| !std::mem::replace(&mut taken[*first], true));
+    let mut taken = BTreeSet::new();
+    found.retain(|(first, _)| taken.insert(*first));
     found.into_iter().map(|(_, stride)| stride).collect()
 }
 
@@ -178,25 +203,40 @@ pub fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
     summits
 }
 
-/// The row over more and more reflectors, as long as their echoes add up.
-pub fn followed(beams: &PhasedBeams, mut row: Row) -> Option<Stride> {
-    let mut count = FIRST;
-    let (mut most, mut best) = (0.0, None);
-    while count <= MOST_REFLECTORS {
-        let Some(moved) = climbed(beams, row, count) else { break };
-        row = moved.row;
-        if moved.added > most {
-            most = moved.added;
-            let [x_metres, y_metres] = row.first_metres;
-            let [dx_metres, dy_metres] = row.step_metres;
-            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
-            best = Some(Stride { atom, weight: moved.added / moved.all * count as f64 });
-        } else if moved.added < PASSED * most {
-            break;
-        }
-        count = (count as f64 * GROWTH) as usize + 1;
+/// A row on its way over more and more reflectors.
+struct Followed {
+    begun: Begun,
+    /// Part of the power at its places that adds up; 0 where it has passed its end.
+    part: f64,
+    most: f64,
+    best: Option<Stride>,
+}
+
+impl Followed {
+    fn new(begun: Begun) -> Self {
+        Followed { begun, part: 1.0, most: 0.0, best: None }
     }
-    best
+
+    /// Over its first `count` reflectors, where their echoes add up.
+    fn lengthen(&mut self, beams: &PhasedBeams, count: usize) {
+        if self.part == 0.0 {
+            return;
+        }
+        self.part = 0.0;
+        let Some(moved) = climbed(beams, self.begun.row, count) else { return };
+        self.begun.row = moved.row;
+        if moved.added < PASSED * self.most {
+            return;
+        }
+        self.part = moved.added / f64::max(moved.all, f64::MIN_POSITIVE);
+        if moved.added > self.most {
+            self.most = moved.added;
+            let [x_metres, y_metres] = moved.row.first_metres;
+            let [dx_metres, dy_metres] = moved.row.step_metres;
+            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
+            self.best = Some(Stride { atom, weight: self.part * count as f64 });
+        }
+    }
 }
 
 /// A row where its echoes add up to most.
