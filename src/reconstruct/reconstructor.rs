@@ -63,6 +63,8 @@ pub trait Reconstructor: Send + Sync {
         self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
         let mut found = self.estimate(radar, &ends, request)?;
+        // What was cancelled while it was drawn is no answer.
+        request.task.check()?;
         found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
         let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
         Ok(match range {

@@ -39,7 +39,8 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         let bins = radar.samples;
         BlockProfiles {
             bins,
-            cells: vec![ComplexLanes::zero(); bins * radar.elements.div_ceil(W)],
+            // In parallel: most of the time goes to pages that are touched for the first time.
+            cells: rayon::iter::repeat_n(ComplexLanes::zero(), bins * radar.elements.div_ceil(W)).collect(),
             touched: Rows::none(bins),
         }
     }

@@ -12,6 +12,7 @@ use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::f64::consts::LN_10;
 
 /// Beams formed by each end for each of its elements.
 const BEAMS_PER_ELEMENT: usize = 4;
@@ -44,6 +45,7 @@ impl Found {
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
         let drawn = &expected.map.lambda;
         let strongest = (0..drawn.len()).max_by(|&a, &b| flat_of(drawn, a).total_cmp(&flat_of(drawn, b))).unwrap_or(0);
+        let slope = (2.0 * LN_10 * expected.decades) as f32;
         let cos_of = |column: usize| radar.cos_of_column(column as f64);
         let [peak_bin, peak_column] = [strongest / radar.elements, strongest % radar.elements];
         let peak = End::BOTH.map(|end| all[end as usize][seen_at(radar, beams, end, peak_bin, cos_of(peak_column))]);
@@ -58,9 +60,11 @@ impl Found {
                     of_beam = of_beam.max(left / all[at].max(f64::MIN_POSITIVE)).min(1.0);
                     of_peak = of_peak.min(left / peak[end as usize].max(f64::MIN_POSITIVE));
                 }
+                let (of_beam, of_peak) = (of_beam as f32, of_peak.min(f64::from(f32::MAX)) as f32);
                 for column in first..(first + COLUMNS_TOGETHER).min(radar.elements) {
-                    let own = 10f64.powf(-2.0 * expected.decades * (1.0 - f64::from(drawn[[bin, column]])));
-                    row[column] = (of_beam * of_peak / (of_peak + own)).sqrt() as f32;
+                    // Powers of 10 by the exponential: many times as fast.
+                    let own = (slope * (drawn[[bin, column]] - 1.0)).exp();
+                    row[column] = (of_beam * (of_peak / (of_peak + own))).sqrt();
                 }
             }
         });

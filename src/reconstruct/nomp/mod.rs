@@ -36,6 +36,7 @@
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
 //! | `draw` | expected map of the objects found |
+//! | `over_noise` | what noise makes of a log map's cells, in the mean |
 
 mod atom;
 mod begin;
@@ -52,6 +53,7 @@ mod grow;
 mod lines;
 mod moments;
 mod on_wall;
+mod over_noise;
 mod pairs;
 mod peaks;
 mod phased;

@@ -1,0 +1,120 @@
+//! What white noise makes of a cell of a log map, in the mean.
+
+use std::f64::consts::LN_10;
+use std::sync::LazyLock;
+
+/// Euler's constant.
+pub const EULER: f64 = 0.577_215_664_901_532_9;
+
+/// Power over noise from which on the noise no longer shows in the mean of the logarithm.
+const LARGE_RATIO: f64 = 40.0;
+
+/// Decades beneath the noise from which on nothing shows of what lies there.
+const DEEPEST_DECADES: f64 = 2.5;
+
+/// Entries of the table for each decade; a straight line between them is off by at most 1e-6 decades.
+const NODES_PER_DECADE: f64 = 1024.0;
+
+/// Decades of a cell without noise, over those of the noise, from [`DEEPEST_DECADES`] beneath it on: by how many the noise lifts the cell, and
+/// the density of the power near zero, as a part of noise's own.
+static TABLE: LazyLock<Vec<[f32; 2]>> = LazyLock::new(|| {
+    let nodes = (NODES_PER_DECADE * (DEEPEST_DECADES + 0.5 * LARGE_RATIO.log10())) as usize + 2;
+    let node = |i: usize| {
+        let decades = i as f64 / NODES_PER_DECADE - DEEPEST_DECADES;
+        let ratio = 10f64.powf(2.0 * decades);
+        [(0.5 * ln_plus_e1(ratio) / LN_10 - decades) as f32, (-ratio).exp() as f32]
+    };
+    (0..nodes).map(node).collect()
+});
+
+/// White noise beneath the cells of a map.
+#[derive(Debug, Clone, Copy)]
+pub struct OverNoise {
+    table: &'static [[f32; 2]],
+    noise_decades: f32,
+}
+
+/// A cell over noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoisyCell {
+    /// Mean decades of its amplitude.
+    pub decades: f32,
+    /// Density of its power near zero, as a part of that of noise alone: the rate at which it is the smallest cell.
+    pub emptiness: f32,
+}
+
+impl OverNoise {
+    /// Over noise of this mean power in a cell.
+    pub fn new(power: f64) -> Self {
+        OverNoise { table: &TABLE, noise_decades: (0.5 * power.log10()) as f32 }
+    }
+
+    /// The cell of this many decades of amplitude.
+    #[inline(always)]
+    pub fn cell(&self, decades: f32) -> NoisyCell {
+        let over = decades - self.noise_decades;
+        let at = (over + DEEPEST_DECADES as f32) * NODES_PER_DECADE as f32;
+        // A float cast saturates: what lies deeper is the first node.
+        let node = at as usize;
+        let Some(&[[lift, emptiness], [next_lift, next_emptiness]]) =
+            self.table.get(node..node + 2).and_then(|n| n.first_chunk())
+        else {
+            return NoisyCell { decades, emptiness: 0.0 };
+        };
+        let part = at.fract();
+        if at <= 0.0 {
+            return NoisyCell { decades: self.noise_decades - DEEPEST_DECADES as f32 + lift, emptiness };
+        }
+        NoisyCell {
+            decades: decades + lift + part * (next_lift - lift),
+            emptiness: emptiness + part * (next_emptiness - emptiness),
+        }
+    }
+}
+
+/// `ln x + E1(x)`, E1 the exponential integral: -EULER at 0, ln x far out (Abramowitz and Stegun 5.1.11 and 5.1.22). It is the mean of
+/// `ln |Y|^2` for complex Gaussian Y of variance 1 around a mean of power x.
+fn ln_plus_e1(x: f64) -> f64 {
+    if x < 1.5 {
+        let (mut term, mut sum) = (1.0, 0.0);
+        for k in 1..24 {
+            term *= -x / f64::from(k);
+            sum -= term / f64::from(k);
+        }
+        return sum - EULER;
+    }
+    let mut fraction = 0.0;
+    for k in (1..40).rev() {
+        let k = f64::from(k);
+        fraction = k / (1.0 + k / (x + fraction));
+    }
+    x.ln() + (-x).exp() / (x + fraction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponential_integral_has_its_tabled_values() {
+        for (x, e1) in [(0.1, 1.822_923_958), (1.0, 0.219_383_934_4), (2.0, 0.048_900_510_71), (10.0, 4.156_968_93e-6)]
+        {
+            let found = ln_plus_e1(x) - f64::ln(x);
+            assert!((found - e1).abs() < 2e-9, "{x}: {found} {e1}");
+        }
+        assert!((ln_plus_e1(0.0) + EULER).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_table_is_the_mean_logarithm_from_silence_to_far_above_the_noise() {
+        let noise = 3e-7;
+        for ratio in [0.0, 1e-9, 0.003, 0.7, 5.01, 39.9, 40.1, 1e6] {
+            let decades = 0.5 * f64::max(ratio * noise, 1e-40).log10();
+            let found = OverNoise::new(noise).cell(decades as f32);
+            let mean = if ratio < 600.0 { ln_plus_e1(ratio) } else { ratio.ln() };
+            let expected = 0.5 * (noise.log10() + mean / LN_10);
+            assert!((f64::from(found.decades) - expected).abs() < 1e-5, "{ratio}: {found:?} {expected}");
+            assert!((f64::from(found.emptiness) - (-ratio).exp()).abs() < 1e-5, "{ratio}: {found:?}");
+        }
+    }
+}
