@@ -84,10 +84,10 @@ fn kaiser(len: usize, beta: f64) -> Vec<f64> {
         return vec![1.0; len];
     }
     let middle = (len as f64 - 1.0) / 2.0;
-    (0..len)
-        .map(|n| bessel_i0(beta * (1.0 - ((n as f64 - middle) / middle).powi(2)).max(0.0).sqrt()))
-        .map(|w| w / bessel_i0(beta))
-        .collect()
+    let largest = bessel_i0(beta);
+    let weight = |n: usize| bessel_i0(beta * (1.0 - ((n as f64 - middle) / middle).powi(2)).max(0.0).sqrt()) / largest;
+    let half: Vec<f64> = (0..len.div_ceil(2)).map(weight).collect();
+    (0..len).map(|n| half[n.min(len - 1 - n)]).collect()
 }
 
 /// Modified Bessel function of the first kind and order 0, by its power series.

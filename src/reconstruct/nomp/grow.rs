@@ -36,6 +36,9 @@ const MOST_UNLIKE: f64 = 3.0;
 /// Power in a range bin, over that of the noise, from which on the atoms there are not yet right.
 const NEEDED: f64 = 4.0;
 
+/// Power in a range bin, over that in the bin of which most is left, up to which it may be a side lobe.
+const SIDE_LOBE: f64 = 1e-4;
+
 /// Echoes that a look at the residual takes as long as.
 const LOOK: usize = 200;
 
@@ -259,6 +262,17 @@ impl Grower<'_> {
         if all > 0.0 { self.settings.gain_price * (left / all).min(1.0) } else { 0.0 }
     }
 
+    /// For every atom whether more is left in its rows than noise, and than the side lobes of what is left in others.
+    pub fn in_need(&self, fit: &Fit) -> Vec<bool> {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        let profile = Profile::new(self.radar, &flat);
+        let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
+        let left: Vec<f64> = fit.atoms.iter().map(|atom| profile.strongest(&rows_of(self.radar, atom))).collect();
+        let strongest = left.iter().copied().fold(0.0, f64::max);
+        let least = (NEEDED * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
+        left.into_iter().map(|left| left > least).collect()
+    }
+
     /// The atoms refined in whose rows more is left than noise, with their neighbours.
     ///
     /// # Errors
@@ -266,12 +280,7 @@ impl Grower<'_> {
     pub fn refined_where_needed(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for sweep in 0..MOST_SWEEPS {
             let before = fit.cost();
-            let flat = fit.residual.flat(&self.bench.sensor);
-            let profile = Profile::new(self.radar, &flat);
-            let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
-            let least = NEEDED * noise.max(self.rounding_power());
-            let stands_out = |atom: &Atom| profile.strongest(&rows_of(self.radar, atom)) > least;
-            let marked: Vec<bool> = fit.atoms.iter().map(stands_out).collect();
+            let marked = self.in_need(&fit);
             if !marked.contains(&true) {
                 break;
             }

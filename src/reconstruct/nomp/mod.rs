@@ -33,6 +33,7 @@
 //! | `prune` | atoms that the rest can do without |
 //! | `search` | the search as a whole |
 //! | `settings`, `work` | bounds on time and memory |
+//! | `follow` | the answer from the last one, where little changed |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
 //! | `draw` | expected map of the objects found |
@@ -47,6 +48,7 @@ mod edges;
 mod end_beams;
 mod explained;
 mod finish;
+mod follow;
 mod gram;
 mod groups;
 mod grow;

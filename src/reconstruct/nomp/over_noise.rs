@@ -10,7 +10,7 @@ pub const EULER: f64 = 0.577_215_664_901_532_9;
 const LARGE_RATIO: f64 = 40.0;
 
 /// Decades beneath the noise from which on nothing shows of what lies there.
-const DEEPEST_DECADES: f64 = 2.5;
+const DEEPEST_DECADES: f64 = 3.0;
 
 /// Entries of the table for each decade; a straight line between them is off by at most 1e-6 decades.
 const NODES_PER_DECADE: f64 = 1024.0;

@@ -119,7 +119,7 @@ impl PhasedBeams {
     pub fn presence(&self, strongest: &Strongest, [x_metres, y_metres]: [f64; 2]) -> Presence {
         let of_end = |end: usize| {
             let dx = x_metres - self.centres_metres[end];
-            let range = dx.hypot(y_metres).max(NEAREST_METRES);
+            let range = (dx * dx + y_metres * y_metres).sqrt().max(NEAREST_METRES);
             let bin = (range * self.bins_per_metre).round() as usize % self.bins;
             let own = self.beams[end][beam_of_cos(dx / range, BEAMS) * self.bins + bin].norm_sqr();
             let most = strongest.0[end][bin].max(f64::MIN_POSITIVE);

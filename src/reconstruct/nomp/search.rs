@@ -64,22 +64,23 @@ fn find_with(
 }
 
 /// What a search found, and whether nothing else stands out of the samples.
-struct Answer {
-    fit: Fit,
-    is_sure: bool,
+pub(super) struct Answer {
+    pub fit: Fit,
+    pub is_sure: bool,
 }
 
-struct Search<'a> {
-    radar: &'a Radar,
-    bench: &'a Workbench<'a>,
-    detector: &'a Detector,
-    samples: &'a Samples,
-    request: &'a Request,
-    settings: &'a Settings,
+/// One search.
+pub(super) struct Search<'a> {
+    pub radar: &'a Radar,
+    pub bench: &'a Workbench<'a>,
+    pub detector: &'a Detector,
+    pub samples: &'a Samples,
+    pub request: &'a Request,
+    pub settings: &'a Settings,
 }
 
 impl Search<'_> {
-    fn grower(&self) -> Grower<'_> {
+    pub(super) fn grower(&self) -> Grower<'_> {
         Grower {
             radar: self.radar,
             bench: self.bench,
@@ -121,7 +122,7 @@ impl Search<'_> {
     }
 
     /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
-    fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+    pub(super) fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
         let all = self.bench.without(self.samples, &[], &[]).energy;
         if fit.cost() > NEARLY_NOTHING * (all[0] + all[1]) {
             return Ok(fit);
@@ -201,7 +202,7 @@ impl Search<'_> {
     }
 
     /// Points whose tones both ends hear in what `fit` leaves.
-    fn pairs(&self, fit: &Fit) -> Pairs {
+    pub(super) fn pairs(&self, fit: &Fit) -> Pairs {
         let flat = fit.residual.flat(&self.bench.sensor);
         let noise = self.bench.hearing.noise_variance(self.radar, &flat);
         paired_points(self.radar, &flat, noise)
@@ -209,7 +210,7 @@ impl Search<'_> {
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
     /// They are moved to their best places only if that is asked for.
-    fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
+    pub(super) fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
         atoms.extend(pairs.points.iter().map(|point| point.atom));
         if atoms.len() == known.atoms.len() {
@@ -236,7 +237,7 @@ impl Search<'_> {
     }
 
     /// `fit` with the points it lacks and without those it doesn't need.
-    fn completed(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+    pub(super) fn completed(&self, fit: Fit) -> Result<Fit, ReconstructError> {
         let grower = self.grower();
         let mut fit = grower.polished(grower.grown(fit)?, self.settings.rounds)?;
         fit = grower.pruned(fit)?;
@@ -247,36 +248,8 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// The answer to samples a little different from those of `previous`: its atoms refined where the residual asks for it, and more
-    /// or fewer of them where that is not enough. `None` where they don't explain the samples as well as they did.
-    fn followed(&self, previous: &Found, scale: f64) -> Result<Option<Answer>, ReconstructError> {
-        let grower = self.grower();
-        let ratio = scale / previous.scale;
-        let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
-        let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
-        let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
-        (fit.residual, fit.energy) = (left.residual, left.energy);
-        let all = self.bench.without(self.samples, &[], &[]).energy;
-        if fit.cost() > MOST_CHANGED * (all[0] + all[1]) {
-            return Ok(None);
-        }
-        // What vanished leaves an atom that the rest can do without.
-        fit = grower.pruned(grower.refined_where_needed(fit)?)?;
-        if !self.is_explained(&fit) {
-            fit = self.completed(fit)?;
-        }
-        // Many new atoms make up for old ones that went astray.
-        if fit.atoms.len() > previous.atoms.len() + MOST_APPEARING {
-            return Ok(None);
-        }
-        let unexplained = fit.cost() / (all[0] + all[1]);
-        let is_sure = self.is_explained(&fit);
-        let is_as_good = is_sure || !previous.complete && unexplained < 2.0 * previous.unexplained;
-        Ok(is_as_good.then_some(Answer { fit, is_sure }))
-    }
-
     /// Whether nothing stands out of what `fit` leaves.
-    fn is_explained(&self, fit: &Fit) -> bool {
+    pub(super) fn is_explained(&self, fit: &Fit) -> bool {
         self.grower().candidates(&fit.residual.flat(&self.bench.sensor), 1, |_| false).is_empty()
     }
 }
@@ -286,9 +259,6 @@ const NEARLY_NOTHING: f64 = 1e-5;
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
-
-/// Most atoms that appear from one answer to the next.
-const MOST_APPEARING: usize = 2;
 
 /// Pairs that agree within this part of what is allowed are points.
 const SURELY_ONE: f64 = 0.2;
@@ -313,6 +283,3 @@ const MOST_UNLIKE: f64 = 1.5;
 
 /// Most atoms of a fit that is worth a second search for what it lacks.
 const MOST_AGAIN: usize = 60;
-
-/// Part of the samples' energy that a last answer may leave and still be a start.
-const MOST_CHANGED: f64 = 0.7;

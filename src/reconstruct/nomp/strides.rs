@@ -293,7 +293,7 @@ fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
         for (i, h) in heard.iter().enumerate() {
             let i = i as f64;
             let [x, y] = row.place_metres(i);
-            let range = (x - centre).hypot(y).max(1e-3);
+            let range = ((x - centre) * (x - centre) + y * y).sqrt().max(1e-3);
             let share = h.weighted * sum.conj() / weight;
             // Phases as they were taken off: by minus the turns of the distance.
             let turn = -TAU * beams.turns_per_metre;

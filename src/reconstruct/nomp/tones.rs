@@ -7,6 +7,7 @@
 //! costs little where the tones are few.
 
 use crate::signal::floor::unit_noise;
+use crate::signal::split::STRIDE;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
@@ -26,6 +27,9 @@ const SPARE: usize = 4;
 
 /// A singular value above this many times the largest that noise has in the mean belongs to a tone.
 const ABOVE_NOISE: f64 = 1.6;
+
+/// A column of the projection above this many times all noise in it holds tones.
+const FAR_ABOVE_NOISE: f64 = 4.0;
 
 /// A tone neither grows nor decays by more than this part a sample: what does stands for several that are not told apart.
 const STEADY: f64 = 2e-2;
@@ -68,12 +72,20 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
     let hankel = Mat::from_fn(rows, columns, |i, j| chirp[i + j]);
     let largest_of_noise = noise_variance.sqrt() * ((rows as f64).sqrt() + (columns as f64).sqrt());
     let least = ABOVE_NOISE * largest_of_noise;
+    let all_noise = (noise_variance * (rows * columns) as f64).sqrt();
     let most_width = columns - SPARE;
     let mut width = FIRST_COLUMNS.min(most_width);
     loop {
         let random: Vec<Complex64> = (0..width).flat_map(|j| unit_noise(SEED, j).take(columns)).collect();
         let projected = &hankel * Mat::from_fn(columns, width, |i, j| random[j * columns + i]);
-        let range = projected.qr().compute_thin_Q();
+        let qr = projected.qr();
+        // What the last columns still brought is far more than noise: there are more tones than columns.
+        let brought = |column: usize| qr.thin_R()[(column, column)].norm();
+        if width < most_width && (width - SPARE..width).all(|column| brought(column) > FAR_ABOVE_NOISE * all_noise) {
+            width = (2 * width).min(most_width);
+            continue;
+        }
+        let range = qr.compute_thin_Q();
         let svd = (range.adjoint() * &hankel).thin_svd().ok()?;
         let count = svd.S().column_vector().iter().take_while(|value| value.re > least).count();
         if count + SPARE <= width {
@@ -93,10 +105,16 @@ pub fn gains_of_tones(chirp: &[Complex64], tones: &[Tone]) -> Vec<Complex64> {
     }
     let samples = chirp.len() as f64;
     let middle = (samples - 1.0) / 2.0;
-    let columns = Mat::from_fn(chirp.len(), tones.len(), |n, l| {
-        let n = n as f64 - middle;
-        Complex64::from_polar((tones[l].growth * n).exp(), TAU * (tones[l].bins * n / samples).fract())
-    });
+    let at =
+        |tone: &Tone, n: f64| Complex64::from_polar((tone.growth * n).exp(), TAU * (tone.bins * n / samples).fract());
+    // Split as `signal::split` does: hardly any phasor is evaluated from its phase.
+    let rows: Vec<Vec<Complex64>> = tones
+        .iter()
+        .map(|tone| (0..chirp.len().div_ceil(STRIDE)).map(|row| at(tone, (row * STRIDE) as f64 - middle)).collect())
+        .collect();
+    let within: Vec<Vec<Complex64>> =
+        tones.iter().map(|tone| (0..STRIDE).map(|n| at(tone, n as f64)).collect()).collect();
+    let columns = Mat::from_fn(chirp.len(), tones.len(), |n, l| rows[l][n / STRIDE] * within[l][n % STRIDE]);
     let gains = columns.qr().solve_lstsq(Mat::from_fn(chirp.len(), 1, |n, _| chirp[n]));
     (0..tones.len()).map(|l| gains[(l, 0)]).collect()
 }

@@ -1,0 +1,62 @@
+//! The answer to samples that differ little from the last ones, from the last answer.
+
+use super::atom::Atom;
+use super::finish::Found;
+use super::refine::Fit;
+use super::search::{Answer, Search};
+use crate::reconstruct::ReconstructError;
+
+/// Part of the samples' energy that a last answer may leave and still be a start.
+const MOST_CHANGED: f64 = 0.7;
+
+/// Most atoms that appear from one answer to the next.
+const MOST_APPEARING: usize = 2;
+
+impl Search<'_> {
+    /// The answer to samples a little different from those of `previous`: what stands elsewhere now found anew, or else its atoms refined
+    /// where the residual asks for it, and more or fewer of them where that is not enough. `None` where they don't explain the samples
+    /// as well as they did.
+    pub fn followed(&self, previous: &Found, scale: f64) -> Result<Option<Answer>, ReconstructError> {
+        let ratio = scale / previous.scale;
+        let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
+        let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
+        let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
+        (fit.residual, fit.energy) = (left.residual, left.energy);
+        let all = self.bench.without(self.samples, &[], &[]).energy;
+        if fit.cost() > MOST_CHANGED * (all[0] + all[1]) {
+            return Ok(None);
+        }
+        if let Some(fit) = self.found_anew(&fit)? {
+            return Ok(Some(Answer { fit, is_sure: true }));
+        }
+        // What vanished leaves an atom that the rest can do without.
+        let grower = self.grower();
+        fit = grower.pruned(grower.refined_where_needed(fit)?)?;
+        if !self.is_explained(&fit) {
+            fit = self.completed(fit)?;
+        }
+        // Many new atoms make up for old ones that went astray.
+        if fit.atoms.len() > previous.atoms.len() + MOST_APPEARING {
+            return Ok(None);
+        }
+        let unexplained = fit.cost() / (all[0] + all[1]);
+        let is_sure = self.is_explained(&fit);
+        let is_as_good = is_sure || !previous.complete && unexplained < 2.0 * previous.unexplained;
+        Ok(is_as_good.then_some(Answer { fit, is_sure }))
+    }
+
+    /// The points of `fit` in whose range bins more is left than noise looked for once more, by their tones: few echoes are told apart at
+    /// once, however far they have moved. `None` where that doesn't explain all.
+    fn found_anew(&self, fit: &Fit) -> Result<Option<Fit>, ReconstructError> {
+        let needed = self.grower().in_need(fit);
+        let is_moved = |i: &usize| needed[*i] && matches!(fit.atoms[*i], Atom::Point { .. });
+        let moved: Vec<usize> = (0..needed.len()).filter(is_moved).collect();
+        let stayed = if moved.is_empty() { fit.clone() } else { self.bench.less(fit.clone(), &moved) };
+        let pairs = self.pairs(&stayed);
+        if pairs.points.len() > moved.len() + MOST_APPEARING {
+            return Ok(None);
+        }
+        let anew = self.nearly_there(self.paired(stayed, &pairs, false)?)?;
+        Ok(self.is_explained(&anew).then_some(anew))
+    }
+}
