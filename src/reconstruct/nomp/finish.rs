@@ -36,8 +36,8 @@ pub struct Found {
     pub reflectivities: Vec<f64>,
     /// What the samples were multiplied with to have a peak between 1 and 2.
     pub scale: f64,
-    /// Part of the samples' energy that is left unexplained.
-    pub unexplained: f64,
+    /// Part of the samples' energy that was left by the last search from scratch: answers that follow it are measured by it.
+    pub left_by_search: f64,
     /// Mean power of the scaled samples.
     pub sample_power: f64,
     /// Mean power of the residual of the scaled samples.
@@ -64,7 +64,7 @@ impl Found {
             atoms: Vec::new(),
             reflectivities: Vec::new(),
             scale: 1.0,
-            unexplained: 0.0,
+            left_by_search: 0.0,
             sample_power: 0.0,
             residual_variance: 0.0,
             noise_variance: 0.0,
@@ -115,7 +115,7 @@ pub(super) fn finish(
     let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),
-        unexplained: best.cost() / all,
+        left_by_search: best.cost() / all,
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,

@@ -9,6 +9,9 @@ use crate::reconstruct::ReconstructError;
 /// Part of the samples' energy that a last answer may leave and still be a start.
 const MOST_CHANGED: f64 = 0.7;
 
+/// An answer that follows a search which left something leaves this many times as much at most.
+const MOST_LOST: f64 = 1.3;
+
 /// Most atoms that appear from one answer to the next.
 const MOST_APPEARING: usize = 2;
 
@@ -32,17 +35,16 @@ impl Search<'_> {
         // What vanished leaves an atom that the rest can do without.
         let grower = self.grower();
         fit = grower.pruned(grower.refined_where_needed(fit)?)?;
-        if !self.is_explained(&fit) {
+        let most_left = MOST_LOST * previous.left_by_search * (all[0] + all[1]);
+        let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < most_left;
+        let mut is_sure = self.is_explained(&fit);
+        if !is_sure && !is_as_good(&fit) {
             fit = self.completed(fit)?;
+            is_sure = self.is_explained(&fit);
         }
         // Many new atoms make up for old ones that went astray.
-        if fit.atoms.len() > previous.atoms.len() + MOST_APPEARING {
-            return Ok(None);
-        }
-        let unexplained = fit.cost() / (all[0] + all[1]);
-        let is_sure = self.is_explained(&fit);
-        let is_as_good = is_sure || !previous.complete && unexplained < 2.0 * previous.unexplained;
-        Ok(is_as_good.then_some(Answer { fit, is_sure }))
+        let is_like_it = fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;
+        Ok((is_like_it && (is_sure || is_as_good(&fit))).then_some(Answer { fit, is_sure }))
     }
 
     /// The points of `fit` in whose range bins more is left than noise looked for once more, by their tones: few echoes are told apart at

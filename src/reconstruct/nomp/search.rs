@@ -57,10 +57,12 @@ fn find_with(
     let detector = Detector::of(radar);
     let search = Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
+    let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
     let answer = followed.map_or_else(|| search.run(), Ok)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    finish(radar, &bench, &samples, answer.fit, answer.is_sure, request, scale)
+    let found = finish(radar, &bench, &samples, answer.fit, answer.is_sure, request, scale)?;
+    Ok(Found { left_by_search: measure.unwrap_or(found.left_by_search), ..found })
 }
 
 /// What a search found, and whether nothing else stands out of the samples.
