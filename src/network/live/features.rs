@@ -7,12 +7,13 @@
 //!
 //! Everything is measured relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
 
-use crate::maps::{channels_range_transform, windowed_range_transform};
+use super::floors::{measured_floor, rounding_floor};
+use crate::maps::channels_range_transform;
 use crate::network::trained_for::check_radar;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::{ReconstructError, check_ends};
 use crate::signal::TwoEnds;
-use ndarray::{Array2, ArrayView2, Axis, s};
+use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::{Complex32, Complex64};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -40,6 +41,9 @@ const ELEMENTS: usize = 12;
 const SUBARRAY: usize = 8;
 /// Diagonal loading of the covariance, relative to its mean diagonal.
 const LOADING: f64 = 1e-5;
+
+/// Fewest rows that one processor takes at a time.
+const LEAST_ROWS: usize = 32;
 
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
@@ -216,21 +220,27 @@ impl FeatureExtractor {
         const PLANE: usize = ROWS * COARSE;
         let both = profiles.each_ref().map(|z| z.dot(&self.beams));
         self.fill_phase_between(&both, &mut coarse[8 * PLANE..]);
-        for (e, beams) in both.iter().enumerate() {
-            let magnitude: Vec<f32> = beams.iter().map(|v| (v.norm() + 1e-20).log10() as f32).collect();
-            for (cell, out) in coarse[(2 + e) * PLANE..][..PLANE].iter_mut().enumerate() {
-                *out = look_up(&magnitude, &self.coarse_centre[e][cell]);
-            }
-            coarse[e * PLANE..][..PLANE].copy_from_slice(&magnitude);
-            for row in 0..ROWS {
+        let (magnitudes, rest) = coarse.split_at_mut(2 * PLANE);
+        let (registered, rest) = rest.split_at_mut(2 * PLANE);
+        let planes = magnitudes.chunks_mut(PLANE).zip(registered.chunks_mut(PLANE)).zip(rest.chunks_mut(2 * PLANE));
+        for (e, ((magnitude, registered), steps)) in planes.take(both.len()).enumerate() {
+            let beams = &both[e];
+            let (cosines, sines) = steps.split_at_mut(PLANE);
+            let rows =
+                magnitude.par_chunks_mut(COARSE).zip(cosines.par_chunks_mut(COARSE)).zip(sines.par_chunks_mut(COARSE));
+            rows.with_min_len(LEAST_ROWS).enumerate().for_each(|(row, ((magnitude, cosines), sines))| {
                 let before = (row + ROWS - 1) % ROWS;
                 for k in 0..COARSE {
-                    let step = unit(beams[[row, k]] * beams[[before, k]].conj());
-                    let cell = row * COARSE + k;
-                    coarse[(4 + 2 * e) * PLANE + cell] = step.re;
-                    coarse[(5 + 2 * e) * PLANE + cell] = step.im;
+                    let here = beams[[row, k]];
+                    magnitude[k] = (here.norm_sqr().sqrt() + 1e-20).log10() as f32;
+                    let step = unit(here * beams[[before, k]].conj());
+                    (cosines[k], sines[k]) = (step.re, step.im);
                 }
-            }
+            });
+            let magnitude = &*magnitude;
+            registered.par_iter_mut().with_min_len(LEAST_ROWS * COARSE).enumerate().for_each(|(cell, out)| {
+                *out = look_up(magnitude, &self.coarse_centre[e][cell]);
+            });
         }
     }
 }
@@ -250,7 +260,7 @@ fn cosine(k: usize, columns: usize) -> f64 {
 }
 
 fn unit(v: Complex64) -> Complex32 {
-    let v = v / (v.norm() + 1e-300);
+    let v = v / (v.norm_sqr().sqrt() + 1e-300);
     Complex32::new(v.re as f32, v.im as f32)
 }
 
@@ -363,37 +373,4 @@ fn row_features(profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
         }
     }
     out
-}
-
-/// Decades of the rounding noise that the thesis' evaluation leaves in samples of this range profile: each range's power times
-/// the squared ulp of the carrier phase it stands for (see [`crate::signal::floor::thesis_noise_variance`]).
-fn rounding_floor(radar: &Radar, profiles: &[Array2<Complex64>; 2]) -> f32 {
-    let (mut weighted, mut total) = (0.0, 0.0);
-    for row in 0..ROWS {
-        let power: f64 = profiles.iter().map(|z| z.slice(s![row, ..]).iter().map(|v| v.norm_sqr()).sum::<f64>()).sum();
-        let range = (row + 1) as f64 * radar.range_resolution_metres();
-        let exponent = (std::f64::consts::TAU * range / radar.wavelength_metres()).log2().floor() as i32 - 52;
-        weighted += power * 2f64.powi(2 * exponent);
-        total += power;
-    }
-    (0.5 * (weighted / total / 8.0).log10()) as f32
-}
-
-/// Decades of the quietest range bin under a Blackman-Harris window, whose side lobes are 92 dB down.
-fn measured_floor(radar: &Radar, ends: &[Array2<Complex64>; 2]) -> f32 {
-    let window: Vec<f64> = (0..ROWS)
-        .map(|n| {
-            let k = std::f64::consts::TAU * n as f64 / ROWS as f64;
-            0.35875 - 0.48829 * k.cos() + 0.14128 * (2.0 * k).cos() - 0.01168 * (3.0 * k).cos()
-        })
-        .collect();
-    let mean_square = window.iter().map(|w| w * w).sum::<f64>() / ROWS as f64;
-    let mut power = vec![0.0; ROWS];
-    for end in ends {
-        for channel in windowed_range_transform(radar, end.view(), &window).profiles.outer_iter() {
-            power.iter_mut().zip(channel).for_each(|(p, v)| *p += v.norm_sqr());
-        }
-    }
-    let quietest = power.into_iter().fold(f64::INFINITY, f64::min) / (2 * ELEMENTS) as f64 / mean_square;
-    (0.5 * (quietest + 1e-300).log10()) as f32
 }

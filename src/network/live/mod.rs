@@ -12,7 +12,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`features`] | raw samples of the two ends to the network's tensors |
+//! | [`features`], `floors` | raw samples of the two ends to the network's tensors |
 //! | [`module`], `layers` | the network as a burn module: what trains |
 //! | [`engine`], `planes`, [`kernel`], `vector`, [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
@@ -20,6 +20,7 @@
 pub mod engine;
 pub mod fastmath;
 pub mod features;
+mod floors;
 pub mod kernel;
 mod layers;
 pub mod method;
