@@ -104,7 +104,19 @@ impl Search<'_> {
         let is_long = self.grower().echoes_in(&nothing.residual.flat(&self.bench.sensor)).are_long();
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
-        let pairs = if lines.atoms.is_empty() { pairs } else { self.pairs(&lines) };
+        let mut pairs = pairs;
+        if !lines.atoms.is_empty() {
+            // Lines and points are often all there is.
+            pairs = self.pairs(&lines);
+            let fit = self.nearly_there(self.paired(lines.clone(), &pairs, true)?)?;
+            if self.is_nearly_all(&fit) {
+                let left = self.pairs(&fit);
+                let answer = self.paired_again(fit, left, is_long)?;
+                if answer.is_sure {
+                    return Ok(answer);
+                }
+            }
+        }
         let (walls, pairs) = self.walls(lines, pairs)?;
         let mut answer = self.paired_again(walls, pairs, is_long)?;
         if !answer.is_sure && answer.fit.cost() < WORTH_ANOTHER_LOOK * looked_at {
@@ -125,13 +137,18 @@ impl Search<'_> {
 
     /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
     pub(super) fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        let all = self.bench.without(self.samples, &[], &[]).energy;
-        if fit.cost() > NEARLY_NOTHING * (all[0] + all[1]) {
+        if !self.is_nearly_all(&fit) {
             return Ok(fit);
         }
         self.bench.work.grant(self.settings.most_work / 4);
         let grower = self.grower();
         grower.pruned(grower.refined_where_needed(fit)?)
+    }
+
+    /// Whether `fit` holds all objects, though perhaps not quite where they are.
+    fn is_nearly_all(&self, fit: &Fit) -> bool {
+        let all = self.bench.without(self.samples, &[], &[]).energy;
+        fit.cost() <= NEARLY_NOTHING * (all[0] + all[1])
     }
 
     /// `fit` and long lines along y, looked for as a whole as long as something long is left.
