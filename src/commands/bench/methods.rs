@@ -1,5 +1,7 @@
-//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search.
+//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search, and
+//! following a drag.
 
+use super::following::{self, Followed};
 use crate::commands::CommandError;
 use crate::commands::figure::{Drawn, Figure, save};
 use crate::commands::print;
@@ -32,6 +34,7 @@ struct Report {
     scenes: u32,
     methods: Vec<MethodRow>,
     crowds: Vec<Crowd>,
+    followed: Followed,
 }
 
 /// One method over all three sets.
@@ -68,7 +71,8 @@ struct Crowd {
 pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let all = methods::all();
     let crowds = count.max(FEWEST_CROWDS);
-    let maps = 3 * u64::from(count) * all.len() as u64 + 2 * u64::from(crowds) * SEARCHERS.len() as u64;
+    let of_crowds = 2 * u64::from(crowds) * SEARCHERS.len() as u64 + u64::from(crowds * following::MOVES);
+    let maps = 3 * u64::from(count) * all.len() as u64 + of_crowds;
     let bar = indicatif::ProgressBar::new(maps);
     let report = Report {
         threads: rayon::current_num_threads(),
@@ -79,6 +83,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             crowds_of(crowds, Kind::Mixed(4), 300, "four lines of 75", || bar.inc(1))?,
         ]
         .concat(),
+        followed: following::measure(crowds, || bar.inc(1))?,
     };
     bar.finish_and_clear();
     if let Some(folder) = output {
@@ -110,7 +115,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             c.scenes
         ))?;
     }
-    Ok(())
+    print(&report.followed.line())
 }
 
 fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {

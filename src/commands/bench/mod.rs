@@ -1,6 +1,7 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
 mod chart;
+mod following;
 mod growth;
 mod instructions;
 mod measured;
