@@ -305,3 +305,38 @@ impl Kernel for Multiply<'_> {
 fn conjugate(v: ComplexLanes<f64, W>) -> ComplexLanes<f64, W> {
     ComplexLanes { re: v.re, im: -v.im }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{Radar, hann};
+    use crate::signal::floor::unit_noise;
+
+    #[test]
+    fn many_reflectors_are_shared_out_and_leave_what_they_leave_a_few_at_a_time() {
+        let radar = Radar::default();
+        let sensor = Sensor::new(&radar);
+        let squared: Vec<f64> = hann(radar.samples).iter().map(|w| w * w).collect();
+        let noise: Vec<Complex64> = unit_noise(1, 0).take(sensor.sample_count()).collect();
+        let samples = Samples::new(&sensor, &noise);
+        let at = |i: usize| Reflector { x_metres: i as f64 - 9.0, y_metres: 4.0 + i as f64, reflectivity: 1.0 };
+        let gain = |i: usize| Complex64::from_polar(30.0, i as f64);
+        let reflectors: Vec<_> = (0..2 * LEAST_SHARED + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
+        let together = remainder(&sensor, &squared, &samples, &reflectors, true);
+        let mut left = samples;
+        for few in reflectors.chunks(LEAST_SHARED - 1) {
+            left = remainder(&sensor, &squared, &left, few, false).residual;
+        }
+        for (a, b) in together.residual.flat(&sensor).iter().zip(left.flat(&sensor)) {
+            assert!((a - b).norm() < 1e-11, "{a} {b}");
+        }
+        // In the order of the reflectors, whoever computed them.
+        for ((reflector, _), found) in reflectors.iter().zip(&together.products) {
+            let alone = remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], true);
+            for (a, b) in found.zeroth.iter().zip(&alone.products[0].zeroth) {
+                assert!((a - b).norm() < 1e-11, "{a} {b}");
+            }
+        }
+        assert_eq!(together.products.len(), reflectors.len());
+    }
+}

@@ -4,7 +4,7 @@
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
 use super::phased::{Heard, PhasedBeams, Presence, Row};
-use super::strides::{Begun, FIRST, MOST_STEP_METRES, Stride, best_of_each, pitches_metres, summits};
+use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
@@ -50,13 +50,13 @@ pub fn rows_from_edges(
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
     looks.truncate(MOST_LOOKS);
     let rows_of = |look: &Look| Simd::chosen().run(Scan { beams, fan: &look.fan });
-    let begun: Vec<Begun> = looks
+    let starts: Vec<Start> = looks
         .par_iter()
         .filter(|_| !task.is_cancelled())
-        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Begun { first: look.first, row }))
+        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
         .collect();
-    tracing::debug!(looks = looks.len(), begun = begun.len(), "edges");
-    best_of_each(beams, begun, task)
+    tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
+    best_of_each(beams, starts, task)
 }
 
 /// How clearly and how far echoes go on from `from` in a direction; `None` where they soon end.

@@ -25,8 +25,8 @@ impl Search<'_> {
         let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
         let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
         (fit.residual, fit.energy) = (left.residual, left.energy);
-        let all = self.bench.without(self.samples, &[], &[]).energy;
-        if fit.cost() > MOST_CHANGED * (all[0] + all[1]) {
+        let all = self.energy();
+        if fit.cost() > MOST_CHANGED * all {
             return Ok(None);
         }
         if let Some(fit) = self.found_anew(&fit)? {
@@ -35,7 +35,7 @@ impl Search<'_> {
         // What vanished leaves an atom that the rest can do without.
         let grower = self.grower();
         fit = grower.pruned(grower.refined_where_needed(fit)?)?;
-        let most_left = MOST_LOST * previous.left_by_search * (all[0] + all[1]);
+        let most_left = MOST_LOST * previous.left_by_search * all;
         let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < most_left;
         let mut is_sure = self.is_explained(&fit);
         if !is_sure && !is_as_good(&fit) {

@@ -96,7 +96,7 @@ impl Search<'_> {
     /// then whatever still stands out.
     fn run(&self) -> Result<Answer, ReconstructError> {
         let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
-        let pairs = self.pairs(&nothing);
+        let mut pairs = self.pairs(&nothing);
         let fit = self.paired(nothing.clone(), &pairs, false)?;
         if self.is_explained(&fit) {
             return Ok(Answer { fit, is_sure: true });
@@ -104,7 +104,6 @@ impl Search<'_> {
         let is_long = self.grower().echoes_in(&nothing.residual.flat(&self.bench.sensor)).are_long();
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
-        let mut pairs = pairs;
         if !lines.atoms.is_empty() {
             // Lines and points are often all there is.
             pairs = self.pairs(&lines);
@@ -147,8 +146,12 @@ impl Search<'_> {
 
     /// Whether `fit` holds all objects, though perhaps not quite where they are.
     fn is_nearly_all(&self, fit: &Fit) -> bool {
-        let all = self.bench.without(self.samples, &[], &[]).energy;
-        fit.cost() <= NEARLY_NOTHING * (all[0] + all[1])
+        fit.cost() <= NEARLY_NOTHING * self.energy()
+    }
+
+    /// Energy of the windowed samples.
+    pub(super) fn energy(&self) -> f64 {
+        self.bench.without(self.samples, &[], &[]).energy.iter().sum()
     }
 
     /// `fit` and long lines along y, looked for as a whole as long as something long is left.

@@ -71,13 +71,13 @@ pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
     });
     grids.sort_by(|a, b| b.best().total_cmp(&a.best()));
     grids.truncate(MOST_GRIDS);
-    let begun = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Begun { first: grid.first, row: *row }));
-    best_of_each(beams, begun.collect(), task)
+    let starts = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Start { first: grid.first, row: *row }));
+    best_of_each(beams, starts.collect(), task)
 }
 
-/// A row of a few reflectors.
+/// A row of a few reflectors, to be followed.
 #[derive(Debug, Clone, Copy)]
-pub struct Begun {
+pub struct Start {
     /// Number of the point that it begins at.
     pub first: usize,
     /// The row.
@@ -87,8 +87,8 @@ pub struct Begun {
 /// The rows as far as their echoes add up, best first; one for each first point at most.
 ///
 /// All are followed over more and more reflectors, those ever fewer that add up best: every length takes about as long as the last.
-pub fn best_of_each(beams: &PhasedBeams, begun: Vec<Begun>, task: &Task) -> Vec<Stride> {
-    let mut rows: Vec<Followed> = begun.into_iter().map(Followed::new).collect();
+pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec<Stride> {
+    let mut rows: Vec<Followed> = starts.into_iter().map(Followed::new).collect();
     let mut count = FIRST;
     while count <= MOST_REFLECTORS && !task.is_cancelled() {
         let most = MOST_FOLLOWED / count;
@@ -97,7 +97,7 @@ pub fn best_of_each(beams: &PhasedBeams, begun: Vec<Begun>, task: &Task) -> Vec<
         rows.iter_mut().skip(most).for_each(|row| row.part = 0.0);
         count = (count as f64 * GROWTH) as usize + 1;
     }
-    let mut found: Vec<(usize, Stride)> = rows.iter().filter_map(|row| Some((row.begun.first, row.best?))).collect();
+    let mut found: Vec<(usize, Stride)> = rows.iter().filter_map(|row| Some((row.start.first, row.best?))).collect();
     found.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
     let mut taken = BTreeSet::new();
     found.retain(|(first, _)| taken.insert(*first));
@@ -205,7 +205,7 @@ pub fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
 
 /// A row on its way over more and more reflectors.
 struct Followed {
-    begun: Begun,
+    start: Start,
     /// Part of the power at its places that adds up; 0 where it has passed its end.
     part: f64,
     most: f64,
@@ -213,8 +213,8 @@ struct Followed {
 }
 
 impl Followed {
-    fn new(begun: Begun) -> Self {
-        Followed { begun, part: 1.0, most: 0.0, best: None }
+    fn new(start: Start) -> Self {
+        Followed { start, part: 1.0, most: 0.0, best: None }
     }
 
     /// Over its first `count` reflectors, where their echoes add up.
@@ -223,8 +223,8 @@ impl Followed {
             return;
         }
         self.part = 0.0;
-        let Some(moved) = climbed(beams, self.begun.row, count) else { return };
-        self.begun.row = moved.row;
+        let Some(moved) = climbed(beams, self.start.row, count) else { return };
+        self.start.row = moved.row;
         if moved.added < PASSED * self.most {
             return;
         }
