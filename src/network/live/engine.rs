@@ -6,9 +6,11 @@ use super::fastmath::{exp10, log10};
 use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{Packed, convolve, padded, product};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
-use super::planes::{Block, Context, Plane, apply, fill_halo, pooled_mix, with_halo};
+use super::planes::{Block, Context, Plane, pooled_mix, rectified};
 use super::vector::LANES;
+use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
+use crate::signal::simd::Simd;
 use rayon::prelude::*;
 
 /// Fine columns in a coarse one, and map columns in a fine one.
@@ -27,13 +29,13 @@ pub struct Decades {
 /// The live network's weights, packed for [`super::kernel`].
 #[derive(Debug)]
 pub struct LiveEngine {
-    stem: Packed,
+    stem: Conv3x3,
     encoder: [Vec<Block>; 4],
     down: [Packed; 3],
     up: [Packed; 3],
     decoder: [Vec<Block>; 3],
-    widen: Packed,
-    fine1: Packed,
+    widen: Conv3x3,
+    fine1: Conv3x3,
     fine2: Packed,
     row_sources: Packed,
     /// `[512, 512]`: side lobes in range.
@@ -48,9 +50,7 @@ pub struct LiveEngine {
 /// Buffers of one forward pass; keep them between calls.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    halo: Vec<f32>,
     hidden: Plane,
-    delta: Plane,
     level: [Plane; 4],
     upward: Plane,
     heads: Plane,
@@ -68,18 +68,23 @@ impl LiveEngine {
     pub fn new(file: &WeightFile, config: &LiveConfig) -> Result<Self, WeightsError> {
         let [c0, c1, c2, c3] = config.channels;
         let [b0, b1, b2, b3] = config.blocks;
-        let conv = |name: &str, input: usize, stride_in: usize, output: usize, kernel: usize, stride: usize| {
-            let weights = file.tensor(&format!("{name}.weight"), &[output, input, kernel, kernel])?;
-            let bias = file.tensor(&format!("{name}.bias"), &[output])?;
-            Ok(Packed::new(&weights, &bias, input, stride_in, kernel, stride))
+        let tensors = |name: &str, shape: &[usize]| {
+            let weights = file.tensor(&format!("{name}.weight"), shape)?;
+            Ok::<_, WeightsError>((weights, file.tensor(&format!("{name}.bias"), &shape[..1])?))
         };
-        let inner = |name: &str, input: usize, output: usize, kernel: usize| {
-            conv(name, input, padded(input), output, kernel, if kernel == 2 { 2 } else { 1 })
+        // Cells hold whole vectors of channels but for those of the two inputs.
+        let conv = |name: &str, [input, stride]: [usize; 2], output: usize| {
+            let (weights, bias) = tensors(name, &[output, input, 3, 3])?;
+            Ok::<_, WeightsError>(Conv3x3::new(&weights, &bias, input, stride))
+        };
+        let inner = |name: &str, input: usize, output: usize| conv(name, [input, padded(input)], output);
+        let small = |name: &str, input: usize, output: usize, kernel: usize| {
+            let (weights, bias) = tensors(name, &[output, input, kernel, kernel])?;
+            Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
         };
         let linear = |name: &str, input: usize, output: usize| {
-            let weights = file.tensor(&format!("{name}.weight"), &[output, input])?;
-            let bias = file.tensor(&format!("{name}.bias"), &[output])?;
-            Ok(Packed::new(&weights, &bias, input, input, 1, 1))
+            let (weights, bias) = tensors(name, &[output, input])?;
+            Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
         };
         let blocks = |name: &str, count: usize, c: usize, context: bool| {
             let block = |i: usize| {
@@ -89,28 +94,28 @@ impl LiveEngine {
                 let context =
                     if context { Some(Context { row: mix("context.row")?, col: mix("context.col")? }) } else { None };
                 Ok(Block {
-                    conv1: inner(&part("conv1.conv"), c, c, 3)?,
-                    conv2: inner(&part("conv2.conv"), c, c, 3)?,
+                    conv1: inner(&part("conv1.conv"), c, c)?,
+                    conv2: inner(&part("conv2.conv"), c, c)?,
                     context,
                 })
             };
             (0..count).map(block).collect::<Result<Vec<_>, WeightsError>>()
         };
         Ok(LiveEngine {
-            stem: conv("stem.conv", INPUT_CHANNELS, INPUT_CHANNELS, c0, 3, 1)?,
+            stem: conv("stem.conv", [INPUT_CHANNELS; 2], c0)?,
             encoder: [
                 blocks("enc0", b0, c0, false)?,
                 blocks("enc1", b1.div_ceil(2), c1, false)?,
                 blocks("enc2", b2.div_ceil(2), c2, true)?,
                 blocks("enc3", b3, c3, true)?,
             ],
-            down: [inner("down1", c0, c1, 2)?, inner("down2", c1, c2, 2)?, inner("down3", c2, c3, 2)?],
-            up: [inner("up0", c1, 4 * c0, 1)?, inner("up1", c2, 4 * c1, 1)?, inner("up2", c3, 4 * c2, 1)?],
+            down: [small("down1", c0, c1, 2)?, small("down2", c1, c2, 2)?, small("down3", c2, c3, 2)?],
+            up: [small("up0", c1, 4 * c0, 1)?, small("up1", c2, 4 * c1, 1)?, small("up2", c3, 4 * c2, 1)?],
             decoder: [blocks("dec0", b0, c0, false)?, blocks("dec1", b1, c1, false)?, blocks("dec2", b2, c2, true)?],
-            widen: inner("widen.conv", c0, WIDENED * FOLD, 3)?,
-            fine1: conv("fine1.conv", WIDENED + FINE_CHANNELS, WIDENED + FINE_CHANNELS, config.fine, 3, 1)?,
-            fine2: inner("fine2", config.fine, 2 * SPREAD, 1)?,
-            row_sources: inner("row_sources", c0, WIDE / COARSE, 1)?,
+            widen: inner("widen.conv", c0, WIDENED * FOLD)?,
+            fine1: conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
+            fine2: small("fine2", config.fine, 2 * SPREAD, 1)?,
+            row_sources: small("row_sources", c0, WIDE / COARSE, 1)?,
             columns: circulant(&file.tensor("col_kernel", &[ROWS / 2 + 1])?, ROWS),
             rows: circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE),
             scalar1: linear("scalar1", 2 * c3 + SCALARS, 64)?,
@@ -122,9 +127,10 @@ impl LiveEngine {
     /// Estimates the map of one scene.
     pub fn forward(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
         let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
-        let Scratch { halo, hidden, delta, level, upward, .. } = s;
-        fill_input(input, &scalars, halo);
-        apply(&self.stem, halo, ROWS, COARSE, &mut level[0]);
+        let Scratch { hidden, level, upward, .. } = s;
+        level[0].reset(ROWS, COARSE, self.stem.output());
+        let read = |row: usize, line: &mut [f32]| read_input(input, &scalars, row, line);
+        self.stem.run([ROWS, COARSE], read, &mut level[0].data, |sums, out| out.copy_from_slice(sums));
         for k in 0..4 {
             if k > 0 {
                 let (above, below) = level.split_at_mut(k);
@@ -133,7 +139,7 @@ impl LiveEngine {
                 convolve(&self.down[k - 1], &from.data, from.w, from.w / 2, &mut below[0].data);
             }
             for block in &self.encoder[k] {
-                block.forward(&mut level[k], halo, hidden, delta, &mut s.pool, &mut s.mixed);
+                block.forward(&mut level[k], hidden, &mut s.pool, &mut s.mixed);
             }
         }
         let (floor_shift, minimum_shift) = self.scalars(&level[3], &scalars);
@@ -144,20 +150,24 @@ impl LiveEngine {
             convolve(&self.up[k], &from.data, from.w, from.w, &mut upward.data);
             add_doubled(upward, &mut finer[k], self.channels[k]);
             for block in &self.decoder[k] {
-                block.forward(&mut finer[k], halo, hidden, delta, &mut s.pool, &mut s.mixed);
+                block.forward(&mut finer[k], hidden, &mut s.pool, &mut s.mixed);
             }
         }
         let top = &mut level[0];
-        top.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        top.rectify();
         s.sources.reset(ROWS, COARSE, self.row_sources.output());
         convolve(&self.row_sources, &top.data, COARSE, COARSE, &mut s.sources.data);
-        with_halo(top, false, halo);
-        apply(&self.widen, halo, ROWS, COARSE, hidden);
-        fill_fine(&input.fine, hidden, halo);
-        apply(&self.fine1, halo, ROWS, FINE, delta);
-        delta.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        hidden.reset(ROWS, COARSE, self.widen.output());
+        let read = |row: usize, line: &mut [f32]| top.read_rectified(row, line);
+        self.widen.run([ROWS, COARSE], read, &mut hidden.data, |sums, out| out.copy_from_slice(sums));
         s.heads.reset(ROWS, FINE, self.fine2.output());
-        convolve(&self.fine2, &delta.data, FINE, FINE, &mut s.heads.data);
+        let simd = Simd::chosen();
+        let heads = |sums: &mut [f32], out: &mut [f32]| {
+            sums.iter_mut().for_each(|v| *v = rectified(*v));
+            self.fine2.line(simd, sums, FINE, FINE, out);
+        };
+        let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
+        self.fine1.run([ROWS, FINE], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
         let map = self.decode(&s.heads, &s.sources, floor, &mut s.right);
         Decades { map, minimum: floor - 2.5 + minimum_shift }
@@ -235,51 +245,46 @@ fn decades_in(v: f32) -> f32 {
     ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
-/// The first convolution's input, with its halo; channels in the order of [`super::module::Live::forward`].
-fn fill_input(input: &LiveInput, scalars: &[f32; SCALARS], halo: &mut Vec<f32>) {
-    fill_halo(ROWS, COARSE, INPUT_CHANNELS, halo, |row, line| {
-        let half = (COARSE / 2) as f32;
-        let range = row as f32;
-        let (linear, log) = (range / 256.0 - 1.0, (range + 4.0).log10() - 2.0);
-        for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
-            let mut values = cell.iter_mut();
-            let mut put = |v: f32| {
-                if let Some(slot) = values.next() {
-                    *slot = v;
-                }
-            };
-            for plane in input.fine.chunks_exact(ROWS * FINE) {
-                let at = row * FINE + k * FOLD;
-                plane[at..at + FOLD].iter().for_each(|v| put(decades_in(*v)));
+/// A line of the first convolution's input; channels in the order of [`super::module::Live::forward`].
+fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mut [f32]) {
+    let half = (COARSE / 2) as f32;
+    let range = row as f32;
+    let (linear, log) = (range / 256.0 - 1.0, (range + 4.0).log10() - 2.0);
+    for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
+        let mut values = cell.iter_mut();
+        let mut put = |v: f32| {
+            if let Some(slot) = values.next() {
+                *slot = v;
             }
-            for (c, plane) in input.coarse.chunks_exact(ROWS * COARSE).enumerate().take(COARSE_CHANNELS) {
-                let v = plane[row * COARSE + k];
-                put(if c < 4 { decades_in(v) } else { v });
-            }
-            for (c, plane) in input.rows.chunks_exact(ROWS).enumerate().take(ROW_CHANNELS) {
-                put(if c < 4 { plane[row] } else { decades_in(plane[row]) });
-            }
-            scalars.iter().for_each(|v| put(*v));
-            let u = (k as f32 - half) / half;
-            [linear, log, u, (1.0 - u * u).sqrt()].into_iter().for_each(put);
+        };
+        for plane in input.fine.chunks_exact(ROWS * FINE) {
+            let at = row * FINE + k * FOLD;
+            plane[at..at + FOLD].iter().for_each(|v| put(decades_in(*v)));
         }
-    });
+        for (c, plane) in input.coarse.chunks_exact(ROWS * COARSE).enumerate().take(COARSE_CHANNELS) {
+            let v = plane[row * COARSE + k];
+            put(if c < 4 { decades_in(v) } else { v });
+        }
+        for (c, plane) in input.rows.chunks_exact(ROWS).enumerate().take(ROW_CHANNELS) {
+            put(if c < 4 { plane[row] } else { decades_in(plane[row]) });
+        }
+        scalars.iter().for_each(|v| put(*v));
+        let u = (k as f32 - half) / half;
+        [linear, log, u, (1.0 - u * u).sqrt()].into_iter().for_each(put);
+    }
 }
 
-/// The fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
-fn fill_fine(fine: &[f32], widened: &Plane, halo: &mut Vec<f32>) {
-    const C: usize = WIDENED + FINE_CHANNELS;
-    fill_halo(ROWS, FINE, C, halo, |row, line| {
-        for (k, cell) in line.chunks_exact_mut(C).enumerate() {
-            let from = &widened.data[(row * COARSE + k / FOLD) * widened.c..];
-            for (i, v) in cell[..WIDENED].iter_mut().enumerate() {
-                *v = from[i * FOLD + k % FOLD];
-            }
-            for (i, v) in cell[WIDENED..].iter_mut().enumerate() {
-                *v = decades_in(fine[(i * ROWS + row) * FINE + k]);
-            }
+/// A line of the fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
+fn read_fine(fine: &[f32], widened: &Plane, row: usize, line: &mut [f32]) {
+    for (k, cell) in line.chunks_exact_mut(WIDENED + FINE_CHANNELS).enumerate() {
+        let from = &widened.data[(row * COARSE + k / FOLD) * widened.c..];
+        for (i, v) in cell[..WIDENED].iter_mut().enumerate() {
+            *v = from[i * FOLD + k % FOLD];
         }
-    });
+        for (i, v) in cell[WIDENED..].iter_mut().enumerate() {
+            *v = decades_in(fine[(i * ROWS + row) * FINE + k]);
+        }
+    }
 }
 
 /// Adds the pixel shuffle of `from` `[h, w, 4 c]` to `to` `[2 h, 2 w, c]`.

@@ -31,11 +31,13 @@ fn power_of_ten(v: f32) -> f32 {
     let x = (v * std::f32::consts::LOG2_10).clamp(-125.0, 126.0);
     // Adding 1.5 * 2^23 rounds to the nearest integer.
     const ROUND: f32 = 12_582_912.0;
-    let whole = (x + ROUND) - ROUND;
+    let rounded = x + ROUND;
+    let whole = rounded - ROUND;
     let f = (x - whole) * std::f32::consts::LN_2;
     let series =
         1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));
-    series * f32::from_bits(((whole as i32 + 127) as u32) << 23)
+    // The lowest bits of `rounded` are that integer; a cast would look for overflow, one value at a time.
+    series * f32::from_bits((rounded.to_bits() << 23).wrapping_add(127 << 23))
 }
 
 #[inline(always)]

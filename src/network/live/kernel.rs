@@ -18,7 +18,8 @@ pub const fn padded(channels: usize) -> usize {
 /// kernel column, input channel.
 #[derive(Debug, Clone)]
 pub struct Packed {
-    kernel: usize,
+    /// Rows and columns of the kernel.
+    kernel: [usize; 2],
     stride: usize,
     input: usize,
     output: usize,
@@ -27,10 +28,16 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// Packs weights `[output, input, kernel, kernel]` (PyTorch's order) and `bias` `[output]`. The kernel reads `input_stride`
-    /// channels a cell, of which the last `input_stride - input` meet zeros.
-    pub fn new(weights: &[f32], bias: &[f32], input: usize, input_stride: usize, kernel: usize, stride: usize) -> Self {
-        let area = kernel * kernel;
+    /// Packs weights `[output, input, rows, columns]` (PyTorch's order) of a kernel of so many rows and columns, and `bias` `[output]`. The
+    /// kernel reads `input_stride` channels a cell, of which the last `input_stride - input` meet zeros.
+    pub fn new(
+        weights: &[f32],
+        bias: &[f32],
+        [input, input_stride]: [usize; 2],
+        kernel: [usize; 2],
+        stride: usize,
+    ) -> Self {
+        let area = kernel[0] * kernel[1];
         let output = bias.len();
         assert_eq!(weights.len(), output * input * area, "weights and bias disagree");
         let lanes = padded(output);
@@ -54,6 +61,18 @@ impl Packed {
     pub fn output(&self) -> usize {
         self.output
     }
+
+    /// Convolves what one line of `width` output cells sees of `input`, which lies as rows of `row_cells` cells, on this thread.
+    pub fn line(&self, simd: Simd, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
+        let job = Job { input, row_cells, channels: self.input, kernel: self.kernel, stride: self.stride, width };
+        let mut at = 0;
+        for (start, lanes) in blocks(self.output) {
+            let size = self.kernel[0] * self.kernel[1] * self.input * lanes;
+            let (weights, bias) = (&self.weights[at..at + size], &self.bias[start..start + lanes]);
+            dispatch(simd, &job, Block { weights, bias, start, lanes: self.output }, out);
+            at += size;
+        }
+    }
 }
 
 /// A matrix product in the shape of a convolution: `rows` of `inner` values times `right`, which lies as blocks of 32 columns.
@@ -62,7 +81,7 @@ pub fn product(left: &[f32], right: &[f32], inner: usize, columns: usize, out: &
     let rows = left.len() / inner;
     assert!(columns.is_multiple_of(2 * LANES) && out.len() == rows * columns && right.len() == inner * columns);
     // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
-    let job = Job { input: left, row_cells: rows, channels: inner, kernel: 1, stride: 1, width: rows };
+    let job = Job { input: left, row_cells: rows, channels: inner, kernel: [1, 1], stride: 1, width: rows };
     const CELLS: usize = 32;
     let simd = Simd::chosen();
     out.par_chunks_mut(CELLS * columns).enumerate().for_each(|(chunk, out)| {
@@ -74,8 +93,7 @@ pub fn product(left: &[f32], right: &[f32], inner: usize, columns: usize, out: &
     });
 }
 
-/// Convolves `input`, which lies as rows of `row_cells` cells with a halo of one cell where the kernel is 3 wide, into `out`
-/// `[height, width, output]`.
+/// Convolves `input`, which lies as rows of `row_cells` cells, into `out` `[height, width, output]`.
 pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
     convolve_with(Simd::chosen(), weights, input, row_cells, width, out);
 }
@@ -83,22 +101,7 @@ pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize,
 fn convolve_with(simd: Simd, weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
     let line = width * weights.output;
     out.par_chunks_mut(line).enumerate().for_each(|(y, out)| {
-        let job = Job {
-            input: &input[y * weights.stride * row_cells * weights.input..],
-            row_cells,
-            channels: weights.input,
-            kernel: weights.kernel,
-            stride: weights.stride,
-            width,
-        };
-        let mut at = 0;
-        for (start, lanes) in blocks(weights.output) {
-            let size = weights.kernel * weights.kernel * weights.input * lanes;
-            let (weights, bias, all) =
-                (&weights.weights[at..at + size], &weights.bias[start..start + lanes], weights.output);
-            dispatch(simd, &job, Block { weights, bias, start, lanes: all }, out);
-            at += size;
-        }
+        weights.line(simd, &input[y * weights.stride * row_cells * weights.input..], row_cells, width, out);
     });
 }
 
@@ -113,7 +116,7 @@ struct Job<'a> {
     input: &'a [f32],
     row_cells: usize,
     channels: usize,
-    kernel: usize,
+    kernel: [usize; 2],
     stride: usize,
     width: usize,
 }
@@ -147,12 +150,12 @@ fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
 impl Job<'_> {
     /// Everything that the unchecked loops rely on.
     fn check(&self, block: &Block, out: &[f32]) {
-        let lines = (self.kernel - 1) * self.row_cells;
-        let last = lines + (self.width - 1) * self.stride + self.kernel - 1;
+        let [rows, columns] = self.kernel;
+        let last = (rows - 1) * self.row_cells + (self.width - 1) * self.stride + columns - 1;
         assert!(self.width > 0 && self.input.len() >= (last + 1) * self.channels, "the input ends inside the line");
         let lanes = block.bias.len();
         assert!(lanes == LANES || lanes == 2 * LANES, "a block is one or two vectors");
-        assert_eq!(block.weights.len(), self.kernel * self.kernel * self.channels * lanes, "weights of another size");
+        assert_eq!(block.weights.len(), rows * columns * self.channels * lanes, "weights of another size");
         assert!(block.start + lanes <= block.lanes && out.len() >= self.width * block.lanes, "the output is too short");
     }
 }
@@ -218,10 +221,10 @@ unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
         let mut sums = [bias; CELLS];
         let step = job.stride * job.channels;
         let mut w = block.weights.as_ptr().add(from);
-        for ky in 0..job.kernel {
+        for ky in 0..job.kernel[0] {
             // The channels of the kernel's columns lie side by side.
             let mut value = job.input.as_ptr().add((ky * job.row_cells + x * job.stride) * job.channels);
-            for _ in 0..job.kernel * job.channels {
+            for _ in 0..job.kernel[1] * job.channels {
                 let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
                 for (p, sums) in sums.iter_mut().enumerate() {
                     let value = *value.add(p * step);
@@ -288,7 +291,7 @@ mod tests {
             let cells = width * stride + k - stride;
             let x = numbers((height * stride + k) * cells * c);
             let (w, bias) = (numbers(o * c * k * k), numbers(o));
-            let packed = Packed::new(&w, &bias, c, c, k, stride);
+            let packed = Packed::new(&w, &bias, [c, c], [k, k], stride);
             for simd in Simd::available() {
                 let mut out = vec![f32::NAN; height * width * packed.output()];
                 convolve_with(simd, &packed, &x, cells, width, &mut out);

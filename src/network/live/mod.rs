@@ -14,7 +14,7 @@
 //! |---|---|
 //! | [`features`], `floors` | raw samples of the two ends to the network's tensors |
 //! | [`module`], `layers` | the network as a burn module: what trains |
-//! | [`engine`], `planes`, [`kernel`], `vector`, [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
+//! | [`engine`], `planes`, `winograd`, [`kernel`], `vector`, [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
 
 pub mod engine;
@@ -27,6 +27,7 @@ pub mod method;
 pub mod module;
 mod planes;
 mod vector;
+mod winograd;
 
 pub use method::LiveMethod;
 pub use module::{Live, LiveBatch, LiveConfig};

@@ -1,6 +1,7 @@
 //! Channels-last pictures and what the live network's engine does with them again and again.
 
 use super::kernel::{Packed, convolve, padded};
+use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
 use rayon::prelude::*;
 
@@ -18,6 +19,22 @@ impl Plane {
         (self.h, self.w, self.c) = (h, w, c);
         self.data.resize(h * w * c, 0.0);
     }
+
+    /// Copies line `y` through ReLU.
+    pub(super) fn read_rectified(&self, y: usize, line: &mut [f32]) {
+        let size = self.w * self.c;
+        line.iter_mut().zip(&self.data[y * size..]).for_each(|(to, v)| *to = rectified(*v));
+    }
+
+    /// Puts everything through ReLU.
+    pub(super) fn rectify(&mut self) {
+        self.data.par_chunks_mut(1 << 15).for_each(|part| part.iter_mut().for_each(|v| *v = rectified(*v)));
+    }
+}
+
+#[inline]
+pub(super) fn rectified(v: f32) -> f32 {
+    if v > 0.0 { v } else { 0.0 }
 }
 
 #[derive(Debug)]
@@ -28,8 +45,8 @@ pub(super) struct Context {
 
 #[derive(Debug)]
 pub(super) struct Block {
-    pub(super) conv1: Packed,
-    pub(super) conv2: Packed,
+    pub(super) conv1: Conv3x3,
+    pub(super) conv2: Conv3x3,
     pub(super) context: Option<Context>,
 }
 
@@ -43,27 +60,23 @@ pub(super) fn pooled_mix(file: &WeightFile, name: &str, c: usize) -> Result<Pack
         out[..c].copy_from_slice(&row[..c]);
         out[lanes..lanes + c].copy_from_slice(&row[c..]);
     }
-    Ok(Packed::new(&spread, &bias, 2 * lanes, 2 * lanes, 1, 1))
+    Ok(Packed::new(&spread, &bias, [2 * lanes; 2], [1, 1], 1))
 }
 
 impl Block {
-    pub(super) fn forward(
-        &self,
-        x: &mut Plane,
-        halo: &mut Vec<f32>,
-        hidden: &mut Plane,
-        delta: &mut Plane,
-        pool: &mut Vec<f32>,
-        mixed: &mut Vec<f32>,
-    ) {
-        with_halo(x, true, halo);
-        apply(&self.conv1, halo, x.h, x.w, hidden);
+    pub(super) fn forward(&self, x: &mut Plane, hidden: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
+        hidden.reset(x.h, x.w, self.conv1.output());
+        self.conv1.run(
+            [x.h, x.w],
+            |y, line| x.read_rectified(y, line),
+            &mut hidden.data,
+            |sums, out| out.copy_from_slice(sums),
+        );
         if let Some(context) = &self.context {
             context.forward(hidden, pool, mixed);
         }
-        with_halo(hidden, true, halo);
-        apply(&self.conv2, halo, x.h, x.w, delta);
-        x.data.par_iter_mut().with_min_len(1 << 15).zip(&delta.data).for_each(|(a, b)| *a += b);
+        let add = |sums: &mut [f32], out: &mut [f32]| out.iter_mut().zip(sums).for_each(|(a, b)| *a += *b);
+        self.conv2.run([x.h, x.w], |y, line| hidden.read_rectified(y, line), &mut x.data, add);
     }
 }
 
@@ -101,32 +114,4 @@ impl Context {
             }
         }
     }
-}
-
-/// Convolves a picture that has its halo.
-pub(super) fn apply(weights: &Packed, halo: &[f32], h: usize, w: usize, out: &mut Plane) {
-    out.reset(h, w, weights.output());
-    convolve(weights, halo, w + 2, w, &mut out.data);
-}
-
-/// Copies `x`, through ReLU if asked, into `[h + 2, w + 2, c]`: angles wrap around, ranges end in zeros.
-pub(super) fn with_halo(x: &Plane, relu: bool, halo: &mut Vec<f32>) {
-    let least = if relu { 0.0 } else { f32::NEG_INFINITY };
-    fill_halo(x.h, x.w, x.c, halo, |y, line| {
-        let from = &x.data[y * x.w * x.c..(y + 1) * x.w * x.c];
-        line.iter_mut().zip(from).for_each(|(a, b)| *a = b.max(least));
-    });
-}
-
-/// Fills a picture with a halo line by line.
-pub(super) fn fill_halo(h: usize, w: usize, c: usize, halo: &mut Vec<f32>, fill: impl Fn(usize, &mut [f32]) + Sync) {
-    let line = (w + 2) * c;
-    halo.resize((h + 2) * line, 0.0);
-    halo[..line].fill(0.0);
-    halo[(h + 1) * line..].fill(0.0);
-    halo[line..(h + 1) * line].par_chunks_mut(line).with_min_len(8).enumerate().for_each(|(y, line)| {
-        fill(y, &mut line[c..(w + 1) * c]);
-        line.copy_within(w * c..(w + 1) * c, 0);
-        line.copy_within(c..2 * c, (w + 1) * c);
-    });
 }
