@@ -1,6 +1,7 @@
 //! What each network learns from a scene: its input, its target, and the map it estimates.
 
-use super::live::features::{COLUMNS, FeatureExtractor, LiveInput, ROWS};
+use super::live::features::{FeatureExtractor, LiveInput};
+use super::live::grid::{COLUMNS, ROWS};
 use super::live::{Live, LiveBatch, LiveConfig};
 use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};

@@ -3,7 +3,8 @@
 //! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
 use super::fastmath::{exp10, log10};
-use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
+use super::features::LiveInput;
+use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{Packed, convolve, padded, product};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::planes::{Block, Context, Plane, pooled_mix, rectified};

@@ -40,8 +40,9 @@ fn power_of_ten(v: f32) -> f32 {
     series * f32::from_bits((rounded.to_bits() << 23).wrapping_add(127 << 23))
 }
 
+/// log10 of a positive, normal number, see [`log10`].
 #[inline(always)]
-fn logarithm(v: f32) -> f32 {
+pub(super) fn logarithm(v: f32) -> f32 {
     // Shifted so that the mantissa lies in [sqrt(1/2), sqrt(2)).
     let shifted = v.to_bits().wrapping_sub(0x3f35_04f3);
     let exponent = (shifted as i32) >> 23;

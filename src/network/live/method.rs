@@ -1,7 +1,8 @@
 //! The live network as a reconstruction method.
 
 use super::engine::{Decades, LiveEngine, Scratch};
-use super::features::{COLUMNS, FeatureExtractor, ROWS};
+use super::features::FeatureExtractor;
+use super::grid::{COLUMNS, ROWS};
 use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
@@ -9,6 +10,7 @@ use crate::radar::Radar;
 use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::Array2;
+use rayon::prelude::*;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Name of the network, on the command line and in weight files.
@@ -70,7 +72,7 @@ impl LiveMethod {
         }
         drop(idle);
         let gain = input.gain as f32;
-        decades.map.iter_mut().for_each(|v| *v += gain);
+        decades.map.par_iter_mut().for_each(|v| *v += gain);
         decades.minimum += gain;
         Ok(decades)
     }
@@ -100,9 +102,9 @@ impl Reconstructor for LiveMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let Decades { map, minimum } = self.decades(radar, ends)?;
-        let peak = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
-        let lambda = map.into_iter().map(|v| scale.lambda(v.into()) as f32).collect();
+        let lambda = map.into_par_iter().map(|v| scale.lambda(v.into()) as f32).collect();
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), lambda)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
         let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;

@@ -1,6 +1,7 @@
 //! The live network as a burn module.
 
-use super::features::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, LiveInput, ROW_CHANNELS, ROWS, SCALARS};
+use super::features::LiveInput;
+use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::layers::{Block, WrapConv, blocks, small, through, zeroed};
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};

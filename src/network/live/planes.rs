@@ -1,8 +1,10 @@
 //! Channels-last pictures and what the live network's engine does with them again and again.
 
 use super::kernel::{Packed, convolve, padded};
+use super::vector::LANES;
 use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
+use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
 /// Channels-last picture: `[h, w, c]`.
@@ -83,35 +85,53 @@ impl Block {
 impl Context {
     pub(super) fn forward(&self, x: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
         let (h, w, c) = (x.h, x.w, x.c);
-        pool.clear();
         pool.resize((h + w) * 2 * c, 0.0);
-        let (row_pool, col_pool) = pool.split_at_mut(h * 2 * c);
-        for pooled in row_pool.chunks_exact_mut(2 * c).chain(col_pool.chunks_exact_mut(2 * c)) {
-            pooled[c..].fill(f32::NEG_INFINITY);
-        }
-        for (y, line) in x.data.chunks_exact(w * c).enumerate() {
-            let row = &mut row_pool[y * 2 * c..(y + 1) * 2 * c];
-            for (cell, col) in line.chunks_exact(c).zip(col_pool.chunks_exact_mut(2 * c)) {
-                for (i, v) in cell.iter().enumerate() {
-                    row[i] += v / w as f32;
-                    row[c + i] = row[c + i].max(*v);
-                    col[i] += v / h as f32;
-                    col[c + i] = col[c + i].max(*v);
-                }
-            }
-        }
+        let (row_pool, column_pool) = pool.split_at_mut(h * 2 * c);
+        Simd::chosen().run(Pool { x, rows: row_pool, columns: column_pool });
         mixed.resize((h + w) * c, 0.0);
         let (rows, cols) = mixed.split_at_mut(h * c);
         convolve(&self.row, row_pool, h, h, rows);
-        convolve(&self.col, col_pool, w, w, cols);
-        mixed.iter_mut().for_each(|v| *v = v.max(0.0));
+        convolve(&self.col, column_pool, w, w, cols);
+        mixed.iter_mut().for_each(|v| *v = rectified(*v));
         let (rows, cols) = mixed.split_at(h * c);
-        for (line, row) in x.data.chunks_exact_mut(w * c).zip(rows.chunks_exact(c)) {
-            for (cell, col) in line.chunks_exact_mut(c).zip(cols.chunks_exact(c)) {
-                for ((v, r), k) in cell.iter_mut().zip(row).zip(col) {
+        x.data.par_chunks_mut(w * c).with_min_len(16).zip(rows.par_chunks(c)).for_each(|(line, row)| {
+            for (cell, column) in line.chunks_exact_mut(c).zip(cols.chunks_exact(c)) {
+                for ((v, r), k) in cell.iter_mut().zip(row).zip(column) {
                     *v += r + k;
                 }
             }
-        }
+        });
+    }
+}
+
+type Vector = Lanes<f32, LANES>;
+
+/// Means and maxima over rows and over columns; each cell of the results holds the means of all channels, then the maxima.
+struct Pool<'a> {
+    x: &'a Plane,
+    rows: &'a mut [f32],
+    columns: &'a mut [f32],
+}
+
+impl Kernel for Pool<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let &Plane { h, w, c, ref data } = self.x;
+        let pool = |pooled: &mut [f32], first: usize, step: usize, many: usize| {
+            for channel in (0..c).step_by(LANES) {
+                let (mut sum, mut most) = (Vector::splat(0.0), Vector::splat(f32::NEG_INFINITY));
+                for cell in 0..many {
+                    let v = Vector::load(&data[(first + cell * step) * c + channel..]);
+                    sum = sum + v;
+                    most = most.zip(v, f32::max);
+                }
+                (sum * Vector::splat((many as f32).recip())).store(&mut pooled[channel..]);
+                most.store(&mut pooled[c + channel..]);
+            }
+        };
+        self.rows.chunks_exact_mut(2 * c).enumerate().for_each(|(y, pooled)| pool(pooled, y * w, 1, w));
+        self.columns.chunks_exact_mut(2 * c).enumerate().for_each(|(x, pooled)| pool(pooled, x, w, h));
     }
 }

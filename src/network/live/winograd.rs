@@ -148,18 +148,6 @@ impl Band {
 
 type Vector = Lanes<f32, LANES_F32>;
 
-#[inline(always)]
-fn load(from: &[f32]) -> Vector {
-    let mut lanes = [0.0; LANES_F32];
-    lanes.copy_from_slice(&from[..LANES_F32]);
-    Lanes(lanes)
-}
-
-#[inline(always)]
-fn store(v: Vector, to: &mut [f32]) {
-    to[..LANES_F32].copy_from_slice(&v.0);
-}
-
 /// Six neighbouring cells of a line, every fourth of which begins a group, to the six factors of the group's products.
 struct Spread<'a> {
     line: &'a [f32],
@@ -178,18 +166,18 @@ impl Kernel for Spread<'_> {
         for group in 0..groups {
             let cells = &line[OUTPUTS * group * channels..];
             for channel in (0..channels).step_by(LANES) {
-                let d = |cell: usize| load(&cells[cell * channels + channel..]);
+                let d = |cell: usize| Vector::load(&cells[cell * channels + channel..]);
                 let (d1, d2, d3, d4) = (d(1), d(2), d(3), d(4));
                 let (even, odd) = (times(d2, -4.0, d4), times(d1, -4.0, d3));
                 let (far, near) = (d4 - d2, d3 - d1);
                 // Written out, as an array of vectors would go through memory.
                 let at = group * channels + channel;
-                store(times(d(0), 4.0, times(d2, -5.0, d4)), &mut to0[at..]);
-                store(even + odd, &mut to1[at..]);
-                store(even - odd, &mut to2[at..]);
-                store(times(near, 2.0, far), &mut to3[at..]);
-                store(times(near, -2.0, far), &mut to4[at..]);
-                store(times(d1, 4.0, times(d3, -5.0, d(5))), &mut to5[at..]);
+                times(d(0), 4.0, times(d2, -5.0, d4)).store(&mut to0[at..]);
+                (even + odd).store(&mut to1[at..]);
+                (even - odd).store(&mut to2[at..]);
+                times(near, 2.0, far).store(&mut to3[at..]);
+                times(near, -2.0, far).store(&mut to4[at..]);
+                times(d1, 4.0, times(d3, -5.0, d(5))).store(&mut to5[at..]);
             }
         }
     }
@@ -213,14 +201,19 @@ impl Kernel for Gather<'_> {
         for (group, to) in to.chunks_exact_mut(OUTPUTS * channels).enumerate() {
             for channel in (0..channels).step_by(LANES) {
                 let at = group * channels + channel;
-                let (m1, m2, m3, m4) = (load(&from1[at..]), load(&from2[at..]), load(&from3[at..]), load(&from4[at..]));
-                let bias = load(&bias[channel..]);
+                let (m1, m2, m3, m4) = (
+                    Vector::load(&from1[at..]),
+                    Vector::load(&from2[at..]),
+                    Vector::load(&from3[at..]),
+                    Vector::load(&from4[at..]),
+                );
+                let bias = Vector::load(&bias[channel..]);
                 let (sum, gap) = (m1 + m2 + bias, m1 - m2 + bias);
                 let (wide_sum, wide_gap) = (m3 + m4, m3 - m4);
-                store(load(&from0[at..]) + sum + wide_sum, &mut to[channel..]);
-                store(times(wide_gap, 2.0, gap), &mut to[channels + channel..]);
-                store(times(wide_sum, 4.0, sum), &mut to[2 * channels + channel..]);
-                store(times(wide_gap, 8.0, gap + load(&from5[at..])), &mut to[3 * channels + channel..]);
+                (Vector::load(&from0[at..]) + sum + wide_sum).store(&mut to[channel..]);
+                times(wide_gap, 2.0, gap).store(&mut to[channels + channel..]);
+                times(wide_sum, 4.0, sum).store(&mut to[2 * channels + channel..]);
+                times(wide_gap, 8.0, gap + Vector::load(&from5[at..])).store(&mut to[3 * channels + channel..]);
             }
         }
     }

@@ -93,6 +93,20 @@ impl<T: Real, const W: usize> Lanes<T, W> {
         Lanes([v; W])
     }
 
+    /// The first `W` of `from`.
+    #[inline(always)]
+    pub fn load(from: &[T]) -> Self {
+        let mut lanes = [T::default(); W];
+        lanes.copy_from_slice(&from[..W]);
+        Lanes(lanes)
+    }
+
+    /// Writes the lanes over the first `W` of `to`.
+    #[inline(always)]
+    pub fn store(self, to: &mut [T]) {
+        to[..W].copy_from_slice(&self.0);
+    }
+
     /// Applies `f` to every lane.
     #[inline(always)]
     pub fn map(mut self, f: impl Fn(T) -> T) -> Self {

@@ -1,0 +1,147 @@
+//! The coarse features: each end's beams, the same on the grid that the array's centre sees, and their phases.
+
+use super::fastmath::logarithm;
+use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, ELEMENTS, LEAST_ROWS, ROWS, cosine};
+use super::registration::Registration;
+use crate::radar::{End, Radar, hann};
+use crate::signal::simd::{Kernel, Simd};
+use ndarray::Array2;
+use num_complex::{Complex32, Complex64};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+const PLANE: usize = ROWS * COARSE;
+
+/// Tables that depend on the radar alone.
+#[derive(Debug)]
+pub(super) struct Coarse {
+    /// The centre's grid from either end.
+    centre: [Registration<COARSE>; 2],
+    /// `[512, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
+    even: Vec<Complex64>,
+    /// `[elements, 64]`: windowed steering vectors.
+    beams: Array2<Complex64>,
+}
+
+/// What is said of one end.
+#[derive(Debug)]
+struct Seen {
+    /// `[512, 64]` log10 amplitude.
+    magnitude: Vec<f32>,
+    /// `[512, 64]` of amplitude 1.
+    phase: Vec<Complex32>,
+    /// `[512, 64]` with even phases, the strongest 1.
+    even: Vec<Complex32>,
+}
+
+impl Coarse {
+    pub(super) fn new(radar: &Radar) -> Self {
+        let centre = End::BOTH.map(|end| Registration::new(radar, 0.0, radar.end_centre_metres(end)));
+        Coarse { centre, even: even_phases(), beams: beams() }
+    }
+
+    /// `[10, 512, 64]`, see [`LiveInput::coarse`](super::features::LiveInput::coarse), of both ends' range profiles `[512, 12]`.
+    pub(super) fn features(&self, profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
+        let [first, last] = profiles;
+        let (first, last) = rayon::join(|| self.seen(first), || self.seen(last));
+        let both = [first, last];
+        let mut coarse = vec![0.0; COARSE_CHANNELS * PLANE];
+        let (magnitudes, rest) = coarse.split_at_mut(2 * PLANE);
+        let (registered, rest) = rest.split_at_mut(2 * PLANE);
+        let (steps, between) = rest.split_at_mut(4 * PLANE);
+        for (e, seen) in both.iter().enumerate() {
+            let part = e * PLANE..(e + 1) * PLANE;
+            magnitudes[part.clone()].copy_from_slice(&seen.magnitude);
+            rows_of(&mut registered[part]).for_each(|(row, to)| {
+                to.iter_mut().zip(self.centre[e].row(&seen.magnitude, row)).for_each(|(to, v)| *to = v);
+            });
+            let (cosines, sines) = steps[2 * e * PLANE..2 * (e + 1) * PLANE].split_at_mut(PLANE);
+            rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
+                let of = |row: usize| &seen.phase[row * COARSE..(row + 1) * COARSE];
+                let steps = of(row).iter().zip(of((row + ROWS - 1) % ROWS)).map(|(here, before)| here * before.conj());
+                cosines
+                    .iter_mut()
+                    .zip(sines)
+                    .zip(steps)
+                    .for_each(|((cos, sin), step)| (*cos, *sin) = (step.re, step.im));
+            });
+        }
+        self.fill_phase_between(&both, between);
+        coarse
+    }
+
+    /// Beams of an end's range profiles `[512, 12]`.
+    fn seen(&self, profiles: &Array2<Complex64>) -> Seen {
+        let beams = profiles.dot(&self.beams);
+        let strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
+        let zeros = || vec![Complex32::default(); PLANE];
+        let mut seen = Seen { magnitude: vec![0.0; PLANE], phase: zeros(), even: zeros() };
+        Simd::chosen().run(Look { beams: &beams, even: &self.even, strongest, seen: &mut seen });
+        seen
+    }
+
+    /// Cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one colour for every
+    /// cell of a reflector, another for the next reflector. Twice, because side lobes change their sign.
+    fn fill_phase_between(&self, both: &[Seen; 2], planes: &mut [f32]) {
+        let (cosines, sines) = planes.split_at_mut(PLANE);
+        rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
+            let [first, last] = [0, 1].map(|e| self.centre[e].row(&both[e].even, row));
+            for ((cos, sin), (a, b)) in cosines.iter_mut().zip(sines).zip(first.zip(last)) {
+                let wide = |v: Complex32| Complex64::new(v.re.into(), v.im.into());
+                let cross = wide(a) * wide(b).conj();
+                let phase = cross * (cross.norm_sqr().sqrt() + 1e-300).recip();
+                let twice = phase * phase;
+                (*cos, *sin) = (twice.re as f32, twice.im as f32);
+            }
+        });
+    }
+}
+
+/// The rows of a plane, shared out among processors.
+fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mut [f32])> {
+    plane.par_chunks_mut(COARSE).with_min_len(LEAST_ROWS).enumerate()
+}
+
+/// From an end's beams to what is said of them.
+struct Look<'a> {
+    beams: &'a Array2<Complex64>,
+    even: &'a [Complex64],
+    strongest: f64,
+    seen: &'a mut Seen,
+}
+
+impl Kernel for Look<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let narrow = |v: Complex64| Complex32::new(v.re as f32, v.im as f32);
+        let Seen { magnitude, phase, even } = self.seen;
+        let cells = self.beams.iter().zip(self.even);
+        for (((v, factor), magnitude), (phase, even)) in cells.zip(magnitude).zip(phase.iter_mut().zip(even)) {
+            let power = v.norm_sqr();
+            *magnitude = 0.5 * logarithm((power as f32).max(LEAST_POWER));
+            *phase = narrow(v * (power.sqrt() + 1e-300).recip());
+            *even = narrow(v * factor * self.strongest);
+        }
+    }
+}
+
+/// Less than any sample's rounding leaves, and more than the least f32.
+const LEAST_POWER: f32 = 1e-36;
+
+/// `[512, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
+/// (half an element off) the end's middle; the half lets the angle axis close, the phase at cos(theta) = -1 and 1 being the same.
+fn even_phases() -> Vec<Complex64> {
+    let row = |r: usize| PI * (ROWS - 1) as f64 / ROWS as f64 * r as f64;
+    let column = |k: usize| PI * (ELEMENTS / 2) as f64 * cosine(k, COARSE);
+    (0..PLANE).map(|i| Complex64::from_polar(1.0, row(i / COARSE) + column(i % COARSE))).collect()
+}
+
+/// Hann-windowed steering vectors of 64 beams over 12 elements, scaled as the 1024-column transform.
+fn beams() -> Array2<Complex64> {
+    let window = hann(ELEMENTS);
+    Array2::from_shape_fn((ELEMENTS, COARSE), |(m, k)| {
+        Complex64::from_polar(window[m] / (COLUMNS as f64).sqrt(), -PI * m as f64 * cosine(k, COARSE))
+    })
+}

@@ -1,0 +1,29 @@
+//! The sizes of what goes into the live network and comes out of it.
+
+/// Range rows of every tensor.
+pub const ROWS: usize = 512;
+/// Columns of the map.
+pub const COLUMNS: usize = 1024;
+/// Columns of the fine features.
+pub const FINE: usize = 256;
+/// Columns of the coarse features.
+pub const COARSE: usize = 64;
+/// Channels of the fine features.
+pub const FINE_CHANNELS: usize = 4;
+/// Channels of the coarse features.
+pub const COARSE_CHANNELS: usize = 10;
+/// Channels of the row features.
+pub const ROW_CHANNELS: usize = 6;
+/// Scalars beside the pictures.
+pub const SCALARS: usize = 2;
+
+/// Elements of an end.
+pub(super) const ELEMENTS: usize = 12;
+/// Fewest rows that one processor takes at a time.
+pub(super) const LEAST_ROWS: usize = 32;
+
+/// cos(theta) of column `k` of a grid of `columns`.
+pub(super) fn cosine(k: usize, columns: usize) -> f64 {
+    let half = (columns / 2) as f64;
+    (k as f64 - half) / half
+}

@@ -1,0 +1,57 @@
+//! What one end sees, gathered onto the polar grid that another place sees: the same reflector lies up to 27 range bins apart in the two.
+
+use super::grid::{ROWS, cosine};
+use crate::radar::Radar;
+use std::ops::{Add, Mul};
+
+/// For each cell of a polar grid of so many columns, where it lies on another: bilinear look-ups.
+#[derive(Debug)]
+pub(super) struct Registration<const COLUMNS: usize> {
+    taps: Vec<Tap>,
+}
+
+/// A place between four cells, in eight bytes, as many of them are read as there are cells to look up.
+#[derive(Debug, Clone, Copy)]
+struct Tap {
+    /// The first of the four; the others are beside it, where angles wrap around, and below.
+    cell: u32,
+    /// How far it is to the next row and to the next column, in parts of [`WHOLE`].
+    part: [u16; 2],
+}
+
+const WHOLE: f32 = u16::MAX as f32;
+
+impl<const COLUMNS: usize> Registration<COLUMNS> {
+    /// For each cell of the polar grid around x = `from`, where it lies on the polar grid around x = `to`; metres.
+    pub(super) fn new(radar: &Radar, from: f64, to: f64) -> Self {
+        const { assert!(COLUMNS.is_power_of_two()) };
+        let bin = radar.range_resolution_metres();
+        let half = (COLUMNS / 2) as f64;
+        let tap = |i: usize| {
+            let (r, u) = ((i / COLUMNS) as f64 * bin, cosine(i % COLUMNS, COLUMNS));
+            let dx = r * u + from - to;
+            let distance = (dx * dx + r * r * (1.0 - u * u)).sqrt();
+            let u = if distance > 0.0 { dx / distance } else { 0.0 };
+            let (row, column) = ((distance / bin).min((ROWS - 1) as f64), u * half + half);
+            let (r0, c0) = ((row.floor() as usize).min(ROWS - 2), column.floor());
+            let part = [row - r0 as f64, column - c0].map(|part| (part as f32 * WHOLE).round() as u16);
+            Tap { cell: (r0 * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }
+        };
+        Registration { taps: (0..ROWS * COLUMNS).map(tap).collect() }
+    }
+
+    /// What row `row` of the grid sees of `plane` `[512, COLUMNS]`.
+    #[inline]
+    pub(super) fn row<T>(&self, plane: &[T], row: usize) -> impl Iterator<Item = T>
+    where
+        T: Copy + Add<Output = T> + Mul<f32, Output = T>,
+    {
+        self.taps[row * COLUMNS..(row + 1) * COLUMNS].iter().map(|tap| {
+            let first = tap.cell as usize;
+            let beside = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
+            let [down, right] = tap.part.map(|part| f32::from(part) / WHOLE);
+            let line = |below: usize| plane[first + below] * (1.0 - right) + plane[beside + below] * right;
+            line(0) * (1.0 - down) + line(COLUMNS) * down
+        })
+    }
+}
