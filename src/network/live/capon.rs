@@ -98,7 +98,10 @@ fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Comple
             }
         }
     }
-    let trace = (0..N).fold(ZERO.re, |sum, i| sum + cov[i][i].re);
+    let mut trace = ZERO.re;
+    for i in 0..N {
+        trace = trace + cov[i][i].re;
+    }
     // A silent row's covariance is the loading alone.
     let scale = trace.map(|v| if v > 0.0 { N as f64 / v } else { 0.0 });
     // Cholesky factor L of the loaded covariance, whose diagonal is real, then M = L^-1; R^-1 = M^H M.
@@ -121,7 +124,10 @@ fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Comple
     for i in 0..N {
         m[i][i].re = inverse[i];
         for j in 0..i {
-            let sum = (j..i).fold(ZERO, |sum, k| sum.plus_product::<FMA>(l[i][k], m[k][j]));
+            let mut sum = ZERO;
+            for k in j..i {
+                sum = sum.plus_product::<FMA>(l[i][k], m[k][j]);
+            }
             m[i][j] = sum.scaled(-inverse[i]);
         }
     }

@@ -72,7 +72,7 @@ impl Coarse {
 
     /// Beams of an end's range profiles `[512, 12]`.
     fn seen(&self, profiles: &Array2<Complex64>) -> Seen {
-        let beams = profiles.dot(&self.beams);
+        let beams = profiles.dot(&self.beams).into_raw_vec_and_offset().0;
         let strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
         let zeros = || vec![Complex32::default(); PLANE];
         let mut seen = Seen { magnitude: vec![0.0; PLANE], phase: zeros(), even: zeros() };
@@ -104,7 +104,7 @@ fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mu
 
 /// From an end's beams to what is said of them.
 struct Look<'a> {
-    beams: &'a Array2<Complex64>,
+    beams: &'a [Complex64],
     even: &'a [Complex64],
     strongest: f64,
     seen: &'a mut Seen,

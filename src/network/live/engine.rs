@@ -2,7 +2,7 @@
 //!
 //! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
-use super::fastmath::{exp10, log10};
+use super::fastmath::{each, logarithm, power_of_ten};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{Packed, convolve, padded, product};
@@ -11,11 +11,12 @@ use super::planes::{Block, Context, Plane, pooled_mix, rectified};
 use super::vector::LANES;
 use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
-use crate::signal::simd::Simd;
+use crate::signal::simd::{Kernel, Simd};
 use rayon::prelude::*;
 
 /// Fine columns in a coarse one, and map columns in a fine one.
 const FOLD: usize = FINE / COARSE;
+const _: () = assert!(FOLD == 4, "cell_by_cell spreads over four cells");
 const SPREAD: usize = COLUMNS / FINE;
 
 /// What the network says about one scene, in decades above the samples' gain.
@@ -83,6 +84,12 @@ impl LiveEngine {
             let (weights, bias) = tensors(name, &[output, input, kernel, kernel])?;
             Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
         };
+        // One cell becomes four.
+        let up = |name: &str, input: usize, output: usize| {
+            let (weights, bias) = tensors(name, &[4 * output, input, 1, 1])?;
+            let (weights, bias) = (cell_by_cell(&weights, output), cell_by_cell(&bias, output));
+            Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
+        };
         let linear = |name: &str, input: usize, output: usize| {
             let (weights, bias) = tensors(name, &[output, input])?;
             Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
@@ -111,9 +118,12 @@ impl LiveEngine {
                 blocks("enc3", b3, c3, true)?,
             ],
             down: [small("down1", c0, c1, 2)?, small("down2", c1, c2, 2)?, small("down3", c2, c3, 2)?],
-            up: [small("up0", c1, 4 * c0, 1)?, small("up1", c2, 4 * c1, 1)?, small("up2", c3, 4 * c2, 1)?],
+            up: [up("up0", c1, c0)?, up("up1", c2, c1)?, up("up2", c3, c2)?],
             decoder: [blocks("dec0", b0, c0, false)?, blocks("dec1", b1, c1, false)?, blocks("dec2", b2, c2, true)?],
-            widen: inner("widen.conv", c0, WIDENED * FOLD)?,
+            widen: {
+                let (weights, bias) = tensors("widen.conv", &[WIDENED * FOLD, c0, 3, 3])?;
+                Conv3x3::new(&cell_by_cell(&weights, WIDENED), &cell_by_cell(&bias, WIDENED), c0, padded(c0))
+            },
             fine1: conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
             fine2: small("fine2", config.fine, 2 * SPREAD, 1)?,
             row_sources: small("row_sources", c0, WIDE / COARSE, 1)?,
@@ -210,7 +220,7 @@ impl LiveEngine {
         });
         let mut map = vec![0.0; ROWS * COLUMNS];
         product(&self.columns, right, ROWS, COLUMNS, &mut map);
-        let floor = 10f32.powf(floor);
+        let (simd, floor) = (Simd::chosen(), 10f32.powf(floor));
         map.par_chunks_mut(COLUMNS).enumerate().for_each(|(row, line)| {
             let mut local = [0.0; COLUMNS];
             let cells = heads.data[row * FINE * heads.c..].chunks_exact(heads.c);
@@ -230,74 +240,88 @@ impl LiveEngine {
                 *w += cells.iter().sum::<f32>() / EACH as f32;
             }
             let mut lobes = [floor; WIDE];
-            for (w, kernel) in wide.iter().zip(self.rows.chunks_exact(WIDE)) {
-                lobes.iter_mut().zip(kernel).for_each(|(l, k)| *l += w * k);
-            }
+            simd.run(Lobes { sources: &wide, kernels: &self.rows, lobes: &mut lobes });
             for (cells, lobe) in line.chunks_exact_mut(EACH).zip(lobes) {
                 cells.iter_mut().for_each(|v| *v += lobe);
             }
-            log10(line);
+            each(line, logarithm);
         });
         map
     }
+}
+
+/// What belongs to the output channels of a layer that one cell's channels spread over several cells, with `channels` each, put into the order
+/// of those cells. PyTorch's pixel shuffle has it channel by channel.
+fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
+    let cells = 4;
+    let each = of_channels.len() / (cells * channels);
+    let part = |cell: usize, channel: usize| &of_channels[(channel * cells + cell) * each..][..each];
+    (0..cells).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
 }
 
 fn decades_in(v: f32) -> f32 {
     ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
+/// The fine features of a row as the network takes them.
+fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE]; FINE_CHANNELS] {
+    std::array::from_fn(|channel| {
+        let at = (channel * ROWS + row) * FINE;
+        let mut line = [0.0; FINE];
+        line.iter_mut().zip(&fine[at..at + FINE]).for_each(|(to, v)| *to = decades_in(*v));
+        line
+    })
+}
+
 /// A line of the first convolution's input; channels in the order of [`super::module::Live::forward`].
 fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mut [f32]) {
-    let half = (COARSE / 2) as f32;
+    const COARSE_AT: usize = FINE_CHANNELS * FOLD;
+    const ROWS_AT: usize = COARSE_AT + COARSE_CHANNELS;
+    const SCALARS_AT: usize = ROWS_AT + ROW_CHANNELS;
+    const GRID_AT: usize = SCALARS_AT + SCALARS;
+    let fine = fine_in(&input.fine, row);
+    let coarse: [&[f32]; COARSE_CHANNELS] =
+        std::array::from_fn(|c| &input.coarse[(c * ROWS + row) * COARSE..][..COARSE]);
+    let mut whole_row = [0.0; INPUT_CHANNELS - ROWS_AT];
+    for (c, v) in whole_row[..ROW_CHANNELS].iter_mut().enumerate() {
+        let of_row = input.rows[c * ROWS + row];
+        *v = if c < 4 { of_row } else { decades_in(of_row) };
+    }
+    whole_row[ROW_CHANNELS..GRID_AT - ROWS_AT].copy_from_slice(scalars);
     let range = row as f32;
-    let (linear, log) = (range / 256.0 - 1.0, (range + 4.0).log10() - 2.0);
+    whole_row[GRID_AT - ROWS_AT..][..2].copy_from_slice(&[range / 256.0 - 1.0, (range + 4.0).log10() - 2.0]);
+    let half = (COARSE / 2) as f32;
     for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
-        let mut values = cell.iter_mut();
-        let mut put = |v: f32| {
-            if let Some(slot) = values.next() {
-                *slot = v;
-            }
-        };
-        for plane in input.fine.chunks_exact(ROWS * FINE) {
-            let at = row * FINE + k * FOLD;
-            plane[at..at + FOLD].iter().for_each(|v| put(decades_in(*v)));
+        for (to, plane) in cell.chunks_exact_mut(FOLD).zip(&fine) {
+            to.copy_from_slice(&plane[k * FOLD..(k + 1) * FOLD]);
         }
-        for (c, plane) in input.coarse.chunks_exact(ROWS * COARSE).enumerate().take(COARSE_CHANNELS) {
-            let v = plane[row * COARSE + k];
-            put(if c < 4 { decades_in(v) } else { v });
+        for (c, (to, plane)) in cell[COARSE_AT..].iter_mut().zip(coarse).enumerate() {
+            *to = if c < 4 { decades_in(plane[k]) } else { plane[k] };
         }
-        for (c, plane) in input.rows.chunks_exact(ROWS).enumerate().take(ROW_CHANNELS) {
-            put(if c < 4 { plane[row] } else { decades_in(plane[row]) });
-        }
-        scalars.iter().for_each(|v| put(*v));
+        cell[ROWS_AT..].copy_from_slice(&whole_row);
         let u = (k as f32 - half) / half;
-        [linear, log, u, (1.0 - u * u).sqrt()].into_iter().for_each(put);
+        cell[GRID_AT + 2..].copy_from_slice(&[u, (1.0 - u * u).sqrt()]);
     }
 }
 
 /// A line of the fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
 fn read_fine(fine: &[f32], widened: &Plane, row: usize, line: &mut [f32]) {
-    for (k, cell) in line.chunks_exact_mut(WIDENED + FINE_CHANNELS).enumerate() {
-        let from = &widened.data[(row * COARSE + k / FOLD) * widened.c..];
-        for (i, v) in cell[..WIDENED].iter_mut().enumerate() {
-            *v = from[i * FOLD + k % FOLD];
-        }
-        for (i, v) in cell[WIDENED..].iter_mut().enumerate() {
-            *v = decades_in(fine[(i * ROWS + row) * FINE + k]);
-        }
+    let fine = fine_in(fine, row);
+    let cells =
+        widened.data[row * COARSE * widened.c..].chunks_exact(widened.c).flat_map(|cell| cell.chunks_exact(WIDENED));
+    for (k, (cell, from)) in line.chunks_exact_mut(WIDENED + FINE_CHANNELS).zip(cells).enumerate() {
+        cell[..WIDENED].copy_from_slice(from);
+        cell[WIDENED..].iter_mut().zip(&fine).for_each(|(to, plane)| *to = plane[k]);
     }
 }
 
-/// Adds the pixel shuffle of `from` `[h, w, 4 c]` to `to` `[2 h, 2 w, c]`.
+/// Adds `from` `[h, w, 4 c]`, whose channels are those of four cells one after the other, to `to` `[2 h, 2 w, c]`.
 fn add_doubled(from: &Plane, to: &mut Plane, c: usize) {
     let (w, width, lanes) = (from.w, to.w, to.c);
     to.data.par_chunks_mut(width * lanes).with_min_len(8).enumerate().for_each(|(y, line)| {
         for (x, cell) in line.chunks_exact_mut(lanes).enumerate() {
-            let source = &from.data[((y / 2) * w + x / 2) * from.c..];
-            let sub = 2 * (y % 2) + x % 2;
-            for (i, v) in cell[..c].iter_mut().enumerate() {
-                *v += source[4 * i + sub];
-            }
+            let at = ((y / 2) * w + x / 2) * from.c + (2 * (y % 2) + x % 2) * c;
+            cell.iter_mut().zip(&from.data[at..at + c]).for_each(|(v, more)| *v += more);
         }
     });
 }
@@ -309,6 +333,23 @@ fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
 
 /// A head's output as amplitudes.
 fn amplitudes(values: &mut [f32]) {
-    values.iter_mut().for_each(|v| *v = (*v * 3.0 - 3.0).clamp(-18.0, 4.0));
-    exp10(values);
+    each(values, |v| power_of_ten((v * 3.0 - 3.0).clamp(-18.0, 4.0)));
+}
+
+/// Side lobes in angle: adds the product of `sources` `[128]` and `kernels` `[128, 128]` to `lobes` `[128]`.
+struct Lobes<'a> {
+    sources: &'a [f32; WIDE],
+    kernels: &'a [f32],
+    lobes: &'a mut [f32; WIDE],
+}
+
+impl Kernel for Lobes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        for (source, kernel) in self.sources.iter().zip(self.kernels.chunks_exact(WIDE)) {
+            self.lobes.iter_mut().zip(kernel).for_each(|(lobe, k)| *lobe += source * k);
+        }
+    }
 }

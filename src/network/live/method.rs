@@ -1,6 +1,7 @@
 //! The live network as a reconstruction method.
 
 use super::engine::{Decades, LiveEngine, Scratch};
+use super::fastmath::each;
 use super::features::FeatureExtractor;
 use super::grid::{COLUMNS, ROWS};
 use super::module::LiveConfig;
@@ -101,11 +102,11 @@ impl Reconstructor for LiveMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let Decades { map, minimum } = self.decades(radar, ends)?;
+        let Decades { mut map, minimum } = self.decades(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
-        let lambda = map.into_par_iter().map(|v| scale.lambda(v.into()) as f32).collect();
-        let lambda = Array2::from_shape_vec((ROWS, COLUMNS), lambda)
+        map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
+        let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
         let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
         Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: Some(eta) })
