@@ -87,14 +87,13 @@ impl Kernel for Spectra<'_> {
 fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Complexes; SUBARRAY]) {
     const N: usize = SUBARRAY;
     const ZERO: Complexes = Complexes { re: Lanes([0.0; ROWS_AT_ONCE]), im: Lanes([0.0; ROWS_AT_ONCE]) };
-    let conj = |v: Complexes| ComplexLanes { re: v.re, im: -v.im };
     let mut cov = [[ZERO; N]; N];
     for start in 0..SLIDES {
         let x = &z[start..start + N];
         for i in 0..N {
             for j in 0..=i {
-                cov[i][j] = cov[i][j].plus_product::<FMA>(x[i], conj(x[j]));
-                cov[i][j] = cov[i][j].plus_product::<FMA>(conj(x[N - 1 - i]), x[N - 1 - j]);
+                cov[i][j] = cov[i][j].plus_product::<FMA>(x[i], x[j].conj());
+                cov[i][j] = cov[i][j].plus_product::<FMA>(x[N - 1 - i].conj(), x[N - 1 - j]);
             }
         }
     }
@@ -111,7 +110,7 @@ fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Comple
         for j in 0..=i {
             let mut v = cov[i][j].scaled(scale);
             for k in 0..j {
-                v = v - l[i][k].times::<FMA>(conj(l[j][k]));
+                v = v - l[i][k].times::<FMA>(l[j][k].conj());
             }
             if i == j {
                 inverse[i] = (v.re + Numbers::splat(LOADING)).map(|v| v.max(1e-12).sqrt().recip());
@@ -136,7 +135,7 @@ fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Comple
         // Below its diagonal alone M is not zero.
         for row in d..N {
             for i in 0..=row - d {
-                *lag = lag.plus_product::<FMA>(conj(m[row][i]), m[row][i + d]);
+                *lag = lag.plus_product::<FMA>(m[row][i].conj(), m[row][i + d]);
             }
         }
         if d > 0 {

@@ -1,6 +1,6 @@
 //! Echoes of many reflectors at every channel of both ends: sums of them, and their products with a residual.
 
-use super::sensor::{NEAREST_METRES, Sensor, W};
+use super::sensor::{Sensor, W, kept_apart};
 use crate::scene::Reflector;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
 use crate::signal::split::{Factors, STRIDE, add_product, fill_factors};
@@ -12,21 +12,6 @@ use rayon::prelude::*;
 pub struct Samples {
     /// One lane a channel.
     pub blocks: Vec<Vec<ComplexLanes<f64, W>>>,
-}
-
-/// A reflector as every channel hears it; all vectors have one entry a channel.
-#[derive(Debug, Clone)]
-pub struct Echo {
-    /// Frequency in range bins, wrapped.
-    pub bins: Vec<f64>,
-    /// Value at the middle of the chirp.
-    pub middle: Vec<Complex64>,
-    /// Change of the distance by the reflector's x.
-    pub by_x: Vec<f64>,
-    /// Change of the distance by half the square of the reflector's y, per metre.
-    pub by_half_square: Vec<f64>,
-    /// Relative loss of amplitude by distance, per metre.
-    pub decay: Vec<f64>,
 }
 
 /// Products of one echo and of its echo times time with a residual, channel by channel.
@@ -74,40 +59,6 @@ impl Samples {
             out.extend(block[..sensor.samples].iter().map(|v| Complex64::new(v.re.0[lane], v.im.0[lane])));
         }
         out
-    }
-}
-
-/// `r` moved to where its distance from every element is a number that can be divided by.
-fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
-    let nearest = sensor.element_x.iter().fold(f64::INFINITY, |m, x| m.min((x - r.x_metres).abs()));
-    let y_metres = if nearest.hypot(r.y_metres) < NEAREST_METRES { NEAREST_METRES } else { r.y_metres };
-    Reflector { y_metres, ..*r }
-}
-
-impl Echo {
-    /// The echo of `r`.
-    pub fn new(sensor: &Sensor, r: &Reflector) -> Self {
-        let r = kept_apart(sensor, r);
-        let (samples, count) = (sensor.samples as f64, sensor.element_x.len());
-        let middle = (samples - 1.0) / 2.0;
-        let mut echo = Echo {
-            bins: Vec::with_capacity(count),
-            middle: Vec::with_capacity(count),
-            by_x: Vec::with_capacity(count),
-            by_half_square: Vec::with_capacity(count),
-            decay: Vec::with_capacity(count),
-        };
-        for (&x, &hears) in sensor.element_x.iter().zip(&sensor.hears) {
-            let e = sensor.model.echo(x, &r);
-            echo.bins.push(e.beat_turns * samples);
-            let turns = e.carrier_turns + (e.beat_turns * middle).fract();
-            let amplitude = if hears { e.amplitude } else { 0.0 };
-            echo.middle.push(Complex64::from_polar(amplitude, std::f64::consts::TAU * turns));
-            echo.by_x.push((r.x_metres - x) / e.distance_metres);
-            echo.by_half_square.push(1.0 / e.distance_metres);
-            echo.decay.push(2.0 / e.distance_metres);
-        }
-        echo
     }
 }
 
@@ -286,12 +237,12 @@ impl Kernel for Multiply<'_> {
             for (a, (row, part)) in f.rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
                 let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
                 for (b, (column, v)) in f.columns.iter().zip(part).enumerate() {
-                    let product = conjugate(*column).times::<FMA>(*v);
+                    let product = column.conj().times::<FMA>(*v);
                     plain = plain + product;
                     timed = timed + product.scaled(Lanes::splat(b as f64 / samples));
                 }
                 let start = ((a * STRIDE) as f64 - middle) / samples;
-                let row = conjugate(*row);
+                let row = row.conj();
                 sums[0] = sums[0].plus_product::<FMA>(row, plain);
                 sums[1] = sums[1].plus_product::<FMA>(row, timed + plain.scaled(Lanes::splat(start)));
             }
@@ -299,11 +250,6 @@ impl Kernel for Multiply<'_> {
         }
         products
     }
-}
-
-#[inline(always)]
-fn conjugate(v: ComplexLanes<f64, W>) -> ComplexLanes<f64, W> {
-    ComplexLanes { re: v.re, im: -v.im }
 }
 
 #[cfg(test)]

@@ -4,11 +4,12 @@
 //! range are orthogonal.
 
 use super::atom::Atom;
-use super::echoes::{Echo, Products};
+use super::echo::{Echo, Echoes};
+use super::echoes::Products;
 use super::moments::Moments;
-use super::sensor::Sensor;
+use super::sensor::{Sensor, W};
 use crate::scene::Reflector;
-use crate::signal::simd::{Kernel, Simd};
+use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
 use faer::Mat;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -39,8 +40,12 @@ type Block = [[Complex64; 3]; 3];
 impl<'a> Dictionary<'a> {
     /// Of `atoms`, with a column for every parameter of each if `derivatives` are wanted.
     pub fn new(sensor: &'a Sensor, moments: &'a Moments, atoms: &'a [Atom], derivatives: bool) -> Self {
-        let echo = |r: Reflector| Echo::new(sensor, &r);
-        let echoes = atoms.par_iter().map(|a| a.reflectors(1.0).map(echo).collect()).collect();
+        let simd = Simd::chosen();
+        let echoes_of = |atom: &Atom| {
+            let reflectors: Vec<Reflector> = atom.reflectors(1.0).collect();
+            simd.run(Echoes { sensor, reflectors: &reflectors })
+        };
+        let echoes = atoms.par_iter().map(echoes_of).collect();
         let mut first_column = Vec::with_capacity(atoms.len());
         let mut columns = 0;
         for atom in atoms {
@@ -81,15 +86,18 @@ impl<'a> Dictionary<'a> {
         for (i, (atom, echoes)) in self.atoms.iter().zip(&self.echoes).enumerate() {
             for (member, (echo, product)) in echoes.iter().zip(&mut products).enumerate() {
                 for channel in 0..self.sensor.element_x.len() {
-                    let slopes = &mut slopes[channel / self.sensor.end_elements][self.first_column[i]..];
+                    let (end, channel_of_end) =
+                        (channel / self.sensor.end_elements, channel % self.sensor.end_elements);
+                    let (part, lane) = (&echo.end(end)[channel_of_end / W], channel_of_end % W);
+                    let slopes = &mut slopes[end][self.first_column[i]..];
                     let (zeroth, first) = (product.zeroth[channel], product.first[channel]);
                     slopes[0] += zeroth;
                     if self.derivatives {
-                        let along = Complex64::new(-echo.decay[channel], -rate) * zeroth - Complex64::I * drift * first;
+                        let along = Complex64::new(-part.decay.0[lane], -rate) * zeroth - Complex64::I * drift * first;
                         for p in 0..atom.parameters() {
                             let [x, half_square] = atom.share(member, p);
                             slopes[1 + p] +=
-                                along * (x * echo.by_x[channel] + half_square * echo.by_half_square[channel]);
+                                along * (x * part.by_x.0[lane] + half_square * part.by_half_square.0[lane]);
                         }
                     }
                 }
@@ -105,41 +113,64 @@ impl<'a> Dictionary<'a> {
     /// Whether two echoes at one end are too far apart in range to know of each other.
     #[inline(always)]
     fn are_apart(&self, a: &Echo, b: &Echo, end: usize) -> bool {
-        let middle = end * self.sensor.end_elements + self.sensor.end_elements / 2;
-        let bins = (a.bins[middle] - b.bins[middle]).abs();
+        let middle =
+            |echo: &Echo| echo.end(end)[self.sensor.end_elements / 2 / W].bins.0[self.sensor.end_elements / 2 % W];
+        let bins = (middle(a) - middle(b)).abs();
         bins.min((self.sensor.samples as f64 - bins).abs()) > self.moments.reach_bins
     }
 
     /// Inner products of two echoes and their derivatives at one end.
     #[inline(always)]
-    fn block(&self, a: &Echo, b: &Echo, end: usize) -> Block {
-        let [rate, drift] = self.sensor.radians_per_metre_over_chirp();
-        let mut out = Block::default();
-        let channels = end * self.sensor.end_elements..(end + 1) * self.sensor.end_elements;
-        for n in channels {
-            let m = self.moments.at(b.bins[n] - a.bins[n]);
-            let phase = a.middle[n].conj() * b.middle[n];
-            out[0][0] += phase * m.zeroth;
-            if self.derivatives {
-                let (da, db) = (a.decay[n], b.decay[n]);
-                let right = phase * Complex64::new(-db * m.zeroth - drift * m.first, rate * m.zeroth);
-                let left = phase * Complex64::new(-da * m.zeroth + drift * m.first, -rate * m.zeroth);
-                let re = (rate * rate + da * db) * m.zeroth - drift * (db - da) * m.first + drift * drift * m.second;
-                let im = rate * (db - da) * m.zeroth + 2.0 * rate * drift * m.first;
-                let both = phase * Complex64::new(re, im);
-                let (ax, ah, bx, bh) = (a.by_x[n], a.by_half_square[n], b.by_x[n], b.by_half_square[n]);
-                out[0][1] += right * bx;
-                out[0][2] += right * bh;
-                out[1][0] += left * ax;
-                out[2][0] += left * ah;
-                out[1][1] += both * (ax * bx);
-                out[1][2] += both * (ax * bh);
-                out[2][1] += both * (ah * bx);
-                out[2][2] += both * (ah * bh);
-            }
+    fn block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> Block {
+        if self.derivatives { self.whole_block::<FMA>(a, b, end) } else { self.value_block::<FMA>(a, b, end) }
+    }
+
+    #[inline(always)]
+    fn value_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> Block {
+        let mut sum = ComplexLanes::zero();
+        for (a, b) in a.end(end).iter().zip(b.end(end)) {
+            let m = self.moments.at::<false, FMA>(b.bins - a.bins);
+            sum = sum + a.middle.conj().times::<FMA>(b.middle).scaled(m.zeroth);
         }
+        let mut out = Block::default();
+        out[0][0] = total(sum);
         out
     }
+
+    #[inline(always)]
+    fn whole_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> Block {
+        let [rate, drift] = self.sensor.radians_per_metre_over_chirp().map(Lanes::<f64, W>::splat);
+        let mut sums = [[ComplexLanes::zero(); 3]; 3];
+        for (a, b) in a.end(end).iter().zip(b.end(end)) {
+            let m = self.moments.at::<true, FMA>(b.bins - a.bins);
+            let phase = a.middle.conj().times::<FMA>(b.middle);
+            let (decays, turning) = (drift * m.first, rate * m.zeroth);
+            let right = ComplexLanes { re: -(b.decay * m.zeroth) - decays, im: turning };
+            let left = ComplexLanes { re: decays - a.decay * m.zeroth, im: -turning };
+            let more = b.decay - a.decay;
+            let re = (rate * rate + a.decay * b.decay) * m.zeroth - more * decays + drift * drift * m.second;
+            let im = more * turning + Lanes::splat(2.0) * rate * decays;
+            let (right, left) = (phase.times::<FMA>(right), phase.times::<FMA>(left));
+            let both = phase.times::<FMA>(ComplexLanes { re, im });
+            let (by_x, by_half_square) = (both.scaled(a.by_x), both.scaled(a.by_half_square));
+            sums[0][0] = sums[0][0] + phase.scaled(m.zeroth);
+            sums[0][1] = sums[0][1] + right.scaled(b.by_x);
+            sums[0][2] = sums[0][2] + right.scaled(b.by_half_square);
+            sums[1][0] = sums[1][0] + left.scaled(a.by_x);
+            sums[2][0] = sums[2][0] + left.scaled(a.by_half_square);
+            sums[1][1] = sums[1][1] + by_x.scaled(b.by_x);
+            sums[1][2] = sums[1][2] + by_x.scaled(b.by_half_square);
+            sums[2][1] = sums[2][1] + by_half_square.scaled(b.by_x);
+            sums[2][2] = sums[2][2] + by_half_square.scaled(b.by_half_square);
+        }
+        sums.map(|line| line.map(total))
+    }
+}
+
+/// The sum of all lanes.
+#[inline(always)]
+fn total(v: ComplexLanes<f64, W>) -> Complex64 {
+    Complex64::new(v.re.total(), v.im.total())
 }
 
 /// One atom against all before it and itself, at one end.
@@ -167,13 +198,25 @@ impl Kernel for Row<'_, '_> {
                         continue;
                     }
                     touched = true;
-                    add_shared(&mut sums, &d.block(a, b, end), (&d.atoms[i], k), (&d.atoms[j], l), d.derivatives);
+                    add_shared(
+                        &mut sums,
+                        &d.block::<FMA>(a, b, end),
+                        (&d.atoms[i], k),
+                        (&d.atoms[j], l),
+                        d.derivatives,
+                    );
                 }
             }
             if j == i {
                 sums = plus_adjoint(sums);
                 for (k, a) in d.echoes[i].iter().enumerate() {
-                    add_shared(&mut sums, &d.block(a, a, end), (&d.atoms[i], k), (&d.atoms[i], k), d.derivatives);
+                    add_shared(
+                        &mut sums,
+                        &d.block::<FMA>(a, a, end),
+                        (&d.atoms[i], k),
+                        (&d.atoms[i], k),
+                        d.derivatives,
+                    );
                 }
             }
             if touched || j == i {

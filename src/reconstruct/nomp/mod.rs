@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `atom` | the dictionary: one reflector, or a segment of them |
 //! | `sensor` | geometry of both ends |
+//! | `echo` | one reflector as each channel hears it |
 //! | `echoes` | what reflectors leave in the samples, and their products with a residual |
 //! | `moments` | inner products of two echoes: moments of the window |
 //! | `gram` | the banded Gram matrix of atoms and their derivatives |
@@ -43,6 +44,7 @@ mod atom;
 mod begin;
 mod chains;
 mod draw;
+mod echo;
 mod echoes;
 mod edges;
 mod end_beams;

@@ -4,6 +4,8 @@
 //! squared window times powers of time times that tone. Under a window whose side lobes fall fast they vanish some bins away, so that
 //! the Gram matrix of many echoes is banded.
 
+use super::sensor::W;
+use crate::signal::simd::Lanes;
 use num_complex::Complex64;
 use rustfft::FftPlanner;
 use std::f64::consts::TAU;
@@ -11,8 +13,9 @@ use std::f64::consts::TAU;
 /// Nodes of the table for each range bin.
 const NODES_PER_BIN: usize = 8;
 
-/// Terms of the Taylor series around each node: the twelfth is below 1e-15 of the first half way to the next node.
-const TERMS: usize = 12;
+/// Terms of the Taylor series around each node, and how far from it, in range bins, they reach: the last ones are below 1e-14 of the first there.
+const TERMS: usize = 18;
+const FARTHEST: f64 = 0.3;
 
 /// Bins beyond which echoes under a Hann window count as orthogonal: the square of the window falls by 180 dB there.
 const HANN_REACH_BINS: f64 = 12.0;
@@ -29,15 +32,15 @@ pub struct Moments {
     pub reach_bins: f64,
 }
 
-/// The moments of order 0, 1 and 2; the middle one times j.
+/// The moments of order 0, 1 and 2 at some neighbouring channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentsAt {
     /// Of order 0.
-    pub zeroth: f64,
+    pub zeroth: Lanes<f64, W>,
     /// Of order 1, over j.
-    pub first: f64,
+    pub first: Lanes<f64, W>,
     /// Of order 2.
-    pub second: f64,
+    pub second: Lanes<f64, W>,
 }
 
 impl Moments {
@@ -80,26 +83,53 @@ impl Moments {
         Moments { table, bins: samples as f64, wrap_sign, reach_bins: reach }
     }
 
-    /// At a difference of `bins`, which may exceed the number of range bins: ranges wrap.
+    /// At differences of `bins`, which may exceed the number of range bins: ranges wrap. The orders above 0 only if `ALL`.
     #[inline(always)]
-    pub fn at(&self, bins: f64) -> MomentsAt {
-        let wraps = (bins / self.bins).round();
-        let bins = bins - wraps * self.bins;
-        let sign = if wraps as i64 % 2 == 0 { 1.0 } else { self.wrap_sign };
-        let at = bins * NODES_PER_BIN as f64;
-        let node = at.round();
-        let h = (at - node) / NODES_PER_BIN as f64;
-        let len = self.table.len();
-        let index = (node as i64).rem_euclid(len as i64) as usize;
-        let a = &self.table[index];
-        let (mut zeroth, mut slope, mut bend) = (a[TERMS - 1], 0.0, 0.0);
-        for c in a[..TERMS - 1].iter().rev() {
-            bend = bend * h + slope;
-            slope = slope * h + zeroth;
-            zeroth = zeroth * h + c;
+    pub fn at<const ALL: bool, const FMA: bool>(&self, bins: Lanes<f64, W>) -> MomentsAt {
+        // Channels of an end differ by parts of a bin: mostly one node serves all.
+        let (node, sign) = self.node(bins.0[W / 2]);
+        let gaps = bins - Lanes::splat(node / NODES_PER_BIN as f64);
+        if gaps.0.iter().all(|gap| gap.abs() <= FARTHEST) {
+            let line = &self.table[self.index(node)];
+            return taylor::<ALL, FMA>(gaps, Lanes::splat(sign), |term| Lanes::splat(line[term]));
         }
-        MomentsAt { zeroth: zeroth * sign, first: -slope * sign / TAU, second: -2.0 * bend * sign / (TAU * TAU) }
+        let nodes = bins.0.map(|bins| self.node(bins));
+        let lines = nodes.map(|(node, _)| &self.table[self.index(node)]);
+        let gaps = bins - Lanes(nodes.map(|(node, _)| node / NODES_PER_BIN as f64));
+        taylor::<ALL, FMA>(gaps, Lanes(nodes.map(|(_, sign)| sign)), |term| Lanes(lines.map(|line| line[term])))
     }
+
+    /// The node next to a difference, counted from the one at 0, and what wraps on the way do to the sign.
+    #[inline(always)]
+    fn node(&self, bins: f64) -> (f64, f64) {
+        let wraps = (bins / self.bins).round();
+        ((bins * NODES_PER_BIN as f64).round(), if wraps as i64 % 2 == 0 { 1.0 } else { self.wrap_sign })
+    }
+
+    #[inline(always)]
+    fn index(&self, node: f64) -> usize {
+        (node as i64).rem_euclid(self.table.len() as i64) as usize
+    }
+}
+
+/// The Taylor series of these coefficients and of its first two derivatives, as moments.
+#[inline(always)]
+fn taylor<const ALL: bool, const FMA: bool>(
+    h: Lanes<f64, W>,
+    sign: Lanes<f64, W>,
+    coefficients: impl Fn(usize) -> Lanes<f64, W>,
+) -> MomentsAt {
+    let zero = Lanes::splat(0.0);
+    let (mut value, mut slope, mut bend) = (coefficients(TERMS - 1), zero, zero);
+    for term in (0..TERMS - 1).rev() {
+        if ALL {
+            bend = bend.mul_add::<FMA>(h, slope);
+            slope = slope.mul_add::<FMA>(h, value);
+        }
+        value = value.mul_add::<FMA>(h, coefficients(term));
+    }
+    let per = |v: f64| sign * Lanes::splat(v);
+    MomentsAt { zeroth: value * sign, first: slope * per(-1.0 / TAU), second: bend * per(-2.0 / (TAU * TAU)) }
 }
 
 fn signed(node: usize, nodes: usize) -> f64 {
@@ -126,11 +156,16 @@ mod tests {
                         *sum += tone * tau.powi(m as i32);
                     }
                 }
-                let found = moments.at(d);
                 let scale = 1e-12 * samples as f64;
-                assert!((found.zeroth - sums[0].re).abs() < scale, "{d}: {} {}", found.zeroth, sums[0]);
-                assert!((found.first - sums[1].im).abs() < scale, "{d}: {} {}", found.first, sums[1]);
-                assert!((found.second - sums[2].re).abs() < scale, "{d}: {} {}", found.second, sums[2]);
+                // Beside differences that the same node serves, and beside others.
+                for apart in [0.05, 3.7] {
+                    let lanes = Lanes(std::array::from_fn(|lane| d + apart * (lane as f64 - 3.0)));
+                    let found = moments.at::<true, false>(lanes);
+                    assert!((found.zeroth.0[3] - sums[0].re).abs() < scale, "{d}: {:?} {}", found.zeroth, sums[0]);
+                    assert!((found.first.0[3] - sums[1].im).abs() < scale, "{d}: {:?} {}", found.first, sums[1]);
+                    assert!((found.second.0[3] - sums[2].re).abs() < scale, "{d}: {:?} {}", found.second, sums[2]);
+                    assert_eq!(moments.at::<false, false>(lanes).zeroth, found.zeroth);
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The two ends as a measuring device: where their channels stand, and what phases they give to an echo.
 
 use crate::radar::{End, Radar};
+use crate::scene::Reflector;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::LANES_F64;
 use num_complex::Complex64;
@@ -73,4 +74,11 @@ impl Sensor {
         let middle = (self.samples as f64 - 1.0) / 2.0;
         [self.radians_per_metre(middle), self.beat_radians_per_metre * self.samples as f64]
     }
+}
+
+/// `r` moved to where its distance from every element is a number that can be divided by.
+pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
+    let nearest = sensor.element_x.iter().fold(f64::INFINITY, |m, x| m.min((x - r.x_metres).abs()));
+    let y_metres = if nearest.hypot(r.y_metres) < NEAREST_METRES { NEAREST_METRES } else { r.y_metres };
+    Reflector { y_metres, ..*r }
 }

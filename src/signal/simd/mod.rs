@@ -149,6 +149,19 @@ impl<const W: usize> Lanes<f64, W> {
         self.map(f64::sqrt)
     }
 
+    /// The sum of all lanes, by halves; `W` is a power of two.
+    #[inline(always)]
+    pub fn total(mut self) -> f64 {
+        let mut half = W;
+        while half > 1 {
+            half /= 2;
+            for i in 0..half {
+                self.0[i] += self.0[i + half];
+            }
+        }
+        self.0[0]
+    }
+
     /// Rounds every lane to `T`.
     #[inline(always)]
     pub fn round_to<T: Real>(self) -> Lanes<T, W> {
@@ -198,6 +211,12 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
     #[inline(always)]
     pub fn zero() -> Self {
         ComplexLanes { re: Lanes::splat(T::default()), im: Lanes::splat(T::default()) }
+    }
+
+    /// The complex conjugate.
+    #[inline(always)]
+    pub fn conj(self) -> Self {
+        ComplexLanes { re: self.re, im: -self.im }
     }
 
     /// `self * b`.

@@ -1,0 +1,86 @@
+//! Reflectors as the channels of both ends hear them: what inner products of echoes are made of.
+
+use super::sensor::{Sensor, W, kept_apart};
+use crate::scene::Reflector;
+use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
+
+/// A reflector as some neighbouring channels of one end hear it, a lane a channel. Lanes beyond the end are silent.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// Frequency in range bins, wrapped.
+    pub bins: Lanes<f64, W>,
+    /// Value at the middle of the chirp.
+    pub middle: ComplexLanes<f64, W>,
+    /// Change of the distance by the reflector's x.
+    pub by_x: Lanes<f64, W>,
+    /// Change of the distance by half the square of the reflector's y, per metre.
+    pub by_half_square: Lanes<f64, W>,
+    /// Relative loss of amplitude by distance, per metre.
+    pub decay: Lanes<f64, W>,
+}
+
+/// A reflector as both ends hear it.
+#[derive(Debug, Clone)]
+pub struct Echo {
+    /// The first end's, then as many of the last end's.
+    parts: Vec<Part>,
+}
+
+impl Echo {
+    /// What one end hears.
+    #[inline(always)]
+    pub fn end(&self, end: usize) -> &[Part] {
+        let each = self.parts.len() / 2;
+        &self.parts[end * each..(end + 1) * each]
+    }
+}
+
+/// The echoes of some reflectors.
+pub struct Echoes<'a> {
+    /// Who hears them.
+    pub sensor: &'a Sensor,
+    /// Who they come from.
+    pub reflectors: &'a [Reflector],
+}
+
+impl Kernel for Echoes<'_> {
+    type Output = Vec<Echo>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Vec<Echo> {
+        let Echoes { sensor, reflectors } = self;
+        let starts = (0..2).flat_map(|end| (0..sensor.end_elements).step_by(W).map(move |first| (end, first)));
+        let starts: Vec<(usize, usize)> = starts.collect();
+        let mut echoes = Vec::with_capacity(reflectors.len());
+        for reflector in reflectors {
+            let mut parts = Vec::with_capacity(starts.len());
+            for &(end, first) in &starts {
+                parts.push(part::<FMA>(sensor, reflector, end, first));
+            }
+            echoes.push(Echo { parts });
+        }
+        echoes
+    }
+}
+
+/// What channels from channel `first` of an end on hear of `reflector`.
+#[inline(always)]
+fn part<const FMA: bool>(sensor: &Sensor, reflector: &Reflector, end: usize, first: usize) -> Part {
+    let r = kept_apart(sensor, reflector);
+    let of = |v: f64| Lanes::<f64, W>::splat(v);
+    let samples = sensor.samples as f64;
+    let channel = |lane: usize| end * sensor.end_elements + (first + lane).min(sensor.end_elements - 1);
+    let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.hears[channel(lane)];
+    let x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
+    let heard = Lanes(std::array::from_fn(|lane| f64::from(u8::from(is_heard(lane)))));
+    let echo = sensor.model.echo_lanes::<W, FMA>(x, &r);
+    let turns = echo.carrier_turns + echo.beat_turns_at::<FMA>((samples - 1.0) / 2.0);
+    let by_distance = echo.distance_metres.map(f64::recip);
+    Part {
+        bins: echo.beat_turns * of(samples),
+        middle: phasor::<f64, W, FMA>(turns).scaled(echo.amplitude * heard),
+        by_x: (of(r.x_metres) - x) * by_distance,
+        by_half_square: by_distance,
+        decay: by_distance * of(2.0),
+    }
+}
