@@ -8,7 +8,7 @@ use crate::scene::Reflector;
 use crate::signal::BeatSignal;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
-use crate::signal::split::{CHUNK, Factors, STRIDE, add_product, fill_factors};
+use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
 use ndarray::Axis;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -56,9 +56,8 @@ impl Kernel for Sum<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let mut factors = vec![Factors::<f64, W>::new(self.samples); CHUNK.min(self.found.len())];
-        let rows = Factors::<f64, W>::new(self.samples).rows.len();
-        let mut sum = vec![ComplexLanes::zero(); rows * STRIDE];
+        let mut factors = vec![Factors::<f64, W>::new(self.samples); CHUNK];
+        let mut sum = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
         for chunk in self.found.chunks(CHUNK) {
             for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
                 fill_factors::<f64, W, FMA>(self.model, self.element_x, reflector, f);
@@ -67,7 +66,8 @@ impl Kernel for Sum<'_> {
                     *row = row.times::<FMA>(gain);
                 }
             }
-            add_product::<f64, W, FMA>(&factors[..chunk.len()], &mut sum);
+            let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
+            add_products::<f64, W, FMA>(&products[..chunk.len()], &mut sum);
         }
         sum
     }

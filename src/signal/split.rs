@@ -25,7 +25,22 @@ pub struct Factors<T, const W: usize> {
     pub columns: [ComplexLanes<T, W>; STRIDE],
 }
 
+/// Phasors of one reflector, with rows of one's own where its gain is in them.
+#[derive(Debug, Clone, Copy)]
+pub struct Product<'a, T, const W: usize> {
+    /// As [`Factors::rows`].
+    pub rows: &'a [ComplexLanes<T, W>],
+    /// As [`Factors::columns`].
+    pub columns: &'a [ComplexLanes<T, W>; STRIDE],
+}
+
 impl<T: Real, const W: usize> Factors<T, W> {
+    /// The echo itself.
+    #[inline(always)]
+    pub fn product(&self) -> Product<'_, T, W> {
+        Product { rows: &self.rows, columns: &self.columns }
+    }
+
     /// Room for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
@@ -64,7 +79,8 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
         for (r, f) in chunk.iter().zip(factors.iter_mut()) {
             fill_factors::<T, W, FMA>(model, element_x_metres, r, f);
         }
-        add_product::<T, W, FMA>(&factors[..chunk.len()], padded);
+        let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
+        add_products::<T, W, FMA>(&products[..chunk.len()], padded);
     }
     &mut padded[..samples]
 }
@@ -104,8 +120,8 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
 /// `out[32 a + b] += sum over factors of rows[a] * columns[b]`.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // constant bounds keep the tile in registers
-pub fn add_product<T: Real, const W: usize, const FMA: bool>(
-    factors: &[Factors<T, W>],
+pub fn add_products<T: Real, const W: usize, const FMA: bool>(
+    factors: &[Product<'_, T, W>],
     out: &mut [ComplexLanes<T, W>],
 ) {
     for a in (0..out.len() / STRIDE).step_by(TILE.0) {

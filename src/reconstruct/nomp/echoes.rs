@@ -3,7 +3,7 @@
 use super::sensor::{Sensor, W, kept_apart};
 use crate::scene::Reflector;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
-use crate::signal::split::{Factors, STRIDE, add_product, fill_factors};
+use crate::signal::split::{Factors, Product, STRIDE, add_products, fill_factors};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -68,75 +68,101 @@ const LEAST_SHARED: usize = 12;
 /// Parts that they are shared out in.
 const SHARES: usize = 2;
 
+/// Which products of echoes with what is left are asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asked {
+    /// None.
+    Nothing,
+    /// Of the echoes themselves.
+    Values,
+    /// Of the echoes and of echoes times time.
+    Slopes,
+}
+
 /// `samples` less the echoes of `reflectors` times their gains at the first and at the last end, under the squared window `squared`;
-/// with the products of all echoes with what is left where `products` is asked for.
+/// with the products that are asked for of all echoes with what is left.
 pub fn remainder(
     sensor: &Sensor,
     squared: &[f64],
     samples: &Samples,
     reflectors: &[(Reflector, [Complex64; 2])],
-    products: bool,
+    asked: Asked,
 ) -> Remainder {
+    let simd = Simd::chosen();
     let shares = if reflectors.len() < LEAST_SHARED { 1 } else { SHARES };
     let share = reflectors.len().div_ceil(shares).max(1);
-    let simd = Simd::chosen();
-    let tasks = samples.blocks.len() * shares;
-    let sums: Vec<Summed> = (0..tasks)
-        .into_par_iter()
-        .map(|task| {
-            let reflectors = reflectors.chunks(share).nth(task % shares).unwrap_or_default();
-            simd.run(Sum { sensor, first_channel: task / shares * W, reflectors })
-        })
-        .collect();
-    let left: Vec<Left> = samples
-        .blocks
-        .iter()
-        .zip(sums.chunks(shares))
-        .map(|(samples, sums)| simd.run(Subtract { squared, samples, sums, weighted: products }))
-        .collect();
+    let sum = |block: usize, share_at: usize| {
+        let start = if share_at == 0 { Start::Samples(&samples.blocks[block]) } else { Start::Silence };
+        let reflectors = reflectors.chunks(share).nth(share_at).unwrap_or_default();
+        simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keep: asked != Asked::Nothing })
+    };
+    let subtract = |sums: &mut [Summed]| simd.run(Subtract { squared, sums, weighted: asked != Asked::Nothing });
+    let multiply = |summed: &Summed, left: &Left| match asked {
+        Asked::Nothing => Vec::new(),
+        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &left.weighted, asked }),
+    };
+    let blocks = 0..samples.blocks.len();
+    let (left, products): (Vec<Left>, Vec<Vec<BlockProducts>>) = if shares == 1 {
+        let of_block = |block: usize| {
+            let mut summed = sum(block, 0);
+            let left = subtract(std::slice::from_mut(&mut summed));
+            let products = multiply(&summed, &left);
+            (left, products)
+        };
+        blocks.into_par_iter().map(of_block).unzip()
+    } else {
+        let tasks = blocks.len() * shares;
+        let mut sums: Vec<Summed> = (0..tasks).into_par_iter().map(|task| sum(task / shares, task % shares)).collect();
+        let left: Vec<Left> = sums.chunks_mut(shares).map(subtract).collect();
+        let product = |task: usize| multiply(&sums[task], &left[task / shares]);
+        let products: Vec<Vec<BlockProducts>> = (0..tasks).into_par_iter().map(product).collect();
+        (left, products.chunks(shares).map(<[_]>::concat).collect())
+    };
     let mut energy = [0.0; 2];
     for channel in 0..sensor.element_x.len() {
         energy[channel / sensor.end_elements] += left[channel / W].energy.0[channel % W];
     }
-    let products = if products { products_with(sensor, &sums, &left, shares) } else { Vec::new() };
+    let products = if asked == Asked::Nothing { Vec::new() } else { channel_by_channel(sensor, &products) };
     Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
 }
 
-/// Products of every echo with what is left, from the echoes of each block of channels and share of the reflectors.
-fn products_with(sensor: &Sensor, sums: &[Summed], left: &[Left], shares: usize) -> Vec<Products> {
-    let parts: Vec<Vec<[ComplexLanes<f64, W>; 2]>> = (0..sums.len())
-        .into_par_iter()
-        .map(|task| {
-            let (echoes, weighted) = (&sums[task].echoes, &left[task / shares].weighted);
-            Simd::chosen().run(Multiply { samples: sensor.samples, echoes, weighted })
-        })
-        .collect();
+/// Products of every echo, from those of each block of channels.
+fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Products> {
     let channels = sensor.element_x.len();
-    let of_echo = |share: usize, i: usize| {
+    let of_echo = |i: usize| {
         let part = |channel: usize, order: usize| {
-            let v = &parts[channel / W * shares + share][i][order];
+            let v = &blocks[channel / W][i][order];
             Complex64::new(v.re.0[channel % W], v.im.0[channel % W])
         };
         let [zeroth, first] = [0, 1].map(|order| (0..channels).map(|channel| part(channel, order)).collect());
         Products { zeroth, first }
     };
-    (0..shares).flat_map(|share| (0..sums[share].echoes.len()).map(move |i| of_echo(share, i))).collect()
+    (0..blocks.first().map_or(0, Vec::len)).map(of_echo).collect()
 }
 
 /// Echoes taken off together: their phasors fit the first-level cache.
 const TOGETHER: usize = 4;
+
+/// What echoes are added to.
+enum Start<'a> {
+    Silence,
+    Samples(&'a [ComplexLanes<f64, W>]),
+}
 
 /// Echoes of some reflectors at one block of channels.
 struct Sum<'a> {
     sensor: &'a Sensor,
     first_channel: usize,
     reflectors: &'a [(Reflector, [Complex64; 2])],
+    start: Start<'a>,
+    /// Whether the echoes of gain 1 are wanted, too.
+    keep: bool,
 }
 
 struct Summed {
-    /// Of each reflector, of gain 1.
+    /// Of each reflector, of gain 1; not all of them unless they were to be kept.
     echoes: Vec<Factors<f64, W>>,
-    /// Of all together, times minus their gains; empty where there are none.
+    /// Of all together, times minus their gains, added to where it started.
     sum: Vec<ComplexLanes<f64, W>>,
 }
 
@@ -145,15 +171,22 @@ impl Kernel for Sum<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Summed {
-        let Sum { sensor, reflectors, .. } = self;
+        let Sum { sensor, reflectors, keep, .. } = self;
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
         let element_x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
-        let mut echoes = vec![Factors::<f64, W>::new(sensor.samples); reflectors.len()];
-        let mut scaled = vec![Factors::<f64, W>::new(sensor.samples); TOGETHER];
-        let len = if reflectors.is_empty() { 0 } else { scaled[0].rows.len() * STRIDE };
-        let mut sum = vec![ComplexLanes::zero(); len];
-        for (echoes, reflectors) in echoes.chunks_mut(TOGETHER).zip(reflectors.chunks(TOGETHER)) {
+        let room = if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) };
+        let mut echoes = vec![Factors::<f64, W>::new(sensor.samples); room];
+        let mut scaled = vec![Factors::<f64, W>::new(sensor.samples).rows; TOGETHER];
+        let mut sum = match self.start {
+            Start::Silence => vec![ComplexLanes::zero(); scaled[0].len() * STRIDE],
+            Start::Samples(samples) => samples.to_vec(),
+        };
+        // Gains mostly start at nothing.
+        let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
+        for (at, reflectors) in reflectors.chunks(TOGETHER).enumerate() {
+            let first = if keep { at * TOGETHER } else { 0 };
+            let echoes = &mut echoes[first..first + reflectors.len()];
             for ((echo, scaled), (reflector, gains)) in echoes.iter_mut().zip(&mut scaled).zip(reflectors) {
                 fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), echo);
                 let gain = |lane: usize| match sensor.hears[channel(lane)] {
@@ -164,22 +197,25 @@ impl Kernel for Sum<'_> {
                     re: Lanes(std::array::from_fn(|lane| gain(lane).re)),
                     im: Lanes(std::array::from_fn(|lane| gain(lane).im)),
                 };
-                scaled.columns = echo.columns;
-                for (scaled, row) in scaled.rows.iter_mut().zip(&echo.rows) {
+                for (scaled, row) in scaled.iter_mut().zip(&echo.rows) {
                     *scaled = row.times::<FMA>(gain);
                 }
             }
-            add_product::<f64, W, FMA>(&scaled[..reflectors.len()], &mut sum);
+            if !is_silent {
+                let of = |i: usize| Product { rows: &scaled[i], columns: &echoes[i.min(echoes.len() - 1)].columns };
+                let products: [_; TOGETHER] = std::array::from_fn(of);
+                add_products::<f64, W, FMA>(&products[..echoes.len()], &mut sum);
+            }
         }
         Summed { echoes, sum }
     }
 }
 
-/// All sums of one block of channels added to its samples.
+/// All sums of one block of channels together.
 struct Subtract<'a> {
     squared: &'a [f64],
-    samples: &'a [ComplexLanes<f64, W>],
-    sums: &'a [Summed],
+    /// Samples less some echoes, and sums of other echoes times minus their gains. The first becomes the residual.
+    sums: &'a mut [Summed],
     /// Whether the weighted residual is asked for.
     weighted: bool,
 }
@@ -196,36 +232,44 @@ impl Kernel for Subtract<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Left {
-        let mut residual = self.samples.to_vec();
-        for part in self.sums {
+        let Some((first, others)) = self.sums.split_first_mut() else {
+            return Left { residual: Vec::new(), weighted: Vec::new(), energy: Lanes::splat(0.0) };
+        };
+        let mut residual = std::mem::take(&mut first.sum);
+        for part in others {
             for (left, echoes) in residual.iter_mut().zip(&part.sum) {
                 *left = *left + *echoes;
             }
         }
         let mut energy = Lanes::splat(0.0);
-        for (v, w) in residual.iter().zip(self.squared) {
-            energy = energy + (v.re * v.re + v.im * v.im) * Lanes::splat(*w);
-        }
-        let mut weighted = Vec::new();
+        let mut weighted = vec![ComplexLanes::zero(); if self.weighted { residual.len() } else { 0 }];
         if self.weighted {
-            weighted = vec![ComplexLanes::zero(); residual.len()];
-            for (weighted, (v, w)) in weighted.iter_mut().zip(residual.iter().zip(self.squared)) {
+            for ((weighted, v), w) in weighted.iter_mut().zip(&residual).zip(self.squared) {
                 *weighted = v.scaled(Lanes::splat(*w));
+                energy = v.re.mul_add::<FMA>(weighted.re, v.im.mul_add::<FMA>(weighted.im, energy));
+            }
+        } else {
+            for (v, w) in residual.iter().zip(self.squared) {
+                energy = (v.re * v.re + v.im * v.im).mul_add::<FMA>(Lanes::splat(*w), energy);
             }
         }
         Left { residual, weighted, energy }
     }
 }
 
-/// Some echoes of one block of channels times what is left there, plain and times time.
+/// Products of an echo and of the same times time with what is left at one block of channels.
+type BlockProducts = [ComplexLanes<f64, W>; 2];
+
+/// Some echoes of one block of channels times what is left there, plain and, if that is asked for, times time.
 struct Multiply<'a> {
     samples: usize,
     echoes: &'a [Factors<f64, W>],
     weighted: &'a [ComplexLanes<f64, W>],
+    asked: Asked,
 }
 
 impl Kernel for Multiply<'_> {
-    type Output = Vec<[ComplexLanes<f64, W>; 2]>;
+    type Output = Vec<BlockProducts>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
@@ -235,16 +279,26 @@ impl Kernel for Multiply<'_> {
         for f in self.echoes {
             let mut sums = [ComplexLanes::zero(); 2];
             for (a, (row, part)) in f.rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
-                let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
-                for (b, (column, v)) in f.columns.iter().zip(part).enumerate() {
-                    let product = column.conj().times::<FMA>(*v);
-                    plain = plain + product;
-                    timed = timed + product.scaled(Lanes::splat(b as f64 / samples));
-                }
-                let start = ((a * STRIDE) as f64 - middle) / samples;
                 let row = row.conj();
+                if self.asked == Asked::Values {
+                    let mut plain = ComplexLanes::zero();
+                    for (column, v) in f.columns.iter().zip(part) {
+                        plain = plain.plus_product::<FMA>(column.conj(), *v);
+                    }
+                    sums[0] = sums[0].plus_product::<FMA>(row, plain);
+                    continue;
+                }
+                let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
+                // The sum of b times what comes at b is that of all sums from 1, from 2, and so on.
+                for (column, v) in f.columns.iter().zip(part).skip(1).rev() {
+                    plain = plain.plus_product::<FMA>(column.conj(), *v);
+                    timed = timed + plain;
+                }
+                plain = plain.plus_product::<FMA>(f.columns[0].conj(), part[0]);
+                let start = ((a * STRIDE) as f64 - middle) / samples;
                 sums[0] = sums[0].plus_product::<FMA>(row, plain);
-                sums[1] = sums[1].plus_product::<FMA>(row, timed + plain.scaled(Lanes::splat(start)));
+                let timed = timed.scaled(Lanes::splat(samples.recip())) + plain.scaled(Lanes::splat(start));
+                sums[1] = sums[1].plus_product::<FMA>(row, timed);
             }
             products.push(sums);
         }
@@ -268,17 +322,17 @@ mod tests {
         let at = |i: usize| Reflector { x_metres: i as f64 - 9.0, y_metres: 4.0 + i as f64, reflectivity: 1.0 };
         let gain = |i: usize| Complex64::from_polar(30.0, i as f64);
         let reflectors: Vec<_> = (0..2 * LEAST_SHARED + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
-        let together = remainder(&sensor, &squared, &samples, &reflectors, true);
+        let together = remainder(&sensor, &squared, &samples, &reflectors, Asked::Slopes);
         let mut left = samples;
         for few in reflectors.chunks(LEAST_SHARED - 1) {
-            left = remainder(&sensor, &squared, &left, few, false).residual;
+            left = remainder(&sensor, &squared, &left, few, Asked::Nothing).residual;
         }
         for (a, b) in together.residual.flat(&sensor).iter().zip(left.flat(&sensor)) {
             assert!((a - b).norm() < 1e-11, "{a} {b}");
         }
         // In the order of the reflectors, whoever computed them.
         for ((reflector, _), found) in reflectors.iter().zip(&together.products) {
-            let alone = remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], true);
+            let alone = remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], Asked::Slopes);
             for (a, b) in found.zeroth.iter().zip(&alone.products[0].zeroth) {
                 assert!((a - b).norm() < 1e-11, "{a} {b}");
             }

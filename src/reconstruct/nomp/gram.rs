@@ -264,7 +264,7 @@ fn add_shared(
 mod tests {
     use super::*;
     use crate::radar::{Radar, hann};
-    use crate::reconstruct::nomp::echoes::{Samples, remainder};
+    use crate::reconstruct::nomp::echoes::{Asked, Samples, remainder};
 
     const WALL: Atom = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
 
@@ -272,7 +272,7 @@ mod tests {
     fn value(sensor: &Sensor, atom: &Atom) -> Vec<Complex64> {
         let silence = Samples::new(sensor, &vec![Complex64::default(); sensor.sample_count()]);
         let echoes: Vec<_> = atom.reflectors(1.0).map(|r| (r, [Complex64::from(-1.0); 2])).collect();
-        remainder(sensor, &vec![1.0; sensor.samples], &silence, &echoes, false).residual.flat(sensor)
+        remainder(sensor, &vec![1.0; sensor.samples], &silence, &echoes, Asked::Nothing).residual.flat(sensor)
     }
 
     /// Columns of all atoms by differences, windowed.
@@ -338,7 +338,7 @@ mod tests {
         let dictionary = Dictionary::new(&sensor, &moments, &atoms, true);
         let echoes: Vec<_> =
             atoms.iter().flat_map(|a| a.reflectors(1.0)).map(|r| (r, [Complex64::default(); 2])).collect();
-        let left = remainder(&sensor, &squared, &Samples::new(&sensor, &target), &echoes, true);
+        let left = remainder(&sensor, &squared, &Samples::new(&sensor, &target), &echoes, Asked::Slopes);
         let slopes = dictionary.slopes(&left.products);
         let end_len = sensor.sample_count() / 2;
         for (c, column) in columns(&sensor, &window, &atoms).iter().enumerate() {

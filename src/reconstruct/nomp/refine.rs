@@ -5,7 +5,7 @@
 //! always formed from samples, so accuracy is that of f64 and not of its square root.
 
 use super::atom::Atom;
-use super::echoes::{Remainder, Samples, remainder};
+use super::echoes::{Asked, Remainder, Samples, remainder};
 use super::gram::Dictionary;
 use super::moments::Moments;
 use super::sensor::Sensor;
@@ -136,7 +136,7 @@ impl<'a> Workbench<'a> {
     pub fn without(&self, samples: &Samples, atoms: &[Atom], gains: &[Gains]) -> Remainder {
         let reflectors = reflectors(atoms, gains);
         self.work.spend(reflectors.len() + 1);
-        remainder(&self.sensor, &self.squared, samples, &reflectors, false)
+        remainder(&self.sensor, &self.squared, samples, &reflectors, Asked::Nothing)
     }
 
     /// Gains for `atoms` where they are.
@@ -279,7 +279,8 @@ impl<'a> Workbench<'a> {
         // The second pass removes what the squared condition number of the normal equations, or a far start, left.
         for pass in 0..3 {
             self.work.spend(2 * echoes + 1);
-            let left = remainder(&self.sensor, &self.squared, samples, &reflectors(&atoms, &gains), true);
+            let asked = if derivatives { Asked::Slopes } else { Asked::Values };
+            let left = remainder(&self.sensor, &self.squared, samples, &reflectors(&atoms, &gains), asked);
             let [first, last] = dictionary.slopes(&left.products);
             let mut slopes = match tie {
                 Tie::PerEnd => vec![first, last],
