@@ -62,7 +62,8 @@ pub trait Reconstructor: Send + Sync {
         self.check_radar(radar)?;
         self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
-        let mut found = self.estimate(radar, &ends, request)?;
+        // From within, a parallel step is handed to whoever is idle; from without, its caller would sleep through each one.
+        let mut found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
         // What was cancelled while it was drawn is no answer.
         request.task.check()?;
         found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);

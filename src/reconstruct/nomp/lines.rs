@@ -153,7 +153,8 @@ impl LineDetector<'_> {
     /// point would speak for all, and where too few of the bins hold an echo.
     fn score_of_all(&self, x: f64, along: [f64; 2]) -> f64 {
         let energy = [0, 1].map(|end| {
-            let [near, far] = along.map(|y| (x - self.beams.centres_metres[end]).hypot(y));
+            let across = x - self.beams.centres_metres[end];
+            let [near, far] = along.map(|y| (across * across + y * y).sqrt());
             if near < NEAREST_METRES {
                 return f64::INFINITY;
             }
@@ -303,25 +304,12 @@ struct Blocks {
 
 impl Blocks {
     fn new(detector: &LineDetector, end: usize, row: Row, points: usize) -> Self {
-        let (mut sum, mut weight) = (Complex64::default(), 0.0);
-        let mut prefix = Vec::with_capacity(points + 1);
-        prefix.push((sum, weight));
-        for echo in detector.echoes(end, row, points) {
-            sum += echo.weighted;
-            weight += echo.weight;
-            prefix.push((sum, weight));
-        }
-        let first = 0..=points.saturating_sub(BLOCK);
-        let mut blocks = Blocks { gain: Vec::with_capacity(points), running: Vec::with_capacity(points) };
-        for i in first {
-            let last = (i + BLOCK).min(points);
-            let weight = prefix[last].1 - prefix[i].1;
-            let gain = (prefix[last].0 - prefix[i].0).norm_sqr().sqrt() / weight;
-            let before = if i >= BLOCK { blocks.running[i - BLOCK] } else { [0.0; 2] };
-            blocks.gain.push(gain);
-            blocks.running.push([before[0] + gain, before[1] + weight]);
-        }
-        blocks
+        let many = points.saturating_sub(BLOCK) + 1;
+        let mut gain = vec![0.0; many];
+        let mut running = vec![[0.0; 2]; many];
+        let echoes = detector.echoes(end, row, points.max(BLOCK));
+        Simd::chosen().run(FillBlocks { echoes: &echoes, gain: &mut gain, running: &mut running });
+        Blocks { gain, running }
     }
 
     /// Sum of gains and of weights of `count` blocks, one behind the other from point `start`.
@@ -329,6 +317,38 @@ impl Blocks {
         let last = self.running[start + (count - 1) * BLOCK];
         let before = if start >= BLOCK { self.running[start - BLOCK] } else { [0.0; 2] };
         [last[0] - before[0], last[1] - before[1]]
+    }
+}
+
+/// The blocks of what a column of points would have left.
+struct FillBlocks<'a> {
+    echoes: &'a [Heard],
+    gain: &'a mut [f64],
+    running: &'a mut [[f64; 2]],
+}
+
+impl Kernel for FillBlocks<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let FillBlocks { echoes, gain, running } = self;
+        let mut sums = vec![[0.0; 3]; echoes.len() + 1];
+        let mut sum = [0.0; 3];
+        for (echo, at) in echoes.iter().zip(&mut sums[1..]) {
+            sum = [sum[0] + echo.weighted.re, sum[1] + echo.weighted.im, sum[2] + echo.weight];
+            *at = sum;
+        }
+        for (i, (gain, both)) in gain.iter_mut().zip(running.iter_mut()).enumerate() {
+            let (first, last) = (sums[i], sums[i + BLOCK]);
+            let [re, im, weight] = [0, 1, 2].map(|k| last[k] - first[k]);
+            *gain = (re * re + im * im).sqrt() / weight;
+            *both = [*gain, weight];
+        }
+        for i in BLOCK..running.len() {
+            let before = running[i - BLOCK];
+            running[i] = [running[i][0] + before[0], running[i][1] + before[1]];
+        }
     }
 }
 
