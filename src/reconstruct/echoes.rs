@@ -60,7 +60,7 @@ impl Kernel for Sum<'_> {
         let mut sum = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
         for chunk in self.found.chunks(CHUNK) {
             for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
-                fill_factors::<f64, W, FMA>(self.model, self.element_x, reflector, f);
+                fill_factors::<f64, W, FMA>(self.model, self.element_x, reflector, &mut f.rows, &mut f.columns);
                 let gain = ComplexLanes { re: Lanes::splat(gain.re), im: Lanes::splat(gain.im) };
                 for row in &mut f.rows {
                     *row = row.times::<FMA>(gain);

@@ -16,6 +16,11 @@ const STEP: usize = 4;
 /// Rows and columns of the product kept in registers.
 const TILE: (usize, usize) = (2, 4);
 
+/// Rows of the split of chirps of `samples` samples, the last of which may go on beyond the chirp.
+pub const fn rows_of(samples: usize) -> usize {
+    samples.div_ceil(STRIDE).next_multiple_of(STEP)
+}
+
 /// Phasors of one reflector: its echo at sample `32 a + b` is `rows[a] * columns[b]`.
 #[derive(Debug, Clone)]
 pub struct Factors<T, const W: usize> {
@@ -44,7 +49,7 @@ impl<T: Real, const W: usize> Factors<T, W> {
     /// Room for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
-        Factors { rows: vec![zero; samples.div_ceil(STRIDE).next_multiple_of(STEP)], columns: [zero; STRIDE] }
+        Factors { rows: vec![zero; rows_of(samples)], columns: [zero; STRIDE] }
     }
 }
 
@@ -77,7 +82,7 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     padded.fill(ComplexLanes::zero());
     for chunk in reflectors.chunks(CHUNK) {
         for (r, f) in chunk.iter().zip(factors.iter_mut()) {
-            fill_factors::<T, W, FMA>(model, element_x_metres, r, f);
+            fill_factors::<T, W, FMA>(model, element_x_metres, r, &mut f.rows, &mut f.columns);
         }
         let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
         add_products::<T, W, FMA>(&products[..chunk.len()], padded);
@@ -85,20 +90,21 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     &mut padded[..samples]
 }
 
-/// Phasors of `r` at the `W` elements at `element_x_metres` metres.
+/// Phasors of `r` at the `W` elements at `element_x_metres` metres, see [`Factors`].
 #[inline(always)]
 pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
     element_x_metres: Lanes<f64, W>,
     r: &Reflector,
-    f: &mut Factors<T, W>,
+    rows: &mut [ComplexLanes<T, W>],
+    columns: &mut [ComplexLanes<T, W>; STRIDE],
 ) {
     let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
     let mut fine = [ComplexLanes::zero(); STEP];
     for (i, fine) in fine.iter_mut().enumerate() {
         *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64));
     }
-    for (i, columns) in f.columns.chunks_exact_mut(STEP).enumerate() {
+    for (i, columns) in columns.chunks_exact_mut(STEP).enumerate() {
         let coarse = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STEP) as f64));
         for (column, fine) in columns.iter_mut().zip(fine) {
             *column = coarse.times::<FMA>(fine);
@@ -108,7 +114,7 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     for (i, fine) in fine.iter_mut().enumerate() {
         *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STRIDE) as f64)).scaled(amplitude);
     }
-    for (i, rows) in f.rows.chunks_exact_mut(STEP).enumerate() {
+    for (i, rows) in rows.chunks_exact_mut(STEP).enumerate() {
         let turns = echo.beat_turns_at::<FMA>((i * STEP * STRIDE) as f64) + echo.carrier_turns;
         let coarse = phasor::<T, W, FMA>(turns);
         for (row, fine) in rows.iter_mut().zip(fine) {

@@ -3,7 +3,7 @@
 use super::sensor::{Sensor, W, kept_apart};
 use crate::scene::Reflector;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
-use crate::signal::split::{Factors, Product, STRIDE, add_products, fill_factors};
+use crate::signal::split::{Product, STRIDE, add_products, fill_factors, rows_of};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ pub struct Remainder {
 impl Samples {
     /// From samples laid out channel by channel.
     pub fn new(sensor: &Sensor, flat: &[Complex64]) -> Self {
-        let padded = Factors::<f64, W>::new(sensor.samples).rows.len() * STRIDE;
+        let padded = rows_of(sensor.samples) * STRIDE;
         let channels: Vec<&[Complex64]> = flat.chunks_exact(sensor.samples).collect();
         let block = |channels: &[&[Complex64]]| {
             let mut out = vec![ComplexLanes::zero(); padded];
@@ -159,9 +159,24 @@ struct Sum<'a> {
     keep: bool,
 }
 
+/// Phasors of some reflectors, see [`Factors`](crate::signal::split::Factors).
+struct Phasors {
+    /// One reflector's after the other's.
+    rows: Vec<ComplexLanes<f64, W>>,
+    columns: Vec<[ComplexLanes<f64, W>; STRIDE]>,
+}
+
+impl Phasors {
+    #[inline(always)]
+    fn room(reflectors: usize, rows: usize) -> Self {
+        let zero = ComplexLanes::zero();
+        Phasors { rows: vec![zero; reflectors * rows], columns: vec![[zero; STRIDE]; reflectors] }
+    }
+}
+
 struct Summed {
     /// Of each reflector, of gain 1; not all of them unless they were to be kept.
-    echoes: Vec<Factors<f64, W>>,
+    echoes: Phasors,
     /// Of all together, times minus their gains, added to where it started.
     sum: Vec<ComplexLanes<f64, W>>,
 }
@@ -175,20 +190,22 @@ impl Kernel for Sum<'_> {
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
         let element_x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
-        let room = if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) };
-        let mut echoes = vec![Factors::<f64, W>::new(sensor.samples); room];
-        let mut scaled = vec![Factors::<f64, W>::new(sensor.samples).rows; TOGETHER];
+        let many = rows_of(sensor.samples);
+        let mut echoes = Phasors::room(if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) }, many);
+        let mut scaled = vec![ComplexLanes::zero(); TOGETHER * many];
         let mut sum = match self.start {
-            Start::Silence => vec![ComplexLanes::zero(); scaled[0].len() * STRIDE],
+            Start::Silence => vec![ComplexLanes::zero(); many * STRIDE],
             Start::Samples(samples) => samples.to_vec(),
         };
         // Gains mostly start at nothing.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
         for (at, reflectors) in reflectors.chunks(TOGETHER).enumerate() {
             let first = if keep { at * TOGETHER } else { 0 };
-            let echoes = &mut echoes[first..first + reflectors.len()];
-            for ((echo, scaled), (reflector, gains)) in echoes.iter_mut().zip(&mut scaled).zip(reflectors) {
-                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), echo);
+            let rows = &mut echoes.rows[first * many..(first + reflectors.len()) * many];
+            let columns = &mut echoes.columns[first..first + reflectors.len()];
+            let each = rows.chunks_exact_mut(many).zip(columns.iter_mut()).zip(scaled.chunks_exact_mut(many));
+            for (((rows, columns), scaled), (reflector, gains)) in each.zip(reflectors) {
+                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), rows, columns);
                 let gain = |lane: usize| match sensor.hears[channel(lane)] {
                     true => -gains[channel(lane) / sensor.end_elements],
                     false => Complex64::default(),
@@ -197,14 +214,16 @@ impl Kernel for Sum<'_> {
                     re: Lanes(std::array::from_fn(|lane| gain(lane).re)),
                     im: Lanes(std::array::from_fn(|lane| gain(lane).im)),
                 };
-                for (scaled, row) in scaled.iter_mut().zip(&echo.rows) {
+                for (scaled, row) in scaled.iter_mut().zip(rows) {
                     *scaled = row.times::<FMA>(gain);
                 }
             }
             if !is_silent {
-                let of = |i: usize| Product { rows: &scaled[i], columns: &echoes[i.min(echoes.len() - 1)].columns };
-                let products: [_; TOGETHER] = std::array::from_fn(of);
-                add_products::<f64, W, FMA>(&products[..echoes.len()], &mut sum);
+                let products: [_; TOGETHER] = std::array::from_fn(|i| Product {
+                    rows: &scaled[i * many..(i + 1) * many],
+                    columns: &columns[i.min(columns.len() - 1)],
+                });
+                add_products::<f64, W, FMA>(&products[..columns.len()], &mut sum);
             }
         }
         Summed { echoes, sum }
@@ -263,7 +282,7 @@ type BlockProducts = [ComplexLanes<f64, W>; 2];
 /// Some echoes of one block of channels times what is left there, plain and, if that is asked for, times time.
 struct Multiply<'a> {
     samples: usize,
-    echoes: &'a [Factors<f64, W>],
+    echoes: &'a Phasors,
     weighted: &'a [ComplexLanes<f64, W>],
     asked: Asked,
 }
@@ -275,14 +294,15 @@ impl Kernel for Multiply<'_> {
     fn run<const FMA: bool>(self) -> Self::Output {
         let samples = self.samples as f64;
         let middle = (samples - 1.0) / 2.0;
-        let mut products = Vec::with_capacity(self.echoes.len());
-        for f in self.echoes {
+        let mut products = Vec::with_capacity(self.echoes.columns.len());
+        let Phasors { rows, columns } = self.echoes;
+        for (rows, columns) in rows.chunks_exact(rows_of(self.samples)).zip(columns) {
             let mut sums = [ComplexLanes::zero(); 2];
-            for (a, (row, part)) in f.rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
+            for (a, (row, part)) in rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
                 let row = row.conj();
                 if self.asked == Asked::Values {
                     let mut plain = ComplexLanes::zero();
-                    for (column, v) in f.columns.iter().zip(part) {
+                    for (column, v) in columns.iter().zip(part) {
                         plain = plain.plus_product::<FMA>(column.conj(), *v);
                     }
                     sums[0] = sums[0].plus_product::<FMA>(row, plain);
@@ -290,11 +310,11 @@ impl Kernel for Multiply<'_> {
                 }
                 let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
                 // The sum of b times what comes at b is that of all sums from 1, from 2, and so on.
-                for (column, v) in f.columns.iter().zip(part).skip(1).rev() {
+                for (column, v) in columns.iter().zip(part).skip(1).rev() {
                     plain = plain.plus_product::<FMA>(column.conj(), *v);
                     timed = timed + plain;
                 }
-                plain = plain.plus_product::<FMA>(f.columns[0].conj(), part[0]);
+                plain = plain.plus_product::<FMA>(columns[0].conj(), part[0]);
                 let start = ((a * STRIDE) as f64 - middle) / samples;
                 sums[0] = sums[0].plus_product::<FMA>(row, plain);
                 let timed = timed.scaled(Lanes::splat(samples.recip())) + plain.scaled(Lanes::splat(start));
