@@ -94,16 +94,16 @@ pub struct Pairs {
     pub guesses_metres: Vec<[f64; 2]>,
 }
 
-/// Points whose tones both ends hear, from samples laid out channel by channel over white noise of `noise_variance`. None where an end
-/// hears more tones than it can tell apart, or where neighbouring elements are too far apart to tell directions.
-pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> Pairs {
+/// Points whose tones both ends hear, from samples laid out channel by channel over white noise of `noise_variance`. `None` where an end
+/// hears more tones than `most`, or than it can tell apart, or where neighbouring elements are too far apart to tell directions.
+pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64, most: usize) -> Option<Pairs> {
     let listen = |end: End| {
         let at = if end == End::First { 0 } else { radar.end_elements };
         let channels: Vec<&[Complex64]> = flat.chunks_exact(radar.samples).skip(at).take(radar.end_elements).collect();
-        listener(radar, end, &channels, noise_variance)
+        listener(radar, end, &channels, noise_variance, most)
     };
     let (first, last) = rayon::join(|| listen(End::First), || listen(End::Last));
-    let (Some(first), Some(last)) = (first, last) else { return Pairs::default() };
+    let (first, last) = (first?, last?);
     let mut pairs: Vec<Pair> = Vec::new();
     for i in 0..first.heard.len() {
         let within = candidates(radar, &first, &last, i, 0);
@@ -124,7 +124,7 @@ pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> 
         guesses = guesses.len(),
         "tones"
     );
-    Pairs { points, guesses_metres }
+    Some(Pairs { points, guesses_metres })
 }
 
 /// The best of `pairs`, each tone in `most` of them.
@@ -142,7 +142,7 @@ fn matched(pairs: &[Pair], first: &Listener, last: &Listener, most: usize) -> Ve
 }
 
 /// Tones of an end's middle element, with directions from the element beside it.
-fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64) -> Option<Listener> {
+fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64, most: usize) -> Option<Listener> {
     let middle = (radar.end_elements.max(1) - 1) / 2;
     let (own, beside) = (channels.get(middle)?, channels.get(middle + 1)?);
     let number = radar.end_range(end).start + middle;
@@ -156,7 +156,7 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
     if (radians_per_metre * step_metres).abs() > 1.05 * TAU / 2.0 {
         return None;
     }
-    let tones = tones(own, noise_variance)?;
+    let tones = tones(own, noise_variance, most)?;
     let gains = gains_of_tones(own, &tones);
     let mut cosines = vec![0.0f64; tones.len()];
     for _ in 0..ROUNDS {
@@ -235,7 +235,8 @@ mod tests {
         let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 3);
         let scene: Scene = generator.scene(Kind::Crowd, 0);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let found = paired_points(&radar, &ends.flat(), ends_noise_variance(&radar, &ends, Floor::Thesis)).points;
+        let noise = ends_noise_variance(&radar, &ends, Floor::Thesis);
+        let found = paired_points(&radar, &ends.flat(), noise, usize::MAX).unwrap().points;
         let near = |x: f64, y: f64| {
             let distance = |a: &Paired| {
                 let [fx, fy] = a.atom.position_metres(0.0);

@@ -96,17 +96,20 @@ impl Search<'_> {
     /// then whatever still stands out.
     fn run(&self) -> Result<Answer, ReconstructError> {
         let nothing = self.bench.solve(self.samples, Vec::new(), Tie::PerEnd, 0.0);
-        let mut pairs = self.pairs(&nothing);
-        let fit = self.paired(nothing.clone(), &pairs, false)?;
-        if self.is_explained(&fit) {
-            return Ok(Answer { fit, is_sure: true });
-        }
         let is_long = self.grower().echoes_in(&nothing.residual.flat(&self.bench.sensor)).are_long();
+        // Many tones take long to tell apart, and are mostly those of lines.
+        let few = self.pairs_of_tones(&nothing, if is_long { FEW_TONES } else { usize::MAX });
+        if let Some(pairs) = &few {
+            let fit = self.paired(nothing.clone(), pairs, false)?;
+            if self.is_explained(&fit) {
+                return Ok(Answer { fit, is_sure: true });
+            }
+        }
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
+        let pairs = few.filter(|_| lines.atoms.is_empty()).unwrap_or_else(|| self.pairs(&lines));
         if !lines.atoms.is_empty() {
             // Lines and points are often all there is.
-            pairs = self.pairs(&lines);
             let fit = self.nearly_there(self.paired(lines.clone(), &pairs, true)?)?;
             if self.is_nearly_all(&fit) {
                 let left = self.pairs(&fit);
@@ -223,11 +226,16 @@ impl Search<'_> {
         Ok(Answer { is_sure: self.is_explained(&fit), fit })
     }
 
-    /// Points whose tones both ends hear in what `fit` leaves.
+    /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
     pub(super) fn pairs(&self, fit: &Fit) -> Pairs {
+        self.pairs_of_tones(fit, usize::MAX).unwrap_or_default()
+    }
+
+    /// The same; `None` where an end hears more tones than `most`.
+    fn pairs_of_tones(&self, fit: &Fit, most: usize) -> Option<Pairs> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let noise = self.bench.hearing.noise_variance(self.radar, &flat);
-        paired_points(self.radar, &flat, noise)
+        paired_points(self.radar, &flat, noise, most)
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
@@ -278,6 +286,9 @@ impl Search<'_> {
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
 const NEARLY_NOTHING: f64 = 1e-5;
+
+/// Tones that are told apart in no time.
+const FEW_TONES: usize = 92;
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
