@@ -88,12 +88,10 @@ struct Look {
 /// Rows from one point in about one direction: step by step longer, and turned to both sides.
 struct Fan {
     from_metres: [f64; 2],
-    radians: f64,
     length_pitch_metres: f64,
-    turn_pitch_radians: f64,
     lengths: usize,
-    /// To each side.
-    turns: usize,
+    /// Directions turned from one side to the other (x, y).
+    directions: Vec<[f64; 2]>,
 }
 
 impl Fan {
@@ -106,26 +104,24 @@ impl Fan {
         let length_pitch_metres = (by_sight / along + by_side / across).recip();
         // A turn moves the ends of middling steps by the pitch across them.
         let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
+        let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
+        let direction = |turn: i32| {
+            let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
+            [cos, sin]
+        };
         Fan {
             from_metres,
-            radians,
             length_pitch_metres,
-            turn_pitch_radians,
             lengths: ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1,
-            turns: (WITHIN_RADIANS / turn_pitch_radians).ceil() as usize,
+            directions: (-turns..=turns).map(direction).collect(),
         }
-    }
-
-    fn columns(&self) -> usize {
-        2 * self.turns + 1
     }
 
     /// Row number `at`, turn after turn of one length after the other.
     fn row(&self, at: usize) -> Row {
-        let metres = LEAST_STEP_METRES + (at / self.columns()) as f64 * self.length_pitch_metres;
-        let turned = (at % self.columns()) as f64 - self.turns as f64;
-        let (sin, cos) = (self.radians + turned * self.turn_pitch_radians).sin_cos();
-        Row { first_metres: self.from_metres, step_metres: [metres * cos, metres * sin] }
+        let metres = LEAST_STEP_METRES + (at / self.directions.len()) as f64 * self.length_pitch_metres;
+        let step_metres = self.directions[at % self.directions.len()].map(|v| metres * v);
+        Row { first_metres: self.from_metres, step_metres }
     }
 }
 
@@ -142,7 +138,7 @@ impl Kernel for Scan<'_> {
     fn run<const FMA: bool>(self) -> Self::Output {
         let Scan { beams, fan } = self;
         let mut heard = [Heard::default(); 2 * FIRST];
-        let mut parts = vec![0.0; fan.lengths * fan.columns()];
+        let mut parts = vec![0.0; fan.lengths * fan.directions.len()];
         for (at, part) in parts.iter_mut().enumerate() {
             *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..FIRST]);
         }

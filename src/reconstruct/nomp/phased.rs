@@ -143,8 +143,8 @@ impl PhasedBeams {
         let (mut added, mut all) = (0.0, 0.0);
         for end in 0..self.beams.len() {
             self.listen::<FMA>(end, row, heard);
-            let (of_end, all_of_end) = added_up(heard);
-            (added, all) = (added + of_end, all + all_of_end);
+            let AddedUp { sum, weight, power } = added_up(heard);
+            (added, all) = (added + sum.norm_sqr() / weight, all + power);
         }
         added / f64::max(all, f64::MIN_POSITIVE)
     }
@@ -162,11 +162,12 @@ impl PhasedBeams {
             let y = i * Lanes::splat(step_y) + Lanes::splat(y);
             let range = (dx * dx + y * y).sqrt().map(|r| if r > NEAREST_METRES { r } else { NEAREST_METRES });
             let phase = phasor::<f64, W, FMA>(range * Lanes::splat(-turns_per_metre));
-            let amplitude = range.map(|r| 1.0 / (r * r));
+            let inverse = range.map(f64::recip);
+            let (cos, at, amplitude) = (dx * inverse, range * Lanes::splat(bins_per_metre), inverse * inverse);
             for (lane, heard) in heard.iter_mut().enumerate() {
-                let beam = &self.beams[end][beam_of_cos(dx.0[lane] / range.0[lane], BEAMS) * bins..][..bins];
-                let at = range.0[lane] * bins_per_metre;
-                let (low, part) = (at as usize, at.fract());
+                let beam = &self.beams[end][beam_of_cos(cos.0[lane], BEAMS) * bins..][..bins];
+                let low = at.0[lane] as usize;
+                let part = at.0[lane] - low as f64;
                 // Neighbouring rows differ by half a turn (the middle of the chirp): `new` already took that off.
                 let row = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
                 let value = row(low) * (1.0 - part) + row(low + 1) * part;
@@ -178,16 +179,26 @@ impl PhasedBeams {
     }
 }
 
-/// Power of the echoes added with their phases, as a row of one gain would have it, and power of all of them.
+/// Echoes of a row together.
+pub struct AddedUp {
+    /// Of what is weighted.
+    pub sum: Complex64,
+    /// Of the weights. The square of the sum over them is the power that a row of one gain has.
+    pub weight: f64,
+    /// Power of all echoes, whatever their phases.
+    pub power: f64,
+}
+
+/// What these echoes add up to.
 #[inline(always)]
-pub fn added_up(heard: &[Heard]) -> (f64, f64) {
-    let (mut sum, mut weight, mut all) = (Complex64::default(), 0.0, 0.0);
+pub fn added_up(heard: &[Heard]) -> AddedUp {
+    let mut out = AddedUp { sum: Complex64::default(), weight: 0.0, power: 0.0 };
     for h in heard {
-        sum += h.weighted;
-        weight += h.weight;
-        all += h.weighted.norm_sqr() / h.weight;
+        out.sum += h.weighted;
+        out.weight += h.weight;
+        out.power += h.weighted.norm_sqr() / h.weight;
     }
-    (sum.norm_sqr() / weight, all)
+    out
 }
 
 /// Row `k` of a beam beyond its last.

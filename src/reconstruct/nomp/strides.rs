@@ -5,12 +5,11 @@
 //! wrong ones go along.
 
 use super::atom::Atom;
-use super::phased::{Heard, PhasedBeams, Row, added_up};
+use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
 use super::solver::damped_step;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use faer::Mat;
-use num_complex::Complex64;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -250,8 +249,8 @@ struct Climbed {
 struct Slope {
     added: f64,
     all: f64,
-    gradient: Vec<f64>,
-    hessian: Mat<f64>,
+    gradient: [f64; 4],
+    hessian: [[f64; 4]; 4],
 }
 
 /// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it crosses the array's axis.
@@ -259,7 +258,7 @@ fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
     let mut slope = slope(beams, &row, count)?;
     let mut damping = 1e-2;
     for _ in 0..MOVES {
-        let Some(step) = damped_step(&slope.hessian, &slope.gradient, damping) else {
+        let Some(step) = damped_step(&Mat::from_fn(4, 4, |p, q| slope.hessian[p][q]), &slope.gradient, damping) else {
             damping *= 10.0;
             continue;
         };
@@ -280,58 +279,57 @@ fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
     if row.place_metres((count - 1) as f64)[1] <= 0.0 || row.first_metres[1] <= 0.0 {
         return None;
     }
-    let mut out = Slope { added: 0.0, all: 0.0, gradient: vec![0.0; 4], hessian: Mat::zeros(4, 4) };
     let mut heard = vec![Heard::default(); count];
-    for (end, centre) in beams.centres_metres.iter().enumerate() {
-        Simd::chosen().run(Listen { beams, end, row, heard: &mut heard });
-        let (added, all) = added_up(&heard);
-        (out.added, out.all) = (out.added + added, out.all + all);
-        let sum: Complex64 = heard.iter().map(|h| h.weighted).sum();
-        let weight: f64 = heard.iter().map(|h| h.weight).sum();
-        let (mut total, mut mean) = (0.0, [0.0; 4]);
-        let mut products = [[0.0; 4]; 4];
-        for (i, h) in heard.iter().enumerate() {
-            let i = i as f64;
-            let [x, y] = row.place_metres(i);
-            let range = ((x - centre) * (x - centre) + y * y).sqrt().max(1e-3);
-            let share = h.weighted * sum.conj() / weight;
-            // Phases as they were taken off: by minus the turns of the distance.
-            let turn = -TAU * beams.turns_per_metre;
-            let [by_x, by_y] = [turn * (x - centre) / range, turn * y / range];
-            let by = [by_x, by_y, i * by_x, i * by_y];
-            let certain = share.re.max(0.0);
-            total += certain;
-            for p in 0..4 {
-                out.gradient[p] -= 2.0 * share.im * by[p];
-                mean[p] += certain * by[p];
-                for q in 0..4 {
-                    products[p][q] += certain * by[p] * by[q];
-                }
-            }
-        }
-        for p in 0..4 {
-            for q in 0..4 {
-                let common = mean[p] * mean[q] / f64::max(total, f64::MIN_POSITIVE);
-                out.hessian[(p, q)] += 2.0 * (products[p][q] - common);
-            }
-        }
-    }
-    Some(out)
+    Some(Simd::chosen().run(SlopeOf { beams, row, heard: &mut heard }))
 }
 
-/// What a row would have left at one end.
-struct Listen<'a> {
+/// The equations of a row of as many reflectors as `heard` has room for.
+struct SlopeOf<'a> {
     beams: &'a PhasedBeams,
-    end: usize,
     row: &'a Row,
     heard: &'a mut [Heard],
 }
 
-impl Kernel for Listen<'_> {
-    type Output = ();
+impl Kernel for SlopeOf<'_> {
+    type Output = Slope;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        self.beams.listen::<FMA>(self.end, self.row, self.heard);
+    fn run<const FMA: bool>(self) -> Slope {
+        let SlopeOf { beams, row, heard } = self;
+        let mut out = Slope { added: 0.0, all: 0.0, gradient: [0.0; 4], hessian: [[0.0; 4]; 4] };
+        for (end, centre) in beams.centres_metres.iter().enumerate() {
+            beams.listen::<FMA>(end, row, heard);
+            let AddedUp { sum, weight, power } = added_up(heard);
+            (out.added, out.all) = (out.added + sum.norm_sqr() / weight, out.all + power);
+            let (mut total, mut mean) = (0.0, [0.0; 4]);
+            let mut products = [[0.0; 4]; 4];
+            let towards = sum.conj() * weight.recip();
+            for (i, h) in heard.iter().enumerate() {
+                let i = i as f64;
+                let [x, y] = row.place_metres(i);
+                let range = ((x - centre) * (x - centre) + y * y).sqrt().max(1e-3);
+                let share = h.weighted * towards;
+                // Phases as they were taken off: by minus the turns of the distance.
+                let turn = -TAU * beams.turns_per_metre / range;
+                let [by_x, by_y] = [turn * (x - centre), turn * y];
+                let by = [by_x, by_y, i * by_x, i * by_y];
+                let certain = share.re.max(0.0);
+                total += certain;
+                for p in 0..4 {
+                    out.gradient[p] -= 2.0 * share.im * by[p];
+                    mean[p] += certain * by[p];
+                    for q in 0..4 {
+                        products[p][q] += certain * by[p] * by[q];
+                    }
+                }
+            }
+            for p in 0..4 {
+                for q in 0..4 {
+                    let common = mean[p] * mean[q] / f64::max(total, f64::MIN_POSITIVE);
+                    out.hessian[p][q] += 2.0 * (products[p][q] - common);
+                }
+            }
+        }
+        out
     }
 }
