@@ -1,8 +1,8 @@
 //! The Capon spectrum of every range row of one end, forward-backward smoothed (Pillai and Kwon 1989): with next to no noise it tells apart
 //! reflectors that the end's own beam cannot.
 
-use super::fastmath::logarithm;
 use super::grid::{ELEMENTS, FINE, ROWS, cosine};
+use crate::signal::simd::powers::logarithm;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use ndarray::ArrayView2;
 use num_complex::Complex64;

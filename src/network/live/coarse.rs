@@ -1,9 +1,9 @@
 //! The coarse features: each end's beams, the same on the grid that the array's centre sees, and their phases.
 
-use super::fastmath::logarithm;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, ELEMENTS, LEAST_ROWS, ROWS, cosine};
 use super::registration::Registration;
 use crate::radar::{End, Radar, hann};
+use crate::signal::simd::powers::logarithm;
 use crate::signal::simd::{Kernel, Simd};
 use ndarray::Array2;
 use num_complex::{Complex32, Complex64};

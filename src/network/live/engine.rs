@@ -2,7 +2,6 @@
 //!
 //! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
-use super::fastmath::{each, logarithm, power_of_ten};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{Packed, convolve, padded, product};
@@ -11,6 +10,7 @@ use super::planes::{Block, Context, Plane, pooled_mix, rectified};
 use super::vector::LANES;
 use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
+use crate::signal::simd::powers::{each, logarithm, power_of_ten};
 use crate::signal::simd::{Kernel, Simd};
 use rayon::prelude::*;
 

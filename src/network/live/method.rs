@@ -1,7 +1,6 @@
 //! The live network as a reconstruction method.
 
 use super::engine::{Decades, LiveEngine, Scratch};
-use super::fastmath::each;
 use super::features::FeatureExtractor;
 use super::grid::{COLUMNS, ROWS};
 use super::module::LiveConfig;
@@ -10,6 +9,7 @@ use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::Radar;
 use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
+use crate::signal::simd::powers::each;
 use ndarray::Array2;
 use rayon::prelude::*;
 use std::sync::{Mutex, OnceLock, PoisonError};

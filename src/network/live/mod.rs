@@ -14,13 +14,12 @@
 //! |---|---|
 //! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
 //! | [`module`], `layers` | the network as a burn module: what trains |
-//! | [`engine`], `planes`, `winograd`, [`kernel`], `vector`, [`fastmath`] | the same without a framework: what runs while somebody drags a reflector |
+//! | [`engine`], `planes`, `winograd`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
 
 mod capon;
 mod coarse;
 pub mod engine;
-pub mod fastmath;
 pub mod features;
 mod floors;
 pub mod grid;

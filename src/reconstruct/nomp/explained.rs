@@ -9,10 +9,10 @@ use super::finish::Found;
 use crate::radar::{End, Radar};
 use crate::reconstruct::seen::seen_from;
 use crate::signal::TwoEnds;
+use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use std::f64::consts::LN_10;
 
 /// Beams formed by each end for each of its elements.
 const BEAMS_PER_ELEMENT: usize = 4;
@@ -22,6 +22,9 @@ const AROUND: usize = 2;
 
 /// Power of a residual, over that of the noise, which noise itself may have.
 const NOISE_MARGIN: f64 = 3.0;
+
+/// Powers that a cell may have, in decades below the strongest: further down they are no normal numbers.
+const LEAST_DECADES: f32 = -36.0;
 
 /// Columns of the map that share one look at the ends.
 const COLUMNS_TOGETHER: usize = 4;
@@ -45,11 +48,14 @@ impl Found {
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
         let drawn = &expected.map.lambda;
         let strongest = (0..drawn.len()).max_by(|&a, &b| flat_of(drawn, a).total_cmp(&flat_of(drawn, b))).unwrap_or(0);
-        let slope = (2.0 * LN_10 * expected.decades) as f32;
+        let decades = (2.0 * expected.decades) as f32;
         let cos_of = |column: usize| radar.cos_of_column(column as f64);
         let [peak_bin, peak_column] = [strongest / radar.elements, strongest % radar.elements];
         let peak = End::BOTH.map(|end| all[end as usize][seen_at(radar, beams, end, peak_bin, cos_of(peak_column))]);
         parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
+            // Power drawn in each cell, over that of the strongest.
+            let mut own: Vec<f32> = drawn.row(bin).to_vec();
+            each(&mut own, |lambda| power_of_ten((decades * (lambda - 1.0)).max(LEAST_DECADES)));
             for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {
                 let cos = cos_of(first + COLUMNS_TOGETHER / 2);
                 // Of the beams' power, and of that of the strongest cell; finite even where an end is silent there.
@@ -62,9 +68,7 @@ impl Found {
                 }
                 let (of_beam, of_peak) = (of_beam as f32, of_peak.min(f64::from(f32::MAX)) as f32);
                 for column in first..(first + COLUMNS_TOGETHER).min(radar.elements) {
-                    // Powers of 10 by the exponential: many times as fast.
-                    let own = (slope * (drawn[[bin, column]] - 1.0)).exp();
-                    row[column] = (of_beam * (of_peak / (of_peak + own))).sqrt();
+                    row[column] = (of_beam * (of_peak / (of_peak + own[column]))).sqrt();
                 }
             }
         });

@@ -25,6 +25,9 @@ const FIRST_COLUMNS: usize = 24;
 /// Singular values that must lie in the noise before the projection counts as wide enough.
 const SPARE: usize = 4;
 
+/// Columns that are enough for tones not far above the noise.
+const WEAK: usize = 16;
+
 /// A singular value above this many times the largest that noise has in the mean belongs to a tone.
 const ABOVE_NOISE: f64 = 1.6;
 
@@ -90,10 +93,17 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64, most: usize) -> Opt
             continue;
         }
         let range = qr.compute_thin_Q();
-        let svd = (range.adjoint() * &hankel).thin_svd().ok()?;
-        let count = svd.S().column_vector().iter().take_while(|value| value.re > least).count();
-        if count + SPARE <= width {
-            return Some(&range * svd.U().subcols(0, count));
+        // Columns after the last that brought much hold what is weak, and noise.
+        let strong =
+            (0..width).rev().find(|column| brought(*column) > FAR_ABOVE_NOISE * all_noise).map_or(0, |c| c + 1);
+        let enough = Some(strong + WEAK).filter(|enough| *enough < width);
+        for kept in enough.into_iter().chain([width]) {
+            let range = range.subcols(0, kept);
+            let svd = (range.adjoint() * &hankel).thin_svd().ok()?;
+            let count = svd.S().column_vector().iter().take_while(|value| value.re > least).count();
+            if count + SPARE <= kept {
+                return Some(range * svd.U().subcols(0, count));
+            }
         }
         if width == most_width {
             return None;

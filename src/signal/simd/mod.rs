@@ -6,6 +6,7 @@
 //! several registers for one.
 
 mod instructions;
+pub mod powers;
 
 pub use instructions::{Kernel, SIMD_VARIABLE, Simd, SimdError};
 

@@ -1,6 +1,6 @@
 //! Powers and logarithms of ten over whole slices, written without branches so that the compiler vectorises them.
 
-use crate::signal::simd::{Kernel, Simd};
+use super::{Kernel, Simd};
 
 /// A function of one value, applied to every value of a slice.
 struct Each<'a, F>(&'a mut [f32], F);
