@@ -36,7 +36,7 @@ const KEPT: usize = 6;
 const MOST_GRIDS: usize = 96;
 
 /// Reflectors of all rows together that are followed at each length.
-const MOST_FOLLOWED: usize = 3500;
+const MOST_FOLLOWED: usize = 5000;
 
 /// Most reflectors of a row.
 const MOST_REFLECTORS: usize = 140;
