@@ -4,9 +4,10 @@
 
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::kernel::{Packed, convolve, padded, product};
+use super::kernel::{Packed, convolve, product};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
-use super::planes::{Block, Context, Plane, pooled_mix, rectified};
+use super::planes::{Block, Plane, rectified};
+use super::reading::{CELLS, Layers};
 use super::vector::LANES;
 use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
@@ -16,7 +17,7 @@ use rayon::prelude::*;
 
 /// Fine columns in a coarse one, and map columns in a fine one.
 const FOLD: usize = FINE / COARSE;
-const _: () = assert!(FOLD == 4, "cell_by_cell spreads over four cells");
+const _: () = assert!(FOLD == CELLS && SPREAD == CELLS, "layers that spread a cell do so over four");
 const SPREAD: usize = COLUMNS / FINE;
 
 /// What the network says about one scene, in decades above the samples' gain.
@@ -70,67 +71,34 @@ impl LiveEngine {
     pub fn new(file: &WeightFile, config: &LiveConfig) -> Result<Self, WeightsError> {
         let [c0, c1, c2, c3] = config.channels;
         let [b0, b1, b2, b3] = config.blocks;
-        let tensors = |name: &str, shape: &[usize]| {
-            let weights = file.tensor(&format!("{name}.weight"), shape)?;
-            Ok::<_, WeightsError>((weights, file.tensor(&format!("{name}.bias"), &shape[..1])?))
-        };
-        // Cells hold whole vectors of channels but for those of the two inputs.
-        let conv = |name: &str, [input, stride]: [usize; 2], output: usize| {
-            let (weights, bias) = tensors(name, &[output, input, 3, 3])?;
-            Ok::<_, WeightsError>(Conv3x3::new(&weights, &bias, input, stride))
-        };
-        let inner = |name: &str, input: usize, output: usize| conv(name, [input, padded(input)], output);
-        let small = |name: &str, input: usize, output: usize, kernel: usize| {
-            let (weights, bias) = tensors(name, &[output, input, kernel, kernel])?;
-            Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
-        };
-        // One cell becomes four.
-        let up = |name: &str, input: usize, output: usize| {
-            let (weights, bias) = tensors(name, &[4 * output, input, 1, 1])?;
-            let (weights, bias) = (cell_by_cell(&weights, output), cell_by_cell(&bias, output));
-            Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
-        };
-        let linear = |name: &str, input: usize, output: usize| {
-            let (weights, bias) = tensors(name, &[output, input])?;
-            Ok::<_, WeightsError>(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
-        };
-        let blocks = |name: &str, count: usize, c: usize, context: bool| {
-            let block = |i: usize| {
-                let part = |p: &str| format!("{name}.{i}.{p}");
-                // A context's input holds the means, then the maxima, both padded.
-                let mix = |p: &str| pooled_mix(file, &part(p), c);
-                let context =
-                    if context { Some(Context { row: mix("context.row")?, col: mix("context.col")? }) } else { None };
-                Ok(Block {
-                    conv1: inner(&part("conv1.conv"), c, c)?,
-                    conv2: inner(&part("conv2.conv"), c, c)?,
-                    context,
-                })
-            };
-            (0..count).map(block).collect::<Result<Vec<_>, WeightsError>>()
-        };
+        let layers = Layers { file };
         Ok(LiveEngine {
-            stem: conv("stem.conv", [INPUT_CHANNELS; 2], c0)?,
+            stem: layers.conv("stem.conv", [INPUT_CHANNELS; 2], c0)?,
             encoder: [
-                blocks("enc0", b0, c0, false)?,
-                blocks("enc1", b1.div_ceil(2), c1, false)?,
-                blocks("enc2", b2.div_ceil(2), c2, true)?,
-                blocks("enc3", b3, c3, true)?,
+                layers.blocks("enc0", b0, c0, false)?,
+                layers.blocks("enc1", b1.div_ceil(2), c1, false)?,
+                layers.blocks("enc2", b2.div_ceil(2), c2, true)?,
+                layers.blocks("enc3", b3, c3, true)?,
             ],
-            down: [small("down1", c0, c1, 2)?, small("down2", c1, c2, 2)?, small("down3", c2, c3, 2)?],
-            up: [up("up0", c1, c0)?, up("up1", c2, c1)?, up("up2", c3, c2)?],
-            decoder: [blocks("dec0", b0, c0, false)?, blocks("dec1", b1, c1, false)?, blocks("dec2", b2, c2, true)?],
-            widen: {
-                let (weights, bias) = tensors("widen.conv", &[WIDENED * FOLD, c0, 3, 3])?;
-                Conv3x3::new(&cell_by_cell(&weights, WIDENED), &cell_by_cell(&bias, WIDENED), c0, padded(c0))
-            },
-            fine1: conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
-            fine2: small("fine2", config.fine, 2 * SPREAD, 1)?,
-            row_sources: small("row_sources", c0, WIDE / COARSE, 1)?,
+            down: [
+                layers.small("down1", c0, c1, 2)?,
+                layers.small("down2", c1, c2, 2)?,
+                layers.small("down3", c2, c3, 2)?,
+            ],
+            up: [layers.up("up0", c1, c0)?, layers.up("up1", c2, c1)?, layers.up("up2", c3, c2)?],
+            decoder: [
+                layers.blocks("dec0", b0, c0, false)?,
+                layers.blocks("dec1", b1, c1, false)?,
+                layers.blocks("dec2", b2, c2, true)?,
+            ],
+            widen: layers.widened("widen.conv", c0, WIDENED)?,
+            fine1: layers.conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
+            fine2: layers.small("fine2", config.fine, 2 * SPREAD, 1)?,
+            row_sources: layers.small("row_sources", c0, WIDE / COARSE, 1)?,
             columns: circulant(&file.tensor("col_kernel", &[ROWS / 2 + 1])?, ROWS),
             rows: circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE),
-            scalar1: linear("scalar1", 2 * c3 + SCALARS, 64)?,
-            scalar2: linear("scalar2", 64, 2)?,
+            scalar1: layers.linear("scalar1", 2 * c3 + SCALARS, 64)?,
+            scalar2: layers.linear("scalar2", 64, 2)?,
             channels: config.channels,
         })
     }
@@ -248,15 +216,6 @@ impl LiveEngine {
         });
         map
     }
-}
-
-/// What belongs to the output channels of a layer that one cell's channels spread over several cells, with `channels` each, put into the order
-/// of those cells. PyTorch's pixel shuffle has it channel by channel.
-fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
-    let cells = 4;
-    let each = of_channels.len() / (cells * channels);
-    let part = |cell: usize, channel: usize| &of_channels[(channel * cells + cell) * each..][..each];
-    (0..cells).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
 }
 
 fn decades_in(v: f32) -> f32 {

@@ -1,9 +1,8 @@
 //! Channels-last pictures and what the live network's engine does with them again and again.
 
-use super::kernel::{Packed, convolve, padded};
+use super::kernel::{Packed, convolve};
 use super::vector::LANES;
 use super::winograd::Conv3x3;
-use crate::network::weights::{WeightFile, WeightsError};
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
@@ -50,19 +49,6 @@ pub(super) struct Block {
     pub(super) conv1: Conv3x3,
     pub(super) conv2: Conv3x3,
     pub(super) context: Option<Context>,
-}
-
-/// 1x1 convolution of means and maxima, each padded to whole vectors.
-pub(super) fn pooled_mix(file: &WeightFile, name: &str, c: usize) -> Result<Packed, WeightsError> {
-    let weights = file.tensor(&format!("{name}.weight"), &[c, 2 * c, 1, 1])?;
-    let bias = file.tensor(&format!("{name}.bias"), &[c])?;
-    let lanes = padded(c);
-    let mut spread = vec![0.0; c * 2 * lanes];
-    for (out, row) in spread.chunks_exact_mut(2 * lanes).zip(weights.chunks_exact(2 * c)) {
-        out[..c].copy_from_slice(&row[..c]);
-        out[lanes..lanes + c].copy_from_slice(&row[c..]);
-    }
-    Ok(Packed::new(&spread, &bias, [2 * lanes; 2], [1, 1], 1))
 }
 
 impl Block {

@@ -1,0 +1,89 @@
+//! The layers of a weight file, packed for the engine.
+
+use super::kernel::{Packed, padded};
+use super::planes::{Block, Context};
+use super::winograd::Conv3x3;
+use crate::network::weights::{WeightFile, WeightsError};
+
+/// Cells that one becomes in the layers that spread it.
+pub(super) const CELLS: usize = 4;
+
+/// Where layers come from. Their errors name the tensor that is missing or of another shape.
+#[derive(Clone, Copy)]
+pub(super) struct Layers<'a> {
+    pub(super) file: &'a WeightFile<'a>,
+}
+
+impl Layers<'_> {
+    /// Weights and bias.
+    fn tensors(&self, name: &str, shape: &[usize]) -> Result<[Vec<f32>; 2], WeightsError> {
+        let tensor = |part: &str, shape: &[usize]| self.file.tensor(&format!("{name}.{part}"), shape);
+        Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
+    }
+
+    /// A 3x3 convolution of cells that hold `stride` channels, of which it sees the first `input`.
+    pub(super) fn conv(&self, name: &str, [input, stride]: [usize; 2], output: usize) -> Result<Conv3x3, WeightsError> {
+        let [weights, bias] = self.tensors(name, &[output, input, 3, 3])?;
+        Ok(Conv3x3::new(&weights, &bias, input, stride))
+    }
+
+    /// A 3x3 convolution whose output is `channels` of each of the cells that one becomes.
+    pub(super) fn widened(&self, name: &str, input: usize, channels: usize) -> Result<Conv3x3, WeightsError> {
+        let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 3, 3])?.map(|v| cell_by_cell(&v, channels));
+        Ok(Conv3x3::new(&weights, &bias, input, padded(input)))
+    }
+
+    /// A convolution of so many rows and columns, and as far from one cell to the next.
+    pub(super) fn small(&self, name: &str, input: usize, output: usize, kernel: usize) -> Result<Packed, WeightsError> {
+        let [weights, bias] = self.tensors(name, &[output, input, kernel, kernel])?;
+        Ok(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
+    }
+
+    /// A 1x1 convolution whose output is `channels` of each of the cells that one becomes.
+    pub(super) fn up(&self, name: &str, input: usize, channels: usize) -> Result<Packed, WeightsError> {
+        let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 1, 1])?.map(|v| cell_by_cell(&v, channels));
+        Ok(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
+    }
+
+    /// A linear layer of numbers that lie side by side.
+    pub(super) fn linear(&self, name: &str, input: usize, output: usize) -> Result<Packed, WeightsError> {
+        let [weights, bias] = self.tensors(name, &[output, input])?;
+        Ok(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
+    }
+
+    /// Residual blocks of `c` channels.
+    pub(super) fn blocks(&self, name: &str, count: usize, c: usize, context: bool) -> Result<Vec<Block>, WeightsError> {
+        let block = |i: usize| {
+            let part = |p: &str| format!("{name}.{i}.{p}");
+            let context = match context {
+                true => {
+                    Some(Context { row: self.mix(&part("context.row"), c)?, col: self.mix(&part("context.col"), c)? })
+                }
+                false => None,
+            };
+            let conv = |p: &str| self.conv(&part(p), [c, padded(c)], c);
+            Ok(Block { conv1: conv("conv1.conv")?, conv2: conv("conv2.conv")?, context })
+        };
+        (0..count).map(block).collect()
+    }
+
+    /// 1x1 convolution of means and, after them, maxima, each padded to whole vectors.
+    fn mix(&self, name: &str, c: usize) -> Result<Packed, WeightsError> {
+        let [weights, bias] = self.tensors(name, &[c, 2 * c, 1, 1])?;
+        let lanes = padded(c);
+        let mut spread = vec![0.0; c * 2 * lanes];
+        for (out, row) in spread.chunks_exact_mut(2 * lanes).zip(weights.chunks_exact(2 * c)) {
+            out[..c].copy_from_slice(&row[..c]);
+            out[lanes..lanes + c].copy_from_slice(&row[c..]);
+        }
+        Ok(Packed::new(&spread, &bias, [2 * lanes; 2], [1, 1], 1))
+    }
+}
+
+/// What belongs to the output channels of a layer that one cell's channels spread over several cells, with `channels` each, put into the order
+/// of those cells. PyTorch's pixel shuffle has it channel by channel.
+fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
+    let each = of_channels.len() / (CELLS * channels);
+    let part = |cell: usize, channel: usize| &of_channels[(channel * CELLS + cell) * each..][..each];
+    (0..CELLS).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
+}
