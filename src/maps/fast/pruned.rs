@@ -85,7 +85,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
                 let column = (stride * p + chunk * W + self.columns / 2) % self.columns;
                 let d = log.decades::<T, W, FMA>(*v);
                 seen.take(d);
-                out[column..column + W].copy_from_slice(&d.0);
+                d.store(&mut out[column..]);
             }
         }
         *extremes = seen;

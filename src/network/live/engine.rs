@@ -137,7 +137,7 @@ impl LiveEngine {
         s.sources.reset(ROWS, COARSE, self.row_sources.output());
         convolve(&self.row_sources, &top.data, COARSE, COARSE, &mut s.sources.data);
         hidden.reset(ROWS, COARSE, self.widen.output());
-        let read = |row: usize, line: &mut [f32]| top.read_rectified(row, line);
+        let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&top.data[row * line.len()..][..line.len()]);
         self.widen.run([ROWS, COARSE], read, &mut hidden.data, |sums, out| out.copy_from_slice(sums));
         s.heads.reset(ROWS, FINE, self.fine2.output());
         let simd = Simd::chosen();

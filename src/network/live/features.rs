@@ -92,7 +92,7 @@ impl FeatureExtractor {
         self.fill_fine(&capon, &mut fine);
         Ok(LiveInput {
             fine,
-            coarse: { self.coarse.features(&profiles) },
+            coarse: self.coarse.features(&profiles),
             rows: row_features(&profiles),
             scalars: [rounding_floor(&self.radar, &profiles), measured_floor(&self.radar, &ends)],
             gain: 0.5 * power.log10(),

@@ -54,8 +54,9 @@ impl Kernel for Echoes<'_> {
         let mut echoes = Vec::with_capacity(reflectors.len());
         for reflector in reflectors {
             let mut parts = Vec::with_capacity(starts.len());
+            let reflector = kept_apart(sensor, reflector);
             for &(end, first) in &starts {
-                parts.push(part::<FMA>(sensor, reflector, end, first));
+                parts.push(part::<FMA>(sensor, &reflector, end, first));
             }
             echoes.push(Echo { parts });
         }
@@ -63,17 +64,16 @@ impl Kernel for Echoes<'_> {
     }
 }
 
-/// What channels from channel `first` of an end on hear of `reflector`.
+/// What channels from channel `first` of an end on hear of `r`.
 #[inline(always)]
-fn part<const FMA: bool>(sensor: &Sensor, reflector: &Reflector, end: usize, first: usize) -> Part {
-    let r = kept_apart(sensor, reflector);
+fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usize) -> Part {
     let of = |v: f64| Lanes::<f64, W>::splat(v);
     let samples = sensor.samples as f64;
     let channel = |lane: usize| end * sensor.end_elements + (first + lane).min(sensor.end_elements - 1);
     let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.hears[channel(lane)];
     let x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
     let heard = Lanes(std::array::from_fn(|lane| f64::from(u8::from(is_heard(lane)))));
-    let echo = sensor.model.echo_lanes::<W, FMA>(x, &r);
+    let echo = sensor.model.echo_lanes::<W, FMA>(x, r);
     let turns = echo.carrier_turns + echo.beat_turns_at::<FMA>((samples - 1.0) / 2.0);
     let by_distance = echo.distance_metres.map(f64::recip);
     Part {

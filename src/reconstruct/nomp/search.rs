@@ -107,7 +107,12 @@ impl Search<'_> {
         }
         let lines = self.long_lines(nothing)?;
         let looked_at = lines.cost();
-        let pairs = few.filter(|_| lines.atoms.is_empty()).unwrap_or_else(|| self.pairs(&lines));
+        let pairs = match few {
+            Some(pairs) if lines.atoms.is_empty() => pairs,
+            // There are too many, and the same as before.
+            None if !is_long => Pairs::default(),
+            _ => self.pairs(&lines),
+        };
         if !lines.atoms.is_empty() {
             // Lines and points are often all there is.
             let fit = self.nearly_there(self.paired(lines.clone(), &pairs, true)?)?;
