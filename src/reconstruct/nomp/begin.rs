@@ -125,8 +125,7 @@ impl Grower<'_> {
             .par_iter()
             .take(MOST_TRIED)
             .map(|atom| {
-                let wall = self.bench.solve(&fit.residual, vec![*atom], Tie::PerEnd, 0.0);
-                let energy = fit.cost() - wall.cost();
+                let energy = fit.cost() - self.bench.cost_of(&fit.residual, vec![*atom], Tie::PerEnd);
                 let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
                 Begun { part: energy / all, energy, atom: *atom }
             })

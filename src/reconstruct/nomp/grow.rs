@@ -97,7 +97,7 @@ pub struct Grower<'a> {
 
 impl Grower<'_> {
     /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
-    pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool) -> Vec<Candidate> {
+    pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool + Sync) -> Vec<Candidate> {
         let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, flat));
         let least = (noise * self.settings.least_prominence).max(self.rounding_power());
         self.detector.peaks(self.radar, flat, least, most, closed)

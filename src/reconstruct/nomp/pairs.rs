@@ -35,8 +35,11 @@ const MOST_GUESSES: usize = 2;
 /// allowed, from what does for the place within: the array is too small to see curvature there.
 const ALIKE: f64 = 1.0;
 
-/// Rounds in which directions and the tones of the neighbouring element are brought together.
+/// Most rounds in which directions and the tones of the neighbouring element are brought together.
 const ROUNDS: usize = 4;
+
+/// A round that changes no cosine by more than this is the last.
+const SETTLED: f64 = 0.1 * COS;
 
 /// A tone of one end.
 #[derive(Debug, Clone, Copy)]
@@ -163,9 +166,14 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
         let nearer = |cos: &f64| step_metres * cos / radar.range_resolution_metres();
         let moved: Vec<Tone> =
             tones.iter().zip(&cosines).map(|(tone, cos)| Tone { bins: tone.bins - nearer(cos), ..*tone }).collect();
+        let mut changed = 0.0f64;
         for ((cos, own), beside) in cosines.iter_mut().zip(&gains).zip(gains_of_tones(beside, &moved)) {
             let nearer_metres = -(beside * own.conj()).arg() / radians_per_metre;
-            *cos = (nearer_metres / step_metres).clamp(-1.0, 1.0);
+            let before = std::mem::replace(cos, (nearer_metres / step_metres).clamp(-1.0, 1.0));
+            changed = changed.max((*cos - before).abs());
+        }
+        if changed < SETTLED {
+            break;
         }
     }
     let deviation = (noise_variance / radar.samples as f64).sqrt() / (radians_per_metre * step_metres).abs();

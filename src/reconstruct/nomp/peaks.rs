@@ -7,6 +7,7 @@ use super::end_beams::end_beams;
 use super::registered::Registered;
 use crate::radar::Radar;
 use num_complex::Complex64;
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Beams formed by each end for each of its elements.
@@ -17,6 +18,9 @@ const COLUMNS_PER_ELEMENT: usize = 10;
 
 /// One look at the residual finds no two places within this many range bins of each other: what the stronger leaves comes first.
 const ALONE_BINS: usize = 8;
+
+/// Cells of the common grid that are looked at together.
+const CELLS_TOGETHER: usize = 4096;
 
 /// A place where something stands out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,15 +72,16 @@ impl Detector {
         residual: &[Complex64],
         least: f64,
         most: usize,
-        closed: impl Fn(usize) -> bool,
+        closed: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Candidate> {
         let magnitudes: [Vec<f32>; 2] = end_beams(radar, residual, self.beams)
-            .map(|beams| beams.iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
+            .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
         let [first, last] = &self.grid.cells;
         let power = |i: usize| magnitudes[0][first[i] as usize] * magnitudes[1][last[i] as usize];
         let is_open = |i: usize| !closed(i / self.columns);
-        let strong = (0..first.len()).map(|i| (power(i), i)).filter(|(p, i)| f64::from(*p) > least && is_open(*i));
-        let mut strong: Vec<(f32, usize)> = strong.collect();
+        let cells = (0..first.len()).into_par_iter().with_min_len(CELLS_TOGETHER);
+        let mut strong: Vec<(f32, usize)> =
+            cells.map(|i| (power(i), i)).filter(|(p, i)| f64::from(*p) > least && is_open(*i)).collect();
         let mut found: Vec<Candidate> = Vec::new();
         let weaker = |a: &&(f32, usize), b: &&(f32, usize)| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1));
         while let Some(&(power, i)) = strong.iter().max_by(weaker) {

@@ -19,8 +19,11 @@ const ROWS: f64 = 0.55;
 /// Fewest samples that this is tried on.
 const LEAST_SAMPLES: usize = 32;
 
-/// Columns of the first random projection; twice as many where those were not enough.
+/// Columns of the first random projection.
 const FIRST_COLUMNS: usize = 24;
+
+/// Growth of the projection where its columns were not enough.
+const GROWTH: f64 = 1.5;
 
 /// Singular values that must lie in the noise before the projection counts as wide enough.
 const SPARE: usize = 4;
@@ -57,16 +60,23 @@ pub fn tones(chirp: &[Complex64], noise_variance: f64, most: usize) -> Option<Ve
         return None;
     }
     let basis = signal_subspace(chirp, noise_variance, most)?;
-    let (rows, count) = (basis.nrows(), basis.ncols());
-    if count == 0 {
+    if basis.ncols() == 0 {
         return Some(Vec::new());
     }
-    let shifted = basis.subrows(1, rows - 1).to_owned();
-    let rotation = basis.subrows(0, rows - 1).qr().solve_lstsq(shifted);
-    let rotation = Mat::from_fn(count, count, |i, j| rotation[(i, j)]);
-    let phasors = rotation.eigenvalues().ok()?;
+    let phasors = rotation(&basis).eigenvalues().ok()?;
     let tone = |z: &Complex64| Tone { bins: (z.arg() / TAU).rem_euclid(1.0) * samples as f64, growth: z.norm().ln() };
     Some(phasors.iter().map(tone).filter(|tone| tone.growth.abs() < STEADY).collect())
+}
+
+/// What takes all rows of an orthonormal basis but the last to all but the first, in the least-squares sense. The Gram matrix of the former
+/// lacks one row's product of the identity, so that its inverse is known.
+fn rotation(basis: &Mat<Complex64>) -> Mat<Complex64> {
+    let (rows, count) = (basis.nrows(), basis.ncols());
+    let turned = basis.subrows(0, rows - 1).adjoint() * basis.subrows(1, rows - 1);
+    let last = basis.subrows(rows - 1, 1);
+    let left = (1.0 - last.squared_norm_l2()).max(f64::EPSILON);
+    let missed = last * &turned;
+    Mat::from_fn(count, count, |i, j| turned[(i, j)] + last[(0, i)].conj() * missed[(0, j)] / left)
 }
 
 /// An orthonormal basis of what of the chirp's Hankel matrix stands out of the noise, a column for each tone.
@@ -79,17 +89,21 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64, most: usize) -> Opt
     let all_noise = (noise_variance * (rows * columns) as f64).sqrt();
     let most_width = (columns - SPARE).min(most.saturating_add(SPARE));
     let mut width = FIRST_COLUMNS.min(most_width);
+    let mut projected: Mat<Complex64> = Mat::zeros(rows, 0);
     loop {
-        let random: Vec<Complex64> = (0..width).flat_map(|j| unit_noise(SEED, j).take(columns)).collect();
-        let projected = &hankel * Mat::from_fn(columns, width, |i, j| random[j * columns + i]);
+        let known = projected.ncols();
+        let random: Vec<Complex64> = (known..width).flat_map(|j| unit_noise(SEED, j).take(columns)).collect();
+        let more = &hankel * Mat::from_fn(columns, width - known, |i, j| random[j * columns + i]);
+        projected.resize_with(rows, width, |i, j| more[(i, j - known)]);
         let qr = projected.qr();
         // What the last columns still brought is far more than noise: there are more tones than columns.
+        let wider = ((GROWTH * width as f64) as usize).min(most_width);
         let brought = |column: usize| qr.thin_R()[(column, column)].norm();
         if (width - SPARE..width).all(|column| brought(column) > FAR_ABOVE_NOISE * all_noise) {
             if width == most_width {
                 return None;
             }
-            width = (2 * width).min(most_width);
+            width = wider;
             continue;
         }
         let range = qr.compute_thin_Q();
@@ -108,7 +122,7 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64, most: usize) -> Opt
         if width == most_width {
             return None;
         }
-        width = (2 * width).min(most_width);
+        width = wider;
     }
 }
 

@@ -146,7 +146,8 @@ impl Grower<'_> {
         let seed = self.trimmed(samples, seed);
         let mut wall = self.bench.refine(samples, vec![seed], vec![Gains::default()], Tie::PerEnd, ALONE);
         for _ in 0..MOST_WALKS {
-            let [before, after] = [self.more_reflectors(&wall, false), self.more_reflectors(&wall, true)];
+            let (before, after) =
+                rayon::join(|| self.more_reflectors(&wall, false), || self.more_reflectors(&wall, true));
             let Some(longer) = extended(wall.atoms[0], before, after).filter(|_| before + after > 0) else { break };
             let trial = self.bench.refine(samples, vec![longer], wall.gains.clone(), Tie::PerEnd, ALONE);
             if trial.cost() >= wall.cost() || self.bench.work.is_spent() {
@@ -167,9 +168,9 @@ impl Grower<'_> {
     fn trimmed(&self, samples: &Samples, mut seed: Atom) -> Atom {
         for _ in 0..MOST_TRIMS {
             let wall = self.bench.solve(samples, vec![seed], Tie::PerEnd, 0.0);
-            let fewer = [self.fewer_reflectors(&wall, false), self.fewer_reflectors(&wall, true)];
-            match shortened(seed, fewer) {
-                Some(shorter) if fewer != [0, 0] => seed = shorter,
+            let fewer = rayon::join(|| self.fewer_reflectors(&wall, false), || self.fewer_reflectors(&wall, true));
+            match shortened(seed, fewer.into()) {
+                Some(shorter) if fewer != (0, 0) => seed = shorter,
                 _ => break,
             }
         }
