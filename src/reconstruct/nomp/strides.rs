@@ -27,16 +27,20 @@ const NEIGHBOURS: usize = 8;
 pub const FIRST: usize = 8;
 
 /// Steps of the grid around a pair to each side, along the line of sight and across.
-const REACH: [i32; 2] = [10, 12];
+const REACH: [i32; 2] = [7, 9];
+
+/// From one step of the grid to the next, wavelengths over all reflectors of the first glance: halfway between, two thirds of the power
+/// still add up.
+const PITCH_WAVELENGTHS: f64 = 0.7;
 
 /// Steps of a pair that are followed further.
-const KEPT: usize = 6;
+const KEPT: usize = 4;
 
 /// Grids whose best rows are followed further.
-const MOST_GRIDS: usize = 96;
+const MOST_GRIDS: usize = 48;
 
 /// Reflectors of all rows together that are followed at each length.
-const MOST_FOLLOWED: usize = 5000;
+const MOST_FOLLOWED: usize = 3000;
 
 /// Most reflectors of a row.
 const MOST_REFLECTORS: usize = 140;
@@ -158,9 +162,9 @@ pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64) -> 
     let between = (beams.centres_metres[1] - beams.centres_metres[0]).abs().max(1e-3);
     let wavelength = beams.turns_per_metre.abs().recip();
     let last = (FIRST - 1) as f64;
-    // Half a wavelength over all reflectors: by the range itself, by its difference between the ends, by the row's curvature.
-    let along = 0.5 * wavelength / last;
-    let curved = 0.5 * wavelength * range / (step_metres * last * last);
+    // By the range itself, by its difference between the ends, by the row's curvature.
+    let along = PITCH_WAVELENGTHS * wavelength / last;
+    let curved = PITCH_WAVELENGTHS * wavelength * range / (step_metres * last * last);
     [along, (along * range / between).min(curved)]
 }
 
