@@ -19,7 +19,7 @@ const LEAST_ALONG: f64 = 0.3;
 const LEAST_EVEN: f64 = 0.02;
 
 /// Most directions of all points that are looked into.
-const MOST_LOOKS: usize = 12;
+const MOST_LOOKS: usize = 6;
 
 /// Radians by which a wall may deviate from its direction.
 const WITHIN_RADIANS: f64 = 0.01;
