@@ -27,6 +27,10 @@ const WITHIN_RADIANS: f64 = 0.01;
 /// Shortest step, metres: rows of closer reflectors are all alike.
 const LEAST_STEP_METRES: f64 = 0.03;
 
+/// From one row of a look to the next, wavelengths over the first few reflectors: one direction is looked into, so that steps may be finer
+/// than over pairs.
+const PITCH_WAVELENGTHS: f64 = 0.5;
+
 /// Rows of one look that are tried over twice as many reflectors, and those that are followed.
 const KEPT: [usize; 2] = [40, 4];
 
@@ -96,7 +100,7 @@ struct Fan {
 
 impl Fan {
     fn new(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> Self {
-        let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES);
+        let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
         let range = from_metres[0].hypot(from_metres[1]).max(0.1);
         let (sin, cos) = radians.sin_cos();
         let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();

@@ -135,7 +135,7 @@ impl Grid {
         let step = [over[0] - from[0], over[1] - from[1]];
         let range = from[0].hypot(from[1]).max(0.1);
         let sight = [from[0] / range, from[1] / range];
-        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]));
+        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]), PITCH_WAVELENGTHS);
         Grid {
             first,
             middle: Row { first_metres: from, step_metres: step },
@@ -156,15 +156,16 @@ impl Grid {
     }
 }
 
-/// How finely steps of about this length must be tried over the first few reflectors: along the line of sight, and across.
-pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64) -> [f64; 2] {
+/// How finely steps of about this length are tried over the first few reflectors, so many wavelengths apart over all of them: along the
+/// line of sight, and across.
+pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wavelengths: f64) -> [f64; 2] {
     let range = from[0].hypot(from[1]).max(0.1);
     let between = (beams.centres_metres[1] - beams.centres_metres[0]).abs().max(1e-3);
     let wavelength = beams.turns_per_metre.abs().recip();
     let last = (FIRST - 1) as f64;
     // By the range itself, by its difference between the ends, by the row's curvature.
-    let along = PITCH_WAVELENGTHS * wavelength / last;
-    let curved = PITCH_WAVELENGTHS * wavelength * range / (step_metres * last * last);
+    let along = wavelengths * wavelength / last;
+    let curved = wavelengths * wavelength * range / (step_metres * last * last);
     [along, (along * range / between).min(curved)]
 }
 
