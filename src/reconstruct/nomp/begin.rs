@@ -7,7 +7,7 @@ use super::grow::Grower;
 use super::on_wall::is_on;
 use super::phased::PhasedBeams;
 use super::profile::Profile;
-use super::refine::{Fit, Tie};
+use super::refine::Fit;
 use super::strides::{Stride, rows_over_pairs};
 use crate::radar::Radar;
 use rayon::prelude::*;
@@ -125,7 +125,7 @@ impl Grower<'_> {
             .par_iter()
             .take(MOST_TRIED)
             .map(|atom| {
-                let energy = fit.cost() - self.bench.cost_of(&fit.residual, vec![*atom], Tie::PerEnd);
+                let energy = fit.cost() - self.bench.cost_of(&fit.residual, vec![*atom]);
                 let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
                 Begun { part: energy / all, energy, atom: *atom }
             })

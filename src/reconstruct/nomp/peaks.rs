@@ -19,8 +19,8 @@ const COLUMNS_PER_ELEMENT: usize = 10;
 /// One look at the residual finds no two places within this many range bins of each other: what the stronger leaves comes first.
 const ALONE_BINS: usize = 8;
 
-/// Cells of the common grid that are looked at together.
-const CELLS_TOGETHER: usize = 4096;
+/// Fewest cells of the common grid that are worth a task of their own.
+const LEAST_CELLS: usize = 4096;
 
 /// A place where something stands out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,7 +79,7 @@ impl Detector {
         let [first, last] = &self.grid.cells;
         let power = |i: usize| magnitudes[0][first[i] as usize] * magnitudes[1][last[i] as usize];
         let is_open = |i: usize| !closed(i / self.columns);
-        let cells = (0..first.len()).into_par_iter().with_min_len(CELLS_TOGETHER);
+        let cells = (0..first.len()).into_par_iter().with_min_len(LEAST_CELLS);
         let mut strong: Vec<(f32, usize)> =
             cells.map(|i| (power(i), i)).filter(|(p, i)| f64::from(*p) > least && is_open(*i)).collect();
         let mut found: Vec<Candidate> = Vec::new();

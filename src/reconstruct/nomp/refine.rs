@@ -145,10 +145,11 @@ impl<'a> Workbench<'a> {
         self.settled(self.state(samples, atoms, gains, Terms { tie, ridge, derivatives: false }), samples)
     }
 
-    /// Energy under the window that `atoms` leave of `samples` where they are, with the gains of [`Workbench::solve`]; in half its time.
-    pub fn cost_of(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie) -> f64 {
+    /// Energy under the window that `atoms` leave of `samples` where they are, each with its best gain at each end; in half the time of
+    /// [`Workbench::solve`], which also says what is left.
+    pub fn cost_of(&self, samples: &Samples, atoms: Vec<Atom>) -> f64 {
         let gains = vec![Gains::default(); atoms.len()];
-        self.state(samples, atoms, gains, Terms { tie, ridge: 0.0, derivatives: false }).cost
+        self.state(samples, atoms, gains, Terms { tie: Tie::PerEnd, ridge: 0.0, derivatives: false }).cost
     }
 
     /// Moves `atoms` to a local minimum of the energy that they leave of `samples`. `gains` are where gains start: zeros, or near the truth.

@@ -74,6 +74,7 @@ fn rotation(basis: &Mat<Complex64>) -> Mat<Complex64> {
     let (rows, count) = (basis.nrows(), basis.ncols());
     let turned = basis.subrows(0, rows - 1).adjoint() * basis.subrows(1, rows - 1);
     let last = basis.subrows(rows - 1, 1);
+    // Nothing is left where one tone is a pulse in the last row.
     let left = (1.0 - last.squared_norm_l2()).max(f64::EPSILON);
     let missed = last * &turned;
     Mat::from_fn(count, count, |i, j| turned[(i, j)] + last[(0, i)].conj() * missed[(0, j)] / left)
@@ -96,9 +97,9 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64, most: usize) -> Opt
         let more = &hankel * Mat::from_fn(columns, width - known, |i, j| random[j * columns + i]);
         projected.resize_with(rows, width, |i, j| more[(i, j - known)]);
         let qr = projected.qr();
-        // What the last columns still brought is far more than noise: there are more tones than columns.
         let wider = ((GROWTH * width as f64) as usize).min(most_width);
         let brought = |column: usize| qr.thin_R()[(column, column)].norm();
+        // What the last columns still brought is far more than noise: there are more tones than columns.
         if (width - SPARE..width).all(|column| brought(column) > FAR_ABOVE_NOISE * all_noise) {
             if width == most_width {
                 return None;
