@@ -1,16 +1,18 @@
 //! Where walls begin: rows over two points, from the edge of a wall, or long lines as a whole, and which of them are borne out.
 
 use super::atom::Atom;
+use super::between::rows_between;
 use super::edges::rows_from_edges;
 use super::groups::rows_of;
 use super::grow::Grower;
 use super::on_wall::is_on;
 use super::phased::PhasedBeams;
 use super::profile::Profile;
-use super::refine::Fit;
+use super::refine::{Fit, Gains, Limits, Tie};
 use super::strides::{Stride, rows_over_pairs};
 use crate::radar::Radar;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Rows that are held against the samples themselves, at each look.
@@ -42,6 +44,19 @@ const LEAST_OF_LINE: [f64; 2] = [0.3, 0.45];
 
 /// Fewest reflectors of such a line.
 const LEAST_OF_LINE_REFLECTORS: usize = 50;
+
+/// Points, those first on which the ends agree best, that a wall may begin and end at.
+const MOST_ENDS: usize = 80;
+
+/// Rows between two points that are held against the samples.
+const MOST_BETWEEN: usize = 32;
+
+/// A count that explains this part of what the best does, where it is, may be the right one.
+const ABOUT_AS_WELL: f64 = 0.9;
+
+/// Most such counts, and how far their rows are moved.
+const MOST_MOVED: usize = 8;
+const BETWEEN: Limits = Limits { iterations: 4, least_gain: 1e-2, ridge: 0.0 };
 
 /// Echoes that the look for rows over one point takes as long as.
 const LOOK_A_POINT: usize = 20;
@@ -97,12 +112,15 @@ impl Grower<'_> {
                 self.bench.work.spend(LOOK_A_POINT * points.len());
                 let beams = PhasedBeams::new(self.radar, &flat);
                 let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
+                let is_long = self.echoes_in(&flat).are_long();
+                let between = if is_long { self.between_ends(fit, &profile, &beams, &points) } else { None };
                 let over_pairs = atoms(rows_over_pairs(&beams, &points, self.task));
-                self.borne_out(fit, &profile, seeds, &over_pairs).or_else(|| {
-                    if !self.echoes_in(&flat).are_long() {
+                let rows: Vec<Atom> = between.into_iter().chain(over_pairs).collect();
+                self.borne_out(fit, &profile, seeds, &rows).or_else(|| {
+                    if !is_long {
                         return None;
                     }
-                    let edges = self.edges(&points);
+                    let edges = self.within_range(&points, MOST_EDGES);
                     let mut from_edges = atoms(rows_from_edges(&beams, &edges, &directions(fit), self.task));
                     from_edges.retain(|row| row.reflector_count() >= LEAST_FROM_EDGE);
                     self.borne_out(fit, &profile, seeds, &from_edges)
@@ -118,17 +136,47 @@ impl Grower<'_> {
         }
     }
 
+    /// The row between two of `points` that explains the greatest part of what there is in its range bins. Those of the counts that do
+    /// about as well are moved to their best places first: the beams hardly tell a count from one whose steps differ by whole waves.
+    fn between_ends(&self, fit: &Fit, profile: &Profile, beams: &PhasedBeams, points: &[[f64; 2]]) -> Option<Atom> {
+        let points = self.within_range(points, MOST_ENDS);
+        let rows = rows_between(beams, &points, self.task);
+        let mut begun: Vec<Begun> = rows
+            .par_iter()
+            .take(MOST_BETWEEN)
+            .map(|row| self.begun(fit, profile, row.atom, self.bench.cost_of(&fit.residual, vec![row.atom])))
+            .collect();
+        begun.sort_by(|a, b| b.part.total_cmp(&a.part));
+        let least = ABOUT_AS_WELL * begun.first()?.part;
+        let mut counts = BTreeSet::new();
+        begun.retain(|row| row.part >= least && counts.insert(row.atom.reflector_count()));
+        begun.truncate(MOST_MOVED);
+        if begun.len() == 1 {
+            return Some(begun[0].atom);
+        }
+        let moved = |row: &Begun| {
+            let still = vec![Gains::default()];
+            let moved = self.bench.refine(&fit.residual, vec![row.atom], still, Tie::PerEnd, BETWEEN);
+            self.begun(fit, profile, moved.atoms[0], moved.cost())
+        };
+        // One after the other: each asks whether all work is done.
+        begun.iter().map(moved).max_by(|a, b| a.part.total_cmp(&b.part)).map(|row| row.atom)
+    }
+
+    /// What a row explains that leaves this much energy.
+    fn begun(&self, fit: &Fit, profile: &Profile, atom: Atom, left: f64) -> Begun {
+        let energy = fit.cost() - left;
+        let all = profile.at(&rows_of(self.radar, &atom)).max(f64::MIN_POSITIVE);
+        Begun { atom, energy, part: energy / all }
+    }
+
     /// That of `rows` which explains the greatest part of what there is in its range bins, or else the one that explains most, if it is
     /// borne out when it is followed to its ends.
     fn borne_out(&self, fit: &Fit, profile: &Profile, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
         let begun: Vec<Begun> = rows
             .par_iter()
             .take(MOST_TRIED)
-            .map(|atom| {
-                let energy = fit.cost() - self.bench.cost_of(&fit.residual, vec![*atom]);
-                let all = profile.at(&rows_of(self.radar, atom)).max(f64::MIN_POSITIVE);
-                Begun { part: energy / all, energy, atom: *atom }
-            })
+            .map(|&atom| self.begun(fit, profile, atom, self.bench.cost_of(&fit.residual, vec![atom])))
             .collect();
         tracing::debug!(rows = rows.len(), "rows");
         let by_part = begun.iter().max_by(|a, b| a.part.total_cmp(&b.part))?;
@@ -142,10 +190,10 @@ impl Grower<'_> {
         })
     }
 
-    /// Those of `points` that a wall may begin at alone: the first, on which the ends agree best.
-    fn edges(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    /// The first of `points` within the maximum range, `most` of them: those on which the ends agree best.
+    fn within_range(&self, points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
         let within = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
-        points.iter().filter(within).take(MOST_EDGES).copied().collect()
+        points.iter().filter(within).take(most).copied().collect()
     }
 }
 

@@ -8,6 +8,7 @@ use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitch
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// Range bins over which echoes must go on, and beyond which it no longer matters.
 const BINS: [u32; 2] = [20, 100];
@@ -19,7 +20,14 @@ const LEAST_ALONG: f64 = 0.3;
 const LEAST_EVEN: f64 = 0.02;
 
 /// Most directions of all points that are looked into.
-const MOST_LOOKS: usize = 6;
+const MOST_LOOKS: usize = 4;
+
+/// Looks whose directions differ by less than this, radians, and that pass each other within this distance, metres, go into one wall.
+const ONE_LINE_RADIANS: f64 = 0.045;
+const ONE_LINE_METRES: f64 = 1.0;
+
+/// How much echoes behind a point speak against its being an edge, as a part of those ahead of it.
+const BEHIND: f64 = 0.5;
 
 /// Radians by which a wall may deviate from its direction.
 const WITHIN_RADIANS: f64 = 0.01;
@@ -43,23 +51,35 @@ pub fn rows_from_edges(
     task: &Task,
 ) -> Vec<Stride> {
     let strongest = beams.strongest();
+    let along = |first: usize, radians: f64| {
+        going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
+    };
     let look = |first: usize, &radians: &f64| {
-        let score = going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)?;
-        Some(Look { first, fan: Fan::new(beams, points[first], radians), score })
+        let ahead = along(first, radians)?;
+        let score = ahead - BEHIND * along(first, radians + PI).unwrap_or(0.0);
+        Some(Look { first, radians, score })
     };
     let mut looks: Vec<Look> = (0..points.len())
         .into_par_iter()
         .flat_map_iter(|first| directions_radians.iter().filter_map(move |radians| look(first, radians)))
         .collect();
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
-    looks.truncate(MOST_LOOKS);
-    let rows_of = |look: &Look| Simd::chosen().run(Scan { beams, fan: &look.fan });
-    let starts: Vec<Start> = looks
+    let mut kept: Vec<Look> = Vec::with_capacity(MOST_LOOKS);
+    for look in looks {
+        if kept.len() < MOST_LOOKS && !kept.iter().any(|other| are_along_one_line(points, &look, other)) {
+            kept.push(look);
+        }
+    }
+    let rows_of = |look: &Look| {
+        let fan = Fan::new(beams, points[look.first], look.radians);
+        Simd::chosen().run(Scan { beams, fan: &fan })
+    };
+    let starts: Vec<Start> = kept
         .par_iter()
         .filter(|_| !task.is_cancelled())
         .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
         .collect();
-    tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
+    tracing::debug!(looks = kept.len(), starts = starts.len(), "edges");
     best_of_each(beams, starts, task)
 }
 
@@ -85,8 +105,15 @@ fn going_on(presence: impl Fn([f64; 2]) -> Presence, bin_metres: f64, from: [f64
 struct Look {
     /// Number of the point.
     first: usize,
-    fan: Fan,
+    radians: f64,
     score: f64,
+}
+
+/// Whether two looks go along about one line in one direction: into one wall, from different reflectors of it.
+fn are_along_one_line(points: &[[f64; 2]], a: &Look, b: &Look) -> bool {
+    let (sin, cos) = a.radians.sin_cos();
+    let apart = [0, 1].map(|axis| points[a.first][axis] - points[b.first][axis]);
+    (a.radians - b.radians).cos() > ONE_LINE_RADIANS.cos() && (apart[0] * sin - apart[1] * cos).abs() < ONE_LINE_METRES
 }
 
 /// Rows from one point in about one direction: step by step longer, and turned to both sides.

@@ -20,6 +20,7 @@
 //! | `phased` | each end's beams with their phases, and rows of reflectors looked up in them |
 //! | `strides` | rows of reflectors from their first two |
 //! | `edges` | rows of reflectors from their first alone |
+//! | `between` | rows of reflectors between their first and their last |
 //! | `begin` | where walls begin, and which are borne out |
 //! | `runs` | range bins that hold an echo |
 //! | `lines` | long lines along y, looked up as a whole |
@@ -42,6 +43,7 @@
 
 mod atom;
 mod begin;
+mod between;
 mod chains;
 mod draw;
 mod echo;

@@ -43,7 +43,7 @@ const MOST_GRIDS: usize = 48;
 const MOST_FOLLOWED: usize = 3000;
 
 /// Most reflectors of a row.
-const MOST_REFLECTORS: usize = 140;
+pub const MOST_REFLECTORS: usize = 140;
 
 /// Growth of the row from one look to the next.
 const GROWTH: f64 = 1.4;
@@ -244,10 +244,13 @@ impl Followed {
 }
 
 /// A row where its echoes add up to most.
-struct Climbed {
-    row: Row,
-    added: f64,
-    all: f64,
+pub struct Climbed {
+    /// The row.
+    pub row: Row,
+    /// Power that adds up.
+    pub added: f64,
+    /// All power at its places.
+    pub all: f64,
 }
 
 /// Derivatives of what adds up, and their products.
@@ -259,7 +262,7 @@ struct Slope {
 }
 
 /// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it crosses the array's axis.
-fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
+pub fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
     let mut slope = slope(beams, &row, count)?;
     let mut damping = 1e-2;
     for _ in 0..MOVES {
