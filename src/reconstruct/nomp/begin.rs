@@ -1,4 +1,4 @@
-//! Where walls begin: rows over two points, from the edge of a wall, or long lines as a whole, and which of them are borne out.
+//! Where walls begin: rows between two points, over two, from the edge of a wall, or long lines as a whole, and which of them are borne out.
 
 use super::atom::Atom;
 use super::between::rows_between;
