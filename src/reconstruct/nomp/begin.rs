@@ -112,12 +112,12 @@ impl Grower<'_> {
                 self.bench.work.spend(LOOK_A_POINT * points.len());
                 let beams = PhasedBeams::new(self.radar, &flat);
                 let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
-                let is_long = self.echoes_in(&flat).are_long();
-                let between = if is_long { self.between_ends(fit, &profile, &beams, &points) } else { None };
+                let are_long = self.echoes_in(&flat).are_long();
+                let between = if are_long { self.between_ends(fit, &profile, &beams, &points) } else { None };
                 let over_pairs = atoms(rows_over_pairs(&beams, &points, self.task));
                 let rows: Vec<Atom> = between.into_iter().chain(over_pairs).collect();
                 self.borne_out(fit, &profile, seeds, &rows).or_else(|| {
-                    if !is_long {
+                    if !are_long {
                         return None;
                     }
                     let edges = self.within_range(&points, MOST_EDGES);

@@ -65,7 +65,8 @@ pub fn rows_between(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Ve
         .par_iter()
         .filter(|_| !task.is_cancelled())
         .flat_map_iter(|&[from, to]| Simd::chosen().run(Counts { beams, from, to }))
-        .filter_map(|(row, count)| moved(beams, row, count))
+        .filter_map(|(row, count)| Some(climbed(beams, row, count)?.stride(count)))
+        .filter(|row| row.weight > LEAST_WEIGHT)
         .collect();
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let mut kept: Vec<Stride> = Vec::new();
@@ -102,16 +103,6 @@ fn are_alike(a: &Atom, b: &Atom) -> bool {
     let same = apart(0.0, 0.0).max(apart(last, last));
     let turned = apart(0.0, last).max(apart(last, 0.0));
     a.reflector_count() == b.reflector_count() && same.min(turned) < ALIKE_METRES
-}
-
-/// The row where its echoes add up to most, if those of enough reflectors do.
-fn moved(beams: &PhasedBeams, row: Row, count: usize) -> Option<Stride> {
-    let best = climbed(beams, row, count)?;
-    let [x_metres, y_metres] = best.row.first_metres;
-    let [dx_metres, dy_metres] = best.row.step_metres;
-    let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
-    let weight = best.added / f64::max(best.all, f64::MIN_POSITIVE) * count as f64;
-    (weight > LEAST_WEIGHT).then_some(Stride { atom, weight })
 }
 
 /// Rows of all counts of reflectors from one point to another.

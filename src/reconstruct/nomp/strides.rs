@@ -232,25 +232,34 @@ impl Followed {
         if moved.added < PASSED * self.most {
             return;
         }
-        self.part = moved.added / f64::max(moved.all, f64::MIN_POSITIVE);
+        self.part = moved.part();
         if moved.added > self.most {
             self.most = moved.added;
-            let [x_metres, y_metres] = moved.row.first_metres;
-            let [dx_metres, dy_metres] = moved.row.step_metres;
-            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
-            self.best = Some(Stride { atom, weight: self.part * count as f64 });
+            self.best = Some(moved.stride(count));
         }
     }
 }
 
 /// A row where its echoes add up to most.
 pub struct Climbed {
-    /// The row.
-    pub row: Row,
-    /// Power that adds up.
-    pub added: f64,
-    /// All power at its places.
-    pub all: f64,
+    row: Row,
+    added: f64,
+    all: f64,
+}
+
+impl Climbed {
+    /// Part of the power at its places that adds up.
+    fn part(&self) -> f64 {
+        self.added / f64::max(self.all, f64::MIN_POSITIVE)
+    }
+
+    /// Its first `count` reflectors, over which it was moved.
+    pub fn stride(&self, count: usize) -> Stride {
+        let [x_metres, y_metres] = self.row.first_metres;
+        let [dx_metres, dy_metres] = self.row.step_metres;
+        let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
+        Stride { atom, weight: self.part() * count as f64 }
+    }
 }
 
 /// Derivatives of what adds up, and their products.
