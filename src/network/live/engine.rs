@@ -4,11 +4,11 @@
 
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::kernel::{Packed, convolve, product};
+use super::kernel::{Packed, convolve};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::planes::{Block, Plane, rectified};
+use super::range_lobes::{BLOCK, RangeLobes};
 use super::reading::{CELLS, Layers};
-use super::vector::LANES;
 use super::winograd::Conv3x3;
 use crate::network::weights::{WeightFile, WeightsError};
 use crate::signal::simd::powers::{each, logarithm, power_of_ten};
@@ -41,8 +41,8 @@ pub struct LiveEngine {
     fine1: Conv3x3,
     fine2: Packed,
     row_sources: Packed,
-    /// `[512, 512]`: side lobes in range.
-    columns: Vec<f32>,
+    /// Side lobes in range.
+    columns: RangeLobes,
     /// `[128, 128]`: side lobes in angle.
     rows: Vec<f32>,
     scalar1: Packed,
@@ -58,7 +58,7 @@ pub struct Scratch {
     upward: Plane,
     heads: Plane,
     sources: Plane,
-    right: Vec<f32>,
+    lobes: Vec<f32>,
     pool: Vec<f32>,
     mixed: Vec<f32>,
 }
@@ -95,7 +95,7 @@ impl LiveEngine {
             fine1: layers.conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
             fine2: layers.small("fine2", config.fine, 2 * SPREAD, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE / COARSE, 1)?,
-            columns: circulant(&file.tensor("col_kernel", &[ROWS / 2 + 1])?, ROWS),
+            columns: RangeLobes::new(&file.tensor("col_kernel", &[ROWS / 2 + 1])?),
             rows: circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE),
             scalar1: layers.linear("scalar1", 2 * c3 + SCALARS, 64)?,
             scalar2: layers.linear("scalar2", 64, 2)?,
@@ -148,7 +148,7 @@ impl LiveEngine {
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
         self.fine1.run([ROWS, FINE], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
-        let map = self.decode(&s.heads, &s.sources, floor, &mut s.right);
+        let map = self.decode(&s.heads, &s.sources, floor, &mut s.lobes);
         Decades { map, minimum: floor - 2.5 + minimum_shift }
     }
 
@@ -174,21 +174,20 @@ impl LiveEngine {
     }
 
     /// Heads and side-lobe sources to decades.
-    fn decode(&self, heads: &Plane, sources: &Plane, floor: f32, right: &mut Vec<f32>) -> Vec<f32> {
-        const BLOCK: usize = 2 * LANES;
-        right.resize(ROWS * COLUMNS, 0.0);
-        right.par_chunks_mut(ROWS * BLOCK).enumerate().for_each(|(block, out)| {
-            for (row, out) in out.chunks_exact_mut(BLOCK).enumerate() {
+    fn decode(&self, heads: &Plane, sources: &Plane, floor: f32, lobes: &mut Vec<f32>) -> Vec<f32> {
+        let floor = 10f32.powf(floor);
+        let read = |block: usize, sources: &mut [f32]| {
+            for (row, out) in sources.chunks_exact_mut(BLOCK).enumerate() {
                 let cells = &heads.data[(row * FINE + block * BLOCK / SPREAD) * heads.c..];
                 for (out, cell) in out.chunks_exact_mut(SPREAD).zip(cells.chunks_exact(heads.c)) {
                     out.copy_from_slice(&cell[SPREAD..2 * SPREAD]);
                 }
             }
-            amplitudes(out);
-        });
+            amplitudes(sources);
+        };
+        self.columns.add_up(floor, read, lobes);
         let mut map = vec![0.0; ROWS * COLUMNS];
-        product(&self.columns, right, ROWS, COLUMNS, &mut map);
-        let (simd, floor) = (Simd::chosen(), 10f32.powf(floor));
+        let simd = Simd::chosen();
         map.par_chunks_mut(COLUMNS).enumerate().for_each(|(row, line)| {
             let mut local = [0.0; COLUMNS];
             let cells = heads.data[row * FINE * heads.c..].chunks_exact(heads.c);
@@ -196,7 +195,10 @@ impl LiveEngine {
                 out.copy_from_slice(&cell[..SPREAD]);
             }
             amplitudes(&mut local);
-            line.iter_mut().zip(&local).for_each(|(a, b)| *a += b);
+            for (block, (line, local)) in line.chunks_exact_mut(BLOCK).zip(local.chunks_exact(BLOCK)).enumerate() {
+                let lobes = &lobes[(block * ROWS + row) * BLOCK..][..BLOCK];
+                line.iter_mut().zip(lobes.iter().zip(local)).for_each(|(sum, (a, b))| *sum = a + b);
+            }
             let mut wide = [0.0; WIDE];
             let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
             for (out, cell) in wide.chunks_exact_mut(WIDE / COARSE).zip(cells) {
@@ -285,7 +287,8 @@ fn add_doubled(from: &Plane, to: &mut Plane, c: usize) {
     });
 }
 
-fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
+/// `[n, n]`: over the distance of row and column, which wraps around, the amplitudes of so many decades.
+pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
     let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
     (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
 }

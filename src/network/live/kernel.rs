@@ -64,10 +64,14 @@ impl Packed {
 
     /// Convolves what one line of `width` output cells sees of `input`, which lies as rows of `row_cells` cells, on this thread.
     pub fn line(&self, simd: Simd, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
-        let job = Job { input, row_cells, channels: self.input, kernel: self.kernel, stride: self.stride, width };
+        let [rows, columns] = self.kernel;
+        // The channels of the kernel's columns lie side by side.
+        let many = columns * self.input;
+        let runs: Vec<Run> = (0..rows).map(|ky| Run { value: ky * row_cells * self.input, row: ky * many, many }).collect();
+        let job = Job { input, step: self.stride * self.input, runs: &runs, width };
         let mut at = 0;
         for (start, lanes) in blocks(self.output) {
-            let size = self.kernel[0] * self.kernel[1] * self.input * lanes;
+            let size = rows * many * lanes;
             let (weights, bias) = (&self.weights[at..at + size], &self.bias[start..start + lanes]);
             dispatch(simd, &job, Block { weights, bias, start, lanes: self.output }, out);
             at += size;
@@ -75,22 +79,16 @@ impl Packed {
     }
 }
 
-/// A matrix product in the shape of a convolution: `rows` of `inner` values times `right`, which lies as blocks of 32 columns.
-pub fn product(left: &[f32], right: &[f32], inner: usize, columns: usize, out: &mut [f32]) {
-    let bias = [0.0; 2 * LANES];
-    let rows = left.len() / inner;
-    assert!(columns.is_multiple_of(2 * LANES) && out.len() == rows * columns && right.len() == inner * columns);
+/// A matrix product of `left` `[rows, inner]` and `right` `[inner, 32]` into `out` `[rows, 32]`, on this thread: of the inner indices only those
+/// in `runs`, each the first and how many.
+pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: &[[usize; 2]], out: &mut [f32]) {
+    const COLUMNS: usize = 2 * LANES;
+    let (inner, width) = (right.len() / COLUMNS, out.len() / COLUMNS);
+    assert!(runs.iter().all(|[first, many]| first + many <= inner) && left.len() == width * inner, "matrices disagree");
     // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
-    let job = Job { input: left, row_cells: rows, channels: inner, kernel: [1, 1], stride: 1, width: rows };
-    const CELLS: usize = 32;
-    let simd = Simd::chosen();
-    out.par_chunks_mut(CELLS * columns).enumerate().for_each(|(chunk, out)| {
-        let first = chunk * CELLS;
-        let job = Job { input: &left[first * inner..], width: out.len() / columns, ..job };
-        for (block, right) in right.chunks_exact(2 * LANES * inner).enumerate() {
-            dispatch(simd, &job, Block { weights: right, bias: &bias, start: block * 2 * LANES, lanes: columns }, out);
-        }
-    });
+    let runs: Vec<Run> = runs.iter().map(|&[first, many]| Run { value: first, row: first, many }).collect();
+    let job = Job { input: left, step: inner, runs: &runs, width };
+    dispatch(simd, &job, Block { weights: right, bias: &[0.0; COLUMNS], start: 0, lanes: COLUMNS }, out);
 }
 
 /// Convolves `input`, which lies as rows of `row_cells` cells, into `out` `[height, width, output]`.
@@ -114,11 +112,19 @@ fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
 #[derive(Clone, Copy)]
 struct Job<'a> {
     input: &'a [f32],
-    row_cells: usize,
-    channels: usize,
-    kernel: [usize; 2],
-    stride: usize,
+    /// From what one output cell sees to what the next does.
+    step: usize,
+    runs: &'a [Run],
     width: usize,
+}
+
+/// Values of the input that lie side by side, and the rows of weights that they meet.
+struct Run {
+    /// The first value that the line's first cell sees.
+    value: usize,
+    /// The first row of weights.
+    row: usize,
+    many: usize,
 }
 
 /// Where a line's results go, and with which weights: one block of output channels.
@@ -150,12 +156,13 @@ fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
 impl Job<'_> {
     /// Everything that the unchecked loops rely on.
     fn check(&self, block: &Block, out: &[f32]) {
-        let [rows, columns] = self.kernel;
-        let last = (rows - 1) * self.row_cells + (self.width - 1) * self.stride + columns - 1;
-        assert!(self.width > 0 && self.input.len() >= (last + 1) * self.channels, "the input ends inside the line");
         let lanes = block.bias.len();
         assert!(lanes == LANES || lanes == 2 * LANES, "a block is one or two vectors");
-        assert_eq!(block.weights.len(), rows * columns * self.channels * lanes, "weights of another size");
+        for Run { value, row, many } in self.runs {
+            let last = (self.width - 1) * self.step + value + many;
+            assert!(self.width > 0 && self.input.len() >= last, "the input ends inside the line");
+            assert!(block.weights.len() >= (row + many) * lanes, "too few weights");
+        }
         assert!(block.start + lanes <= block.lanes && out.len() >= self.width * block.lanes, "the output is too short");
     }
 }
@@ -181,9 +188,11 @@ unsafe fn line_avx2(job: &Job, block: Block, out: &mut [f32]) {
 #[inline(always)]
 unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, block: Block, out: &mut [f32]) {
     let vectors = block.bias.len() / LANES;
-    let mut x = 0;
-    while x < job.width {
-        let whole = job.width - x >= CELLS;
+    let whole = job.width >= CELLS;
+    let cells = if whole { CELLS } else { 1 };
+    for x in (0..job.width).step_by(cells) {
+        // The last tile overlaps the one before it where the line is no whole number of them.
+        let x = x.min(job.width - cells);
         let mut first = 0;
         while first < vectors {
             let many = vectors - first >= VECTORS;
@@ -198,7 +207,6 @@ unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, b
             }
             first += if many { VECTORS } else { 1 };
         }
-        x += if whole { CELLS } else { 1 };
     }
 }
 
@@ -219,15 +227,13 @@ unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
         let from = first * LANES;
         let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(from + v * LANES)));
         let mut sums = [bias; CELLS];
-        let step = job.stride * job.channels;
-        let mut w = block.weights.as_ptr().add(from);
-        for ky in 0..job.kernel[0] {
-            // The channels of the kernel's columns lie side by side.
-            let mut value = job.input.as_ptr().add((ky * job.row_cells + x * job.stride) * job.channels);
-            for _ in 0..job.kernel[1] * job.channels {
+        for run in job.runs {
+            let mut w = block.weights.as_ptr().add(run.row * block.bias.len() + from);
+            let mut value = job.input.as_ptr().add(run.value + x * job.step);
+            for _ in 0..run.many {
                 let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
                 for (p, sums) in sums.iter_mut().enumerate() {
-                    let value = *value.add(p * step);
+                    let value = *value.add(p * job.step);
                     for (sum, weight) in sums.iter_mut().zip(weight) {
                         *sum = sum.add_product(value, weight);
                     }
@@ -310,16 +316,15 @@ mod tests {
 
     #[test]
     fn product_of_small_matrices() {
-        let (rows, inner) = (5, 3);
-        let left = numbers(rows * inner);
-        let right = numbers(inner * 64);
-        let mut out = vec![0.0; rows * 64];
-        product(&left, &right, inner, 64, &mut out);
-        for r in 0..rows {
-            for n in 0..64 {
-                let expected: f32 =
-                    (0..inner).map(|i| left[r * inner + i] * right[(n / 32 * inner + i) * 32 + n % 32]).sum();
-                assert!((out[r * 64 + n] - expected).abs() < 1e-5);
+        let (rows, inner) = (5, 7);
+        let (left, right) = (numbers(rows * inner), numbers(inner * 32));
+        for simd in Simd::available() {
+            let mut out = vec![f32::NAN; rows * 32];
+            product(simd, &left, &right, &[[0, 2], [3, 4]], &mut out);
+            for (at, found) in out.iter().enumerate() {
+                let seen = (0..inner).filter(|i| *i != 2);
+                let expected: f32 = seen.map(|i| left[at / 32 * inner + i] * right[i * 32 + at % 32]).sum();
+                assert!((found - expected).abs() < 1e-5);
             }
         }
     }

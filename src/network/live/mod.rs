@@ -14,7 +14,7 @@
 //! |---|---|
 //! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
 //! | [`module`], `layers` | the network as a burn module: what trains |
-//! | [`engine`], `reading`, `planes`, `winograd`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
+//! | [`engine`], `reading`, `planes`, `winograd`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
 
 mod capon;
@@ -28,6 +28,7 @@ mod layers;
 pub mod method;
 pub mod module;
 mod planes;
+mod range_lobes;
 mod reading;
 mod registration;
 mod vector;

@@ -1,0 +1,173 @@
+//! Side lobes in range: what the sources of every range row add to all others, for each column by itself.
+//!
+//! As a matrix product that is the dearest layer of the network. Most of it doesn't show: far from a weak source there is the floor, or a
+//! strong source's side lobe. So the product is taken apart into tiles, and those that don't show are left out.
+
+use super::grid::{COLUMNS, ROWS};
+use super::kernel::product;
+use super::vector::LANES;
+use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
+use rayon::prelude::*;
+use std::cell::RefCell;
+
+/// Columns of a block, which one processor does by itself.
+pub(super) const BLOCK: usize = 2 * LANES;
+
+/// Rows of sources, and rows that they add to, of a tile.
+const FROM: usize = 8;
+const TO: usize = 16;
+
+/// What a tile may add to a cell unseen, as a part of what the cell has at least: a hundredth for all of a column, and in the mean a tenth of that.
+const UNSEEN: f32 = 1.5e-4;
+
+/// A learned kernel over the rows, which wraps around, and where it is how strong.
+#[derive(Debug)]
+pub(super) struct RangeLobes {
+    /// `[512, 512]`
+    kernel: Vec<f32>,
+    /// `[512 / TO, 512 / FROM]`: the kernel's least and greatest value in a tile.
+    reach: Vec<[f32; 2]>,
+}
+
+/// What one processor keeps from block to block.
+#[derive(Default)]
+struct Kept {
+    /// `[512, BLOCK]`
+    sources: Vec<f32>,
+    /// `[512 / FROM, BLOCK]`
+    sums: Vec<f32>,
+}
+
+thread_local! {
+    static KEPT: RefCell<Kept> = RefCell::default();
+}
+
+impl RangeLobes {
+    /// Takes the kernel's decades over the distance in rows, `[512 / 2 + 1]`.
+    pub(super) fn new(decades: &[f32]) -> Self {
+        let kernel = super::engine::circulant(decades, ROWS);
+        let of_tile = |tile: usize| {
+            let (to, from) = (tile / (ROWS / FROM) * TO, tile % (ROWS / FROM) * FROM);
+            let cells = (to..to + TO).flat_map(|row| &kernel[row * ROWS + from..][..FROM]);
+            cells.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], v| [least.min(*v), most.max(*v)])
+        };
+        let reach = (0..ROWS / TO * (ROWS / FROM)).map(of_tile).collect();
+        RangeLobes { kernel, reach }
+    }
+
+    /// Side lobes `[1024 / BLOCK, 512, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
+    /// floor nor what doesn't show over it is added.
+    ///
+    /// `read` must not use rayon: what a thread keeps is borrowed meanwhile.
+    pub(super) fn add_up(&self, floor: f32, read: impl Fn(usize, &mut [f32]) + Sync, out: &mut Vec<f32>) {
+        let simd = Simd::chosen();
+        out.resize(ROWS * COLUMNS, 0.0);
+        out.par_chunks_mut(ROWS * BLOCK).enumerate().for_each(|(block, out)| {
+            KEPT.with_borrow_mut(|kept| {
+                kept.sources.resize(ROWS * BLOCK, 0.0);
+                read(block, &mut kept.sources);
+                simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
+                for (to, out) in out.chunks_exact_mut(TO * BLOCK).enumerate() {
+                    self.add_to(simd, floor, to, kept, out);
+                }
+            });
+        });
+    }
+
+    /// What a block's sources add to [`TO`] rows.
+    fn add_to(&self, simd: Simd, floor: f32, to: usize, kept: &Kept, out: &mut [f32]) {
+        let reach = &self.reach[to * (ROWS / FROM)..][..ROWS / FROM];
+        let shows = simd.run(Shows { reach, sums: &kept.sums, floor });
+        let tiles = (0..ROWS / FROM).filter(|tile| shows >> tile & 1 == 1);
+        let runs: Vec<[usize; 2]> = tiles.map(|tile| [tile * FROM, FROM]).collect();
+        product(simd, &self.kernel[to * TO * ROWS..][..TO * ROWS], &kept.sources, &runs, out);
+    }
+}
+
+type Vector = Lanes<f32, LANES_F32>;
+
+/// Sums of [`FROM`] rows of sources each.
+struct Sums<'a> {
+    sources: &'a [f32],
+    sums: &'a mut Vec<f32>,
+}
+
+impl Kernel for Sums<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        self.sums.resize(ROWS / FROM * BLOCK, 0.0);
+        for (rows, sums) in self.sources.chunks_exact(FROM * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
+            for at in (0..BLOCK).step_by(LANES) {
+                let row = |row: usize| Vector::load(&rows[row * BLOCK + at..]);
+                (1..FROM).fold(row(0), |sum, i| sum + row(i)).store(&mut sums[at..]);
+            }
+        }
+    }
+}
+
+/// Which sources show in some rows: a bit for each tile.
+struct Shows<'a> {
+    reach: &'a [[f32; 2]],
+    sums: &'a [f32],
+    floor: f32,
+}
+
+const _: () = assert!(ROWS / FROM <= u64::BITS as usize, "a bit for each tile");
+
+impl Kernel for Shows<'_> {
+    type Output = u64;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> u64 {
+        let mut shows = 0;
+        for at in (0..BLOCK).step_by(LANES) {
+            let sum = |tile: usize| Vector::load(&self.sums[tile * BLOCK + at..]);
+            let mut least = Vector::splat(self.floor);
+            for (tile, &[of_least, _]) in self.reach.iter().enumerate() {
+                least = sum(tile).mul_add::<FMA>(Lanes::splat(of_least), least);
+            }
+            least = least * Lanes::splat(UNSEEN);
+            for (tile, &[_, of_most]) in self.reach.iter().enumerate() {
+                let over = sum(tile).mul_add::<FMA>(Lanes::splat(of_most), -least);
+                shows |= u64::from(over.0.iter().any(|v| *v > 0.0)) << tile;
+            }
+        }
+        shows
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_does_not_show() {
+        // Tails as those of a Hann window, and sources over fifteen decades, most of them weak.
+        let decades: Vec<f32> = (0..=ROWS / 2).map(|k| -3.0 - 3.0 * (1.0 + k as f32).log10()).collect();
+        let lobes = RangeLobes::new(&decades);
+        let source = |row: usize, column: usize| {
+            let random = ((row * COLUMNS + column) as u32).wrapping_mul(2_654_435_761) >> 8;
+            let strong = if row % 97 == 5 && column % 50 < 9 { 12.0 } else { 0.0 };
+            10f32.powf(strong - 13.0 - 4.0 * random as f32 / (1 << 24) as f32)
+        };
+        let read = |block: usize, to: &mut [f32]| {
+            to.iter_mut().enumerate().for_each(|(i, to)| *to = source(i / BLOCK, block * BLOCK + i % BLOCK));
+        };
+        let floor = 1e-14;
+        let mut found = Vec::new();
+        lobes.add_up(floor, read, &mut found);
+        let mut worst: f32 = 0.0;
+        for column in (0..COLUMNS).step_by(7) {
+            for row in 0..ROWS {
+                let kernel = &lobes.kernel[row * ROWS..][..ROWS];
+                let all: f32 = kernel.iter().enumerate().map(|(from, k)| k * source(from, column)).sum();
+                let found = found[(column / BLOCK * ROWS + row) * BLOCK + column % BLOCK];
+                worst = worst.max(((all + floor) / (found + floor)).log10().abs());
+            }
+        }
+        // A hundredth of a decade is a thousandth of Lambda over ten.
+        assert!(worst < 5e-3, "{worst} decades");
+    }
+}
