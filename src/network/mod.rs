@@ -43,6 +43,15 @@ use weights::{WeightFile, WeightsError};
 
 static SHIPPED: LazyLock<Vec<Arc<dyn Reconstructor>>> = LazyLock::new(|| load_shipped(Backend::default()));
 
+/// Weights of the live network.
+const LIVE: &[u8] = include_bytes!("../../assets/weights/live.safetensors");
+const LIVE_FILE: &str = "assets/weights/live.safetensors";
+
+/// The live network whose weights are part of the program, by itself; `None`, with a warning in the log, where they can't be used.
+pub fn live() -> Option<LiveMethod> {
+    usable(WeightFile::parse(LIVE_FILE, LIVE).and_then(LiveMethod::new))
+}
+
 /// The networks whose weights are part of the program. One whose weights can't be used is left out, with a warning in the log.
 pub fn shipped() -> Vec<Arc<dyn Reconstructor>> {
     SHIPPED.clone()
@@ -54,12 +63,11 @@ pub fn shipped_on(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
 }
 
 fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
-    let live: &[u8] = include_bytes!("../../assets/weights/live.safetensors");
     let unet: &[u8] = include_bytes!("../../assets/weights/unet.safetensors");
     let thesis: &[u8] = include_bytes!("../../assets/weights/thesis.safetensors");
     let thesis_1: &[u8] = include_bytes!("../../assets/weights/thesis-1.safetensors");
     [
-        ("assets/weights/live.safetensors", live),
+        (LIVE_FILE, LIVE),
         ("assets/weights/thesis.safetensors", thesis),
         ("assets/weights/thesis-1.safetensors", thesis_1),
         ("assets/weights/unet.safetensors", unet),

@@ -1,7 +1,9 @@
 //! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search, and
-//! following a drag.
+//! following a drag; what the live network leaves out.
 
 use super::following::{self, Followed};
+#[cfg(feature = "network")]
+use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
 use crate::commands::figure::{Drawn, Figure, save};
 use crate::commands::print;
@@ -35,6 +37,8 @@ struct Report {
     methods: Vec<MethodRow>,
     crowds: Vec<Crowd>,
     followed: Followed,
+    #[cfg(feature = "network")]
+    left_out: Vec<LeftOut>,
 }
 
 /// One method over all three sets.
@@ -84,6 +88,8 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
         ]
         .concat(),
         followed: following::measure(crowds, || bar.inc(1))?,
+        #[cfg(feature = "network")]
+        left_out: left_out::measure(crowds)?,
     };
     bar.finish_and_clear();
     if let Some(folder) = output {
@@ -114,6 +120,10 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             c.squared_error.standard_error,
             c.scenes
         ))?;
+    }
+    #[cfg(feature = "network")]
+    for row in &report.left_out {
+        print(&row.line())?;
     }
     print(&report.followed.line())
 }

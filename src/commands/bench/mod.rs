@@ -4,6 +4,8 @@ mod chart;
 mod following;
 mod growth;
 mod instructions;
+#[cfg(feature = "network")]
+mod left_out;
 mod measured;
 mod methods;
 mod mouse;

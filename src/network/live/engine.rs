@@ -4,16 +4,17 @@
 
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::kernel::{Packed, convolve};
+use super::kernel::{PRODUCT_COLUMNS, Packed, convolve, product};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::planes::{Block, Plane, rectified};
-use super::range_lobes::{BLOCK, RangeLobes};
+use super::range_lobes::{RangeLobes, UNSEEN};
 use super::reading::{CELLS, Layers};
-use super::winograd::Conv3x3;
+use super::winograd::{Conv3x3, Results};
 use crate::network::weights::{WeightFile, WeightsError};
+use crate::signal::simd::Simd;
 use crate::signal::simd::powers::{each, logarithm, power_of_ten};
-use crate::signal::simd::{Kernel, Simd};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Fine columns in a coarse one, and map columns in a fine one.
 const FOLD: usize = FINE / COARSE;
@@ -27,6 +28,8 @@ pub struct Decades {
     pub map: Vec<f32>,
     /// The smallest cell that the true map is expected to have.
     pub minimum: f32,
+    /// Part of the side lobes in range that was computed: the rest doesn't show.
+    pub computed: f32,
 }
 
 /// The live network's weights, packed for [`super::kernel`].
@@ -43,7 +46,7 @@ pub struct LiveEngine {
     row_sources: Packed,
     /// Side lobes in range.
     columns: RangeLobes,
-    /// `[128, 128]`: side lobes in angle.
+    /// `[128 / 32, 128, 32]`: side lobes in angle.
     rows: Vec<f32>,
     scalar1: Packed,
     scalar2: Packed,
@@ -96,20 +99,29 @@ impl LiveEngine {
             fine2: layers.small("fine2", config.fine, 2 * SPREAD, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE / COARSE, 1)?,
             columns: RangeLobes::new(&file.tensor("col_kernel", &[ROWS / 2 + 1])?),
-            rows: circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE),
+            rows: in_blocks(&circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE), WIDE),
             scalar1: layers.linear("scalar1", 2 * c3 + SCALARS, 64)?,
             scalar2: layers.linear("scalar2", 64, 2)?,
             channels: config.channels,
         })
     }
 
-    /// Estimates the map of one scene.
+    /// Estimates the map of one scene; what doesn't show in it is left out.
     pub fn forward(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
+        self.forward_over(input, UNSEEN, s)
+    }
+
+    /// The same with nothing left out, to measure what that costs.
+    pub fn forward_whole(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
+        self.forward_over(input, 0.0, s)
+    }
+
+    fn forward_over(&self, input: &LiveInput, unseen: f32, s: &mut Scratch) -> Decades {
         let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
         let Scratch { hidden, level, upward, .. } = s;
         level[0].reset(ROWS, COARSE, self.stem.output());
         let read = |row: usize, line: &mut [f32]| read_input(input, &scalars, row, line);
-        self.stem.run([ROWS, COARSE], read, &mut level[0].data, |sums, out| out.copy_from_slice(sums));
+        self.stem.run([ROWS, COARSE], read, &mut level[0].data, |results, out| results.put(out));
         for k in 0..4 {
             if k > 0 {
                 let (above, below) = level.split_at_mut(k);
@@ -138,18 +150,19 @@ impl LiveEngine {
         convolve(&self.row_sources, &top.data, COARSE, COARSE, &mut s.sources.data);
         hidden.reset(ROWS, COARSE, self.widen.output());
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&top.data[row * line.len()..][..line.len()]);
-        self.widen.run([ROWS, COARSE], read, &mut hidden.data, |sums, out| out.copy_from_slice(sums));
+        self.widen.run([ROWS, COARSE], read, &mut hidden.data, |results, out| results.put(out));
         s.heads.reset(ROWS, FINE, self.fine2.output());
         let simd = Simd::chosen();
-        let heads = |sums: &mut [f32], out: &mut [f32]| {
+        let heads = |results: Results, out: &mut [f32]| {
+            let sums = results.sums();
             sums.iter_mut().for_each(|v| *v = rectified(*v));
             self.fine2.line(simd, sums, FINE, FINE, out);
         };
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
         self.fine1.run([ROWS, FINE], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
-        let map = self.decode(&s.heads, &s.sources, floor, &mut s.lobes);
-        Decades { map, minimum: floor - 2.5 + minimum_shift }
+        let (map, computed) = self.decode(&s.heads, &s.sources, [floor, unseen], &mut s.lobes);
+        Decades { map, minimum: floor - 2.5 + minimum_shift, computed }
     }
 
     /// Corrections of the floor and of the minimum, from the coarsest level.
@@ -173,50 +186,78 @@ impl LiveEngine {
         (said[0], said[1])
     }
 
-    /// Heads and side-lobe sources to decades.
-    fn decode(&self, heads: &Plane, sources: &Plane, floor: f32, lobes: &mut Vec<f32>) -> Vec<f32> {
+    /// Heads and side-lobe sources to decades, with the part of the side lobes in range that was computed.
+    fn decode(
+        &self,
+        heads: &Plane,
+        sources: &Plane,
+        [floor, unseen]: [f32; 2],
+        lobes: &mut Vec<f32>,
+    ) -> (Vec<f32>, f32) {
         let floor = 10f32.powf(floor);
         let read = |block: usize, sources: &mut [f32]| {
-            for (row, out) in sources.chunks_exact_mut(BLOCK).enumerate() {
-                let cells = &heads.data[(row * FINE + block * BLOCK / SPREAD) * heads.c..];
-                for (out, cell) in out.chunks_exact_mut(SPREAD).zip(cells.chunks_exact(heads.c)) {
-                    out.copy_from_slice(&cell[SPREAD..2 * SPREAD]);
+            for (row, out) in sources.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
+                let cells =
+                    heads.data[(row * FINE + block * PRODUCT_COLUMNS / SPREAD) * heads.c..].chunks_exact(heads.c);
+                spread_out(cells, SPREAD..2 * SPREAD, out);
+            }
+        };
+        let computed = self.columns.add_up(floor, unseen, read, lobes);
+        let mut map = vec![0.0; ROWS * COLUMNS];
+        map.par_chunks_mut(ROWS_AT_ONCE * COLUMNS).enumerate().for_each(|(chunk, lines)| {
+            let mut wide = [0.0; ROWS_AT_ONCE * WIDE];
+            for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE)).enumerate() {
+                let row = chunk * ROWS_AT_ONCE + at;
+                fill_line(heads, lobes, row, line);
+                let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
+                spread_out(cells, 0..WIDE / COARSE, wide);
+                for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<EACH>().0) {
+                    // Pair by pair, which a processor does side by side.
+                    *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / EACH as f32;
                 }
             }
-            amplitudes(sources);
-        };
-        self.columns.add_up(floor, read, lobes);
-        let mut map = vec![0.0; ROWS * COLUMNS];
-        let simd = Simd::chosen();
-        map.par_chunks_mut(COLUMNS).enumerate().for_each(|(row, line)| {
-            let mut local = [0.0; COLUMNS];
-            let cells = heads.data[row * FINE * heads.c..].chunks_exact(heads.c);
-            for (out, cell) in local.chunks_exact_mut(SPREAD).zip(cells) {
-                out.copy_from_slice(&cell[..SPREAD]);
-            }
-            amplitudes(&mut local);
-            for (block, (line, local)) in line.chunks_exact_mut(BLOCK).zip(local.chunks_exact(BLOCK)).enumerate() {
-                let lobes = &lobes[(block * ROWS + row) * BLOCK..][..BLOCK];
-                line.iter_mut().zip(lobes.iter().zip(local)).for_each(|(sum, (a, b))| *sum = a + b);
-            }
-            let mut wide = [0.0; WIDE];
-            let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
-            for (out, cell) in wide.chunks_exact_mut(WIDE / COARSE).zip(cells) {
-                out.copy_from_slice(&cell[..WIDE / COARSE]);
-            }
-            amplitudes(&mut wide);
-            const EACH: usize = COLUMNS / WIDE;
-            for (w, cells) in wide.iter_mut().zip(line.chunks_exact(EACH)) {
-                *w += cells.iter().sum::<f32>() / EACH as f32;
-            }
-            let mut lobes = [floor; WIDE];
-            simd.run(Lobes { sources: &wide, kernels: &self.rows, lobes: &mut lobes });
-            for (cells, lobe) in line.chunks_exact_mut(EACH).zip(lobes) {
-                cells.iter_mut().for_each(|v| *v += lobe);
-            }
-            each(line, logarithm);
+            self.add_lobes_in_angle(floor, &wide, lines);
+            each(lines, logarithm);
         });
-        map
+        (map, computed)
+    }
+
+    /// Adds what the sources `wide` of some lines add to all their cells, and the floor.
+    fn add_lobes_in_angle(&self, floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE], lines: &mut [f32]) {
+        let simd = Simd::chosen();
+        for (block, kernel) in self.rows.chunks_exact(WIDE * PRODUCT_COLUMNS).enumerate() {
+            let mut lobes = [0.0; ROWS_AT_ONCE * PRODUCT_COLUMNS];
+            product(simd, wide, kernel, &[[0, WIDE]], &mut lobes);
+            for (line, lobes) in lines.chunks_exact_mut(COLUMNS).zip(lobes.chunks_exact(PRODUCT_COLUMNS)) {
+                let cells = line[block * PRODUCT_COLUMNS * EACH..].chunks_exact_mut(EACH);
+                for (cells, lobe) in cells.zip(lobes) {
+                    cells.iter_mut().for_each(|v| *v += lobe + floor);
+                }
+            }
+        }
+    }
+}
+
+/// Rows of the map that one processor does at once.
+const ROWS_AT_ONCE: usize = 8;
+
+/// Cells of the map in one of the wide sources.
+const EACH: usize = COLUMNS / WIDE;
+
+/// Amplitudes that these channels of neighbouring cells say, side by side.
+fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>, out: &mut [f32]) {
+    for (out, cell) in out.chunks_exact_mut(channels.len()).zip(cells) {
+        out.copy_from_slice(&cell[channels.clone()]);
+    }
+    each(out, |v| power_of_ten((v * 3.0 - 3.0).clamp(-18.0, 4.0)));
+}
+
+/// What the cells of a row show by themselves, and the side lobes in range.
+fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
+    spread_out(heads.data[row * FINE * heads.c..].chunks_exact(heads.c), 0..SPREAD, line);
+    for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
+        let lobes = &lobes[(block * ROWS + row) * PRODUCT_COLUMNS..][..PRODUCT_COLUMNS];
+        line.iter_mut().zip(lobes).for_each(|(sum, lobe)| *sum += lobe);
     }
 }
 
@@ -293,25 +334,9 @@ pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
     (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
 }
 
-/// A head's output as amplitudes.
-fn amplitudes(values: &mut [f32]) {
-    each(values, |v| power_of_ten((v * 3.0 - 3.0).clamp(-18.0, 4.0)));
-}
-
-/// Side lobes in angle: adds the product of `sources` `[128]` and `kernels` `[128, 128]` to `lobes` `[128]`.
-struct Lobes<'a> {
-    sources: &'a [f32; WIDE],
-    kernels: &'a [f32],
-    lobes: &'a mut [f32; WIDE],
-}
-
-impl Kernel for Lobes<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        for (source, kernel) in self.sources.iter().zip(self.kernels.chunks_exact(WIDE)) {
-            self.lobes.iter_mut().zip(kernel).for_each(|(lobe, k)| *lobe += source * k);
-        }
-    }
+/// A matrix `[n, columns]` as [`product`] takes it, block after block.
+fn in_blocks(matrix: &[f32], columns: usize) -> Vec<f32> {
+    let of_block =
+        |first: usize| matrix.chunks_exact(columns).flat_map(move |row| &row[first..first + PRODUCT_COLUMNS]);
+    (0..columns).step_by(PRODUCT_COLUMNS).flat_map(of_block).copied().collect()
 }

@@ -67,7 +67,8 @@ impl Packed {
         let [rows, columns] = self.kernel;
         // The channels of the kernel's columns lie side by side.
         let many = columns * self.input;
-        let runs: Vec<Run> = (0..rows).map(|ky| Run { value: ky * row_cells * self.input, row: ky * many, many }).collect();
+        let runs: Vec<Run> =
+            (0..rows).map(|ky| Run { value: ky * row_cells * self.input, row: ky * many, many }).collect();
         let job = Job { input, step: self.stride * self.input, runs: &runs, width };
         let mut at = 0;
         for (start, lanes) in blocks(self.output) {
@@ -79,16 +80,23 @@ impl Packed {
     }
 }
 
+/// Columns of a [`product`].
+pub const PRODUCT_COLUMNS: usize = 2 * LANES;
+
 /// A matrix product of `left` `[rows, inner]` and `right` `[inner, 32]` into `out` `[rows, 32]`, on this thread: of the inner indices only those
 /// in `runs`, each the first and how many.
 pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: &[[usize; 2]], out: &mut [f32]) {
-    const COLUMNS: usize = 2 * LANES;
-    let (inner, width) = (right.len() / COLUMNS, out.len() / COLUMNS);
+    let (inner, width) = (right.len() / PRODUCT_COLUMNS, out.len() / PRODUCT_COLUMNS);
     assert!(runs.iter().all(|[first, many]| first + many <= inner) && left.len() == width * inner, "matrices disagree");
     // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
     let runs: Vec<Run> = runs.iter().map(|&[first, many]| Run { value: first, row: first, many }).collect();
     let job = Job { input: left, step: inner, runs: &runs, width };
-    dispatch(simd, &job, Block { weights: right, bias: &[0.0; COLUMNS], start: 0, lanes: COLUMNS }, out);
+    dispatch(
+        simd,
+        &job,
+        Block { weights: right, bias: &[0.0; PRODUCT_COLUMNS], start: 0, lanes: PRODUCT_COLUMNS },
+        out,
+    );
 }
 
 /// Convolves `input`, which lies as rows of `row_cells` cells, into `out` `[height, width, output]`.

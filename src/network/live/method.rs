@@ -1,7 +1,7 @@
 //! The live network as a reconstruction method.
 
 use super::engine::{Decades, LiveEngine, Scratch};
-use super::features::FeatureExtractor;
+use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COLUMNS, ROWS};
 use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -53,6 +53,23 @@ impl LiveMethod {
     /// # Errors
     /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
     pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
+        self.decades_by(LiveEngine::forward, radar, ends)
+    }
+
+    /// The same with nothing left out.
+    ///
+    /// # Errors
+    /// As [`LiveMethod::decades`].
+    pub fn decades_whole(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
+        self.decades_by(LiveEngine::forward_whole, radar, ends)
+    }
+
+    fn decades_by(
+        &self,
+        forward: fn(&LiveEngine, &LiveInput, &mut Scratch) -> Decades,
+        radar: &Radar,
+        ends: &TwoEnds,
+    ) -> Result<Decades, ReconstructError> {
         let made;
         let extractor = match self.extractor.get() {
             Some(extractor) if *radar == Radar::default() => extractor,
@@ -66,7 +83,7 @@ impl LiveMethod {
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
-        let mut decades = self.engine.forward(&input, &mut scratch);
+        let mut decades = forward(&self.engine, &input, &mut scratch);
         let mut idle = idle();
         if idle.len() < MOST_IDLE {
             idle.push(scratch);
@@ -102,7 +119,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let Decades { mut map, minimum } = self.decades(radar, ends)?;
+        let Decades { mut map, minimum, .. } = self.decades(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));

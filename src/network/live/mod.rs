@@ -14,13 +14,14 @@
 //! |---|---|
 //! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
 //! | [`module`], `layers` | the network as a burn module: what trains |
-//! | [`engine`], `reading`, `planes`, `winograd`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
+//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
 
 mod capon;
 mod coarse;
 pub mod engine;
 pub mod features;
+mod filter;
 mod floors;
 pub mod grid;
 pub mod kernel;

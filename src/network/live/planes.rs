@@ -2,7 +2,7 @@
 
 use super::kernel::{Packed, convolve};
 use super::vector::LANES;
-use super::winograd::Conv3x3;
+use super::winograd::{Conv3x3, Results};
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
@@ -58,12 +58,12 @@ impl Block {
             [x.h, x.w],
             |y, line| x.read_rectified(y, line),
             &mut hidden.data,
-            |sums, out| out.copy_from_slice(sums),
+            |results, out| results.put(out),
         );
         if let Some(context) = &self.context {
             context.forward(hidden, pool, mixed);
         }
-        let add = |sums: &mut [f32], out: &mut [f32]| out.iter_mut().zip(sums).for_each(|(a, b)| *a += *b);
+        let add = |results: Results, out: &mut [f32]| out.iter_mut().zip(results.sums()).for_each(|(a, b)| *a += *b);
         self.conv2.run([x.h, x.w], |y, line| hidden.read_rectified(y, line), &mut x.data, add);
     }
 }

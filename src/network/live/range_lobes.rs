@@ -4,21 +4,18 @@
 //! strong source's side lobe. So the product is taken apart into tiles, and those that don't show are left out.
 
 use super::grid::{COLUMNS, ROWS};
-use super::kernel::product;
+use super::kernel::{PRODUCT_COLUMNS as BLOCK, product};
 use super::vector::LANES;
 use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;
-
-/// Columns of a block, which one processor does by itself.
-pub(super) const BLOCK: usize = 2 * LANES;
 
 /// Rows of sources, and rows that they add to, of a tile.
 const FROM: usize = 8;
 const TO: usize = 16;
 
 /// What a tile may add to a cell unseen, as a part of what the cell has at least: a hundredth for all of a column, and in the mean a tenth of that.
-const UNSEEN: f32 = 1.5e-4;
+pub(super) const UNSEEN: f32 = 1.5e-4;
 
 /// A learned kernel over the rows, which wraps around, and where it is how strong.
 #[derive(Debug)]
@@ -56,31 +53,39 @@ impl RangeLobes {
     }
 
     /// Side lobes `[1024 / BLOCK, 512, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
-    /// floor nor what doesn't show over it is added.
+    /// floor nor what is no more than the part `unseen` of it is added. The answer is the part of all tiles that was.
     ///
     /// `read` must not use rayon: what a thread keeps is borrowed meanwhile.
-    pub(super) fn add_up(&self, floor: f32, read: impl Fn(usize, &mut [f32]) + Sync, out: &mut Vec<f32>) {
+    pub(super) fn add_up(
+        &self,
+        floor: f32,
+        unseen: f32,
+        read: impl Fn(usize, &mut [f32]) + Sync,
+        out: &mut Vec<f32>,
+    ) -> f32 {
         let simd = Simd::chosen();
         out.resize(ROWS * COLUMNS, 0.0);
-        out.par_chunks_mut(ROWS * BLOCK).enumerate().for_each(|(block, out)| {
+        let of_block = |(block, out): (usize, &mut [f32])| {
             KEPT.with_borrow_mut(|kept| {
                 kept.sources.resize(ROWS * BLOCK, 0.0);
                 read(block, &mut kept.sources);
                 simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
-                for (to, out) in out.chunks_exact_mut(TO * BLOCK).enumerate() {
-                    self.add_to(simd, floor, to, kept, out);
-                }
-            });
-        });
+                let parts = out.chunks_exact_mut(TO * BLOCK).enumerate();
+                parts.map(|(to, out)| self.add_to(simd, [floor, unseen], to, kept, out)).sum::<usize>()
+            })
+        };
+        let tiles = out.par_chunks_mut(ROWS * BLOCK).enumerate().map(of_block).sum::<usize>();
+        tiles as f32 / (COLUMNS / BLOCK * self.reach.len()) as f32
     }
 
-    /// What a block's sources add to [`TO`] rows.
-    fn add_to(&self, simd: Simd, floor: f32, to: usize, kept: &Kept, out: &mut [f32]) {
+    /// What a block's sources add to [`TO`] rows, in how many tiles.
+    fn add_to(&self, simd: Simd, [floor, unseen]: [f32; 2], to: usize, kept: &Kept, out: &mut [f32]) -> usize {
         let reach = &self.reach[to * (ROWS / FROM)..][..ROWS / FROM];
-        let shows = simd.run(Shows { reach, sums: &kept.sums, floor });
+        let shows = simd.run(Shows { reach, sums: &kept.sums, floor, unseen });
         let tiles = (0..ROWS / FROM).filter(|tile| shows >> tile & 1 == 1);
         let runs: Vec<[usize; 2]> = tiles.map(|tile| [tile * FROM, FROM]).collect();
         product(simd, &self.kernel[to * TO * ROWS..][..TO * ROWS], &kept.sources, &runs, out);
+        runs.len()
     }
 }
 
@@ -112,6 +117,7 @@ struct Shows<'a> {
     reach: &'a [[f32; 2]],
     sums: &'a [f32],
     floor: f32,
+    unseen: f32,
 }
 
 const _: () = assert!(ROWS / FROM <= u64::BITS as usize, "a bit for each tile");
@@ -128,7 +134,7 @@ impl Kernel for Shows<'_> {
             for (tile, &[of_least, _]) in self.reach.iter().enumerate() {
                 least = sum(tile).mul_add::<FMA>(Lanes::splat(of_least), least);
             }
-            least = least * Lanes::splat(UNSEEN);
+            least = least * Lanes::splat(self.unseen);
             for (tile, &[_, of_most]) in self.reach.iter().enumerate() {
                 let over = sum(tile).mul_add::<FMA>(Lanes::splat(of_most), -least);
                 shows |= u64::from(over.0.iter().any(|v| *v > 0.0)) << tile;
@@ -157,7 +163,8 @@ mod tests {
         };
         let floor = 1e-14;
         let mut found = Vec::new();
-        lobes.add_up(floor, read, &mut found);
+        let part = lobes.add_up(floor, UNSEEN, read, &mut found);
+        assert!(part < 0.5, "{part} of all tiles");
         let mut worst: f32 = 0.0;
         for column in (0..COLUMNS).step_by(7) {
             for row in 0..ROWS {

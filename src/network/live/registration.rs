@@ -49,7 +49,7 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
         self.taps[row * COLUMNS..(row + 1) * COLUMNS].iter().map(|tap| {
             let first = tap.cell as usize;
             let beside = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
-            let [down, right] = tap.part.map(|part| f32::from(part) / WHOLE);
+            let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / WHOLE));
             let line = |below: usize| plane[first + below] * (1.0 - right) + plane[beside + below] * right;
             line(0) * (1.0 - down) + line(COLUMNS) * down
         })

@@ -1,5 +1,7 @@
 //! Sixteen numbers at a time, for processors with AVX-512, with AVX2 and without either.
 
+use crate::signal::simd::Simd;
+
 /// Output channels of a vector; every tensor's channels are padded to a multiple of it.
 pub const LANES: usize = 16;
 
@@ -16,6 +18,36 @@ pub(super) trait Vector: Copy {
     /// # Safety
     /// The CPU must have the features.
     unsafe fn add_product(self, value: f32, weight: Self) -> Self;
+    /// # Safety
+    /// The CPU must have the features.
+    unsafe fn plus(self, other: Self) -> Self;
+    /// # Safety
+    /// The CPU must have the features.
+    unsafe fn minus(self, other: Self) -> Self;
+}
+
+/// A loop over vectors, compiled for each of them.
+pub(super) trait Loop {
+    /// Must be inlined.
+    ///
+    /// # Safety
+    /// The CPU must have the features.
+    unsafe fn run<V: Vector>(self);
+}
+
+/// Runs `of` with these instructions, or the best there are if this machine lacks them.
+#[inline]
+pub(super) fn run<L: Loop>(simd: Simd, of: L) {
+    #[cfg(target_arch = "x86_64")]
+    match simd.min(Simd::best()) {
+        // SAFETY: `Simd::best` has found the features on this machine.
+        Simd::Avx512 => return unsafe { x86::run_avx512(of) },
+        // SAFETY: as above.
+        Simd::Avx2 => return unsafe { x86::run_avx2(of) },
+        Simd::Portable => {}
+    }
+    // SAFETY: needs no feature.
+    unsafe { of.run::<Portable>() };
 }
 
 /// Works everywhere; multiplies and adds apart.
@@ -37,11 +69,19 @@ impl Vector for Portable {
     unsafe fn add_product(self, value: f32, weight: Self) -> Self {
         Portable(std::array::from_fn(|l| self.0[l] + value * weight.0[l]))
     }
+    #[inline(always)]
+    unsafe fn plus(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|l| self.0[l] + other.0[l]))
+    }
+    #[inline(always)]
+    unsafe fn minus(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|l| self.0[l] - other.0[l]))
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
-    use super::Vector;
+    use super::{Loop, Vector};
     use std::arch::x86_64::*;
 
     #[derive(Clone, Copy)]
@@ -60,6 +100,14 @@ pub(super) mod x86 {
         #[inline(always)]
         unsafe fn add_product(self, value: f32, weight: Self) -> Self {
             Avx512(unsafe { _mm512_fmadd_ps(_mm512_set1_ps(value), weight.0, self.0) })
+        }
+        #[inline(always)]
+        unsafe fn plus(self, other: Self) -> Self {
+            Avx512(unsafe { _mm512_add_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn minus(self, other: Self) -> Self {
+            Avx512(unsafe { _mm512_sub_ps(self.0, other.0) })
         }
     }
 
@@ -85,5 +133,29 @@ pub(super) mod x86 {
                 Avx2(_mm256_fmadd_ps(value, weight.0, self.0), _mm256_fmadd_ps(value, weight.1, self.1))
             }
         }
+        #[inline(always)]
+        unsafe fn plus(self, other: Self) -> Self {
+            unsafe { Avx2(_mm256_add_ps(self.0, other.0), _mm256_add_ps(self.1, other.1)) }
+        }
+        #[inline(always)]
+        unsafe fn minus(self, other: Self) -> Self {
+            unsafe { Avx2(_mm256_sub_ps(self.0, other.0), _mm256_sub_ps(self.1, other.1)) }
+        }
+    }
+
+    /// # Safety
+    /// The CPU must have the features.
+    #[target_feature(enable = "avx512f")]
+    pub unsafe fn run_avx512(of: impl Loop) {
+        // SAFETY: the caller's promise.
+        unsafe { of.run::<Avx512>() };
+    }
+
+    /// # Safety
+    /// The CPU must have the features.
+    #[target_feature(enable = "avx2,fma")]
+    pub unsafe fn run_avx2(of: impl Loop) {
+        // SAFETY: the caller's promise.
+        unsafe { of.run::<Avx2>() };
     }
 }

@@ -1,44 +1,31 @@
-//! 3x3 convolutions by minimal filtering: four by four neighbouring outputs of three by three taps cost 36 products in place of 144
-//! (F(4 x 4, 3 x 3) of Lavin and Gray 2016).
+//! 3x3 convolutions by minimal [`filter`](super::filter)ing in both directions: four by four neighbouring outputs cost 36 products in place of
+//! 144.
 //!
 //! Angles wrap around, ranges end in zeros. Lines are computed in bands that stay in a processor's cache: each line of the input is asked for
 //! and spread into six pictures of a quarter of the width, six lines of each of those into six of one line. The 36 pictures meet a kernel of
 //! a single tap each; their results are gathered into lines, and those into lines of the output.
 
+use super::filter::{Gather, Groups, OF_BIAS, OF_TAPS, OUTPUTS, PRODUCTS, Spread};
 use super::kernel::{Packed, padded};
-use super::vector::LANES;
-use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
+use super::vector::{LANES, run};
+use crate::signal::simd::Simd;
 use rayon::prelude::*;
 use std::cell::RefCell;
-
-/// Neighbouring outputs of one filter.
-const OUTPUTS: usize = 4;
-/// Products that they cost, and inputs that they see.
-const PRODUCTS: usize = 6;
-/// Products of a filter in both directions.
-const PICTURES: usize = PRODUCTS * PRODUCTS;
-
-/// What each product makes of a kernel's three taps in one direction.
-const OF_TAPS: [[f32; 3]; PRODUCTS] = [
-    [1.0 / 4.0, 0.0, 0.0],
-    [-1.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0],
-    [-1.0 / 6.0, 1.0 / 6.0, -1.0 / 6.0],
-    [1.0 / 24.0, 1.0 / 12.0, 1.0 / 6.0],
-    [1.0 / 24.0, -1.0 / 12.0, 1.0 / 6.0],
-    [0.0, 0.0, 1.0],
-];
 
 /// Groups of [`OUTPUTS`] cells that a band has at most, and its fewest and most lines: what a processor's cache holds, and enough bands for all
 /// processors.
 const BAND_GROUPS: usize = 512;
 const BAND_LINES: std::ops::RangeInclusive<usize> = 4..=16;
 
-/// A 3x3 convolution's weights, as 36 kernels of one tap: for each product in range those along the angle.
+/// One for each product along the angle and, within that, in range.
+type Pictures<T> = [[T; PRODUCTS]; PRODUCTS];
+
+/// A 3x3 convolution's weights, as 36 kernels of one tap.
 #[derive(Debug)]
 pub(super) struct Conv3x3 {
-    kernels: Vec<Packed>,
-    bias: Vec<f32>,
+    kernels: Pictures<Packed>,
     input: usize,
+    output: usize,
 }
 
 /// What one processor keeps while it works on a band, and for the next.
@@ -47,10 +34,10 @@ struct Band {
     line: Vec<f32>,
     /// The lines that the next outputs see, spread along the angle.
     spread: [[Vec<f32>; PRODUCTS]; PRODUCTS],
-    pictures: Vec<Vec<f32>>,
-    products: Vec<Vec<f32>>,
-    /// Results gathered in range.
-    gathered: [[Vec<f32>; PRODUCTS]; OUTPUTS],
+    pictures: Pictures<Vec<f32>>,
+    products: Pictures<Vec<f32>>,
+    /// Four lines of each product along the angle.
+    gathered: [Vec<f32>; PRODUCTS],
     sums: Vec<f32>,
 }
 
@@ -62,25 +49,28 @@ impl Conv3x3 {
     /// Takes weights `[output, input, 3, 3]` (PyTorch's order) and `bias` `[output]`. The input's cells have `stride` channels, of which the
     /// last `stride - input` meet zeros.
     pub(super) fn new(weights: &[f32], bias: &[f32], input: usize, stride: usize) -> Self {
-        let kernel = |picture: usize| {
-            let [in_range, along_angle] = [OF_TAPS[picture / PRODUCTS], OF_TAPS[picture % PRODUCTS]];
-            let along = |row: &[f32]| row.iter().zip(along_angle).map(|(w, t)| w * t).sum::<f32>();
-            let tap = |w: &[f32]| w.chunks_exact(3).zip(in_range).map(|(row, t)| along(row) * t).sum();
+        let none = vec![0.0; bias.len()];
+        let kernel = |along: usize, across: usize| {
+            let taps = |row: &[f32], of: [f32; 3]| row.iter().zip(of).map(|(w, t)| w * t).sum::<f32>();
+            let tap = |w: &[f32]| {
+                let rows = [0, 3, 6].map(|row| taps(&w[row..row + 3], OF_TAPS[along]));
+                taps(&rows, OF_TAPS[across])
+            };
             let taps: Vec<f32> = weights.chunks_exact(9).map(tap).collect();
-            Packed::new(&taps, &vec![0.0; bias.len()], [input, stride], [1, 1], 1)
+            let bias = if [along, across] == [OF_BIAS; 2] { bias } else { &none };
+            Packed::new(&taps, bias, [input, stride], [1, 1], 1)
         };
-        let mut all_bias = bias.to_vec();
-        all_bias.resize(padded(bias.len()), 0.0);
-        Conv3x3 { kernels: (0..PICTURES).map(kernel).collect(), bias: all_bias, input: stride }
+        let kernels = std::array::from_fn(|along| std::array::from_fn(|across| kernel(along, across)));
+        Conv3x3 { kernels, input: stride, output: padded(bias.len()) }
     }
 
     /// Channels of an output cell.
     pub(super) fn output(&self) -> usize {
-        self.bias.len()
+        self.output
     }
 
-    /// Convolves a picture of `height` lines of `width` cells, a multiple of four: `read` writes line y of the input, and `take` puts a line of results
-    /// `[width, output]` into the same line of `out`.
+    /// Convolves a picture of `height` lines of `width` cells, a multiple of four: `read` writes line y of the input, and `take` puts a line of
+    /// [`Results`] into the same line of `out`.
     ///
     /// Neither may use rayon: what a thread keeps for a band is borrowed meanwhile.
     pub(super) fn run(
@@ -88,7 +78,7 @@ impl Conv3x3 {
         [height, width]: [usize; 2],
         read: impl Fn(usize, &mut [f32]) + Sync,
         out: &mut [f32],
-        take: impl Fn(&mut [f32], &mut [f32]) + Sync,
+        take: impl Fn(Results<'_>, &mut [f32]) + Sync,
     ) {
         assert!(width.is_multiple_of(OUTPUTS) && out.len().is_multiple_of(height), "a picture of another shape");
         let groups = width / OUTPUTS;
@@ -105,9 +95,9 @@ impl Conv3x3 {
                 kept.spread(simd, self.input, groups, strips, |y, line| read(band * lines + y, line));
                 kept.multiply(simd, &self.kernels, groups * strips);
                 for (strip, out) in out.chunks_mut(OUTPUTS * out_line).enumerate() {
-                    kept.gather(simd, groups * self.output(), strip);
+                    kept.gather(simd, groups * self.output, strip);
                     for (line, out) in out.chunks_exact_mut(out_line).enumerate() {
-                        take(kept.results(simd, &self.bias, line), out);
+                        take(Results { simd, channels: self.output, groups, line, band: kept }, out);
                     }
                 }
             });
@@ -117,21 +107,15 @@ impl Conv3x3 {
 
 impl Band {
     /// Reads lines and spreads them over the pictures, of which each strip of four lines becomes one line.
-    fn spread(
-        &mut self,
-        simd: Simd,
-        channels: usize,
-        groups: usize,
-        strips: usize,
-        read: impl Fn(usize, &mut [f32]),
-    ) {
+    fn spread(&mut self, simd: Simd, channels: usize, groups: usize, strips: usize, read: impl Fn(usize, &mut [f32])) {
         let cells = groups * OUTPUTS * channels;
         let size = groups * channels;
         // The last vector of a cell overhangs where the channels are no whole vectors; the next cell is written after it.
         self.line.resize(cells + 2 * channels + LANES, 0.0);
         self.spread.iter_mut().flatten().for_each(|line| line.resize(size + LANES, 0.0));
-        self.pictures.resize_with(PICTURES, Vec::new);
-        self.pictures.iter_mut().for_each(|picture| picture.resize(strips * size + LANES, 0.0));
+        self.pictures.iter_mut().flatten().for_each(|picture| picture.resize(strips * size + LANES, 0.0));
+        let along = Groups { many: groups, vectors: channels.div_ceil(LANES), steps: [OUTPUTS * channels, channels] };
+        let across = Groups { many: 1, vectors: size.div_ceil(LANES), steps: [0; 2] };
         for strip in 0..strips {
             // The last two lines of a strip are the first two of the next.
             self.spread.rotate_left(OUTPUTS);
@@ -140,170 +124,67 @@ impl Band {
                 read(strip * OUTPUTS + line, &mut self.line[channels..channels + cells]);
                 self.line.copy_within(cells..cells + channels, 0);
                 self.line.copy_within(channels..2 * channels, cells + channels);
-                simd.run(Spread { line: &self.line, channels, groups, to: to.each_mut().map(Vec::as_mut_slice) });
+                let from = std::array::from_fn(|cell| &self.line[cell * channels..]);
+                run(simd, Spread { groups: along, from, to: to.each_mut().map(Vec::as_mut_slice) });
             }
-            let parts = self.pictures.iter_mut().map(|picture| &mut picture[strip * size..(strip + 1) * size + LANES]);
-            simd.run(SpreadInRange { lines: &self.spread, size, to: parts.collect() });
+            for (along, to) in self.pictures.iter_mut().enumerate() {
+                let from = self.spread.each_ref().map(|line| line[along].as_slice());
+                let to = to.each_mut().map(|picture| &mut picture[strip * size..]);
+                run(simd, Spread { groups: across, from, to });
+            }
         }
     }
 
     /// The pictures, each through its kernel.
-    fn multiply(&mut self, simd: Simd, kernels: &[Packed], cells: usize) {
-        self.products.resize_with(PICTURES, Vec::new);
-        for ((kernel, picture), out) in kernels.iter().zip(&self.pictures).zip(&mut self.products) {
+    fn multiply(&mut self, simd: Simd, kernels: &Pictures<Packed>, cells: usize) {
+        let products = self.products.iter_mut().flatten();
+        for ((kernel, picture), out) in kernels.iter().flatten().zip(self.pictures.iter().flatten()).zip(products) {
             out.resize(cells * kernel.output(), 0.0);
             kernel.line(simd, picture, cells, cells, out);
         }
     }
 
-    /// Gathers a strip's products in range.
+    /// Gathers a strip's products, of which a line is `size`, in range.
     fn gather(&mut self, simd: Simd, size: usize, strip: usize) {
-        self.gathered.iter_mut().flatten().for_each(|line| line.resize(size, 0.0));
-        let from = self.products.iter().map(|products| &products[strip * size..(strip + 1) * size]).collect();
-        simd.run(GatherInRange { from, to: &mut self.gathered });
-    }
-
-    /// A line of results of the strip that was gathered last.
-    fn results(&mut self, simd: Simd, bias: &[f32], line: usize) -> &mut [f32] {
-        let from = self.gathered[line].each_ref().map(Vec::as_slice);
-        self.sums.resize(from[0].len() * OUTPUTS, 0.0);
-        simd.run(Gather { from, bias, to: &mut self.sums });
-        &mut self.sums
+        let groups = Groups { many: 1, vectors: size / LANES, steps: [0; 2] };
+        for (from, to) in self.products.iter().zip(&mut self.gathered) {
+            to.resize(OUTPUTS * size, 0.0);
+            let from = from.each_ref().map(|products| &products[strip * size..(strip + 1) * size]);
+            run(simd, Gather { groups, from, apart: size, to });
+        }
     }
 }
 
-type Vector = Lanes<f32, LANES_F32>;
-
-/// `a * by + plus`.
-#[inline(always)]
-fn times<const FMA: bool>(a: Vector, by: f32, plus: Vector) -> Vector {
-    a.mul_add::<FMA>(Lanes::splat(by), plus)
-}
-
-/// Six neighbouring inputs to the factors of their products. Vectors are handed over one by one, here and below: an array of them would go
-/// through memory.
-#[inline(always)]
-fn factors<const FMA: bool>(d: impl Fn(usize) -> Vector, mut take: impl FnMut(usize, Vector)) {
-    let (d1, d2, d3, d4) = (d(1), d(2), d(3), d(4));
-    let (even, odd) = (times::<FMA>(d2, -4.0, d4), times::<FMA>(d1, -4.0, d3));
-    let (far, near) = (d4 - d2, d3 - d1);
-    take(0, times::<FMA>(d(0), 4.0, times::<FMA>(d2, -5.0, d4)));
-    take(1, even + odd);
-    take(2, even - odd);
-    take(3, times::<FMA>(near, 2.0, far));
-    take(4, times::<FMA>(near, -2.0, far));
-    take(5, times::<FMA>(d1, 4.0, times::<FMA>(d3, -5.0, d(5))));
-}
-
-/// Six products to the four results.
-#[inline(always)]
-fn results<const FMA: bool>(m: impl Fn(usize) -> Vector, mut take: impl FnMut(usize, Vector)) {
-    let (m1, m2, m3, m4) = (m(1), m(2), m(3), m(4));
-    let (sum, gap) = (m1 + m2, m1 - m2);
-    let (wide_sum, wide_gap) = (m3 + m4, m3 - m4);
-    take(0, m(0) + sum + wide_sum);
-    take(1, times::<FMA>(wide_gap, 2.0, gap));
-    take(2, times::<FMA>(wide_sum, 4.0, sum));
-    take(3, times::<FMA>(wide_gap, 8.0, gap + m(5)));
-}
-
-/// Six neighbouring cells of a line, every fourth of which begins a group, to the factors of the group's products.
-struct Spread<'a> {
-    line: &'a [f32],
+/// A line of results `[width, output]`.
+pub(super) struct Results<'a> {
+    simd: Simd,
     channels: usize,
     groups: usize,
-    to: [&'a mut [f32]; PRODUCTS],
+    /// Of the strip that was gathered last.
+    line: usize,
+    band: &'a mut Band,
 }
 
-impl Kernel for Spread<'_> {
-    type Output = ();
+impl<'a> Results<'a> {
+    /// Writes them to `to`.
+    pub(super) fn put(self, to: &mut [f32]) {
+        put(self.simd, [self.channels, self.groups, self.line], &self.band.gathered, to);
+    }
 
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        let Spread { line, channels, groups, to } = self;
-        for group in 0..groups {
-            let cells = &line[OUTPUTS * group * channels..];
-            for channel in (0..channels).step_by(LANES) {
-                let at = group * channels + channel;
-                factors::<FMA>(
-                    |cell| Vector::load(&cells[cell * channels + channel..]),
-                    |product, factor| factor.store(&mut to[product][at..]),
-                );
-            }
-        }
+    /// The results, to be taken from where they will be overwritten.
+    pub(super) fn sums(self) -> &'a mut [f32] {
+        let Results { simd, channels, groups, line, band } = self;
+        band.sums.resize(groups * channels * OUTPUTS, 0.0);
+        put(simd, [channels, groups, line], &band.gathered, &mut band.sums);
+        &mut band.sums
     }
 }
 
-/// The same of neighbouring lines that are spread along the angle, `size` numbers each.
-struct SpreadInRange<'a> {
-    lines: &'a [[Vec<f32>; PRODUCTS]; PRODUCTS],
-    size: usize,
-    to: Vec<&'a mut [f32]>,
-}
-
-impl Kernel for SpreadInRange<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(mut self) {
-        for picture in 0..PRODUCTS {
-            for at in (0..self.size).step_by(LANES) {
-                factors::<FMA>(
-                    |line| Vector::load(&self.lines[line][picture][at..]),
-                    |product, factor| factor.store(&mut self.to[product * PRODUCTS + picture][at..]),
-                );
-            }
-        }
-    }
-}
-
-/// Products of all pictures to four lines.
-struct GatherInRange<'a> {
-    from: Vec<&'a [f32]>,
-    to: &'a mut [[Vec<f32>; PRODUCTS]; OUTPUTS],
-}
-
-impl Kernel for GatherInRange<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        for picture in 0..PRODUCTS {
-            for at in (0..self.from[0].len()).step_by(LANES) {
-                results::<FMA>(
-                    |product| Vector::load(&self.from[product * PRODUCTS + picture][at..]),
-                    |line, result| result.store(&mut self.to[line][picture][at..]),
-                );
-            }
-        }
-    }
-}
-
-/// Six products of every group to its four results.
-struct Gather<'a> {
-    from: [&'a [f32]; PRODUCTS],
-    bias: &'a [f32],
-    to: &'a mut [f32],
-}
-
-impl Kernel for Gather<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        let Gather { from, bias, to } = self;
-        let channels = bias.len();
-        for (group, to) in to.chunks_exact_mut(OUTPUTS * channels).enumerate() {
-            for channel in (0..channels).step_by(LANES) {
-                let at = group * channels + channel;
-                let bias = Vector::load(&bias[channel..]);
-                results::<FMA>(
-                    |product| Vector::load(&from[product][at..]),
-                    |cell, result| (result + bias).store(&mut to[cell * channels + channel..]),
-                );
-            }
-        }
-    }
+fn put(simd: Simd, [channels, groups, line]: [usize; 3], gathered: &[Vec<f32>; PRODUCTS], to: &mut [f32]) {
+    let size = groups * channels;
+    let from = gathered.each_ref().map(|gathered| &gathered[line * size..(line + 1) * size]);
+    let groups = Groups { many: groups, vectors: channels / LANES, steps: [channels, OUTPUTS * channels] };
+    run(simd, Gather { groups, from, apart: channels, to });
 }
 
 #[cfg(test)]
@@ -322,7 +203,7 @@ mod tests {
             let mut out = vec![f32::NAN; height * width * conv.output()];
             let line = width * input;
             let read = |y: usize, to: &mut [f32]| to.copy_from_slice(&x[y * line..(y + 1) * line]);
-            conv.run([height, width], read, &mut out, |sums, out| out.copy_from_slice(sums));
+            conv.run([height, width], read, &mut out, |results, out| results.put(out));
             for (cell, found) in out.chunks_exact(conv.output()).enumerate() {
                 let (y, column) = (cell / width, cell % width);
                 for (o, found) in found.iter().enumerate().take(output) {
