@@ -8,7 +8,7 @@ use super::kernel::{PRODUCT_COLUMNS, Packed, convolve, product};
 use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::planes::{Block, Plane, rectified};
 use super::range_lobes::{RangeLobes, UNSEEN};
-use super::reading::{CELLS, Layers};
+use super::reading::{CELLS, Layers, circulant};
 use super::winograd::{Conv3x3, Results};
 use crate::network::weights::{WeightFile, WeightsError};
 use crate::signal::simd::Simd;
@@ -326,12 +326,6 @@ fn add_doubled(from: &Plane, to: &mut Plane, c: usize) {
             cell.iter_mut().zip(&from.data[at..at + c]).for_each(|(v, more)| *v += more);
         }
     });
-}
-
-/// `[n, n]`: over the distance of row and column, which wraps around, the amplitudes of so many decades.
-pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
-    let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
-    (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
 }
 
 /// A matrix `[n, columns]` as [`product`] takes it, block after block.

@@ -5,6 +5,7 @@
 
 use super::grid::{COLUMNS, ROWS};
 use super::kernel::{PRODUCT_COLUMNS as BLOCK, product};
+use super::reading::circulant;
 use super::vector::LANES;
 use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
 use rayon::prelude::*;
@@ -42,7 +43,7 @@ thread_local! {
 impl RangeLobes {
     /// Takes the kernel's decades over the distance in rows, `[512 / 2 + 1]`.
     pub(super) fn new(decades: &[f32]) -> Self {
-        let kernel = super::engine::circulant(decades, ROWS);
+        let kernel = circulant(decades, ROWS);
         let of_tile = |tile: usize| {
             let (to, from) = (tile / (ROWS / FROM) * TO, tile % (ROWS / FROM) * FROM);
             let cells = (to..to + TO).flat_map(|row| &kernel[row * ROWS + from..][..FROM]);

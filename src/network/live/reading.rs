@@ -87,3 +87,9 @@ fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
     let part = |cell: usize, channel: usize| &of_channels[(channel * CELLS + cell) * each..][..each];
     (0..CELLS).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
 }
+
+/// `[n, n]`: over the distance of row and column, which wraps around, the amplitudes of so many decades.
+pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
+    let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
+    (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
+}
