@@ -1,0 +1,157 @@
+//! Maps as they are shown: what is told when there is none, and labels that stay inside.
+
+use super::*;
+use crate::app::widgets::seen;
+use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::Carrier;
+use eframe::egui::Shape;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use ndarray::Array2;
+use std::sync::LazyLock;
+
+static NOTHING: LazyLock<(Scene, Selection)> = LazyLock::new(Default::default);
+
+fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
+    let (scene, selection) = &*NOTHING;
+    Input { error, ..Input::bare(MapKind::Output, radar, Projection::RangeAngle, scene, selection) }
+}
+
+fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
+    let radar = Radar::default();
+    let input = Input { cursor: Some(Cursor::at_cell(&radar, 200.0, 500.0)), ..input(&radar, error) };
+    asked.extend(show(ui, input, &mut MapView::default(), &mut Memory::default()));
+}
+
+#[test]
+fn the_pointer_is_told_in_cells() {
+    let mut map = Harness::new_ui_state(|ui, asked| draw(ui, None, asked), Vec::new());
+    map.step();
+    let rect = map.get_by_label("Output map").rect();
+    map.hover_at(rect.center());
+    map.step();
+    let Some(Command::Hover(cursor)) = map.state().last() else { panic!("{:?}", map.state()) };
+    assert!((cursor.bin - 255.5).abs() < 1.0 && (cursor.column - 511.5).abs() < 1.0, "{cursor:?}");
+}
+
+#[test]
+fn a_refusal_is_told_and_another_method_offered() {
+    let problem = || Problem { reason: "trained on another radar", instead: Some("capon") };
+    let mut map = Harness::new_ui_state(|ui, asked| draw(ui, Some(problem()), asked), Vec::new());
+    map.step();
+    let _told = map.get_by_label("trained on another radar");
+    assert!(!map.output().shapes.iter().any(|s| matches!(s.shape, Shape::Circle(_))), "no crosshair is drawn over it");
+    let _one = map.get_by_label("Output map");
+    map.get_by_label("Use capon").click();
+    map.step();
+    assert!(map.state().contains(&Command::Method("capon")), "{:?}", map.state());
+}
+
+#[test]
+fn every_label_of_a_map_is_inside_its_panel_whatever_is_counted() {
+    let lambda = RangeAngleMap { lambda: Array2::zeros((2, 2)) };
+    for size in [[270.0, 130.0], [450.0, 270.0], [1400.0, 800.0]] {
+        for (kind, units) in [
+            (MapKind::Target, Units::Lambda),
+            (MapKind::Target, Units::Decibels),
+            (MapKind::Difference, Units::Lambda),
+            (MapKind::Difference, Units::Decibels),
+            (MapKind::TargetAbove, Units::Lambda),
+        ] {
+            let (lambda, radar) = (lambda.clone(), Radar::default());
+            let map = Harness::builder().with_size(size).build_ui(move |ui| {
+                let scale = Some(LambdaScale { peak: 3.0, floor: -12.5 });
+                let cells = Some(Cells { map: &lambda, minus: None, scale });
+                let texture = Some(TextureId::default());
+                let input = Input { kind, units, cells, texture, end: 0.05, ..input(&radar, None) };
+                _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+            });
+            seen::assert_readable(map.output());
+            let texts = seen::texts(map.output());
+            assert!(texts.iter().any(|t| t.text == "range, m" || size[1] < 200.0), "{texts:?}");
+            let bar = match (kind, units) {
+                (MapKind::TargetAbove, _) => None,
+                (MapKind::Difference, Units::Lambda) => Some("ΔΛ"),
+                (MapKind::Difference, Units::Decibels) => Some("Δ dB"),
+                (_, Units::Lambda) => Some("Λ"),
+                (_, Units::Decibels) => Some("−200"),
+            };
+            assert!(bar.is_none_or(|bar| texts.iter().any(|t| t.text == bar)), "{bar:?} at {size:?}: {texts:?}");
+        }
+    }
+}
+
+/// With the two-way carrier directions fall from left to right.
+#[test]
+fn an_axis_that_falls_has_its_labels_too() {
+    let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+    let map = Harness::builder().with_size([450.0, 270.0]).build_ui(move |ui| {
+        _ = show(ui, input(&radar, None), &mut MapView::default(), &mut Memory::default());
+    });
+    let texts = seen::texts(map.output());
+    let left = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.left());
+    let places = ["0.4", "0.2", "0.0", "−0.2", "−0.4"].map(left);
+    assert!(places[0].is_some() && places.is_sorted(), "{texts:?}");
+    seen::assert_readable(map.output());
+}
+
+#[test]
+fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
+    let radar = Radar::default();
+    let map = Harness::builder().build_ui(move |ui| {
+        _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default(), &mut Memory::default());
+    });
+    let texts = seen::texts(map.output());
+    assert!(texts.iter().any(|t| t.text == "computing…"));
+    assert!(!texts.iter().any(|t| t.text.contains("earlier scene")), "{texts:?}");
+}
+
+#[test]
+fn a_map_of_an_earlier_scene_says_so() {
+    let radar = Radar::default();
+    let says_so = |stale| {
+        let radar = radar.clone();
+        let map = Harness::builder().build_ui(move |ui| {
+            let input = Input { stale, texture: Some(TextureId::default()), ..input(&radar, None) };
+            _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+        });
+        seen::texts(map.output()).iter().any(|t| t.text.contains("earlier scene"))
+    };
+    assert_eq!([true, false].map(says_so), [true, false]);
+}
+
+#[test]
+fn what_became_of_objects_is_told_above_the_map_and_under_the_pointer() {
+    let radar = Radar::default();
+    let fates = kinds::tests::fates();
+    let map = |current: bool, size: [f32; 2]| {
+        let (radar, fates) = (radar.clone(), fates.clone());
+        let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
+            let kinds = Some(Kinds { fates: &fates, current });
+            let texture = Some(TextureId::default());
+            let input = Input { kinds, texture, told_apart: true, kind: MapKind::OutputAbove, ..input(&radar, None) };
+            _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+        });
+        map.step();
+        map
+    };
+    let mut large = map(true, [900.0, 500.0]);
+    let legend = "Legend: hit, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
+    let _told = large.get_by_label(legend);
+    seen::assert_readable(large.output());
+    let rect = large.get_by_label("Output > η map").rect();
+    let blob = crate::theory::blob_cell(&radar, -4.0, 16.0, crate::maps::Aperture::Full);
+    let at = pos2(
+        rect.left() + rect.width() * ((blob.column + 0.5) / 1024.0) as f32,
+        rect.bottom() - rect.height() * ((blob.bin + 0.5) / 512.0) as f32,
+    );
+    let said = |map: &Harness<'_>| seen::texts(map.output()).into_iter().find(|t| t.text.starts_with("point 2"));
+    assert!(said(&large).is_none());
+    large.hover_at(at);
+    large.run_steps(2);
+    assert!(said(&large).is_some_and(|t| t.text.contains("missed")));
+    // A small panel is left to the map.
+    let small = map(true, [260.0, 140.0]);
+    assert!(small.query_by_label_contains("Legend").is_none());
+    seen::assert_readable(small.output());
+}
