@@ -161,7 +161,7 @@ impl LiveEngine {
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
         self.fine1.run([ROWS, FINE], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
-        let (map, computed) = self.decode(&s.heads, &s.sources, [floor, unseen], &mut s.lobes);
+        let (map, computed) = self.decode(&s.heads, &s.sources, floor, unseen, &mut s.lobes);
         Decades { map, minimum: floor - 2.5 + minimum_shift, computed }
     }
 
@@ -187,13 +187,7 @@ impl LiveEngine {
     }
 
     /// Heads and side-lobe sources to decades, with the part of the side lobes in range that was computed.
-    fn decode(
-        &self,
-        heads: &Plane,
-        sources: &Plane,
-        [floor, unseen]: [f32; 2],
-        lobes: &mut Vec<f32>,
-    ) -> (Vec<f32>, f32) {
+    fn decode(&self, heads: &Plane, sources: &Plane, floor: f32, unseen: f32, lobes: &mut Vec<f32>) -> (Vec<f32>, f32) {
         let floor = 10f32.powf(floor);
         let read = |block: usize, sources: &mut [f32]| {
             for (row, out) in sources.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
@@ -227,7 +221,7 @@ impl LiveEngine {
         let simd = Simd::chosen();
         for (block, kernel) in self.rows.chunks_exact(WIDE * PRODUCT_COLUMNS).enumerate() {
             let mut lobes = [0.0; ROWS_AT_ONCE * PRODUCT_COLUMNS];
-            product(simd, wide, kernel, &[[0, WIDE]], &mut lobes);
+            product(simd, wide, kernel, std::iter::once(0..WIDE), &mut lobes);
             for (line, lobes) in lines.chunks_exact_mut(COLUMNS).zip(lobes.chunks_exact(PRODUCT_COLUMNS)) {
                 let cells = line[block * PRODUCT_COLUMNS * EACH..].chunks_exact_mut(EACH);
                 for (cells, lobe) in cells.zip(lobes) {

@@ -8,6 +8,7 @@ use super::vector::x86;
 use super::vector::{LANES, Portable, Vector};
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Channels rounded up to whole vectors.
 pub const fn padded(channels: usize) -> usize {
@@ -84,12 +85,12 @@ impl Packed {
 pub const PRODUCT_COLUMNS: usize = 2 * LANES;
 
 /// A matrix product of `left` `[rows, inner]` and `right` `[inner, 32]` into `out` `[rows, 32]`, on this thread: of the inner indices only those
-/// in `runs`, each the first and how many.
-pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: &[[usize; 2]], out: &mut [f32]) {
+/// in `runs`.
+pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: impl Iterator<Item = Range<usize>>, out: &mut [f32]) {
     let (inner, width) = (right.len() / PRODUCT_COLUMNS, out.len() / PRODUCT_COLUMNS);
-    assert!(runs.iter().all(|[first, many]| first + many <= inner) && left.len() == width * inner, "matrices disagree");
+    assert!(left.len() == width * inner, "matrices disagree");
     // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
-    let runs: Vec<Run> = runs.iter().map(|&[first, many]| Run { value: first, row: first, many }).collect();
+    let runs: Vec<Run> = runs.map(|run| Run { value: run.start, row: run.start, many: run.len() }).collect();
     let job = Job { input: left, step: inner, runs: &runs, width };
     dispatch(
         simd,
@@ -328,7 +329,7 @@ mod tests {
         let (left, right) = (numbers(rows * inner), numbers(inner * 32));
         for simd in Simd::available() {
             let mut out = vec![f32::NAN; rows * 32];
-            product(simd, &left, &right, &[[0, 2], [3, 4]], &mut out);
+            product(simd, &left, &right, [0..2, 3..7].into_iter(), &mut out);
             for (at, found) in out.iter().enumerate() {
                 let seen = (0..inner).filter(|i| *i != 2);
                 let expected: f32 = seen.map(|i| left[at / 32 * inner + i] * right[i * 32 + at % 32]).sum();

@@ -15,7 +15,7 @@ use std::cell::RefCell;
 const FROM: usize = 8;
 const TO: usize = 16;
 
-/// What a tile may add to a cell unseen, as a part of what the cell has at least: a hundredth for all of a column, and in the mean a tenth of that.
+/// What a tile may add to a cell unseen, as a part of what the cell has at least: less than a hundredth for all tiles.
 pub(super) const UNSEEN: f32 = 1.5e-4;
 
 /// A learned kernel over the rows, which wraps around, and where it is how strong.
@@ -54,7 +54,7 @@ impl RangeLobes {
     }
 
     /// Side lobes `[1024 / BLOCK, 512, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
-    /// floor nor what is no more than the part `unseen` of it is added. The answer is the part of all tiles that was.
+    /// floor nor tiles that add no more than the part `unseen` of what there is at least are added. The answer is the part of all tiles that was.
     ///
     /// `read` must not use rayon: what a thread keeps is borrowed meanwhile.
     pub(super) fn add_up(
@@ -72,7 +72,7 @@ impl RangeLobes {
                 read(block, &mut kept.sources);
                 simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
                 let parts = out.chunks_exact_mut(TO * BLOCK).enumerate();
-                parts.map(|(to, out)| self.add_to(simd, [floor, unseen], to, kept, out)).sum::<usize>()
+                parts.map(|(to, out)| self.add_to(simd, floor, unseen, to, kept, out)).sum::<usize>()
             })
         };
         let tiles = out.par_chunks_mut(ROWS * BLOCK).enumerate().map(of_block).sum::<usize>();
@@ -80,13 +80,13 @@ impl RangeLobes {
     }
 
     /// What a block's sources add to [`TO`] rows, in how many tiles.
-    fn add_to(&self, simd: Simd, [floor, unseen]: [f32; 2], to: usize, kept: &Kept, out: &mut [f32]) -> usize {
+    fn add_to(&self, simd: Simd, floor: f32, unseen: f32, to: usize, kept: &Kept, out: &mut [f32]) -> usize {
         let reach = &self.reach[to * (ROWS / FROM)..][..ROWS / FROM];
         let shows = simd.run(Shows { reach, sums: &kept.sums, floor, unseen });
         let tiles = (0..ROWS / FROM).filter(|tile| shows >> tile & 1 == 1);
-        let runs: Vec<[usize; 2]> = tiles.map(|tile| [tile * FROM, FROM]).collect();
-        product(simd, &self.kernel[to * TO * ROWS..][..TO * ROWS], &kept.sources, &runs, out);
-        runs.len()
+        let runs = tiles.map(|tile| tile * FROM..(tile + 1) * FROM);
+        product(simd, &self.kernel[to * TO * ROWS..][..TO * ROWS], &kept.sources, runs, out);
+        shows.count_ones() as usize
     }
 }
 
