@@ -16,7 +16,7 @@ pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
 pub use memory::MAX_MEMORY_BYTES;
 pub use units::{Bytes, Decibels};
-pub use window::{WindowFunction, chirp_window, hann};
+pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

@@ -69,6 +69,11 @@ pub fn hann(len: usize) -> Vec<f64> {
     WindowFunction::Hann.weights(len)
 }
 
+/// [`hann`] of `len` points, three or more, at any place between its first (0) and its last (`len - 1`).
+pub fn hann_at(len: usize, n: f64) -> f64 {
+    0.5 - 0.5 * (TAU * n / (len as f64 - 1.0)).cos()
+}
+
 /// Fewest points of a Hann window of which more than one weighs anything.
 const LEAST_WINDOWED: usize = 4;
 
@@ -90,6 +95,7 @@ mod tests {
             assert!((w[n] - w[11 - n]).abs() < 1e-15);
         }
         assert!((w.iter().sum::<f64>() - 5.5).abs() < 1e-12, "sum of a symmetric Hann window is (N-1)/2");
+        assert!((0..12).all(|n| (hann_at(12, n as f64) - w[n]).abs() < 1e-15) && hann_at(12, 5.5) == 1.0);
         assert_eq!((hann(1), hann(2)), (vec![1.0], vec![1.0; 2]));
         assert_eq!((chirp_window(3), chirp_window(4)), (vec![1.0; 3], hann(4)));
     }

@@ -5,12 +5,14 @@ use super::between::rows_between;
 use super::edges::rows_from_edges;
 use super::groups::rows_of;
 use super::grow::Grower;
+use super::narrow::Spectra;
 use super::on_wall::is_on;
 use super::phased::PhasedBeams;
 use super::profile::Profile;
 use super::refine::{Fit, Gains, Limits, Tie};
 use super::strides::{Stride, rows_over_pairs};
 use crate::radar::Radar;
+use num_complex::Complex64;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -54,6 +56,9 @@ const MOST_BETWEEN: usize = 32;
 /// A count that explains this part of what the best does, where it is, may be the right one.
 const ABOUT_AS_WELL: f64 = 0.9;
 
+/// A row between two points that explains this part of the energy in its range bins is the one; else others are looked for beside it.
+const CONVINCING: f64 = 0.85;
+
 /// Most such counts, and how far their rows are moved.
 const MOST_MOVED: usize = 8;
 const BETWEEN: Limits = Limits { iterations: 4, least_gain: 1e-2, ridge: 0.0 };
@@ -88,6 +93,13 @@ pub fn is_long(radar: &Radar, wall: &Atom) -> bool {
     wall.reflector_count() >= LEAST_LONG && bins >= LEAST_LONG as f64
 }
 
+/// What is left when another wall is looked for.
+struct Left<'a> {
+    fit: &'a Fit,
+    profile: Profile,
+    spectra: Spectra<'a>,
+}
+
 /// The first reflectors of a wall.
 #[derive(Debug, Clone, Copy)]
 struct Begun {
@@ -103,88 +115,100 @@ impl Grower<'_> {
     pub fn next_wall(&self, fit: &Fit, seeds: &mut Seeds) -> Option<Fit> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let profile = Profile::new(self.radar, &flat);
+        let left = Left { fit, profile, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
         match seeds {
             Seeds::Points(points) => {
                 points.retain(|&[x_metres, y_metres]| {
                     !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
                 });
                 let points = points.clone();
-                self.bench.work.spend(LOOK_A_POINT * points.len());
-                let beams = PhasedBeams::new(self.radar, &flat);
-                let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
-                let are_long = self.echoes_in(&flat).are_long();
-                let between = if are_long { self.between_ends(fit, &profile, &beams, &points) } else { None };
-                let over_pairs = atoms(rows_over_pairs(&beams, &points, self.task));
-                let rows: Vec<Atom> = between.into_iter().chain(over_pairs).collect();
-                self.borne_out(fit, &profile, seeds, &rows).or_else(|| {
-                    if !are_long {
-                        return None;
-                    }
-                    let edges = self.within_range(&points, MOST_EDGES);
-                    let mut from_edges = atoms(rows_from_edges(&beams, &edges, &directions(fit), self.task));
-                    from_edges.retain(|row| row.reflector_count() >= LEAST_FROM_EDGE);
-                    self.borne_out(fit, &profile, seeds, &from_edges)
-                })
+                self.next_from_points(&left, &flat, seeds, &points)
             }
             Seeds::LongLines(lines) => {
                 // What a line that is not quite right yet has left is no other.
                 let along = |a: &Atom, b: &Atom| a.reflectors(1.0).filter(|r| is_on(b, &Atom::from(r))).count();
                 lines.retain(|line| !fit.atoms.iter().any(|wall| 2 * along(line, wall) > line.reflector_count()));
                 let lines = lines.clone();
-                self.borne_out(fit, &profile, seeds, &lines)
+                self.borne_out(&left, seeds, &lines)
             }
         }
     }
 
+    /// A wall between two of `points`, over two of them or from one alone; the last takes longest.
+    fn next_from_points(&self, left: &Left, flat: &[Complex64], seeds: &Seeds, points: &[[f64; 2]]) -> Option<Fit> {
+        self.bench.work.spend(LOOK_A_POINT * points.len());
+        let beams = PhasedBeams::new(self.radar, flat);
+        let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
+        let are_long = self.echoes_in(flat).are_long();
+        let between = if are_long { self.between_ends(left, &beams, points) } else { None };
+        if let Some(row) = between.filter(|row| row.part > CONVINCING)
+            && let Some(wall) = self.borne_out(left, seeds, &[row.atom])
+        {
+            return Some(wall);
+        }
+        let over_pairs = atoms(rows_over_pairs(&beams, points, self.task));
+        let rows: Vec<Atom> = between.iter().map(|row| row.atom).chain(over_pairs).collect();
+        self.borne_out(left, seeds, &rows).or_else(|| {
+            if !are_long {
+                return None;
+            }
+            let edges = self.within_range(points, MOST_EDGES);
+            let mut from_edges = atoms(rows_from_edges(&beams, &edges, &directions(left.fit), self.task));
+            from_edges.retain(|row| row.reflector_count() >= LEAST_FROM_EDGE);
+            self.borne_out(left, seeds, &from_edges)
+        })
+    }
+
     /// The row between two of `points` that explains the greatest part of what there is in its range bins. Those of the counts that do
     /// about as well are moved to their best places first: the beams hardly tell a count from one whose steps differ by whole waves.
-    fn between_ends(&self, fit: &Fit, profile: &Profile, beams: &PhasedBeams, points: &[[f64; 2]]) -> Option<Atom> {
+    fn between_ends(&self, left: &Left, beams: &PhasedBeams, points: &[[f64; 2]]) -> Option<Begun> {
         let points = self.within_range(points, MOST_ENDS);
         let rows = rows_between(beams, &points, self.task);
-        let mut begun: Vec<Begun> = rows
-            .par_iter()
-            .take(MOST_BETWEEN)
-            .map(|row| self.begun(fit, profile, row.atom, self.bench.cost_of(&fit.residual, vec![row.atom])))
-            .collect();
+        let mut begun: Vec<Begun> = rows.par_iter().take(MOST_BETWEEN).map(|row| self.begun(left, row.atom)).collect();
         begun.sort_by(|a, b| b.part.total_cmp(&a.part));
         let least = ABOUT_AS_WELL * begun.first()?.part;
         let mut counts = BTreeSet::new();
         begun.retain(|row| row.part >= least && counts.insert(row.atom.reflector_count()));
         begun.truncate(MOST_MOVED);
         if begun.len() == 1 {
-            return Some(begun[0].atom);
+            return Some(begun[0]);
         }
         let moved = |row: &Begun| {
-            let still = vec![Gains::default()];
-            let moved = self.bench.refine(&fit.residual, vec![row.atom], still, Tie::PerEnd, BETWEEN);
-            self.begun(fit, profile, moved.atoms[0], moved.cost())
+            let near = left.spectra.around(&rows_of(self.radar, &row.atom), 0.0);
+            // Whether all work is done must not depend on which of them is the first.
+            let bench = near.bench.with_own_work();
+            let moved = bench.refine(&near.samples, vec![row.atom], vec![Gains::default()], Tie::PerEnd, BETWEEN);
+            (self.explaining(left, near.energy - moved.cost(), moved.atoms[0]), bench.work.done())
         };
-        // One after the other: each asks whether all work is done.
-        begun.iter().map(moved).max_by(|a, b| a.part.total_cmp(&b.part)).map(|row| row.atom)
+        let moved: Vec<(Begun, usize)> = begun.par_iter().map(moved).collect();
+        self.bench.work.spend(moved.iter().map(|(_, done)| done).sum());
+        moved.into_iter().map(|(row, _)| row).max_by(|a, b| a.part.total_cmp(&b.part))
     }
 
-    /// What a row explains that leaves this much energy.
-    fn begun(&self, fit: &Fit, profile: &Profile, atom: Atom, left: f64) -> Begun {
-        let energy = fit.cost() - left;
-        let all = profile.at(&rows_of(self.radar, &atom)).max(f64::MIN_POSITIVE);
+    /// What a row explains where it is.
+    fn begun(&self, left: &Left, atom: Atom) -> Begun {
+        let near = left.spectra.around(&rows_of(self.radar, &atom), 0.0);
+        self.explaining(left, near.energy - near.bench.solve_alone(&near.samples, atom).cost(), atom)
+    }
+
+    /// A row that explains this much energy.
+    fn explaining(&self, left: &Left, energy: f64, atom: Atom) -> Begun {
+        let all = left.profile.at(&rows_of(self.radar, &atom)).max(f64::MIN_POSITIVE);
         Begun { atom, energy, part: energy / all }
     }
 
     /// That of `rows` which explains the greatest part of what there is in its range bins, or else the one that explains most, if it is
     /// borne out when it is followed to its ends.
-    fn borne_out(&self, fit: &Fit, profile: &Profile, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
-        let begun: Vec<Begun> = rows
-            .par_iter()
-            .take(MOST_TRIED)
-            .map(|&atom| self.begun(fit, profile, atom, self.bench.cost_of(&fit.residual, vec![atom])))
-            .collect();
+    fn borne_out(&self, left: &Left, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
+        let fit = left.fit;
+        let begun: Vec<Begun> = rows.par_iter().take(MOST_TRIED).map(|&atom| self.begun(left, atom)).collect();
         tracing::debug!(rows = rows.len(), "rows");
         let by_part = begun.iter().max_by(|a, b| a.part.total_cmp(&b.part))?;
         let by_energy =
             begun.iter().max_by(|a, b| a.energy.total_cmp(&b.energy)).filter(|row| row.atom != by_part.atom);
         [Some(by_part), by_energy].into_iter().flatten().filter(|row| row.part > LEAST_BEGUN).find_map(|begun| {
             let wall = self.followed_to_its_ends(&fit.residual, begun.atom);
-            let explained = (fit.cost() - wall.cost()) / profile.at(&rows_of(self.radar, &wall.atoms[0]));
+            let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
             tracing::debug!(?begun, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
             seeds.are_borne_out(self.radar, &wall.atoms[0], begun.part.max(explained)).then_some(wall)
         })

@@ -126,6 +126,15 @@ pub fn remainder(
     Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
 }
 
+/// Echoes of all `reflectors` together, of gain 1, as one block of channels hears them.
+pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> Vec<ComplexLanes<f64, W>> {
+    let negative = [Complex64::from(-1.0); 2];
+    let reflectors: Vec<(Reflector, [Complex64; 2])> = reflectors.iter().map(|r| (*r, negative)).collect();
+    let first_channel = block * W;
+    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: Start::Silence, keep: false };
+    Simd::chosen().run(sum).sum
+}
+
 /// Products of every echo, from those of each block of channels.
 fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Products> {
     let channels = sensor.element_x.len();

@@ -3,7 +3,8 @@
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
-use ndarray::Array2;
+use crate::signal::simd::{Kernel, Simd};
+use ndarray::{Array2, ArrayViewMut1};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -17,15 +18,44 @@ pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<
     End::BOTH.map(|end| {
         let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
         let middle = (profiles.nrows() as f64 - 1.0) / 2.0;
+        let [re, im]: [Vec<f64>; 2] =
+            [|v: &Complex64| v.re, |v: &Complex64| v.im].map(|of| profiles.iter().map(of).collect());
         let mut beams = Array2::zeros((count, radar.samples));
-        beams.outer_iter_mut().into_par_iter().enumerate().for_each(|(beam, mut row)| {
-            for (n, profile) in profiles.outer_iter().enumerate() {
-                let steer = Complex64::cis(-radians_per_element * cos_of_beam(beam, count) * (n as f64 - middle));
-                row.zip_mut_with(&profile, |sum, p| *sum += steer * p);
-            }
+        beams.outer_iter_mut().into_par_iter().enumerate().for_each(|(beam, row)| {
+            let radians = -radians_per_element * cos_of_beam(beam, count);
+            let steering: Vec<Complex64> =
+                (0..profiles.nrows()).map(|n| Complex64::cis(radians * (n as f64 - middle))).collect();
+            Simd::chosen().run(Steer { profiles: [&re, &im], steering: &steering, beam: row });
         });
         beams
     })
+}
+
+/// All elements' profiles, real and imaginary parts of one after the other's, added with their steering phases.
+struct Steer<'a> {
+    profiles: [&'a [f64]; 2],
+    steering: &'a [Complex64],
+    beam: ArrayViewMut1<'a, Complex64>,
+}
+
+impl Kernel for Steer<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let bins = self.beam.len();
+        let [mut re, mut im] = [vec![0.0; bins], vec![0.0; bins]];
+        let [profiles_re, profiles_im] = self.profiles.map(|part| part.chunks_exact(bins.max(1)));
+        for ((steer, from_re), from_im) in self.steering.iter().zip(profiles_re).zip(profiles_im) {
+            for (((re, im), a), b) in re.iter_mut().zip(&mut im).zip(from_re).zip(from_im) {
+                *re += steer.re * a - steer.im * b;
+                *im += steer.re * b + steer.im * a;
+            }
+        }
+        for (beam, (re, im)) in self.beam.into_iter().zip(re.into_iter().zip(im)) {
+            *beam = Complex64::new(re, im);
+        }
+    }
 }
 
 /// Mean power that white noise of `variance` a sample leaves in a cell of [`end_beams`].

@@ -10,7 +10,7 @@ use crate::radar::{End, Radar};
 use crate::reconstruct::seen::seen_from;
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::{each, power_of_ten};
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, ArrayView1, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -47,10 +47,9 @@ impl Found {
         let (all, left) = rayon::join(|| powers(&samples), || powers(&self.not_agreed));
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
         let drawn = &expected.map.lambda;
-        let strongest = (0..drawn.len()).max_by(|&a, &b| flat_of(drawn, a).total_cmp(&flat_of(drawn, b))).unwrap_or(0);
         let decades = (2.0 * expected.decades) as f32;
         let cos_of = |column: usize| radar.cos_of_column(column as f64);
-        let [peak_bin, peak_column] = [strongest / radar.elements, strongest % radar.elements];
+        let [peak_bin, peak_column] = strongest_cell(drawn);
         let peak = End::BOTH.map(|end| all[end as usize][seen_at(radar, beams, end, peak_bin, cos_of(peak_column))]);
         parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
             // Power drawn in each cell, over that of the strongest.
@@ -76,9 +75,13 @@ impl Found {
     }
 }
 
-/// Cell number `at` of a map, row after row.
-fn flat_of(map: &Array2<f32>, at: usize) -> f32 {
-    map[[at / map.ncols(), at % map.ncols()]]
+/// Row and column of the strongest cell of a map, the first of those that are alike.
+fn strongest_cell(map: &Array2<f32>) -> [usize; 2] {
+    let strongest_of = |row: ArrayView1<f32>| row.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
+    let rows: Vec<f32> = map.axis_iter(Axis(0)).into_par_iter().map(strongest_of).collect();
+    let most = rows.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
+    let row = rows.iter().position(|v| *v == most).unwrap_or(0);
+    [row, map.row(row).iter().position(|v| *v == most).unwrap_or(0)]
 }
 
 /// Where a cell of the whole array's map lies in the beams of an end: beam and range bin.

@@ -98,9 +98,19 @@ pub struct Grower<'a> {
 impl Grower<'_> {
     /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
     pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool + Sync) -> Vec<Candidate> {
+        self.detector.peaks(self.radar, flat, self.least_power(flat), most, closed)
+    }
+
+    /// Whether nothing stands out of the noise of what `fit` leaves.
+    pub fn is_explained(&self, fit: &Fit) -> bool {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        !self.detector.stands_out(self.radar, &flat, self.least_power(&flat))
+    }
+
+    /// The power in a beam that stands out of the noise of `flat`.
+    fn least_power(&self, flat: &[Complex64]) -> f64 {
         let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, flat));
-        let least = (noise * self.settings.least_prominence).max(self.rounding_power());
-        self.detector.peaks(self.radar, flat, least, most, closed)
+        (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
     /// The range bins that hold an echo of what is left.

@@ -6,16 +6,13 @@
 //! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
 
 use super::atom::Atom;
-use super::phased::{Heard, PhasedBeams, Row};
+use super::blocks::{BLOCK, Blocks, GLANCED, glance, heard_along};
+use super::phased::{PhasedBeams, Row};
 use super::runs::EchoBins;
 use crate::radar::Radar;
-use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
-
-/// Points added with their phases before magnitudes are taken.
-const BLOCK: usize = 5;
 
 /// Starts tried between one point and the next.
 const PHASES: usize = 2;
@@ -47,6 +44,9 @@ const BEST_OF_COLUMN: usize = 8;
 
 /// Starts of a column that are looked at in the order of what they promise.
 const SORTED: usize = 64;
+
+/// The same at the first glance, by a few blocks of the line: they may be too weak by chance.
+const GLANCED_PART: f64 = 0.03;
 
 /// A line to look for: its points stand one behind the other along y. What is found may become longer or shorter, and turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,13 +121,6 @@ struct LineDetector<'a> {
 }
 
 impl LineDetector<'_> {
-    /// What each of `count` reflectors of a row would have left at an end.
-    fn echoes(&self, end: usize, row: Row, count: usize) -> Vec<Heard> {
-        let mut heard = vec![Heard::default(); count];
-        Simd::chosen().run(Column { beams: self.beams, end, row, heard: &mut heard });
-        heard
-    }
-
     /// The best lines of `count` points at `spacing` metres on the coarse grid, best first, none beside another.
     fn coarse(&self, spacing: f64, count: usize) -> Vec<Candidate> {
         let [least, most] = X_STEP_METRES;
@@ -184,7 +177,10 @@ impl LineDetector<'_> {
         let starts = (scores.len() * BLOCK).min(starts - skipped * BLOCK);
         let offsets: [f64; PHASES] = std::array::from_fn(|phase| first_y + spacing * phase as f64 / PHASES as f64);
         let row = |offset: f64| Row { first_metres: [x, offset], step_metres: [0.0, spacing] };
-        let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self, end, row(o), starts + count)));
+        if !self.may_hold(row(first_y), starts + count, scores, count) {
+            return Vec::new();
+        }
+        let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self.beams, end, row(o), starts + count)));
         let at = (2.0 * blocks as f64 * QUANTILE) as usize;
         let mut best: Vec<Candidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
         let mut gains = Vec::with_capacity(2 * blocks);
@@ -215,6 +211,24 @@ impl LineDetector<'_> {
         best
     }
 
+    /// Whether a line of `count` points may stand somewhere in a column: by every third block of it, at one phase.
+    fn may_hold(&self, row: Row, points: usize, scores: &[f64], count: usize) -> bool {
+        let window = count / (GLANCED * BLOCK) - 1;
+        let mut may = vec![true; (points / (GLANCED * BLOCK) + 1).saturating_sub(window)];
+        for end in 0..2 {
+            let blocks = glance(self.beams, end, row, points);
+            for (at, may) in may.iter_mut().enumerate() {
+                let own = &blocks[at..at + window];
+                // What the whole line weighs at both ends.
+                let weight =
+                    own.iter().map(|block| block.weight).sum::<f64>() * (2 * count) as f64 / (window * BLOCK) as f64;
+                let needed = GLANCED_PART * scores[(at * GLANCED).min(scores.len() - 1)] / weight;
+                *may &= 4 * own.iter().filter(|block| block.power > needed).count() >= 3 * window;
+            }
+        }
+        may.contains(&true)
+    }
+
     /// Energy that a line explains when all its points at one end are added with their phases; the sum over both ends.
     fn coherent(&self, atom: &Atom) -> f64 {
         let Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count } = *atom else { return 0.0 };
@@ -222,7 +236,7 @@ impl LineDetector<'_> {
         let mut energy = 0.0;
         for end in 0..2 {
             let (mut sum, mut weight) = (Complex64::default(), 0.0);
-            for echo in self.echoes(end, row, count) {
+            for echo in heard_along(self.beams, end, row, count) {
                 sum += echo.weighted;
                 weight += echo.weight;
             }
@@ -275,81 +289,6 @@ fn trials(ends: &[[Blocks; 2]; PHASES], scores: &[f64], starts: usize, blocks: u
     let sorted = trials.len().min(SORTED);
     trials[..sorted].sort_unstable_by(by_bound);
     trials
-}
-
-/// What a column of reflectors would have left at one end.
-struct Column<'a> {
-    beams: &'a PhasedBeams,
-    end: usize,
-    row: Row,
-    heard: &'a mut [Heard],
-}
-
-impl Kernel for Column<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        self.beams.listen::<FMA>(self.end, &self.row, self.heard);
-    }
-}
-
-/// Blocks of neighbouring points in one column of the grid as one end sees them, one for every first point.
-struct Blocks {
-    /// Magnitude of each block's gain.
-    gain: Vec<f64>,
-    /// Running sums of gain and weight (sum of squared amplitudes) in steps of [`BLOCK`] points.
-    running: Vec<[f64; 2]>,
-}
-
-impl Blocks {
-    fn new(detector: &LineDetector, end: usize, row: Row, points: usize) -> Self {
-        let many = points.saturating_sub(BLOCK) + 1;
-        let mut gain = vec![0.0; many];
-        let mut running = vec![[0.0; 2]; many];
-        let echoes = detector.echoes(end, row, points.max(BLOCK));
-        Simd::chosen().run(FillBlocks { echoes: &echoes, gain: &mut gain, running: &mut running });
-        Blocks { gain, running }
-    }
-
-    /// Sum of gains and of weights of `count` blocks, one behind the other from point `start`.
-    fn totals(&self, start: usize, count: usize) -> [f64; 2] {
-        let last = self.running[start + (count - 1) * BLOCK];
-        let before = if start >= BLOCK { self.running[start - BLOCK] } else { [0.0; 2] };
-        [last[0] - before[0], last[1] - before[1]]
-    }
-}
-
-/// The blocks of what a column of points would have left.
-struct FillBlocks<'a> {
-    echoes: &'a [Heard],
-    gain: &'a mut [f64],
-    running: &'a mut [[f64; 2]],
-}
-
-impl Kernel for FillBlocks<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        let FillBlocks { echoes, gain, running } = self;
-        let mut sums = vec![[0.0; 3]; echoes.len() + 1];
-        let mut sum = [0.0; 3];
-        for (echo, at) in echoes.iter().zip(&mut sums[1..]) {
-            sum = [sum[0] + echo.weighted.re, sum[1] + echo.weighted.im, sum[2] + echo.weight];
-            *at = sum;
-        }
-        for (i, (gain, both)) in gain.iter_mut().zip(running.iter_mut()).enumerate() {
-            let (first, last) = (sums[i], sums[i + BLOCK]);
-            let [re, im, weight] = [0, 1, 2].map(|k| last[k] - first[k]);
-            *gain = (re * re + im * im).sqrt() / weight;
-            *both = [*gain, weight];
-        }
-        for i in BLOCK..running.len() {
-            let before = running[i - BLOCK];
-            running[i] = [running[i][0] + before[0], running[i][1] + before[1]];
-        }
-    }
 }
 
 /// Larger of the distances in x and in start, metres.

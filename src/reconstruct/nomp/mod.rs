@@ -11,9 +11,11 @@
 //! | `echo` | one reflector as each channel hears it |
 //! | `echoes` | what reflectors leave in the samples, and their products with a residual |
 //! | `moments` | inner products of two echoes: moments of the window |
+//! | `narrow` | the range bins around an atom |
 //! | `gram` | the banded Gram matrix of atoms and their derivatives |
 //! | `solver` | small systems that may be nearly singular |
 //! | `refine` | Levenberg-Marquardt on positions, gains projected out |
+//! | `alone` | one atom by itself |
 //! | `tones` | ranges from one element's chirp |
 //! | `pairs` | both ends' tones paired: points to start from |
 //! | `chains` | points that stand in a row at equal steps |
@@ -24,8 +26,10 @@
 //! | `begin` | where walls begin, and which are borne out |
 //! | `runs` | range bins that hold an echo |
 //! | `lines` | long lines along y, looked up as a whole |
+//! | `blocks` | a few neighbouring points of such a line at a time |
 //! | `on_wall` | which points stand on a wall |
-//! | `walls` | rows of points followed to where they end |
+//! | `walls` | rows of points found one by one, and all walls together |
+//! | `wall_ends` | a wall followed to where it ends |
 //! | `end_beams` | each end's plain beams |
 //! | `registered` | both ends' beams laid over each other |
 //! | `peaks` | where a residual stands out, both ends registered |
@@ -41,9 +45,11 @@
 //! | `draw` | expected map of the objects found |
 //! | `over_noise` | what noise makes of a log map's cells, in the mean |
 
+mod alone;
 mod atom;
 mod begin;
 mod between;
+mod blocks;
 mod chains;
 mod draw;
 mod echo;
@@ -58,6 +64,7 @@ mod groups;
 mod grow;
 mod lines;
 mod moments;
+mod narrow;
 mod on_wall;
 mod over_noise;
 mod pairs;
@@ -78,6 +85,7 @@ mod tests;
 mod tones;
 #[cfg(test)]
 mod tracking_tests;
+mod wall_ends;
 mod walls;
 mod work;
 

@@ -9,6 +9,7 @@ use crate::signal::simd::Lanes;
 use num_complex::Complex64;
 use rustfft::FftPlanner;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Nodes of the table for each range bin.
 const NODES_PER_BIN: usize = 8;
@@ -24,7 +25,8 @@ const HANN_REACH_BINS: f64 = 12.0;
 #[derive(Debug, Clone)]
 pub struct Moments {
     /// Taylor coefficients of the moment of order 0 around every node.
-    table: Vec<[f64; TERMS]>,
+    table: Arc<Vec<[f64; TERMS]>>,
+    /// After how many range bins the range repeats.
     bins: f64,
     /// What a wrap of the range by all bins does to the phase at the chirp's middle.
     wrap_sign: f64,
@@ -80,35 +82,39 @@ impl Moments {
         let largest = window.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
         let reach = if ends < 1e-9 * largest { HANN_REACH_BINS } else { f64::INFINITY };
         let wrap_sign = if samples.is_multiple_of(2) { -1.0 } else { 1.0 };
-        Moments { table, bins: samples as f64, wrap_sign, reach_bins: reach }
+        Moments { table: Arc::new(table), bins: samples as f64, wrap_sign, reach_bins: reach }
+    }
+
+    /// The same window over chirps of so many samples, an even part of those that it was made for.
+    pub fn sampled_as(&self, samples: usize) -> Self {
+        let wrap_sign = if samples.is_multiple_of(2) { -1.0 } else { 1.0 };
+        Moments { bins: samples as f64, wrap_sign, ..self.clone() }
     }
 
     /// At differences of `bins`, which may exceed the number of range bins: ranges wrap. The orders above 0 only if `ALL`.
     #[inline(always)]
     pub fn at<const ALL: bool, const FMA: bool>(&self, bins: Lanes<f64, W>) -> MomentsAt {
         // Channels of an end differ by parts of a bin: mostly one node serves all.
-        let (node, sign) = self.node(bins.0[W / 2]);
+        let (node, line, sign) = self.node(bins.0[W / 2]);
         let gaps = bins - Lanes::splat(node / NODES_PER_BIN as f64);
         if gaps.0.iter().all(|gap| gap.abs() <= FARTHEST) {
-            let line = &self.table[self.index(node)];
             return taylor::<ALL, FMA>(gaps, Lanes::splat(sign), |term| Lanes::splat(line[term]));
         }
         let nodes = bins.0.map(|bins| self.node(bins));
-        let lines = nodes.map(|(node, _)| &self.table[self.index(node)]);
-        let gaps = bins - Lanes(nodes.map(|(node, _)| node / NODES_PER_BIN as f64));
-        taylor::<ALL, FMA>(gaps, Lanes(nodes.map(|(_, sign)| sign)), |term| Lanes(lines.map(|line| line[term])))
+        let gaps = bins - Lanes(nodes.map(|(node, ..)| node / NODES_PER_BIN as f64));
+        taylor::<ALL, FMA>(gaps, Lanes(nodes.map(|(.., sign)| sign)), |term| {
+            Lanes(nodes.map(|(_, line, _)| line[term]))
+        })
     }
 
-    /// The node next to a difference, counted from the one at 0, and what wraps on the way do to the sign.
+    /// The node next to a difference, counted from the one at 0, its coefficients, and what wraps on the way do to the sign.
     #[inline(always)]
-    fn node(&self, bins: f64) -> (f64, f64) {
+    fn node(&self, bins: f64) -> (f64, &[f64; TERMS], f64) {
         let wraps = (bins / self.bins).round();
-        ((bins * NODES_PER_BIN as f64).round(), if wraps as i64 % 2 == 0 { 1.0 } else { self.wrap_sign })
-    }
-
-    #[inline(always)]
-    fn index(&self, node: f64) -> usize {
-        (node as i64).rem_euclid(self.table.len() as i64) as usize
+        let node = (bins * NODES_PER_BIN as f64).round();
+        let index = (node - wraps * self.bins * NODES_PER_BIN as f64) as i64;
+        let line = &self.table[index.rem_euclid(self.table.len() as i64) as usize];
+        (node, line, if wraps as i64 % 2 == 0 { 1.0 } else { self.wrap_sign })
     }
 }
 

@@ -16,6 +16,9 @@ const LOG_GAIN: f64 = 0.1;
 /// A disagreement of this many times all that is allowed makes no pair.
 const MOST_APART: f64 = 3.0;
 
+/// Pairs that agree within this part of what is allowed are points.
+const SURELY_ONE: f64 = 0.2;
+
 /// Range bins within which the last end is searched for what the first end's direction predicts.
 const SEARCH_BINS: f64 = 2.0;
 
@@ -62,6 +65,13 @@ pub struct Paired {
     pub apart: f64,
     /// Whether neither end hears another tone near its own.
     pub is_alone: bool,
+}
+
+impl Paired {
+    /// Whether this is surely one reflector.
+    pub fn is_sure(&self) -> bool {
+        self.apart < SURELY_ONE && self.is_alone
+    }
 }
 
 /// A tone at each end that may be one reflector.

@@ -74,29 +74,44 @@ impl Detector {
         most: usize,
         closed: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Candidate> {
-        let magnitudes: [Vec<f32>; 2] = end_beams(radar, residual, self.beams)
-            .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
-        let [first, last] = &self.grid.cells;
-        let power = |i: usize| magnitudes[0][first[i] as usize] * magnitudes[1][last[i] as usize];
-        let is_open = |i: usize| !closed(i / self.columns);
-        let cells = (0..first.len()).into_par_iter().with_min_len(LEAST_CELLS);
-        let mut strong: Vec<(f32, usize)> =
-            cells.map(|i| (power(i), i)).filter(|(p, i)| f64::from(*p) > least && is_open(*i)).collect();
+        let powers = self.powers(radar, residual);
+        let is_open = |i: u32| !closed(i as usize / self.columns);
+        let strong = |i: u32| Some((powers.of(i), i)).filter(|(p, i)| f64::from(*p) > least && is_open(*i));
+        let mut strong: Vec<(f32, u32)> = self.cells().filter_map(strong).collect();
         let mut found: Vec<Candidate> = Vec::new();
-        let weaker = |a: &&(f32, usize), b: &&(f32, usize)| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1));
-        while let Some(&(power, i)) = strong.iter().max_by(weaker) {
-            let power = f64::from(power);
-            let rows = [first, last].map(|cells| cells[i] as usize % self.bins);
+        let mut next = strongest(strong.iter().copied());
+        while let Some((power, i)) = next {
+            let (power, i) = (f64::from(power), i as usize);
             let [x_metres, y_metres] = self.grid.places_metres[i];
             found.push(Candidate { x_metres, y_metres, power });
             if found.len() == most {
                 break;
             }
-            let [near, far] = rows.map(|own| self.side_lobes(own));
-            let lobe = |i: usize| near[first[i] as usize % self.bins] * far[last[i] as usize % self.bins];
-            strong.retain(|(other, i)| f64::from(*other) > power * lobe(*i));
+            let [first, last] = &self.grid.bins;
+            let [near, far] = [first, last].map(|bins| self.side_lobes(bins[i] as usize));
+            let lobe = |i: u32| near[first[i as usize] as usize] * far[last[i as usize] as usize];
+            strong.retain(|&(other, i)| f64::from(other) > power * lobe(i));
+            next = strongest(strong.iter().copied());
         }
         found
+    }
+
+    /// Whether the power exceeds `least` anywhere.
+    pub fn stands_out(&self, radar: &Radar, residual: &[Complex64], least: f64) -> bool {
+        let powers = self.powers(radar, residual);
+        self.cells().any(|i| f64::from(powers.of(i)) > least)
+    }
+
+    /// All cells of the common grid.
+    fn cells(&self) -> impl IndexedParallelIterator<Item = u32> {
+        (0..self.grid.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
+    }
+
+    /// The powers of `residual` in them.
+    fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
+        let magnitudes = end_beams(radar, residual, self.beams)
+            .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
+        Powers { cells: &self.grid.cells, magnitudes }
     }
 
     /// Amplitude that a reflector in range bin `own` may show in every other at one end, against its own there.
@@ -108,5 +123,52 @@ impl Detector {
             if apart <= ALONE_BINS { f64::INFINITY } else { 4.0 / (apart as f64 - 1.0).powi(3) }
         };
         (0..self.bins).map(lobe).collect()
+    }
+}
+
+/// What both ends' beams hold in the cells of the common grid.
+struct Powers<'a> {
+    cells: &'a [Vec<u32>; 2],
+    magnitudes: [Vec<f32>; 2],
+}
+
+impl Powers<'_> {
+    /// Product of the ends' magnitudes in cell `i`.
+    fn of(&self, i: u32) -> f32 {
+        let [first, last] = [0, 1].map(|end| self.magnitudes[end][self.cells[end][i as usize] as usize]);
+        first * last
+    }
+}
+
+/// The strongest of some cells, the first of those that are alike.
+fn strongest(cells: impl Iterator<Item = (f32, u32)>) -> Option<(f32, u32)> {
+    cells.reduce(|a, b| if b.0 > a.0 { b } else { a })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn what_stands_out_is_the_highest_peak() {
+        let radar = Radar::default();
+        let scene = Scene::of_points([(3.0, 11.0), (-9.0, 20.0)]);
+        let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
+        let detector = Detector::of(&radar);
+        let found = detector.peaks(&radar, &flat, 0.0, 2, |_| false);
+        let [first, second] = found[..] else { panic!("{found:?}") };
+        assert!((first.x_metres - 3.0).hypot(first.y_metres - 11.0) < 0.3, "{first:?}");
+        assert!(
+            (second.x_metres + 9.0).hypot(second.y_metres - 20.0) < 0.5 && second.power < first.power,
+            "{second:?}"
+        );
+        assert!(detector.stands_out(&radar, &flat, 0.999 * first.power));
+        assert!(!detector.stands_out(&radar, &flat, 1.001 * first.power));
+        // Where the first may not be looked for, the second is the highest.
+        let bin = radar.bin_of_range(first.x_metres.hypot(first.y_metres)) as usize;
+        let others = detector.peaks(&radar, &flat, 0.0, 1, |at| at.abs_diff(bin) < 30);
+        assert_eq!(others, [second]);
     }
 }

@@ -152,12 +152,24 @@ impl PhasedBeams {
     /// What each reflector of `row`, one for each of `heard`, would have left at an end.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {
+        self.listen_to::<FMA>(end, row, |n| n as f64, heard);
+    }
+
+    /// The same of those reflectors of `row` alone that are numbered so.
+    #[inline(always)]
+    pub fn listen_to<const FMA: bool>(
+        &self,
+        end: usize,
+        row: &Row,
+        number: impl Fn(usize) -> f64,
+        heard: &mut [Heard],
+    ) {
         let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
         let [x, y] = row.first_metres;
         let [step_x, step_y] = row.step_metres;
         let from = x - self.centres_metres[end];
         for (block, heard) in heard.chunks_mut(W).enumerate() {
-            let i = Lanes::<f64, W>(std::array::from_fn(|lane| (block * W + lane) as f64));
+            let i = Lanes::<f64, W>(std::array::from_fn(|lane| number(block * W + lane)));
             let dx = i * Lanes::splat(step_x) + Lanes::splat(from);
             let y = i * Lanes::splat(step_y) + Lanes::splat(y);
             let range = (dx * dx + y * y).sqrt().map(|r| if r > NEAREST_METRES { r } else { NEAREST_METRES });

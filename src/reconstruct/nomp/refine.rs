@@ -17,6 +17,7 @@ use crate::scene::Reflector;
 use crate::task::Task;
 use faer::Mat;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Which samples share one gain for each atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +50,7 @@ impl Limits {
 pub type Gains = [Complex64; 2];
 
 /// What every refinement of one search shares.
+#[derive(Clone)]
 pub struct Workbench<'a> {
     /// Geometry of the samples.
     pub sensor: Sensor,
@@ -60,7 +62,7 @@ pub struct Workbench<'a> {
     pub hearing: Hearing,
     task: &'a Task,
     /// What the search may do, and has done.
-    pub work: Work,
+    pub work: Arc<Work>,
 }
 
 /// Most reflectors of a refinement that may run beside others.
@@ -118,7 +120,7 @@ impl<'a> Workbench<'a> {
             max_range_metres: radar.max_range_metres(),
             hearing: Hearing::any(),
             task,
-            work: Work::granted(most_work),
+            work: Arc::new(Work::granted(most_work)),
         }
     }
 
@@ -132,6 +134,17 @@ impl<'a> Workbench<'a> {
         Workbench { hearing, ..self }
     }
 
+    /// The same with work of its own, as much as it takes.
+    pub fn with_own_work(self) -> Self {
+        Workbench { work: Arc::new(Work::granted(usize::MAX)), ..self }
+    }
+
+    /// For chirps of fewer samples, as `radar` takes them, under a window whose weights have these squares. Its work counts as this one's.
+    pub fn sampled_as(&self, radar: &Radar, squared: Vec<f64>) -> Self {
+        let sensor = self.sensor.sampled_as(radar);
+        Workbench { sensor, squared, moments: self.moments.sampled_as(radar.samples), ..self.clone() }
+    }
+
     /// `samples` less `atoms` times `gains`; not windowed.
     pub fn without(&self, samples: &Samples, atoms: &[Atom], gains: &[Gains]) -> Remainder {
         let reflectors = reflectors(atoms, gains);
@@ -143,13 +156,6 @@ impl<'a> Workbench<'a> {
     pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
         let gains = vec![Gains::default(); atoms.len()];
         self.settled(self.state(samples, atoms, gains, Terms { tie, ridge, derivatives: false }), samples)
-    }
-
-    /// Energy under the window that `atoms` leave of `samples` where they are, each with its best gain at each end; in half the time of
-    /// [`Workbench::solve`], which also says what is left.
-    pub fn cost_of(&self, samples: &Samples, atoms: Vec<Atom>) -> f64 {
-        let gains = vec![Gains::default(); atoms.len()];
-        self.state(samples, atoms, gains, Terms { tie: Tie::PerEnd, ridge: 0.0, derivatives: false }).cost
     }
 
     /// Moves `atoms` to a local minimum of the energy that they leave of `samples`. `gains` are where gains start: zeros, or near the truth.

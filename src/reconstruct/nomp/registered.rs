@@ -10,6 +10,8 @@ pub struct Registered {
     pub places_metres: Vec<[f64; 2]>,
     /// `[beam * range bins + range bin]` for each end.
     pub cells: [Vec<u32>; 2],
+    /// Those range bins alone.
+    pub bins: [Vec<u32>; 2],
 }
 
 impl Registered {
@@ -32,6 +34,7 @@ impl Registered {
             };
             places_metres.iter().map(cell).collect()
         });
-        Registered { places_metres, cells }
+        let own = |cells: &Vec<u32>| cells.iter().map(|cell| cell % bins as u32).collect();
+        Registered { places_metres, bins: cells.each_ref().map(own), cells }
     }
 }

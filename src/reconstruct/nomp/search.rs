@@ -187,7 +187,7 @@ impl Search<'_> {
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
             fit = self.grower().more_walls(self.samples, fit, Seeds::Points(pairs.guesses_metres.clone()))?;
-            let sure = pairs.points.iter().filter(|point| point.apart < SURELY_ONE && point.is_alone);
+            let sure = pairs.points.iter().filter(|point| point.is_sure());
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
             if fit.atoms.len() + more.len() == before {
@@ -202,10 +202,12 @@ impl Search<'_> {
             if self.is_explained(&fit) {
                 break;
             }
-            pairs = self.pairs(&fit);
             if fit.cost() > WORTH_ANOTHER * cost {
+                // Much the same is left, and much the same would be heard in it: what is not in `fit` yet.
+                pairs.points.retain(|point| !point.is_sure() && !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
                 break;
             }
+            pairs = self.pairs(&fit);
         }
         Ok((fit, pairs))
     }
@@ -285,7 +287,7 @@ impl Search<'_> {
 
     /// Whether nothing stands out of what `fit` leaves.
     pub(super) fn is_explained(&self, fit: &Fit) -> bool {
-        self.grower().candidates(&fit.residual.flat(&self.bench.sensor), 1, |_| false).is_empty()
+        self.grower().is_explained(fit)
     }
 }
 
@@ -297,9 +299,6 @@ const FEW_TONES: usize = 92;
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
-
-/// Pairs that agree within this part of what is allowed are points.
-const SURELY_ONE: f64 = 0.2;
 
 /// Of walls and points together.
 const WITH_POINTS: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };

@@ -53,6 +53,11 @@ impl Sensor {
         self
     }
 
+    /// The same for chirps that `radar` samples in another way.
+    pub fn sampled_as(&self, radar: &Radar) -> Self {
+        Sensor { hears: self.hears.clone(), ..Sensor::new(radar) }
+    }
+
     /// Samples of both ends together.
     pub fn sample_count(&self) -> usize {
         self.element_x.len() * self.samples

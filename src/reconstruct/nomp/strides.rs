@@ -51,6 +51,9 @@ const GROWTH: f64 = 1.4;
 /// Moves of a row at each length.
 const MOVES: usize = 4;
 
+/// A move that adds less than this part of the power is the last.
+const LEAST_ADDED: f64 = 0.002;
+
 /// A row that adds up to less than this part of the most it did has passed its end.
 const PASSED: f64 = 0.4;
 
@@ -284,7 +287,13 @@ pub fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbe
             step_metres: [row.step_metres[0] + step[2], row.step_metres[1] + step[3]],
         };
         match self::slope(beams, &moved, count).filter(|s| s.added > slope.added) {
-            Some(better) => (slope, row, damping) = (better, moved, damping * 0.3),
+            Some(better) => {
+                let gained = better.added - slope.added;
+                (slope, row, damping) = (better, moved, damping * 0.3);
+                if gained < LEAST_ADDED * slope.all {
+                    break;
+                }
+            }
             None => damping *= 10.0,
         }
     }

@@ -6,25 +6,10 @@ use super::chains::rows_of_points;
 use super::echoes::Samples;
 use super::groups::rows_of;
 use super::grow::Grower;
-use super::on_wall::{MOST_REFLECTORS, stands_on};
+use super::on_wall::stands_on;
 use super::profile::Profile;
 use super::refine::{Fit, Gains, Limits, Tie};
 use crate::reconstruct::ReconstructError;
-
-/// Of a wall by itself.
-const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
-
-/// Reflectors beyond the best end of a wall that are tried.
-const BEYOND: usize = 8;
-
-/// Most times reflectors are taken from a wall's ends.
-const MOST_TRIMS: usize = 2;
-
-/// Fewest reflectors of a wall.
-const LEAST_REFLECTORS: usize = 8;
-
-/// Most times a wall is followed further and moved to its best place.
-const MOST_WALKS: usize = 8;
 
 /// A wall must leave less than this part of what was left without it.
 const LEAST_GAINED: f64 = 0.98;
@@ -140,103 +125,4 @@ impl Grower<'_> {
         }
         Ok(fit)
     }
-
-    /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
-    pub fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
-        let seed = self.trimmed(samples, seed);
-        let mut wall = self.bench.refine(samples, vec![seed], vec![Gains::default()], Tie::PerEnd, ALONE);
-        for _ in 0..MOST_WALKS {
-            let (before, after) =
-                rayon::join(|| self.more_reflectors(&wall, false), || self.more_reflectors(&wall, true));
-            let Some(longer) = extended(wall.atoms[0], before, after).filter(|_| before + after > 0) else { break };
-            let trial = self.bench.refine(samples, vec![longer], wall.gains.clone(), Tie::PerEnd, ALONE);
-            if trial.cost() >= wall.cost() || self.bench.work.is_spent() {
-                break;
-            }
-            wall = trial;
-        }
-        let Some(&atom) = wall.atoms.first() else { return wall };
-        let shorter = self.trimmed(samples, atom);
-        if shorter == atom {
-            return wall;
-        }
-        let trial = self.bench.refine(samples, vec![shorter], wall.gains.clone(), Tie::PerEnd, ALONE);
-        if trial.cost() < wall.cost() { trial } else { wall }
-    }
-
-    /// `seed` without the reflectors at its ends that the samples are better explained without.
-    fn trimmed(&self, samples: &Samples, mut seed: Atom) -> Atom {
-        for _ in 0..MOST_TRIMS {
-            let wall = self.bench.solve(samples, vec![seed], Tie::PerEnd, 0.0);
-            let fewer = rayon::join(|| self.fewer_reflectors(&wall, false), || self.fewer_reflectors(&wall, true));
-            match shortened(seed, fewer.into()) {
-                Some(shorter) if fewer != (0, 0) => seed = shorter,
-                _ => break,
-            }
-        }
-        seed
-    }
-
-    /// How many reflectors at the wall's last end, or at its first, leave less when they are taken away.
-    fn fewer_reflectors(&self, wall: &Fit, at_last: bool) -> usize {
-        let Some(atom) = wall.atoms.first() else { return 0 };
-        let count = atom.reflector_count();
-        let back: Vec<Gains> = wall.gains.iter().map(|g| g.map(|g| -g)).collect();
-        let (mut best, mut least) = (0, wall.cost());
-        let mut residual = wall.residual.clone();
-        for fewer in 1..=count / 2 {
-            let at = if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 };
-            let [x_metres, y_metres] = atom.position_metres(at);
-            let left = self.bench.without(&residual, &[Atom::Point { x_metres, y_metres }], &back);
-            residual = left.residual;
-            let cost = left.energy[0] + left.energy[1];
-            if cost < least {
-                (best, least) = (fewer, cost);
-            } else if fewer >= best + BEYOND {
-                break;
-            }
-        }
-        best
-    }
-
-    /// By how many reflectors the wall is too short at its last end, or at its first: as many more as leave least. No more than it
-    /// already has, as far as its direction can be trusted.
-    fn more_reflectors(&self, wall: &Fit, at_last: bool) -> usize {
-        let Some(atom) = wall.atoms.first() else { return 0 };
-        let count = atom.reflector_count();
-        let (mut best, mut least) = (0, wall.cost());
-        let mut residual = wall.residual.clone();
-        for more in 1..=count {
-            let at = if at_last { (count - 1 + more) as f64 } else { -(more as f64) };
-            let [x_metres, y_metres] = atom.position_metres(at);
-            if y_metres < 0.0 {
-                break;
-            }
-            let left = self.bench.without(&residual, &[Atom::Point { x_metres, y_metres }], &wall.gains);
-            residual = left.residual;
-            let cost = left.energy[0] + left.energy[1];
-            if cost < least {
-                (best, least) = (more, cost);
-            } else if more >= best + BEYOND {
-                break;
-            }
-        }
-        best
-    }
-}
-
-/// `wall` with this many reflectors more before its first and after its last.
-fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
-    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
-    let [x_metres, y_metres] = wall.position_metres(-(before as f64));
-    let count = count + before + after;
-    (count <= MOST_REFLECTORS).then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
-}
-
-/// `wall` without this many reflectors at its first and at its last end.
-fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
-    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
-    let [x_metres, y_metres] = wall.position_metres(first as f64);
-    let count = count.checked_sub(first + last).filter(|count| *count >= LEAST_REFLECTORS)?;
-    Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
 }

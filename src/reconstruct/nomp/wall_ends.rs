@@ -1,0 +1,151 @@
+//! Where a wall ends: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
+
+use super::atom::Atom;
+use super::echoes::Samples;
+use super::groups::rows_of;
+use super::grow::Grower;
+use super::narrow::{Narrow, Spectra};
+use super::on_wall::MOST_REFLECTORS;
+use super::refine::{Fit, Gains, Limits, Tie, Workbench};
+
+/// Of a wall by itself.
+const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
+
+/// Reflectors beyond the best end of a wall that are tried.
+const BEYOND: usize = 8;
+
+/// Most times reflectors are taken from a wall's ends.
+const MOST_TRIMS: usize = 2;
+
+/// Fewest reflectors of a wall.
+const LEAST_REFLECTORS: usize = 8;
+
+/// Most times a wall is followed further and moved to its best place.
+const MOST_WALKS: usize = 8;
+
+/// Range bins beyond a wall's own in which it is followed, at least, and as a part of its own.
+const ROOM_BINS: f64 = 12.0;
+const ROOM: f64 = 0.5;
+
+impl Grower<'_> {
+    /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
+    pub fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
+        let spectra = Spectra::new(self.radar, self.bench, samples);
+        let mut near = self.near(&spectra, &seed);
+        let seed = trimmed(&near, seed);
+        let mut wall = near.moved(seed, Gains::default());
+        for _ in 0..MOST_WALKS {
+            let (before, after) =
+                rayon::join(|| self.more_reflectors(&near, &wall, false), || self.more_reflectors(&near, &wall, true));
+            let Some(longer) = extended(wall.atoms[0], before, after).filter(|_| before + after > 0) else { break };
+            let explained = near.energy - wall.cost();
+            let wider = self.near(&spectra, &longer);
+            let trial = wider.moved(longer, wall.gains[0]);
+            if wider.energy - trial.cost() <= explained || self.bench.work.is_spent() {
+                break;
+            }
+            (near, wall) = (wider, trial);
+        }
+        let (mut atom, mut gains) = (wall.atoms[0], wall.gains[0]);
+        let shorter = trimmed(&near, atom);
+        if shorter != atom {
+            let trial = near.moved(shorter, gains);
+            if trial.cost() < wall.cost() {
+                (atom, gains) = (trial.atoms[0], trial.gains[0]);
+            }
+        }
+        self.bench.refine(samples, vec![atom], vec![gains], Tie::PerEnd, ALONE)
+    }
+
+    /// The range bins in which `wall` is followed.
+    fn near<'a>(&self, spectra: &Spectra<'a>, wall: &Atom) -> Narrow<'a> {
+        let rows = rows_of(self.radar, wall);
+        let longest = rows.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
+        spectra.around(&rows, ROOM_BINS.max(ROOM * longest))
+    }
+
+    /// By how many reflectors the wall is too short at its last end, or at its first: as many more as leave least. No more than it
+    /// already has, as far as its direction can be trusted.
+    fn more_reflectors(&self, near: &Narrow, wall: &Fit, at_last: bool) -> usize {
+        let Some(atom) = wall.atoms.first() else { return 0 };
+        let count = atom.reflector_count();
+        let (mut best, mut least) = (0, wall.cost());
+        let mut residual = wall.residual.clone();
+        for more in 1..=count {
+            let at = if at_last { (count - 1 + more) as f64 } else { -(more as f64) };
+            let [x_metres, y_metres] = atom.position_metres(at);
+            let next = Atom::Point { x_metres, y_metres };
+            if y_metres < 0.0 || !near.holds(&rows_of(self.radar, &next)) {
+                break;
+            }
+            let left = near.bench.without(&residual, &[next], &wall.gains);
+            residual = left.residual;
+            let cost = left.energy[0] + left.energy[1];
+            if cost < least {
+                (best, least) = (more, cost);
+            } else if more >= best + BEYOND {
+                break;
+            }
+        }
+        best
+    }
+}
+
+impl Narrow<'_> {
+    /// The wall moved to its best place from where its gains may be these.
+    fn moved(&self, wall: Atom, gains: Gains) -> Fit {
+        self.bench.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, ALONE)
+    }
+}
+
+/// `seed` without the reflectors at its ends that the samples are better explained without.
+fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
+    for _ in 0..MOST_TRIMS {
+        let wall = near.bench.solve_alone(&near.samples, seed);
+        let fewer =
+            rayon::join(|| fewer_reflectors(&near.bench, &wall, false), || fewer_reflectors(&near.bench, &wall, true));
+        match shortened(seed, fewer.into()) {
+            Some(shorter) if fewer != (0, 0) => seed = shorter,
+            _ => break,
+        }
+    }
+    seed
+}
+
+/// How many reflectors at the wall's last end, or at its first, leave less when they are taken away.
+fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
+    let Some(atom) = wall.atoms.first() else { return 0 };
+    let count = atom.reflector_count();
+    let back: Vec<Gains> = wall.gains.iter().map(|g| g.map(|g| -g)).collect();
+    let (mut best, mut least) = (0, wall.cost());
+    let mut residual = wall.residual.clone();
+    for fewer in 1..=count / 2 {
+        let at = if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 };
+        let [x_metres, y_metres] = atom.position_metres(at);
+        let left = bench.without(&residual, &[Atom::Point { x_metres, y_metres }], &back);
+        residual = left.residual;
+        let cost = left.energy[0] + left.energy[1];
+        if cost < least {
+            (best, least) = (fewer, cost);
+        } else if fewer >= best + BEYOND {
+            break;
+        }
+    }
+    best
+}
+
+/// `wall` with this many reflectors more before its first and after its last.
+fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
+    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
+    let [x_metres, y_metres] = wall.position_metres(-(before as f64));
+    let count = count + before + after;
+    (count <= MOST_REFLECTORS).then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+}
+
+/// `wall` without this many reflectors at its first and at its last end.
+fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
+    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
+    let [x_metres, y_metres] = wall.position_metres(first as f64);
+    let count = count.checked_sub(first + last).filter(|count| *count >= LEAST_REFLECTORS)?;
+    Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+}
