@@ -13,7 +13,7 @@ pub const GLANCED: usize = 3;
 /// What each of the first `count` reflectors of a row would have left at an end.
 pub fn heard_along(beams: &PhasedBeams, end: usize, row: Row, count: usize) -> Vec<Heard> {
     let mut heard = vec![Heard::default(); count];
-    Simd::chosen().run(Column { beams, end, row, heard: &mut heard });
+    Simd::chosen().run(Column { beams, end, row, every: 1, heard: &mut heard });
     heard
 }
 
@@ -29,7 +29,7 @@ pub struct Block {
 /// Every [`GLANCED`]th block of the first `points` of a row, none of which overlap.
 pub fn glance(beams: &PhasedBeams, end: usize, row: Row, points: usize) -> Vec<Block> {
     let mut heard = vec![Heard::default(); points / (GLANCED * BLOCK) * BLOCK];
-    Simd::chosen().run(Glance { beams, end, row, heard: &mut heard });
+    Simd::chosen().run(Column { beams, end, row, every: GLANCED, heard: &mut heard });
     let block = |points: &[Heard]| {
         let (mut sum, mut weight) = (Complex64::default(), 0.0);
         for point in points {
@@ -41,29 +41,13 @@ pub fn glance(beams: &PhasedBeams, end: usize, row: Row, points: usize) -> Vec<B
     heard.chunks_exact(BLOCK).map(block).collect()
 }
 
-/// What every [`GLANCED`]th block of a column would have left at one end.
-struct Glance<'a> {
-    beams: &'a PhasedBeams,
-    end: usize,
-    row: Row,
-    heard: &'a mut [Heard],
-}
-
-impl Kernel for Glance<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        let number = |n: usize| (n / BLOCK * GLANCED * BLOCK + n % BLOCK) as f64;
-        self.beams.listen_to::<FMA>(self.end, &self.row, number, self.heard);
-    }
-}
-
 /// What a column of reflectors would have left at one end.
 struct Column<'a> {
     beams: &'a PhasedBeams,
     end: usize,
     row: Row,
+    /// One block in so many.
+    every: usize,
     heard: &'a mut [Heard],
 }
 
@@ -72,7 +56,8 @@ impl Kernel for Column<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.beams.listen::<FMA>(self.end, &self.row, self.heard);
+        let number = |n: usize| (n / BLOCK * self.every * BLOCK + n % BLOCK) as f64;
+        self.beams.listen_to::<FMA>(self.end, &self.row, number, self.heard);
     }
 }
 

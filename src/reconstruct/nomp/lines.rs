@@ -46,7 +46,7 @@ const BEST_OF_COLUMN: usize = 8;
 const SORTED: usize = 64;
 
 /// The same at the first glance, by a few blocks of the line: they may be too weak by chance.
-const GLANCED_PART: f64 = 0.03;
+const GLANCED_PART: f64 = 0.02;
 
 /// A line to look for: its points stand one behind the other along y. What is found may become longer or shorter, and turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -175,12 +175,13 @@ impl LineDetector<'_> {
         let scores = &scores[skipped..=scores.iter().rposition(may_be).unwrap_or(skipped)];
         let first_y = y(skipped * BLOCK);
         let starts = (scores.len() * BLOCK).min(starts - skipped * BLOCK);
-        let offsets: [f64; PHASES] = std::array::from_fn(|phase| first_y + spacing * phase as f64 / PHASES as f64);
         let row = |offset: f64| Row { first_metres: [x, offset], step_metres: [0.0, spacing] };
-        if !self.may_hold(row(first_y), starts + count, scores, count) {
-            return Vec::new();
-        }
-        let ends = offsets.map(|o| [0, 1].map(|end| Blocks::new(self.beams, end, row(o), starts + count)));
+        let offsets: Vec<f64> = (0..PHASES)
+            .map(|phase| first_y + spacing * phase as f64 / PHASES as f64)
+            .filter(|offset| self.may_hold(row(*offset), starts + count, scores, count))
+            .collect();
+        let blocks_of = |offset: &f64| [0, 1].map(|end| Blocks::new(self.beams, end, row(*offset), starts + count));
+        let ends: Vec<[Blocks; 2]> = offsets.iter().map(blocks_of).collect();
         let at = (2.0 * blocks as f64 * QUANTILE) as usize;
         let mut best: Vec<Candidate> = Vec::with_capacity(BEST_OF_COLUMN + 1);
         let mut gains = Vec::with_capacity(2 * blocks);
@@ -211,7 +212,7 @@ impl LineDetector<'_> {
         best
     }
 
-    /// Whether a line of `count` points may stand somewhere in a column: by every third block of it, at one phase.
+    /// Whether a line of `count` points may stand somewhere in a column: by every third block of it.
     fn may_hold(&self, row: Row, points: usize, scores: &[f64], count: usize) -> bool {
         let window = count / (GLANCED * BLOCK) - 1;
         let mut may = vec![true; (points / (GLANCED * BLOCK) + 1).saturating_sub(window)];
@@ -271,8 +272,8 @@ struct Trial {
 }
 
 /// Every start of every phase with the most that its score can be: those that promise most first, hardly any of the others is looked at.
-fn trials(ends: &[[Blocks; 2]; PHASES], scores: &[f64], starts: usize, blocks: usize) -> Vec<Trial> {
-    let mut trials: Vec<Trial> = Vec::with_capacity(PHASES * starts);
+fn trials(ends: &[[Blocks; 2]], scores: &[f64], starts: usize, blocks: usize) -> Vec<Trial> {
+    let mut trials: Vec<Trial> = Vec::with_capacity(ends.len() * starts);
     for (phase, ends) in ends.iter().enumerate() {
         trials.extend((0..starts).map(|start| {
             let [a, b] = [0, 1].map(|end| ends[end].totals(start, blocks));

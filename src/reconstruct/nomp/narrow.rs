@@ -152,7 +152,7 @@ mod tests {
             let (sin, cos) = DIRECTION_DEGREES.to_radians().sin_cos();
             let [dx_metres, dy_metres] = [cos, sin].map(|v| v * STEP_METRES);
             let truth = Atom::Segment { x_metres: -4.0, y_metres: 14.0, dx_metres, dy_metres, count: 40 };
-            let seed = truth.moved(&[0.004, -0.003, 1e-4, 1e-4]);
+            let seed = truth.moved(&[0.002, -0.001, 1e-5, -2e-5]);
             let near = Spectra::new(&radar, &bench, &samples).around(&rows_of(&radar, &seed), 0.0);
             assert_eq!(near.bench.sensor.samples, 128);
             assert!(
