@@ -128,9 +128,10 @@ mod tests {
         let gains = [Complex64::new(-900.0, 200.0), Complex64::new(0.0, 500.0)];
         let samples = bench.without(&Samples::new(&bench.sensor, &noise), &[wall], &[gains]).residual;
         let (slow, fast) = (bench.solve(&samples, vec![wall], Tie::PerEnd, 0.0), bench.solve_alone(&samples, wall));
-        for end in 0..2 {
-            assert!((slow.gains[0][end] - fast.gains[0][end]).norm() < 1e-9, "{:?} {:?}", slow.gains, fast.gains);
-            assert!((slow.gains[0][end] + gains[end]).norm() < 20.0, "{:?}", slow.gains);
+        for (end, gain) in gains.iter().enumerate() {
+            let [of_slow, of_fast] = [&slow, &fast].map(|fit| fit.gains[0][end]);
+            assert!((of_slow - of_fast).norm() < 1e-9, "{of_slow} {of_fast}");
+            assert!((of_slow + gain).norm() < 20.0, "{of_slow}");
             assert!((slow.energy[end] / fast.energy[end] - 1.0).abs() < 1e-9);
         }
         for (a, b) in slow.residual.flat(&bench.sensor).iter().zip(fast.residual.flat(&bench.sensor)) {
