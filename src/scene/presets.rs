@@ -40,7 +40,6 @@ pub const ALL: &[Preset] = presets![
     "failure-wrong-tooth",
     "failure-hybrid-merged",
     "failure-hybrid-ghost",
-    "failure-hybrid-wrong-tooth",
     "failure-thesis-missed",
     "failure-thesis-merged",
     "failure-thesis-ghost",
