@@ -65,6 +65,8 @@ mod grow;
 mod lines;
 mod moments;
 mod narrow;
+#[cfg(test)]
+mod noise_tests;
 mod on_wall;
 mod over_noise;
 mod pairs;
