@@ -2,8 +2,7 @@
 
 use super::draw::{Noise, Weighted, expected_lambda};
 use super::*;
-use crate::evaluate::squared_error;
-use crate::evaluate::trial::Trial;
+use crate::maps::LogMaps;
 use crate::radar::Decibels;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Reflector, Scene};
@@ -19,6 +18,10 @@ fn noise_variance(radar: &Radar, scene: &Scene, ends: &TwoEnds) -> f64 {
     flat.iter().zip(&exact).map(|(noisy, exact)| (noisy - exact).norm_sqr()).sum::<f64>() / flat.len() as f64
 }
 
+fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
+    target.lambda.iter().zip(&output.lambda).map(|(t, o)| f64::from(t - o).powi(2)).sum()
+}
+
 /// The error of the search on `count` scenes of each set is hardly more than that of the expected map of the true scene.
 fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
     let radar = Radar::default();
@@ -30,16 +33,18 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
             let [mut told, mut searched] = [0.0; 2];
             for number in 0..count {
                 let scene = generator.scene(kind, number);
-                let trial = Trial::new(&radar, &scene, floor, request.normalisation).unwrap();
-                let noise = Noise::Variance(noise_variance(&radar, &scene, &trial.ends));
+                let signal = simulate(&radar, &scene, floor, scene.noise_seed).unwrap();
+                let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
+                let ends = signal.two_ends(&radar);
+                let noise = Noise::Variance(noise_variance(&radar, &scene, &ends));
                 // The radar can't tell y from -y.
                 let ahead = |r: &Reflector| Atom::Point { x_metres: r.x_metres, y_metres: r.y_metres.abs() };
                 let weighted = |r: &Reflector| Weighted { atom: ahead(r), reflectivity: r.reflectivity };
                 let objects: Vec<Weighted> = scene.reflectors().iter().map(weighted).collect();
                 let known = expected_lambda(&radar, &objects, noise, &request).map;
-                let found = find(&radar, &trial.ends, &request, &Settings::default()).unwrap();
-                told += squared_error(&trial.target, &known);
-                searched += squared_error(&trial.target, &found.expected(&radar, &request).map);
+                let found = find(&radar, &ends, &request, &Settings::default()).unwrap();
+                told += squared_error(&target, &known);
+                searched += squared_error(&target, &found.expected(&radar, &request).map);
             }
             let [told, searched] = [told, searched].map(|sum| sum / f64::from(count));
             println!(
