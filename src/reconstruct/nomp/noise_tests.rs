@@ -1,26 +1,17 @@
 //! What is left of the error under thermal noise, beside what the noise alone leaves.
 
 use super::draw::{Noise, Weighted, expected_lambda};
+use super::tests::squared_error;
 use super::*;
 use crate::maps::LogMaps;
 use crate::radar::Decibels;
+use crate::scene::Reflector;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::scene::{Reflector, Scene};
+use crate::signal::floor::snr_noise_variance;
 use crate::signal::simulate;
 
 /// Most error of the search, over that of who is told the scene and the noise's variance.
 const MOST: f64 = 1.1;
-
-/// Variance of the noise beneath a sample of both ends.
-fn noise_variance(radar: &Radar, scene: &Scene, ends: &TwoEnds) -> f64 {
-    let exact = simulate(radar, scene, Floor::Exact, scene.noise_seed).unwrap().two_ends(radar).flat();
-    let flat = ends.flat();
-    flat.iter().zip(&exact).map(|(noisy, exact)| (noisy - exact).norm_sqr()).sum::<f64>() / flat.len() as f64
-}
-
-fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
-    target.lambda.iter().zip(&output.lambda).map(|(t, o)| f64::from(t - o).powi(2)).sum()
-}
 
 /// The error of the search on `count` scenes of each set is hardly more than that of the expected map of the true scene.
 fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
@@ -36,11 +27,12 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
                 let signal = simulate(&radar, &scene, floor, scene.noise_seed).unwrap();
                 let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
                 let ends = signal.two_ends(&radar);
-                let noise = Noise::Variance(noise_variance(&radar, &scene, &ends));
+                let reflectors = scene.reflectors();
+                let noise = Noise::Variance(snr_noise_variance(&radar, &reflectors, Decibels(snr_db))[0]);
                 // The radar can't tell y from -y.
                 let ahead = |r: &Reflector| Atom::Point { x_metres: r.x_metres, y_metres: r.y_metres.abs() };
                 let weighted = |r: &Reflector| Weighted { atom: ahead(r), reflectivity: r.reflectivity };
-                let objects: Vec<Weighted> = scene.reflectors().iter().map(weighted).collect();
+                let objects: Vec<Weighted> = reflectors.iter().map(weighted).collect();
                 let known = expected_lambda(&radar, &objects, noise, &request).map;
                 let found = find(&radar, &ends, &request, &Settings::default()).unwrap();
                 told += squared_error(&target, &known);

@@ -22,6 +22,10 @@ fn worst_error_metres(scene: &Scene, found: &Reconstruction) -> f64 {
     scene.reflectors().iter().map(nearest).fold(0.0, f64::max)
 }
 
+pub(super) fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
+    target.lambda.iter().zip(&output.lambda).map(|(t, o)| f64::from(t - o).powi(2)).sum()
+}
+
 #[test]
 fn scenes_of_all_sets_are_found_to_rounding_and_drawn_to_the_floor() {
     let radar = Radar::default();
@@ -34,7 +38,7 @@ fn scenes_of_all_sets_are_found_to_rounding_and_drawn_to_the_floor() {
         assert_eq!(found.reflectors.len(), scene.reflector_count(), "{kind:?}");
         assert!(worst_error_metres(&scene, &found) < 1e-8, "{kind:?}: {:e}", worst_error_metres(&scene, &found));
         let cells = || target.lambda.iter().zip(&found.lambda.lambda).map(|(t, o)| (*t, *o));
-        let error: f64 = cells().map(|(t, o)| f64::from(t - o).powi(2)).sum();
+        let error = squared_error(&target, &found.lambda);
         assert!(error < 800.0, "{kind:?}: SE {error}");
         let eta = Nomp::default().eta();
         let part = |bright: bool| {
