@@ -71,6 +71,7 @@ fn a_run_in_two_parts_ends_where_a_whole_one_does() {
     let written = std::fs::read(parts.path().join("weights.safetensors")).unwrap();
     let record = WeightFile::parse("weights", &written).unwrap().provenance;
     assert!(record.get("parts").contains(started), "the weights say what they were made of");
+    assert_eq!(record.optimiser(), "SGD");
     let log = std::fs::read_to_string(parts.path().join("log.csv")).unwrap();
     assert_eq!(log.lines().count(), 6, "a header and five steps");
 }

@@ -14,7 +14,8 @@ const MAX_TENSORS: usize = 10_000;
 /// What a weight file says about itself; kept in its safetensors header.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Provenance {
-    /// All entries, by name: `network`, `recipe`, `trainer`, `seed`, `maps_seen`, `validation`, `eta`, ...
+    /// All entries, by name: `network`, `recipe`, `trainer`, `optimiser`, `seed`, `maps_seen`, `validation`, `eta`, ... Of a run in
+    /// several parts `parts` has each one's record (JSON), in which what nobody kept says "not recorded".
     pub entries: BTreeMap<String, String>,
 }
 
@@ -22,6 +23,14 @@ impl Provenance {
     /// An entry, or "" where the file doesn't have it.
     pub fn get(&self, name: &str) -> &str {
         self.entries.get(name).map_or("", String::as_str)
+    }
+
+    /// How the weights followed the gradient, such as "AdamW" or "SGD, then Muon"; "not recorded" where the file doesn't say.
+    pub fn optimiser(&self) -> &str {
+        match self.get("optimiser") {
+            "" => "not recorded",
+            named => named,
+        }
     }
 
     /// The detection threshold chosen on validation scenes, if the file names a valid one.
@@ -329,6 +338,29 @@ mod tests {
         assert!(matches!(file.expect_network("thesis"), Err(WeightsError::Foreign { .. })));
         let stranger = include_bytes!("../../tests/data/thesis_reference.safetensors");
         says(stranger, good, "is missing");
+    }
+
+    #[test]
+    fn shipped_weights_name_their_optimisers_and_every_map_they_saw() {
+        for (bytes, optimiser, maps) in [
+            (include_bytes!("../../assets/weights/live.safetensors").as_slice(), "AdamW", 11_172 + 55_124),
+            (include_bytes!("../../assets/weights/thesis-1.safetensors"), "SGD, then Muon", 3872 + 14_966),
+            (include_bytes!("../../assets/weights/thesis.safetensors"), "AdamW, then Muon", 20_986),
+        ] {
+            let record = WeightFile::parse("shipped", bytes).unwrap().provenance;
+            assert_eq!((record.optimiser(), record.get("maps_seen")), (optimiser, maps.to_string().as_str()));
+            let parts: Vec<serde_json::Value> = serde_json::from_str(record.get("parts")).unwrap();
+            let mut seen = 0;
+            for part in &parts {
+                assert_eq!(part["maps_before"].as_u64(), Some(seen), "no part is left out: {part}");
+                seen += part["maps_seen"].as_u64().unwrap();
+                assert!(part["optimiser"].is_string() && part["started"].is_string(), "{part}");
+            }
+            assert_eq!(seen, maps);
+        }
+        let unet = include_bytes!("../../assets/weights/unet.safetensors");
+        assert_eq!(WeightFile::parse("shipped", unet).unwrap().provenance.optimiser(), "SGD");
+        assert_eq!(Provenance::default().optimiser(), "not recorded");
     }
 
     #[test]
