@@ -22,6 +22,7 @@ fn run(folder: &Path, max_steps: u64) -> Run {
         radar: Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() },
         max_steps: Some(max_steps),
         max_time: None,
+        untrained: false,
         checkpoint_every: Duration::from_secs(3600),
         origin: Default::default(),
     }

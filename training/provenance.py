@@ -69,7 +69,7 @@ def maps_of(parts):
 
 def optimisers(parts):
     """The optimisers in the order they followed each other: "SGD, then Muon"."""
-    names = [p.get("optimiser", "not recorded") for p in parts]
+    names = [p.get("optimiser", "not recorded") for p in parts if p["maps_seen"]]
     return ", then ".join(name for name, before in zip(names, [None, *names]) if name != before)
 
 

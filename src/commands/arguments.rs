@@ -3,6 +3,9 @@
 use crate::radar::Carrier;
 use crate::signal::Floor;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 /// What lies beneath the reflectors of the maps.
 #[derive(Debug, Clone, clap::Args)]
@@ -18,4 +21,35 @@ pub fn carrier() -> impl TypedValueParser<Value = Carrier> {
         "two-way" => Carrier::TwoWay,
         _ => Carrier::OneWay,
     })
+}
+
+/// Parses a whole number within `range`; the message to anything else says what is allowed.
+pub fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    within("a whole number", range)
+}
+
+/// Parses a number within `range`; the message to anything else says what is allowed.
+pub fn real(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    within("a number", range)
+}
+
+fn within<T>(
+    what: &'static str,
+    range: RangeInclusive<T>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let value = text.trim().parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("expected {what} from {} to {}", range.start(), range.end()))
+    }
+}
+
+/// Parses a seed.
+pub fn seed(text: &str) -> Result<u64, String> {
+    whole(0..=u64::MAX)(text)
 }

@@ -1,15 +1,18 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
+use super::input::shared_text;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
+use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, write_npz};
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
 use crate::reconstruct::{Detection, ReconstructError, Reconstructor, Request};
 use crate::recording;
+use crate::scene::file;
 use crate::signal::{Floor, TwoEnds};
 use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
 use std::path::PathBuf;
@@ -93,7 +96,10 @@ impl Args {
             return Ok(Input { radar, range_metres, floor: recording::FLOOR, samples });
         }
         let (radar, range_metres) = self.radar.load()?;
-        let mut archive = Npz::open(&self.input).map_err(CommandError::on(&self.input))?;
+        let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
+        if !archive.has("sub0") && !archive.has("polar_partial_mag_phase") && archive.has("all_point_x") {
+            return Err(self.is_scene());
+        }
         let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
         let samples = if ready_made {
             let array = archive.reals::<Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
@@ -102,6 +108,29 @@ impl Args {
             Samples::Ends(self.two_ends(&mut archive, &radar)?)
         };
         Ok(Input { radar, range_metres, floor: self.floor.floor, samples })
+    }
+
+    /// The error of an input that is no archive: what it is, where that is recognised.
+    fn not_samples(&self, error: NpzError) -> CommandError {
+        if shared_text(&self.input).is_some() || file::load(&self.input).is_ok() {
+            return self.is_scene();
+        }
+        match kind_at(&self.input) {
+            Some(kind) if !kind.contains(".npz") => {
+                let expected =
+                    "an archive (.npz) with sub0 and sub1, the samples of the two ends, or a recording (.toml)";
+                CommandError::Usage(format!("{} is {kind}; expected {expected}", self.input.display()))
+            }
+            _ => CommandError::on(&self.input)(error),
+        }
+    }
+
+    fn is_scene(&self) -> CommandError {
+        let name = self.input.display();
+        CommandError::Usage(format!(
+            "{name} is a scene; expected samples of the two ends: `apertura maps {name} -o IN.npz` computes them, for \
+             `apertura reconstruct IN.npz -o OUT.npz`"
+        ))
     }
 
     fn two_ends(&self, archive: &mut Npz, radar: &Radar) -> Result<TwoEnds, CommandError> {

@@ -4,7 +4,7 @@ use super::change::Change;
 use super::frame::Wanted;
 use super::report::{Report, Stage};
 use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
@@ -263,7 +263,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 changed.extend(&self.active.profiles.touched);
                 let plan = self.syntheses[synthesis].plan();
                 let how = format!("{} in {}", plan.algorithm, T::NAME);
-                (format!("{evaluated} of {total} reflectors, {how}, the others as before"), changed)
+                (
+                    format!(
+                        "{evaluated} of {}, {how}, the others as before",
+                        counted(total, "reflector", "reflectors")
+                    ),
+                    changed,
+                )
             }
             _ => self.build_anew(job),
         }
@@ -281,7 +287,10 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let (tolerance, forced) = (job.plan.tolerance, job.forced);
         self.built = Some(Built { tolerance, forced, rounding: 0.0 });
         let plan = self.syntheses[synthesis].plan();
-        (format!("{total} reflectors from scratch, {} in {}", plan.algorithm, T::NAME), changed)
+        (
+            format!("{} from scratch, {} in {}", counted(total, "reflector", "reflectors"), plan.algorithm, T::NAME),
+            changed,
+        )
     }
 
     /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.

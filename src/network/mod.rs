@@ -77,7 +77,7 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     .collect()
 }
 
-/// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' network.
+/// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' or the live network.
 ///
 /// # Errors
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to no network of ours.
@@ -87,9 +87,10 @@ pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>
 }
 
 fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
-    // A file of the thesis' author says nothing; its tensors do.
+    // PyTorch's own files name no network; their tensors do.
     let network = match file.network() {
         "" if Thesis::config_of(&file).is_ok() => Thesis::NAME,
+        "" if Live::is_in(&file) => Live::NAME,
         named => named,
     };
     Ok(match network {

@@ -3,6 +3,7 @@
 //! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
+use crate::files::kind::kind_of;
 use burn::module::Module;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
 use serde::{Deserialize, Serialize};
@@ -86,6 +87,20 @@ pub enum WeightsError {
         /// Network wanted.
         expected: String,
     },
+    /// The file names no network, and its tensors are those of none of ours.
+    #[error(
+        "{file} names no network, and its {count} tensors ({names}) are those of none; expected weights of {expected}"
+    )]
+    Unknown {
+        /// Name of the file.
+        file: String,
+        /// How many tensors it holds.
+        count: usize,
+        /// Names of the first.
+        names: String,
+        /// Networks that would do.
+        expected: String,
+    },
     /// A tensor that the network needs is missing, or one it doesn't know is there.
     #[error("{file}: tensor \"{tensor}\" {problem}")]
     Tensor {
@@ -150,7 +165,8 @@ impl<'a> WeightFile<'a> {
         let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(|| not("it is shorter than 8 bytes"))?;
         let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
         if length > 16 << 20 {
-            return Err(not("its first 8 bytes are no header length"));
+            let told = |kind| format!("it is {kind}; expected weights as safetensors, or PyTorch's .pt");
+            return Err(not(&kind_of(bytes).map_or("its first 8 bytes are no header length".to_owned(), told)));
         }
         if length > rest.len() {
             return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected: length + 8 });
@@ -235,9 +251,17 @@ impl<'a> WeightFile<'a> {
 
     /// The error of a file that holds other weights where those of `expected` are wanted.
     pub fn foreign(&self, expected: &str) -> WeightsError {
-        let found = self.network();
-        let found = if found.is_empty() { "no named network" } else { found }.to_owned();
-        WeightsError::Foreign { file: self.name.clone(), found, expected: expected.to_owned() }
+        let (file, expected) = (self.name.clone(), expected.to_owned());
+        match self.network() {
+            "" => {
+                let mut names: Vec<&str> = self.tensors.keys().map(String::as_str).take(3).collect();
+                if self.tensors.len() > names.len() {
+                    names.push("...");
+                }
+                WeightsError::Unknown { file, count: self.tensors.len(), names: names.join(", "), expected }
+            }
+            found => WeightsError::Foreign { file, found: found.to_owned(), expected },
+        }
     }
 
     /// The values of one tensor.

@@ -43,9 +43,22 @@ impl fmt::Display for Bytes {
     }
 }
 
+/// A number with the noun it counts: "1 scene", "12 scenes".
+pub fn counted<N: fmt::Display + PartialEq + From<u8>>(number: N, one: &str, many: &str) -> String {
+    let noun = if number == N::from(1) { one } else { many };
+    format!("{number} {noun}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        let told = [0u32, 1, 2].map(|n| counted(n, "step", "steps"));
+        assert_eq!(told, ["0 steps", "1 step", "2 steps"]);
+        assert_eq!(counted(1usize, "try", "tries"), "1 try");
+    }
 
     #[test]
     fn amounts_of_memory_are_readable() {

@@ -163,7 +163,7 @@ fn worsen_repeats_itself_and_what_it_writes_is_as_bad_as_it_says() {
     apertura(&folder, "worsen s.toml --method baseline --tries 8 --within 0 -o x.toml")
         .assert()
         .failure()
-        .stderr(contains("reach"));
+        .stderr(contains("expected a number from 0.000001 to 1000"));
 }
 
 /// Within 2 m and a minute, five times the squared error for four of five starts of set 1.

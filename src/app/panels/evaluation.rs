@@ -5,7 +5,7 @@ use crate::app::state::{Command, EvaluationChoice};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
 use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
@@ -153,7 +153,7 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
             }
             for row in rows.iter().filter(|r| r.set == set) {
                 ui.strong(format!("{}\nη = {:.2}", row.method, row.eta))
-                    .on_hover_text(format!("{} scenes; mean ± standard error", row.scenes));
+                    .on_hover_text(format!("{}; mean ± standard error", counted(row.scenes, "scene", "scenes")));
                 ui.monospace(with_error(row.squared_error, 1.0, 0));
                 ui.monospace(with_error(row.detection, 100.0, 2));
                 ui.monospace(with_error(row.false_alarm, 100.0, 2));

@@ -3,7 +3,7 @@
 use crate::app::state::{Command, NewObject};
 use crate::app::widgets::entry::{arrange, button};
 use crate::interact::{Change, Coordinates, Editor, Field, Shared};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::scene::Scene;
 use eframe::egui;
 use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
@@ -61,10 +61,10 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.strong(match (object, single) {
             (Some(object), Some(index)) => format!("{} {}", capital(object.kind()), index + 1),
-            _ => format!("{} objects", editor.selection().len()),
+            _ => counted(editor.selection().len(), "object", "objects"),
         });
         if object.is_none() {
-            ui.weak(format!("{} reflectors", editor.selected_reflectors()));
+            ui.weak(counted(editor.selected_reflectors(), "reflector", "reflectors"));
         }
         toggle(ui, coordinates, asked);
     });

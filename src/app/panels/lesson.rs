@@ -6,6 +6,7 @@ use crate::app::widgets::inline::inline;
 use crate::lesson::question::Answer;
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Challenge, Guess, Lesson, Progress, Question};
+use crate::radar::counted;
 use eframe::egui;
 use eframe::egui::{RichText, ScrollArea, Slider, TextEdit, TextureId, Ui};
 use std::sync::OnceLock;
@@ -115,7 +116,7 @@ fn done(progress: &Progress, id: &str, lesson: &Lesson) -> String {
         (step.predict.is_none() || record.first_guess_right.is_some())
             && (step.challenge.is_none() || record.challenge_met)
     });
-    format!("{} of {} steps", done.count(), lesson.steps.len())
+    format!("{} of {}", done.count(), counted(lesson.steps.len(), "step", "steps"))
 }
 
 fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {

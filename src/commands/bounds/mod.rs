@@ -3,7 +3,8 @@
 mod chart;
 mod report;
 
-use super::figure::{save, save_bitmap};
+use super::arguments::whole;
+use super::figure::{save, save_bitmap, save_numbers};
 use super::{CommandError, print};
 use crate::bounds::{Ambiguity, PositionBound, ambiguity, cramer_rao, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
@@ -19,7 +20,14 @@ use std::path::PathBuf;
 /// Prints the Cramer-Rao bound of one reflector, alone and with a second one beside it, and the lobes of the ambiguity function along
 /// cos(theta). Angles are in columns of the whole array's map, 1/512 of cos(theta). With -o DIR the bound is drawn to bounds.svg and
 /// the ambiguity function over range and cos(theta) to ambiguity.png; with --monte-carlo the errors that the Newton search makes to
-/// monte-carlo.svg.
+/// monte-carlo.svg; and all numbers are written to bounds.json.
+///
+/// That file and --json are one object: x_metres, y_metres (the reflector), apart_columns (from there to the second), layouts, each with
+/// layout (its name), elements, lobes (null where there are none; main_lobe_cos, highest_side_lobe and side_lobe_rms as parts of the
+/// reflector's own likeness, highest_side_lobe_offset in cos(theta)) and bounds, one a ratio: snr_db, alone and beside_another (null where
+/// the samples don't determine the positions; range_millimetres, columns, position_millimetres: standard deviations); and monte_carlo, one
+/// a ratio: snr_db, bound_metres, error_metres and near_error_metres (root mean square; the second without draws on another tooth; null where
+/// no draw counts), trials, miscounted, off_by_a_tooth (numbers of draws).
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Layouts: full, two-ends, one-end, random=N, random=N:SEED, mimo=TxR
@@ -45,14 +53,14 @@ pub struct Args {
     snr: Vec<Decibels>,
 
     /// Also let the Newton search place the reflector in this many draws of noise at every ratio
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=100_000))]
     monte_carlo: Option<u64>,
 
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
 
-    /// Folder for the pictures; made where it is missing
+    /// Folder for the pictures and bounds.json; made where it is missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
@@ -112,6 +120,7 @@ impl Args {
         };
         if let Some(folder) = &self.output {
             save(&BoundsFigure(&report), folder, "bounds")?;
+            save_numbers(&report, folder, "bounds")?;
             let patches: Vec<(String, Ambiguity)> =
                 layouts.iter().map(|(kind, layout)| (kind.to_string(), patch(&radar, layout, centre))).collect();
             save_bitmap(&AmbiguityFigure { radar: &radar, centre, patches: &patches }, folder, "ambiguity")?;

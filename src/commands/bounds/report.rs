@@ -3,7 +3,7 @@
 use crate::bounds::{Lobes, PositionBound};
 use crate::commands::{CommandError, print};
 use crate::evaluate::Placement;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use serde::Serialize;
 
 /// Everything the command says; its JSON.
@@ -60,8 +60,10 @@ impl Bound {
 impl Report {
     pub fn print(&self) -> Result<(), CommandError> {
         print(&format!(
-            "One reflector at ({}, {}) m, and another {} columns beside it",
-            self.x_metres, self.y_metres, self.apart_columns
+            "One reflector at ({}, {}) m, and another {} beside it",
+            self.x_metres,
+            self.y_metres,
+            counted(self.apart_columns, "column", "columns")
         ))?;
         print(&format!(
             "\n{:12} {:>8} {:>16} {:>18} {:>16} {:>16}",

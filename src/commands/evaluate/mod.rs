@@ -2,7 +2,7 @@
 
 mod report;
 
-use super::arguments::{self, FloorArgs};
+use super::arguments::{self, FloorArgs, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
@@ -42,11 +42,11 @@ pub struct Args {
     set: Vec<Kind>,
 
     /// Scenes of each set
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = whole(1..=1_000_000))]
     count: u32,
 
     /// Seed of the scenes
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
     /// The scene files of this folder in place of random scenes

@@ -6,7 +6,7 @@ use crate::evaluate::sets::false_alarm;
 use crate::evaluate::tables::{
     PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally, part_near_best,
 };
-use crate::radar::Carrier;
+use crate::radar::{Carrier, counted};
 use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use serde::{Serialize, Serializer};
@@ -108,7 +108,7 @@ impl Report {
     }
 
     pub fn to_text(&self) -> String {
-        let mut text = format!("{} scenes a set", self.count);
+        let mut text = counted(self.count, "scene a set", "scenes a set");
         // Writing to a string can't fail.
         if let Some(seed) = self.seed {
             let _ = write!(text, ", seed {seed}");

@@ -48,6 +48,11 @@ impl LiveMethod {
         })
     }
 
+    /// The network without features and normalisation.
+    pub fn engine(&self) -> &LiveEngine {
+        &self.engine
+    }
+
     /// The map in decades relative to the samples' own scale, before it is normalised.
     ///
     /// # Errors

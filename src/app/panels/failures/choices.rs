@@ -4,6 +4,7 @@ use super::input::Input;
 use crate::app::state::{Command, FailureChoice};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::progress::progress;
+use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui;
 use eframe::egui::{Button, DragValue, Ui};
@@ -106,7 +107,7 @@ fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     button("Save…", "Save the rows as CSV", has_rows, Command::SaveRows);
     button("Clear", "Forget every row", has_rows, Command::ClearRows);
     if let Some(count) = input.before {
-        let name = format!("Bring back {count} rows");
+        let name = format!("Bring back {}", counted(count, "row", "rows"));
         button(&name, "The rows that others took the place of", true, Command::BringRowsBack);
     }
 }

@@ -6,6 +6,7 @@ use crate::app::widgets::axes;
 use crate::app::widgets::theme::MARK_EDGE;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
+use crate::radar::counted;
 use crate::scene::Reflector;
 use crate::theory::{Cell, blob_cell};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
@@ -188,7 +189,10 @@ impl Kinds<'_> {
         let Fates { scene, failures, eta, .. } = self.fates;
         let cells = verdict.cells;
         let Some(index) = verdict.object else {
-            return format!("ghost: {cells} cells above η = {eta:.2}\nwhere the scene has nothing");
+            return format!(
+                "ghost: {} above η = {eta:.2}\nwhere the scene has nothing",
+                counted(cells, "cell", "cells")
+            );
         };
         let named = |index: usize| {
             let kind = scene.objects.get(index).map_or("object", |o| o.kind());
