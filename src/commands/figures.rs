@@ -20,7 +20,7 @@ pub struct Args {
     only: Vec<String>,
 
     /// Test scenes a set for tables 4.1 to 4.3
-    #[arg(long, default_value_t = 10, value_name = "N", value_parser = whole(1..=10_000))]
+    #[arg(long, default_value_t = 10, value_name = "N", value_parser = whole(1..=10_000u32))]
     scenes: u32,
 
     /// Folder to write into

@@ -33,7 +33,7 @@ pub struct Args {
     layout: Vec<LayoutKind>,
 
     /// Scenes of each test set
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000u32))]
     count: u32,
 
     /// Print one JSON object instead of a table

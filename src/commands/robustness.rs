@@ -52,11 +52,11 @@ pub struct Args {
     calibrate: bool,
 
     /// Test set: 1, 2 or 3
-    #[arg(long, value_name = "SET", default_value_t = 2, value_parser = whole(1..=3))]
+    #[arg(long, value_name = "SET", default_value_t = 2, value_parser = whole(1..=3u8))]
     set: u8,
 
     /// Scenes
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000u32))]
     count: u32,
 
     /// Seed of scenes and errors

@@ -15,7 +15,7 @@ pub struct Args {
     set: Kind,
 
     /// Number of scenes
-    #[arg(long, value_name = "N", required_unless_present = "index", value_parser = whole(1..=1_000_000))]
+    #[arg(long, value_name = "N", required_unless_present = "index", value_parser = whole(1..=1_000_000u32))]
     count: Option<u32>,
 
     /// This scene alone: the one in the row of `apertura evaluate --rows` with this index

@@ -17,7 +17,7 @@ pub struct Args {
 
     /// Random edits through the incremental engine
     #[arg(long, value_name = "N", default_value_t = StressRequest::default().edits as u32,
-          value_parser = whole(1..=1_000_000))]
+          value_parser = whole(1..=1_000_000u32))]
     edits: u32,
 
     /// Picks the edits

@@ -89,7 +89,7 @@ pub enum WeightsError {
     },
     /// The file names no network, and its tensors are those of none of ours.
     #[error(
-        "{file} names no network, and its {count} tensors ({names}) are those of none; expected weights of {expected}"
+        "{file} names no network, and none of ours has its tensors ({count} in all): {names}; expected weights of {expected}"
     )]
     Unknown {
         /// Name of the file.

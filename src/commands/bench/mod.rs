@@ -43,7 +43,7 @@ pub struct Args {
 
     /// Numbers of reflectors
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "1,10,75,300,1000",
-          value_parser = whole(1..=10_000))]
+          value_parser = whole(1..=10_000u32))]
     reflectors: Vec<u32>,
 
     /// Who takes part: plan, or the name of an algorithm; everybody where nobody is named
@@ -51,7 +51,7 @@ pub struct Args {
     algorithms: Vec<Entrant>,
 
     /// Repeats of every measurement
-    #[arg(long, value_name = "N", default_value_t = 9, value_parser = whole(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = whole(1..=1000u32))]
     repeats: u32,
 
     /// Our script of other tools (comparisons/maps.py), run beside on the same tasks, one thread on both sides; tools that are not
@@ -79,7 +79,7 @@ pub struct Args {
     live: bool,
 
     /// Test scenes of each set, with --methods
-    #[arg(long, value_name = "N", default_value_t = 5, requires = "methods", value_parser = whole(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "methods", value_parser = whole(1..=1000u32))]
     count: u32,
 }
 

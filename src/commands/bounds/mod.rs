@@ -53,7 +53,7 @@ pub struct Args {
     snr: Vec<Decibels>,
 
     /// Also let the Newton search place the reflector in this many draws of noise at every ratio
-    #[arg(long, value_name = "N", value_parser = whole(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=100_000u64))]
     monte_carlo: Option<u64>,
 
     /// Print one JSON object instead of tables
@@ -136,11 +136,13 @@ impl Args {
 
     /// The second reflector.
     fn neighbour(&self, radar: &Radar, centre: Polar) -> Result<Reflector, CommandError> {
-        let cos = centre.cos_theta + self.apart * columns_to_cos(radar);
+        let column = columns_to_cos(radar);
+        let cos = centre.cos_theta + self.apart * column;
         if cos.abs() >= 1.0 {
+            let [least, most] = [-1.0, 1.0].map(|end: f64| ((end - centre.cos_theta) / column).trunc());
             let columns = self.apart;
             return Err(CommandError::Usage(format!(
-                "--apart {columns} puts the second reflector beyond the array's axis"
+                "--apart {columns} puts the second reflector beyond the array's axis; expected columns from {least} to {most}"
             )));
         }
         Ok(Reflector {

@@ -42,7 +42,7 @@ pub struct Args {
     set: Vec<Kind>,
 
     /// Scenes of each set
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = whole(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = whole(1..=1_000_000u32))]
     count: u32,
 
     /// Seed of the scenes
