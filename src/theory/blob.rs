@@ -14,6 +14,9 @@ const STEPS_PER_BIN: f64 = 4.0;
 /// Golden ratio's smaller part.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
+/// A side lobe below this is rounding error: no map shows it.
+pub const LEAST_LOBE: Decibels = Decibels(-100.0);
+
 /// What one reflector leaves on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
@@ -25,7 +28,7 @@ pub struct Blob {
     pub columns: [f64; 2],
     /// From the peak to nearer and farther ranges, the bins over which it stays above half power.
     pub bins: [f64; 2],
-    /// The first side lobe at lower and at higher columns in the peak's row, where there is one.
+    /// The first side lobe at lower and at higher columns in the peak's row, where there is one above [`LEAST_LOBE`].
     pub side_lobes: [Option<SideLobe>; 2],
 }
 
@@ -115,7 +118,8 @@ impl Blob {
         };
         let side_lobe = |upward: bool| {
             let (steps, height) = profile.side_lobe(upward)?;
-            Some(SideLobe { columns: steps * fine, level: Decibels(20.0 * (height / magnitude).log10()) })
+            let level = Decibels(20.0 * (height / magnitude).log10());
+            (level.0 > LEAST_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
         };
         Some(Blob {
             peak: Cell { bin: bin.rem_euclid(radar.samples as f64), column: column.rem_euclid(radar.elements as f64) },
