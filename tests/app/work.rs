@@ -180,9 +180,7 @@ fn nothing_found_in_one_recording_is_listed_over_the_next() {
 fn nothing_found_in_one_scene_is_marked_over_the_next() {
     let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
     s.ask(Command::ToggleFound);
-    if s.state().marked_found().is_empty() {
-        s.ask(Command::ToggleFound);
-    }
+    s.ask(Command::OpenPanel(Panel::Found));
     assert!(!s.state().marked_found().is_empty());
     let before = s.state().editor().document().id();
     s.app.state_mut().ask(Command::RandomScene(Kind::Set2));

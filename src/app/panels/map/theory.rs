@@ -75,11 +75,10 @@ impl Theory<'_> {
         self.tell(painter, frame, pointer);
     }
 
-    /// What of the map the reflector takes up: its streak and its half-power box, as far as they are in sight.
-    fn extent(&self, frame: Frame<'_>) -> Rect {
+    /// Where the reflector's blob shows: its peak, its streak and the corners of its half-power box.
+    fn places(&self, frame: Frame<'_>) -> Vec<Pos2> {
         let streak = self.overlay.streak.path.iter().map(|cell| frame.cell(*cell));
-        let places: Vec<Pos2> = streak.chain(self.half_power(frame)).collect();
-        Rect::from_points(&places).expand(CLEAR).intersect(frame.rect)
+        std::iter::once(frame.cell(self.overlay.blob.peak)).chain(streak).chain(self.half_power(frame)).collect()
     }
 
     /// The half-power widths as a box around the peak, closed.
@@ -175,7 +174,7 @@ impl Theory<'_> {
             .map(|(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0))
             .collect();
         let sizes: Vec<Vec2> = galleys.iter().map(|g| g.size()).collect();
-        let Some((mut patch, mut count)) = clear_patch(rect, self.extent(frame), &sizes) else { return };
+        let (mut patch, mut count) = clear_patch(rect, &self.places(frame), &sizes);
         if pointer.is_some_and(|p| patch.contains(p)) {
             // The map beneath is what is pointed at.
             count = 1;
@@ -197,17 +196,19 @@ fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
     signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
 }
 
-/// Where as many of the lines fit as leave the `blob` in sight and cover no more than [`MOST_PART`] of the map, and how many; the larger
-/// the map, the more.
-fn clear_patch(rect: Rect, blob: Rect, lines: &[Vec2]) -> Option<(Rect, usize)> {
+/// Where as many of the lines fit as leave the `blob`'s places in sight, the peak first, and cover no more than [`MOST_PART`] of the map,
+/// and how many; the larger the map, the more, and one always.
+fn clear_patch(rect: Rect, blob: &[Pos2], lines: &[Vec2]) -> (Rect, usize) {
+    let from = blob.first().copied().unwrap_or(rect.center());
     let patch = |count: usize| {
         let size = lines[..count].iter().fold(Vec2::ZERO, |s, g| vec2(s.x.max(g.x), s.y + g.y));
-        (free_corner(rect, blob.center(), size + vec2(10.0, 6.0)), count)
+        (free_corner(rect, from, size + vec2(10.0, 6.0)), count)
     };
-    (1..=lines.len())
-        .rev()
-        .map(patch)
-        .find(|(patch, count)| !patch.intersects(blob) && (*count == 1 || patch.area() <= MOST_PART * rect.area()))
+    let fits = |(patch, count): &(Rect, usize)| {
+        let hides = blob.iter().any(|p| patch.expand(CLEAR).contains(*p));
+        *count == 1 || !hides && patch.area() <= MOST_PART * rect.area()
+    };
+    (1..=lines.len()).rev().map(patch).find(fits).unwrap_or_else(|| patch(lines.len().min(1)))
 }
 
 /// A box of `size` in the corner of `rect` that is farthest from `from`, clear of the value under the pointer at the top.
@@ -344,8 +345,10 @@ mod tests {
             let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
             let (theory, frame) = (theory(&overlay, reflector), frame(&radar));
             let lines = vec![vec2(330.0, 13.0); theory.lines(frame).len()];
-            let (patch, _) = clear_patch(RECT, theory.extent(frame), &lines).unwrap();
-            assert!(!patch.intersects(theory.extent(frame)), "at ({x_metres}, {y_metres})");
+            let (patch, count) = clear_patch(RECT, &theory.places(frame), &lines);
+            assert!(count > 3, "{count} lines at ({x_metres}, {y_metres})");
+            let hidden = theory.places(frame).into_iter().find(|p| patch.contains(*p));
+            assert_eq!(hidden, None, "{patch:?} at ({x_metres}, {y_metres})");
         }
     }
 
@@ -361,13 +364,10 @@ mod tests {
         assert!(times >= 10.0 && times.log10().fract() == 0.0, "{times}");
         let small = Rect::from_min_size(Pos2::ZERO, vec2(300.0, 180.0));
         let lines = [vec2(290.0, 14.0); 7];
-        let blob = |map: Rect| Rect::from_center_size(map.center(), vec2(20.0, 20.0));
-        let (patch, count) = clear_patch(small, blob(small), &lines).unwrap();
+        let (patch, count) = clear_patch(small, &[small.center()], &lines);
         assert!(count > 1 && patch.area() <= MOST_PART * small.area(), "{count} lines at {patch:?}");
-        assert!(!patch.intersects(blob(small)));
-        assert_eq!(clear_patch(RECT, blob(RECT), &lines).unwrap().1, 7);
-        // A streak over nearly all of the map leaves no room but where there is none of it.
-        assert_eq!(clear_patch(small, small.shrink(20.0), &lines), None);
+        assert!(!patch.expand(CLEAR).contains(small.center()));
+        assert_eq!(clear_patch(RECT, &[RECT.center()], &lines).1, 7);
         let corner = free_corner(RECT, outline[0], vec2(300.0, 90.0));
         assert!(RECT.contains_rect(corner) && !corner.contains(outline[0]));
     }
