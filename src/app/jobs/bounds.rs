@@ -1,4 +1,4 @@
-//! Bounds of one reflector, computed off the UI thread: how well any estimator could place it, and what looks like it.
+//! Bounds of one reflector, computed off the UI thread: how well any unbiased estimator could place it, and what looks like it.
 
 use crate::app::state::{BoundsSettings, Elements, State};
 use crate::app::widgets::textures::colour_table;
