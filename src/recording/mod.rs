@@ -4,7 +4,7 @@
 //!
 //! | file | what it reads |
 //! |---|---|
-//! | [`file`] | the TOML: `[radar]` and `[recording]` |
+//! | [`file`], `said_radar` | the TOML: `[radar]` and `[recording]` |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `capture`, `profile` | int16 samples of a capture card, and the `.cfg` that set the radar up |
@@ -27,6 +27,7 @@ mod numbers;
 mod numpy;
 pub mod presets;
 mod profile;
+mod said_radar;
 mod signs;
 
 pub use axes::{AxesError, AxisKind, Chirp};
