@@ -13,6 +13,7 @@ use crate::interact::Editor;
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
+use crate::scene::Reflector;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.
@@ -65,9 +66,14 @@ impl App {
         (self.jobs.pipeline.requests(), self.jobs.pipeline.result().map_or(0, |r| r.painted))
     }
 
+    /// Where the method found something, as far as that is marked on the maps.
+    pub fn marked_found(&self) -> &[Reflector] {
+        super::contents::shown_found(&self.state, &self.jobs.pipeline)
+    }
+
     /// What the method found, where it is listed.
     pub fn found(&self) -> Option<&[Detection]> {
-        self.jobs.pipeline.output()?.found.as_deref()
+        self.jobs.pipeline.output_of(&self.state)?.found.as_deref()
     }
 
     /// Part of the recording that the reflectors laid over it explain, where that is looked at.

@@ -1,7 +1,7 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
-use super::input::shared_text;
+use super::input::{load_recording, shared_text};
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
@@ -90,7 +90,7 @@ impl Args {
                 let message = "a recording says which radar made it; leave --radar out";
                 return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
             }
-            let recording = recording::file::load(&self.input).map_err(CommandError::failed)?;
+            let recording = load_recording(&self.input)?;
             let samples = Samples::Ends(recording.two_ends());
             let (radar, range_metres) = (recording.radar, recording.range_metres);
             return Ok(Input { radar, range_metres, floor: recording::FLOOR, samples });

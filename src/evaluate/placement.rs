@@ -1,4 +1,4 @@
-//! How well the Newton search places one reflector, against the bound that no estimator can beat.
+//! How well the Newton search places one reflector, against the bound that no unbiased estimator can beat.
 
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::radar::{Decibels, End, Layout, Radar};

@@ -1,6 +1,7 @@
 //! `apertura bounds`, `apertura layouts` and `apertura robustness` from outside.
 
 use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -14,6 +15,29 @@ fn json(arguments: &[&str]) -> Value {
     let output = apertura(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn a_gain_an_end_is_bounded_where_it_is_asked_for() {
+    let arguments = ["bounds", "--layout", "two-ends", "--at", "5,18", "--snr", "0", "--json"];
+    let row = |report: Value| report["layouts"][0]["bounds"][0].clone();
+    assert!(row(json(&arguments))["gain_per_end"].is_null());
+    let asked = row(json(&[arguments.as_slice(), &["--gain-per-end"]].concat()));
+    let of = |which: &str, what: &str| asked[which][what].as_f64().unwrap();
+    assert!(
+        (of("alone", "columns") / 0.0021 - 1.0).abs() < 0.04
+            && (of("gain_per_end", "columns") / 0.126 - 1.0).abs() < 0.02
+    );
+    assert!((of("gain_per_end", "position_millimetres") / 4.8 - 1.0).abs() < 0.02, "{asked}");
+    // 24 elements of 512 samples at 0 dB: 0.64 %.
+    assert!((of("alone", "amplitude_db") / 0.0554 - 1.0).abs() < 0.01, "{asked}");
+}
+
+#[test]
+fn the_table_names_the_gain_an_end() {
+    apertura(&["bounds", "--layout", "two-ends", "--snr", "0", "--gain-per-end"]).assert().success().stdout(
+        contains("one unknown complex gain").and(contains("amplitude, dB")).and(contains("No unbiased estimator")),
+    );
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod house;
 mod live_network;
 mod memory;
 mod methods;
+mod physical_captures;
 mod radars;
 mod snapshot;
 mod stress;

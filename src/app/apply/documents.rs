@@ -41,10 +41,11 @@ fn open(state: &mut State, path: PathBuf) {
 
 /// Puts a document on screen, and where it is a recording, what recordings are looked at with.
 fn show(state: &mut State, label: &str, document: Document) {
-    let is_recording = document.recording().is_some();
+    let recording = document.recording().cloned();
     state.set_document(label, document);
-    if is_recording {
+    if let Some(recording) = recording {
         show_recording_panels(state);
+        recording.doubts.iter().for_each(|doubt| state.notices.error(doubt.clone()));
     }
 }
 

@@ -165,6 +165,7 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
         _ => full,
     };
     Some(map::Theory {
+        name: &result.request.name,
         overlay: overlay.as_ref()?,
         reflector: result.request.reflector,
         ellipse: result.ellipse.filter(|_| !matches!(kind, MapKind::Input0 | MapKind::Input1)),

@@ -126,7 +126,7 @@ fn shows_numbers(state: &State) -> bool {
 }
 
 /// Where the method found something, if that is to be drawn: over a recording always.
-fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
+pub(super) fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
     let drawn = state.settings.show_found || state.editor.document().recording().is_some();
-    pipeline.output().filter(|_| drawn && !state.is_predicting()).map_or(&[], |output| &output.reflectors)
+    pipeline.output_of(state).filter(|_| drawn && !state.is_predicting()).map_or(&[], |output| &output.reflectors)
 }

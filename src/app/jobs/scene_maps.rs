@@ -43,6 +43,8 @@ fn same_target(a: &Option<Arc<RangeAngleMap>>, b: &Option<Arc<RangeAngleMap>>) -
 /// What the maps worker is asked for.
 #[derive(Clone)]
 pub struct MapsRequest {
+    /// Which document all of it is of.
+    pub document: u64,
     /// The radar.
     pub radar: Radar,
     /// What stands before it, or is laid over the recording.

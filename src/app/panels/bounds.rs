@@ -1,4 +1,4 @@
-//! What no method can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
+//! What no unbiased estimator can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
 use crate::app::jobs::{BoundsRequest, BoundsResult};
 use crate::app::state::{BoundsSettings, Command, Elements};
@@ -164,23 +164,33 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
         }
     };
     let column = 2.0 / result.request.radar.elements as f64;
-    ui.strong(format!("Best possible for {name}"));
-    let columns = if ui.available_width() > 420.0 { 2 } else { 1 };
-    Grid::new("bound").num_columns(2 * columns).spacing([12.0, 3.0]).show(ui, |ui| {
-        for (i, (what, value)) in [
-            ("x", millimetres(bound.x_metres)),
-            ("y", millimetres(bound.y_metres)),
-            ("range", millimetres(bound.range_metres)),
-            ("column", significant(bound.cos_theta / column)),
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            ui.weak(format!("σ of {what}"));
-            ui.monospace(value);
-            if i % columns == columns - 1 {
-                ui.end_row();
-            }
+    ui.strong(format!("Least error for {name}")).on_hover_text(
+        "The Cramér–Rao bound: no unbiased estimator has smaller standard deviations. One that knows scenes beforehand may.",
+    );
+    Grid::new("bound").num_columns(3).spacing([12.0, 3.0]).show(ui, |ui| {
+        ui.weak("σ of");
+        for (gains, tooltip) in [
+            ("one gain", "All elements hear the reflector with one unknown gain: the phase between the ends is known"),
+            (
+                "a gain an end",
+                "Either half of the elements has an unknown gain of its own: the phase between the ends is not known",
+            ),
+        ] {
+            ui.weak(gains).on_hover_text(tooltip);
+        }
+        ui.end_row();
+        let of: [(&str, &dyn Fn(&PositionBound) -> String); 5] = [
+            ("x", &|b| millimetres(b.x_metres)),
+            ("y", &|b| millimetres(b.y_metres)),
+            ("range", &|b| millimetres(b.range_metres)),
+            ("column", &|b| significant(b.cos_theta / column)),
+            ("amplitude", &|b| format!("{} dB", significant(b.amplitude_db()))),
+        ];
+        for (what, value) in of {
+            ui.weak(what);
+            ui.monospace(value(bound));
+            ui.monospace(result.gain_per_end.as_ref().map_or("–".to_owned(), value));
+            ui.end_row();
         }
     });
     ellipse(ui, bound);
@@ -301,6 +311,15 @@ mod tests {
     }
 
     #[test]
+    fn the_bound_with_a_gain_an_end_stands_beside_the_other() {
+        let bounds = panel([460.0, 640.0]);
+        let texts = seen::texts(bounds.output());
+        for text in ["one gain", "a gain an end", "amplitude"] {
+            assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
+        }
+    }
+
+    #[test]
     fn a_narrow_panel_cuts_nothing_off() {
         let bounds = panel([410.0, 200.0]);
         seen::assert_readable(bounds.output());
@@ -316,6 +335,7 @@ mod tests {
             x_metres: 3e-3,
             y_metres: 1e-3,
             xy_covariance_metres2: -2e-6,
+            amplitude: 1e-3,
         };
         let outline = outline(&bound).unwrap();
         let most = |i: usize| outline.iter().map(|p| p[i]).fold(0.0, f64::max);
@@ -332,6 +352,7 @@ mod tests {
             x_metres,
             y_metres: f64::INFINITY,
             xy_covariance_metres2: 0.0,
+            amplitude: 1.0,
         })
     }
 }

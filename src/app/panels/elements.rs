@@ -67,7 +67,8 @@ fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             ui.weak("Every element is as it should be. Click one to silence it.");
             return;
         }
-        ui.label(told(input.elements));
+        let living = input.elements.elements.len() - input.elements.dead();
+        ui.label(told(input.elements)).on_hover_text(spread_tooltip(living));
         let tooltip = "Every element as it should be; undo brings the errors back";
         if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
             asked.push(Command::SetElements(Arc::default()));
@@ -82,7 +83,16 @@ fn told(elements: &BuiltArray) -> String {
         0 => String::new(),
         n => format!("{n} dead, "),
     };
-    format!("{dead}gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
+    format!("{dead}as drawn: gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
+}
+
+/// Why what was drawn differs from what was asked for.
+fn spread_tooltip(living: usize) -> String {
+    let percent = 100.0 / (2.0 * living.max(1) as f64).sqrt();
+    format!(
+        "Root mean square over the {living} elements that hear. Errors are drawn from normal distributions: over so many elements it \
+         differs from the standard deviation asked for by about {percent:.0} % from draw to draw."
+    )
 }
 
 /// Phase from which on a dot is drawn: rounding leaves less after a calibration.

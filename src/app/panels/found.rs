@@ -9,6 +9,9 @@ use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 /// Most lines that are shown.
 const LINES: usize = 200;
 
+/// How strong a list is drawn that belongs to an earlier scene.
+const OLD_OPACITY: f32 = 0.45;
+
 /// What is listed.
 pub struct Input<'a> {
     /// The method whose output is shown.
@@ -17,6 +20,8 @@ pub struct Input<'a> {
     pub found: Option<&'a [Detection]>,
     /// Why there is no output.
     pub refusal: Option<&'a str>,
+    /// Whether it is of an earlier scene, and has been for long enough to be told.
+    pub stale: bool,
     /// Whether a range was measured: one sample tells none.
     pub has_ranges: bool,
 }
@@ -31,6 +36,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             }
             return;
         };
+        if input.stale {
+            ui.weak("of an earlier scene; updating…");
+            ui.set_opacity(OLD_OPACITY);
+        }
         let more = found.len().saturating_sub(LINES);
         ui.weak(match found.len() {
             0 => format!("{method} found nothing."),
@@ -81,7 +90,8 @@ mod tests {
 
     fn panel(found: Option<Vec<Detection>>, refusal: Option<&'static str>, has_ranges: bool) -> Harness<'static> {
         let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
-            let asked = show(ui, Input { method: Some("iaa"), found: found.as_deref(), refusal, has_ranges });
+            let asked =
+                show(ui, Input { method: Some("iaa"), found: found.as_deref(), refusal, stale: false, has_ranges });
             assert!(asked.is_empty());
         });
         panel.run();

@@ -1,4 +1,4 @@
-//! `apertura bounds`: what no estimator can beat, for any element layout.
+//! `apertura bounds`: what no unbiased estimator can beat, for any element layout.
 
 mod chart;
 mod report;
@@ -6,7 +6,7 @@ mod report;
 use super::arguments::whole;
 use super::figure::{save, save_bitmap, save_numbers};
 use super::{CommandError, print};
-use crate::bounds::{Ambiguity, PositionBound, ambiguity, cramer_rao, cut, lobes, noise_variance};
+use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
 use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::scene::Reflector;
@@ -15,9 +15,9 @@ use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
 use report::{Bound, BoundRow, LayoutReport, Report, columns_to_cos};
 use std::path::PathBuf;
 
-/// Bound the error of any position estimate, and show which places sound alike, for several element layouts
+/// Bound the error of any unbiased position estimate, and show which places sound alike, for several element layouts
 ///
-/// Prints the Cramer-Rao bound of one reflector, alone and with a second one beside it, and the lobes of the ambiguity function along
+/// Prints the Cramer-Rao bound of one reflector's place and amplitude, alone and with a second one beside it, and the lobes of the ambiguity function along
 /// cos(theta). Angles are in columns of the whole array's map, 1/512 of cos(theta). With -o DIR the bound is drawn to bounds.svg and
 /// the ambiguity function over range and cos(theta) to ambiguity.png; with --monte-carlo the errors that the Newton search makes to
 /// monte-carlo.svg; and all numbers are written to bounds.json.
@@ -51,6 +51,10 @@ pub struct Args {
     #[arg(long, value_name = "DB,..", value_delimiter = ',', default_value = "-10,-5,0,5,10,20,30,40", value_parser = decibels,
           allow_hyphen_values = true)]
     snr: Vec<Decibels>,
+
+    /// Also bound it where the phase between the ends is unknown: one complex gain for the elements of either half of each layout
+    #[arg(long)]
+    gain_per_end: bool,
 
     /// Also let the Newton search place the reflector in this many draws of noise at every ratio
     #[arg(long, value_name = "N", value_parser = whole(1..=100_000u64))]
@@ -161,15 +165,16 @@ impl Args {
         other: Reflector,
         centre: Polar,
     ) -> LayoutReport {
-        let bound = |reflectors: &[Reflector], snr| {
+        let bound = |reflectors: &[Reflector], snr, gains| {
             let variance = noise_variance(radar, layout, &reflector, snr);
             let of_first = |bounds: Vec<PositionBound>| bounds.first().map(|b| Bound::of(radar, b));
-            cramer_rao(radar, layout, reflectors, variance).ok().and_then(of_first)
+            cramer_rao_of(radar, layout, reflectors, variance, gains).ok().and_then(of_first)
         };
         let rows = self.snr.iter().map(|&snr| BoundRow {
             snr_db: snr.0,
-            alone: bound(&[reflector], snr),
-            beside_another: bound(&[reflector, other], snr),
+            alone: bound(&[reflector], snr, Gains::One),
+            beside_another: bound(&[reflector, other], snr, Gains::One),
+            gain_per_end: if self.gain_per_end { bound(&[reflector], snr, Gains::PerEnd) } else { None },
         });
         let (cosines, likeness) = cut(radar, layout, centre, 4);
         LayoutReport {

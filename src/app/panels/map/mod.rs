@@ -191,9 +191,10 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     }
     if input.veil.is_none() {
         let pointer = response.hover_pos().filter(|_| input.numbers);
-        overlay::marks(inner, frame, &input.marks, pointer);
+        overlay::marks(inner, frame, input.marks.objects, pointer);
+        overlay::found(inner, frame, input.marks.found, input.stale);
         overlay::selected(inner, frame, input.scene, input.selection);
-        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame));
+        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame, pointer));
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }

@@ -86,8 +86,18 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
             let (found, numbers) = (&[], true);
             let (trails, cursor, error, snapshot_range_metres) = (&[], None, None, None);
             let radar = &radar;
-            let input =
-                Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error, numbers };
+            let input = Input {
+                radar,
+                snapshot_range_metres,
+                snap,
+                fields_of_view,
+                found,
+                found_stale: false,
+                trails,
+                cursor,
+                error,
+                numbers,
+            };
             _ = show(ui, input, editor, view);
         };
         state.0.add(crate::scene::Object::Point(crate::scene::Point::new(-12.0, y_metres)));
@@ -112,7 +122,18 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
         let (snap, fields_of_view, numbers) = (Snap::Off, false, true);
         let (radar, found, trails, cursor, error) = (&radar, &found, &[], None, None);
         let snapshot_range_metres = Some(15.0);
-        let input = Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error, numbers };
+        let input = Input {
+            radar,
+            snapshot_range_metres,
+            snap,
+            fields_of_view,
+            found,
+            found_stale: false,
+            trails,
+            cursor,
+            error,
+            numbers,
+        };
         _ = show(ui, input, editor, view);
     };
     let state = (Editor::new(Scene::default()), SceneView::default());
