@@ -1,11 +1,11 @@
 //! `apertura train`: trains a network by a recipe.
 
 use super::{CommandError, print};
+use crate::files::sha256;
 use crate::network::backend::Backend;
 use crate::network::live::Live;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
 use crate::network::run::{Origin, Progress, Run};
-use crate::network::sha256;
 use crate::network::students::Student;
 use crate::network::thesis::Thesis;
 use crate::network::train::train;

@@ -12,6 +12,7 @@ mod robustness;
 mod roc;
 pub mod rows;
 pub mod sets;
+mod shard;
 pub mod tables;
 pub mod trial;
 pub mod worsen;

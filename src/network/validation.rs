@@ -102,6 +102,7 @@ pub fn export<S: Student>(
         .metadata("network", S::NAME)
         .metadata("recipe", &recipe.name)
         .metadata("trainer", "apertura train")
+        .metadata("optimizer", recipe.optimizer.name())
         .metadata("seed", recipe.seed.to_string())
         .metadata("steps", progress.step.to_string())
         .metadata("maps_seen", progress.maps.to_string())

@@ -3,6 +3,8 @@
 //! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
+use crate::files::sha256;
+use crate::reconstruct::Weights;
 use burn::module::Module;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
 use serde::{Deserialize, Serialize};
@@ -27,6 +29,31 @@ impl Provenance {
     /// The detection threshold chosen on validation scenes, if the file names a valid one.
     pub fn eta(&self) -> Option<f32> {
         self.get("eta").parse().ok().filter(|eta| (0.0..=1.0).contains(eta))
+    }
+
+    /// The optimisers that trained the weights, in their order. Files that don't name them in `optimizer` are told by their trainer and by
+    /// the arguments of each part of the run; empty where neither says.
+    pub fn optimiser(&self) -> String {
+        let named = self.get("optimizer");
+        if !named.is_empty() {
+            return named.to_owned();
+        }
+        match self.get("trainer") {
+            trainer if trainer.contains("train_live.py") => "AdamW".to_owned(),
+            trainer if trainer.contains("train_thesis.py") => {
+                // Muon is chosen where a run starts, and stays.
+                let muon = self.get("parts").find("--muon");
+                let before = muon.map_or("", |at| &self.get("parts")[..at]).matches("\"arguments\"").count() > 1;
+                match (muon, before) {
+                    (None, _) => "AdamW".to_owned(),
+                    (Some(_), false) => "Muon".to_owned(),
+                    (Some(_), true) => "AdamW, then Muon".to_owned(),
+                }
+            }
+            // As the recipes of that time had it.
+            "apertura train" => if self.get("recipe") == "live" { "AdamW" } else { "SGD" }.to_owned(),
+            _ => String::new(),
+        }
     }
 }
 
@@ -206,6 +233,12 @@ impl<'a> WeightFile<'a> {
         let mut header = serde_json::to_vec(&header).map_err(not)?;
         header.resize(header.len().next_multiple_of(8), b' ');
         Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), self.data].concat())
+    }
+
+    /// What the weights are known by, whatever else the file says about itself.
+    pub fn weights(&self) -> Weights {
+        let sha256 = sha256::of_pieces([self.data]);
+        Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser() }
     }
 
     /// Every 32-bit value in the file, whatever tensor it belongs to.

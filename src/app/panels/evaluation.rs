@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_panel_of_the_window_has_room_for_every_column() {
-        let estimate = |mean, standard_error| Estimate { mean, standard_error };
+        let estimate = |mean, standard_error| Estimate { mean, standard_error, median: mean };
         let row = EvaluationRow {
             set: 3,
             method: "linear-prediction",

@@ -262,6 +262,7 @@ fn tables_of_rows() -> Reader {
         found: figure.map(|_| 2),
         merged: None,
         wrong_tooth: figure.map(|_| 1),
+        origin: None,
     };
     let mut file = Vec::new();
     write_rows(&mut file, &[row(0, None), row(1, Some(1e-3)), row(2, Some(0.75))]).unwrap();
