@@ -2,12 +2,12 @@
 
 use super::arguments::{real, whole};
 use super::{CommandError, print};
+use crate::files::sha256;
 use crate::network::backend::Backend;
 use crate::network::checkpoint;
 use crate::network::live::Live;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
 use crate::network::run::{Origin, Progress, Run};
-use crate::network::sha256;
 use crate::network::students::Student;
 use crate::network::thesis::Thesis;
 use crate::network::train::train;

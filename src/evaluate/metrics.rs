@@ -29,6 +29,13 @@ pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
     target.lambda.iter().zip(&output.lambda).map(|(t, o)| f64::from(t - o).powi(2)).sum()
 }
 
+/// A threshold as it is shown: with every digit it has, so that whoever types it gets the same P_D and P_FA, and with two at least.
+pub fn eta_text(eta: f32) -> String {
+    let exact = eta.to_string();
+    let decimals = exact.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if decimals < 2 { format!("{eta:.2}") } else { exact }
+}
+
 /// (P_D, P_FA) of `output > eta` against `target > 0.9`; P_D is `None` without target cells.
 pub fn detection_rates(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> (Option<f64>, f64) {
     let (mut hits, mut targets, mut alarms, mut others) = (0u64, 0u64, 0u64, 0u64);
@@ -64,5 +71,12 @@ mod tests {
     fn no_target_cells_give_no_detection_rate() {
         let flat = RangeAngleMap { lambda: ndarray::Array2::zeros((2, 2)) };
         assert_eq!(detection_rates(&flat, &flat, 0.5), (None, 0.0));
+    }
+
+    #[test]
+    fn a_shown_threshold_is_read_back_as_it_is() {
+        for (eta, text) in [(0.9, "0.90"), (1.0, "1.00"), (0.845, "0.845"), (0.763_194_2, "0.7631942")] {
+            assert_eq!((eta_text(eta).as_str(), eta_text(eta).parse()), (text, Ok(eta)));
+        }
     }
 }

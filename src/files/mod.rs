@@ -5,6 +5,7 @@ pub mod kind;
 pub mod memory;
 pub mod npy;
 pub mod npz;
+pub mod sha256;
 
 use std::fs::{File, Permissions};
 use std::io::{self, BufWriter, Read, Write};

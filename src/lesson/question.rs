@@ -3,7 +3,7 @@
 use super::object_number::ObjectNumber;
 use super::quantity::Quantity;
 use super::stage::{Cell, MapName, Stage};
-use crate::evaluate::{TARGET_ETA, detection_rates};
+use crate::evaluate::{TARGET_ETA, detection_rates, eta_text};
 use serde::Deserialize;
 
 /// A question with what is said of a right and of a wrong answer.
@@ -195,7 +195,8 @@ impl Question {
                 (
                     eta >= low && eta < high,
                     format!(
-                        "{eta:.2} {lost} and lets {through:.2} % of the dark cells through; {low:.2} to {high:.2} does"
+                        "{} {lost} and lets {through:.2} % of the dark cells through; {low:.2} to {high:.2} does",
+                        eta_text(eta)
                     ),
                 )
             }

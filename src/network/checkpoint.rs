@@ -2,8 +2,8 @@
 
 use super::recipe::Recipe;
 use super::run::{Progress, TrainError, file};
-use super::sha256;
 use super::students::Student;
+use crate::files::sha256;
 use burn::optim::ModuleOptimizer;
 use burn::store::{BurnpackStore, ModuleSnapshot};
 use std::fs;

@@ -6,7 +6,7 @@
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`unet`] | the thesis' failing U-Net |
 //! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |
-//! | [`run`], [`train`], [`checkpoint`], [`sha256`] | what a run is and what it was made of, how it goes, and going on with it |
+//! | [`run`], [`train`], [`checkpoint`] | what a run is and what it was made of, how it goes, and going on with it |
 //! | [`validation`] | what the trained network is worth, and its weight file |
 //! | [`backend`] | which of burn's backends computes |
 //! | [`weights`], [`pytorch`] | weight files: checking, loading, what they say about themselves |
@@ -19,7 +19,6 @@ pub mod losses;
 pub mod pytorch;
 pub mod recipe;
 pub mod run;
-pub mod sha256;
 pub mod students;
 pub mod thesis;
 pub mod thesis_method;

@@ -9,7 +9,7 @@ use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
@@ -30,6 +30,7 @@ pub struct ThesisMethod {
     eta: f32,
     name: &'static str,
     description: &'static str,
+    weights: Weights,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -54,6 +55,7 @@ impl ThesisMethod {
             eta: file.provenance.eta().unwrap_or(THESIS_ETA),
             name,
             description,
+            weights: file.weights(),
             provenance: file.provenance,
         })
     }
@@ -73,6 +75,10 @@ impl Reconstructor for ThesisMethod {
 
     fn reads_eta(&self) -> bool {
         true
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        Some(self.weights.clone())
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -105,6 +111,7 @@ pub struct UnetMethod {
     network: Unet,
     config: UnetConfig,
     device: Device,
+    weights: Weights,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -119,7 +126,7 @@ impl UnetMethod {
         let config = UnetConfig::default();
         let mut network = Unet::new(&config, &device);
         file.load_into(&mut network, |_| false)?;
-        Ok(UnetMethod { network, config, device, provenance: file.provenance })
+        Ok(UnetMethod { network, config, device, weights: file.weights(), provenance: file.provenance })
     }
 }
 
@@ -135,6 +142,10 @@ impl Reconstructor for UnetMethod {
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         check_radar(Unet::NAME, radar)
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        Some(self.weights.clone())
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -4,6 +4,8 @@
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
 use crate::files::kind::kind_of;
+use crate::files::sha256;
+use crate::reconstruct::Weights;
 use burn::module::Module;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
 use serde::{Deserialize, Serialize};
@@ -231,6 +233,12 @@ impl<'a> WeightFile<'a> {
         let mut header = serde_json::to_vec(&header).map_err(not)?;
         header.resize(header.len().next_multiple_of(8), b' ');
         Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), self.data].concat())
+    }
+
+    /// What the weights are known by, whatever else the file says about itself.
+    pub fn weights(&self) -> Weights {
+        let sha256 = sha256::of_pieces([self.data]);
+        Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }
     }
 
     /// Every 32-bit value in the file, whatever tensor it belongs to.

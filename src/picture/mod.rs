@@ -24,7 +24,7 @@ pub use directions::{Curve, Directions, Mark};
 pub use png::{encode_png, is_our_png};
 pub use recording::{compose_recording, maps_of};
 
-use crate::evaluate::{Metrics, TARGET_ETA};
+use crate::evaluate::{Metrics, TARGET_ETA, eta_text};
 use crate::maps::RangeAngleMap;
 use crate::radar::{End, Radar};
 use crate::scene::Scene;
@@ -143,7 +143,7 @@ impl Panels<'_> {
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),
         ];
         let output = lambda(format!("Output: {}", self.method), self.output);
-        let title = format!("Output > {:.2}", self.eta);
+        let title = format!("Output > {}", eta_text(self.eta));
         let Some(target) = self.target else {
             panels.extend([output, MapPanel { title, cells: Cells::Above(self.output, self.eta) }]);
             return panels;

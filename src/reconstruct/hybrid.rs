@@ -3,7 +3,7 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::nomp::{Found, Settings, find, find_from};
-use super::reconstructor::{About, Reconstructor};
+use super::reconstructor::{About, Reconstructor, Weights};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
@@ -72,6 +72,10 @@ impl Reconstructor for Hybrid {
         self.filled_in(&found, radar, ends, request)
     }
 
+    fn weights(&self) -> Option<Weights> {
+        self.fallback.weights()
+    }
+
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
         Some(Arc::new(Following { hybrid: self.clone(), last: Mutex::new(None) }))
     }
@@ -91,6 +95,10 @@ impl Reconstructor for Following {
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         self.hybrid.check_radar(radar)
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        self.hybrid.weights()
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -32,5 +32,5 @@ pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
 pub use hybrid::{Hybrid, on_one_scale};
-pub use reconstructor::{About, Reconstructor, check_ends};
+pub use reconstructor::{About, Reconstructor, Weights, check_ends};
 pub use rows::{BARTLETT, CAPON, LINEAR_PREDICTION, MUSIC, ROOT_MUSIC, RowMethod};

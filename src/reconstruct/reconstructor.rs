@@ -23,6 +23,15 @@ pub struct About {
     pub eta: f32,
 }
 
+/// What the learned weights of a method are known by.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Weights {
+    /// The first 12 hexadecimal digits of the SHA-256 of their values.
+    pub sha256: String,
+    /// The optimisers that trained them, in their order; empty where that isn't recorded.
+    pub optimiser: String,
+}
+
 /// Anything that turns the samples of the two ends into a map of the whole array.
 ///
 /// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
@@ -77,6 +86,11 @@ pub trait Reconstructor: Send + Sync {
     /// The same method with a memory, where that makes it faster on samples that change a little at a time: asked with
     /// [`Request::may_follow`] it starts from its last answer, and otherwise it answers as without a memory.
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
+        None
+    }
+
+    /// The learned weights that its answers depend on, if any.
+    fn weights(&self) -> Option<Weights> {
         None
     }
 

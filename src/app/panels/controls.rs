@@ -4,6 +4,7 @@ use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
+use crate::evaluate::eta_text;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
@@ -146,7 +147,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
                 let back = match method.reads_eta() {
                     true => "Back to the η that fits each output".to_owned(),
-                    false => format!("Back to the method's own η = {}", method.eta()),
+                    false => format!("Back to the method's own η = {}", eta_text(method.eta())),
                 };
                 if reset.on_hover_text(back).clicked() {
                     asked.push(Command::SetMethodEta(method.name(), None));
@@ -165,15 +166,15 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     figures(ui, method, &input.run, asked);
 }
 
-/// The new eta, if it looks any different: the field writes back what it shows when the focus only passes through.
+/// The new eta, if it is another.
 fn moved(before: f32, after: f32) -> Option<f32> {
-    let shown = |eta: f32| (100.0 * eta).round();
-    (shown(before) != shown(after)).then_some(after)
+    (before != after).then_some(after)
 }
 
-/// A slider that shows two decimals; what nobody moves keeps all of its own.
+/// A slider that shows every digit: the field writes back what it shows when the focus only passes through, and P_FA is of what is shown.
 fn threshold(eta: &mut f32) -> Slider<'_> {
-    Slider::new(eta, 0.0..=1.0).fixed_decimals(2).clamping(SliderClamping::Edits)
+    let slider = Slider::new(eta, 0.0..=1.0).clamping(SliderClamping::Edits);
+    slider.custom_formatter(|eta, _| eta_text(eta as f32)).custom_parser(|text| text.trim().parse().ok())
 }
 
 /// P_D, P_FA and SE, or why there are none.

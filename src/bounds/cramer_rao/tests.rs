@@ -10,20 +10,53 @@ fn alone(layout: &Layout, r: Reflector) -> PositionBound {
     cramer_rao(&radar, layout, &[r], noise_variance(&radar, layout, &r, Decibels(0.0))).unwrap()[0]
 }
 
+/// Bounds on range, metres, and on cos(theta) at 0 dB a sample, by differences of the samples as the formula of a point has them, each
+/// taken orthogonal to the samples themselves: what stands along them belongs to the unknown gain.
+fn by_differences(radar: &Radar, layout: &Layout, range: f64, cos: f64) -> [f64; 2] {
+    let samples = |range: f64, cos: f64| -> Vec<Complex64> {
+        let (x, y) = (range * cos, range * (1.0 - cos * cos).sqrt());
+        let of_element = |element: &f64| {
+            let distance = (x - element).hypot(y);
+            let amplitude = radar.transmit_power_watts / (distance * distance);
+            (0..radar.samples).map(move |n| {
+                let beat = n as f64 / radar.samples as f64 * distance / radar.range_resolution_metres();
+                Complex64::from_polar(amplitude, TAU * (beat - distance / radar.wavelength_metres()))
+            })
+        };
+        layout.x_metres.iter().flat_map(of_element).collect()
+    };
+    let product = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a.conj() * b).sum::<Complex64>();
+    let own = samples(range, cos);
+    let power = product(&own, &own).re;
+    let step = 1e-6;
+    let change = |after: Vec<Complex64>, before: Vec<Complex64>| -> Vec<Complex64> {
+        let change: Vec<_> = after.iter().zip(&before).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+        let along = product(&own, &change) / power;
+        change.iter().zip(&own).map(|(c, o)| c - o * along).collect()
+    };
+    let by_range = change(samples(range + step, cos), samples(range - step, cos));
+    let by_cos = change(samples(range, cos + step), samples(range, cos - step));
+    // At 0 dB the noise has the mean power of a sample.
+    let weight = 2.0 * own.len() as f64 / power;
+    let [rr, rc, cc] =
+        [(&by_range, &by_range), (&by_range, &by_cos), (&by_cos, &by_cos)].map(|(a, b)| weight * product(a, b).re);
+    let determinant = rr * cc - rc * rc;
+    [(cc / determinant).sqrt(), (rr / determinant).sqrt()]
+}
+
 #[test]
-fn one_point_at_0_db_a_sample() {
+fn the_bound_is_that_of_the_samples_differences() {
     let radar = Radar::default();
-    let bin = 2.0 / radar.elements as f64;
-    // Against figures of an independent program, given to this many digits.
-    for (layout, millimetres, bins, digits) in [
-        (Layout::two_ends(&radar), 0.26, 0.0021, 0.03),
-        (Layout::one_end(&radar, End::First), 0.92, 0.5, 0.15),
-        (Layout::uniform(&radar), 0.04, 0.0006, 0.1),
-    ] {
+    for layout in [Layout::two_ends(&radar), Layout::one_end(&radar, End::First), Layout::uniform(&radar)] {
+        let [range_metres, cos_theta] = by_differences(&radar, &layout, 20.0, 0.3);
         let bound = alone(&layout, at(20.0, 0.3));
-        assert!((bound.range_metres * 1e3 / millimetres - 1.0).abs() < digits, "{bound:?}");
-        assert!((bound.cos_theta / bin / bins - 1.0).abs() < digits, "{bound:?}");
+        assert!((bound.range_metres / range_metres - 1.0).abs() < 1e-3, "{bound:?}, {range_metres}");
+        assert!((bound.cos_theta / cos_theta - 1.0).abs() < 1e-3, "{bound:?}, {cos_theta}");
     }
+    // Figures of an independent program, to the digits that it gave.
+    let two_ends = alone(&Layout::two_ends(&radar), at(20.0, 0.3));
+    assert_eq!(format!("{:.2} mm", 1e3 * two_ends.range_metres), "0.26 mm");
+    assert_eq!(format!("{:.4} columns", 512.0 * two_ends.cos_theta), "0.0021 columns");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
 use ndarray::Array2;
@@ -29,6 +29,7 @@ pub struct LiveMethod {
     /// where rayon hands it another caller's work, take others.
     idle: Mutex<Vec<Scratch>>,
     eta: f32,
+    weights: Weights,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -44,6 +45,7 @@ impl LiveMethod {
             extractor: OnceLock::new(),
             idle: Mutex::default(),
             eta: file.provenance.eta().unwrap_or(0.8),
+            weights: file.weights(),
             provenance: file.provenance,
         })
     }
@@ -117,6 +119,10 @@ impl Reconstructor for LiveMethod {
 
     fn reads_eta(&self) -> bool {
         true
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        Some(self.weights.clone())
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

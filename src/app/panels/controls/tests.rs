@@ -48,11 +48,11 @@ fn a_click_is_one_command_and_nothing_else_changes() {
 
 #[test]
 fn the_focus_passes_through_a_threshold_without_rounding_it() {
-    assert_eq!((moved(0.851, 0.85), moved(0.851, 0.86)), (None, Some(0.86)));
-    let settings = Settings { target_eta: 0.851, ..Settings::default() };
+    assert_eq!((moved(0.851, 0.851), moved(0.851, 0.85)), (None, Some(0.85)));
+    let settings = Settings { target_eta: 0.851_234_5, ..Settings::default() };
     let (radar, capon) = (Radar::default(), CAPON);
     let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let (eta, run) = (0.123, Run::default());
+        let (eta, run) = (0.763_194_2, Run::default());
         let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
         let (is_recorded, settings, radar) = (false, &settings, &radar);
         let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, run };
@@ -64,6 +64,8 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
         controls.run();
     }
     assert!(controls.state().is_empty(), "{:?}", controls.state());
+    let shown = seen::texts(controls.output());
+    assert!(shown.iter().any(|t| t.text == "0.7631942"), "every digit, so that P_FA can be had again: {shown:?}");
 }
 
 #[test]

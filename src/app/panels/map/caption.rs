@@ -2,7 +2,7 @@
 
 use crate::app::state::MapKind;
 use crate::app::widgets::numbers::percent;
-use crate::evaluate::Metrics;
+use crate::evaluate::{Metrics, eta_text};
 
 /// Figures for a map's title bar.
 pub struct Caption {
@@ -26,13 +26,13 @@ pub struct Caption {
 pub fn caption(input: Caption) -> Option<String> {
     let updating = if input.updating { "(updating) " } else { "" };
     let text = match input.kind {
-        MapKind::TargetAbove => format!("η' = {:.2} {updating}", input.target_eta),
+        MapKind::TargetAbove => format!("η' = {} {updating}", eta_text(input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let figures = input.metrics.map_or_else(String::new, |m| {
                 let detection = m.detection.map_or("–".to_owned(), percent);
                 format!("P_D {detection} · P_FA {} · ", percent(m.false_alarm))
             });
-            format!("{figures}η = {:.2} {updating}", input.output_eta)
+            format!("{figures}η = {} {updating}", eta_text(input.output_eta))
         }
         MapKind::Output | MapKind::Second => format!("{} {updating}", input.method.unwrap_or_default()),
         MapKind::Difference | MapKind::SecondDifference => {

@@ -4,6 +4,7 @@ use super::frame::Frame;
 use crate::app::jobs::{Fates, Verdict};
 use crate::app::widgets::axes;
 use crate::app::widgets::theme::MARK_EDGE;
+use crate::evaluate::eta_text;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
 use crate::radar::counted;
@@ -187,10 +188,11 @@ impl Kinds<'_> {
     /// Which object it is, what became of it, and why that is said.
     fn why(&self, verdict: &Verdict) -> String {
         let Fates { scene, failures, eta, .. } = self.fates;
+        let eta = eta_text(*eta);
         let cells = verdict.cells;
         let Some(index) = verdict.object else {
             return format!(
-                "ghost: {} above η = {eta:.2}\nwhere the scene has nothing",
+                "ghost: {} above η = {eta}\nwhere the scene has nothing",
                 counted(cells, "cell", "cells")
             );
         };
@@ -199,7 +201,7 @@ impl Kinds<'_> {
             format!("{kind} {}", index + 1)
         };
         let part = failures.covered.get(index).copied().unwrap_or(0.0);
-        let detected = format!("{:.0} % of its {cells} cells exceed η = {eta:.2}", 100.0 * part);
+        let detected = format!("{:.0} % of its {cells} cells exceed η = {eta}", 100.0 * part);
         let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
             Fate::Found => detected,
             Fate::Missed => format!("{detected}: less than half"),
