@@ -1,5 +1,6 @@
 //! The scene's canvas: what the pointer does in it.
 
+mod beyond;
 mod canvas;
 mod disturbances;
 mod trail;
@@ -33,8 +34,6 @@ pub struct Input<'a> {
     pub cursor: Option<Cursor>,
     /// Why the scene can't be computed.
     pub error: Option<&'a str>,
-    /// Whether ranges, angles and the scale are told.
-    pub numbers: bool,
 }
 
 /// Draws the canvas. Drags and selections go straight to the editor: as commands they would lag a frame.
@@ -53,7 +52,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
-    canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
+    canvas::ground(&painter, canvas, input.fields_of_view);
     disturbances::draw(&painter, canvas, editor.scene());
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
@@ -71,14 +70,14 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         (None, Some(cursor)) => canvas::cursor(&painter, canvas, &cursor),
         (None, None) => {}
     }
-    if input.numbers {
-        canvas::scale_bar(&painter, canvas);
-    }
+    canvas::scale_bar(&painter, canvas);
+    beyond::warn(ui, &painter, canvas, editor.scene());
     say(ui, &painter, rect, editor.scene().objects.is_empty() && input.found.is_empty(), input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
             (Grip::Body, Some(_)) => CursorIcon::Grabbing,
-            (Grip::Body, None) => CursorIcon::Grab,
+            (Grip::Body | Grip::Turn, None) => CursorIcon::Grab,
+            (Grip::Turn, Some(_)) => CursorIcon::Grabbing,
             (Grip::SpreadX, _) => CursorIcon::ResizeHorizontal,
             (Grip::NearEnd | Grip::FarEnd, _) => CursorIcon::Move,
             _ => CursorIcon::ResizeVertical,
