@@ -48,7 +48,7 @@ fn texts(s: &Session) -> Vec<(String, f32)> {
 }
 
 #[test]
-fn both_presentations_keep_axes_and_enlarge_them() {
+fn both_presentations_enlarge_the_axes() {
     for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
         let mut s = Session::start();
         let tallest = |s: &Session, text: &str| {

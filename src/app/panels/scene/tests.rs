@@ -190,7 +190,7 @@ fn the_spokes_are_labelled_from_straight_ahead() {
 }
 
 #[test]
-fn what_stands_beyond_the_maximum_range_has_a_sign_and_a_sentence() {
+fn what_stands_beyond_the_maximum_range_is_warned_of() {
     let sentence = "point 2 stands beyond the maximum range of 38.4 m: the maps show it at 21.6 m.";
     let mut scene = panel(Scene::of_points([(0.0, 20.0), (0.0, 60.0)]));
     let _told = scene.get_by_label(sentence);
