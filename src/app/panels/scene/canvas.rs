@@ -42,8 +42,8 @@ impl Canvas<'_> {
 }
 
 /// Everything that doesn't move: ground, rings, spokes, fields of view, array.
-pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool) {
-    let Canvas { rect, view, radar, extent_metres: extent, inks } = canvas;
+pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbers: bool) {
+    let Canvas { rect, view, radar, extent_metres: extent, mut inks } = canvas;
     painter.rect_filled(rect, 0.0, inks.beyond);
     let origin = Place::new(0.0, 0.0);
     painter.add(Shape::convex_polygon(half_disc(view, rect, origin, extent), inks.ground, Stroke::NONE));
@@ -52,9 +52,13 @@ pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool) {
             field_of_view(painter, canvas, end, colour);
         }
     }
-    rings(painter, canvas);
+    let ink = inks.grid_text;
+    if !numbers {
+        inks.grid_text = Color32::TRANSPARENT;
+    }
+    rings(painter, Canvas { inks, ..canvas });
     let edge = half_disc(view, rect, origin, extent);
-    painter.add(Shape::line(edge, Stroke::new(1.5, inks.grid_text)));
+    painter.add(Shape::line(edge, Stroke::new(1.5, ink)));
     array(radar, view, painter, rect, inks);
 }
 

@@ -34,6 +34,8 @@ pub struct Input<'a> {
     pub cursor: Option<Cursor>,
     /// Why the scene can't be computed.
     pub error: Option<&'a str>,
+    /// Whether ranges, angles and the scale are told.
+    pub numbers: bool,
 }
 
 /// Draws the canvas. Drags and selections go straight to the editor: as commands they would lag a frame.
@@ -52,7 +54,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
-    canvas::ground(&painter, canvas, input.fields_of_view);
+    canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
     disturbances::draw(&painter, canvas, editor.scene());
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
@@ -70,8 +72,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         (None, Some(cursor)) => canvas::cursor(&painter, canvas, &cursor),
         (None, None) => {}
     }
-    canvas::scale_bar(&painter, canvas);
-    beyond::warn(ui, &painter, canvas, editor.scene());
+    if input.numbers {
+        canvas::scale_bar(&painter, canvas);
+        beyond::warn(ui, &painter, canvas, editor.scene());
+    }
     say(ui, &painter, rect, editor.scene().objects.is_empty() && input.found.is_empty(), input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {

@@ -22,6 +22,7 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
             trails: &[],
             cursor: None,
             error: Some("too far"),
+            numbers: true,
         };
         let commands = show(ui, input, &mut held.editor, &mut held.view);
         held.asked.extend(commands);
@@ -84,7 +85,17 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
             let (snap, fields_of_view) = (Snap::Off, false);
             let (found, trails, cursor, error, snapshot_range_metres) = (&[], &[], None, None, None);
             let radar = &radar;
-            let input = Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error };
+            let input = Input {
+                radar,
+                snapshot_range_metres,
+                snap,
+                fields_of_view,
+                found,
+                trails,
+                cursor,
+                error,
+                numbers: true,
+            };
             _ = show(ui, input, editor, view);
         };
         state.0.add(crate::scene::Object::Point(crate::scene::Point::new(-12.0, y_metres)));
@@ -109,7 +120,8 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
         let (snap, fields_of_view) = (Snap::Off, false);
         let (radar, found, trails, cursor, error) = (&radar, &found, &[], None, None);
         let snapshot_range_metres = Some(15.0);
-        let input = Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error };
+        let input =
+            Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error, numbers: true };
         _ = show(ui, input, editor, view);
     };
     let state = (Editor::new(Scene::default()), SceneView::default());
