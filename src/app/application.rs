@@ -112,7 +112,6 @@ impl App {
             failures: Default::default(),
             lesson: None,
             before_presenting: None,
-            without_numbers: false,
             progress: kept.progress,
             recent: kept.recent,
             dark: ctx.theme() == egui::Theme::Dark,
@@ -180,9 +179,7 @@ impl App {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let is_open = |panel| state.arrangement.is_open(panel);
         let mut commands = menu::show(ui, contents::menu_input(state, jobs, &is_open), &mut memory.menu);
-        if !state.without_numbers {
-            status_bar::show(ui, contents::status_input(state, jobs));
-        }
+        status_bar::show(ui, contents::status_input(state, jobs));
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
@@ -207,9 +204,9 @@ impl App {
         }
     }
 
-    /// Large type in a presentation; that of before after it.
+    /// Large type while a presentation or a lesson has the whole screen; that of before after it.
     fn update_type(&mut self, ctx: &egui::Context) {
-        match (self.state.without_numbers, self.zoom_before) {
+        match (self.state.is_presenting(), self.zoom_before) {
             (true, None) => {
                 self.zoom_before = Some(ctx.zoom_factor());
                 ctx.set_zoom_factor((PRESENTATION_ZOOM * ctx.zoom_factor()).min(3.0));
@@ -298,7 +295,9 @@ impl eframe::App for App {
         self.update_title(&ctx);
         self.update_full_screen(&ctx);
         self.update_type(&ctx);
-        messages::show(&ctx, &mut self.state.notices);
+        if !self.jobs.hides_messages() {
+            messages::show(&ctx, &mut self.state.notices);
+        }
         focus_ring::draw(&ctx);
         self.write_frame_log(frame.info().cpu_usage);
     }

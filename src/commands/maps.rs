@@ -4,16 +4,16 @@ use super::arguments::{self, FloorArgs};
 use super::input::Input;
 use super::{CommandError, print};
 use crate::files::write_bytes;
-use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
+use crate::maps::{Normalisation, RangeAngleMap};
 use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
-use crate::radar::Carrier;
-use crate::reconstruct::Reconstructor;
+use crate::radar::{Carrier, Radar};
+use crate::reconstruct::{Reconstructor, Request};
 use crate::recording::explain::explain;
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
-use crate::signal;
+use crate::signal::{self, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,7 +22,14 @@ use std::sync::Arc;
 /// The archive holds all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
 /// (f64 [4, 512, 1024], the network's input): the keys of the thesis author's program. That of a recording lacks what is not known:
-/// positions always, polar_full where the two ends alone were recorded.
+/// positions always, polar_full where the two ends alone were recorded. With --method it also holds output (f32 [1, 512, 1024],
+/// Lambda as that method estimates it), as the window's "Export maps" does.
+///
+/// Beside them stand the axes: range_metres (f64 [512]), cos_theta (f64 [1024], 0 straight ahead, 1 along the array to the right),
+/// element_x_metres (f64 [1024]; sub0 has the first of them, sub1 the last); the weights of the two transforms: sample_window
+/// (f64 [512]), element_window (f64 [1024]); and each of the radar's constants as a number: carrier_hz, bandwidth_hz,
+/// element_spacing_metres, transmit_power_watts, carrier_turns_per_wavelength (-1 one-way, +2 two-way), elements, end_elements,
+/// samples. format_version is 2; archives of version 1 have neither axes nor constants, and are read as before.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene (.toml or .npz) or recording (.toml with [recording]) to look at
@@ -39,11 +46,11 @@ pub struct Args {
     #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way")]
     carrier: Option<Carrier>,
 
-    /// Picture: how decades become Lambda, min-max (the thesis) or db=RANGE (below the peak)
+    /// Picture and output: how decades become Lambda, min-max (the thesis) or db=RANGE (below the peak)
     #[arg(long, value_name = "min-max|db=RANGE", default_value_t = Normalisation::MinMax)]
     normalisation: Normalisation,
 
-    /// Picture: reconstruction to show as the output [default: the best at hand]
+    /// Reconstruction to show as the output [default: the best at hand]; in an archive there is an output only with --method
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
@@ -82,7 +89,11 @@ impl Args {
             .map_err(CommandError::on(&self.input))?;
         match output {
             Output::Archive => {
-                write_maps(&self.output, &radar, &scene, &signal, None).map_err(CommandError::on(&self.output))
+                let request =
+                    Request { floor: self.floor.floor, normalisation: self.normalisation, ..Request::default() };
+                let output = self.estimate(&radar, &signal.two_ends(&radar), &request)?;
+                write_maps(&self.output, &radar, &scene, &signal, output.as_ref())
+                    .map_err(CommandError::on(&self.output))
             }
             Output::Picture(format) => {
                 let method = self.method(methods::preferred)?;
@@ -105,7 +116,12 @@ impl Args {
         match output {
             Output::Archive => {
                 let (_, full) = maps_of(&recording);
-                write_recorded_maps(&self.output, &recording.radar, &recording.two_ends(), full.as_ref(), None)
+                let (radar, ends) = (&recording.radar, recording.two_ends());
+                let (floor, normalisation) = (recording::FLOOR, self.normalisation);
+                let snapshot_range_metres = recording.range_metres;
+                let request = Request { floor, normalisation, snapshot_range_metres, ..Request::default() };
+                let output = self.estimate(radar, &ends, &request)?;
+                write_recorded_maps(&self.output, radar, &ends, full.as_ref(), output.as_ref())
                     .map_err(CommandError::on(&self.output))
             }
             Output::Picture(format) => {
@@ -115,6 +131,19 @@ impl Args {
                 self.write(&bytes)
             }
         }
+    }
+
+    /// What the method asked for makes of the two ends; `None` where none was asked for.
+    fn estimate(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<Option<RangeAngleMap>, CommandError> {
+        let Some(name) = self.method.as_deref() else { return Ok(None) };
+        let method = methods::by_name(name).map_err(CommandError::failed)?;
+        let answer = method.reconstruct(radar, ends, request).map_err(CommandError::on(&self.input))?;
+        Ok(Some(answer.lambda))
     }
 
     fn method(&self, usual: impl FnOnce() -> Arc<dyn Reconstructor>) -> Result<Arc<dyn Reconstructor>, CommandError> {

@@ -7,6 +7,7 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, write_npz};
+use crate::maps::archive::read_radar;
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
@@ -22,7 +23,7 @@ use std::time::Instant;
 /// Estimate the whole array's map from the samples of the two ends
 ///
 /// IN holds sub0 and sub1 (complex128 [512, 12], any gain, or [samples, elements of an end] of another radar); for the thesis'
-/// networks it may hold polar_partial_mag_phase (f64 [4, 512, 1024]) instead. OUT gets net_output (f32 [512, 1024] or
+/// networks it may hold polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` brings its radar along. OUT gets net_output (f32 [512, 1024] or
 /// [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and milliseconds; and of what the method
 /// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told) and found_db
 /// (relative to the strongest): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in place of IN.npz brings
@@ -95,11 +96,16 @@ impl Args {
             let (radar, range_metres) = (recording.radar, recording.range_metres);
             return Ok(Input { radar, range_metres, floor: recording::FLOOR, samples });
         }
-        let (radar, range_metres) = self.radar.load()?;
+        let (asked, range_metres) = self.radar.load()?;
         let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
         if !archive.has("sub0") && !archive.has("polar_partial_mag_phase") && archive.has("all_point_x") {
             return Err(self.is_scene());
         }
+        let own = match self.radar.is_given() {
+            true => None,
+            false => read_radar(&mut archive).map_err(CommandError::on(&self.input))?,
+        };
+        let radar = own.unwrap_or(asked);
         let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
         let samples = if ready_made {
             let array = archive.reals::<Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;

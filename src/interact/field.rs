@@ -10,7 +10,7 @@ pub enum Coordinates {
     /// x and y, metres.
     #[default]
     Cartesian,
-    /// Range, and direction as cos(theta) or in degrees.
+    /// Range, and direction in degrees from straight ahead or as cos(theta).
     Polar,
 }
 
@@ -25,11 +25,11 @@ pub enum Field {
     Range,
     /// Cosine of the angle between the array's axis and the direction from its middle.
     CosTheta,
-    /// That angle in degrees: 0 along the array, 90 straight ahead, negative behind.
-    ThetaDegrees,
+    /// The direction in degrees: 0 straight ahead, positive to the right, beyond -90 and 90 behind.
+    AngleDegrees,
     /// Distance between a line's neighbouring reflectors, metres.
     Spacing,
-    /// Where a line leads, degrees.
+    /// Where a line leads, degrees: 0 straight ahead, 90 along the array to the right.
     Direction,
     /// Standard deviation of a cluster along x, metres.
     SpreadX,
@@ -77,7 +77,7 @@ impl Field {
     fn of_place(coordinates: Coordinates) -> &'static [Field] {
         match coordinates {
             Coordinates::Cartesian => &[Field::X, Field::Y],
-            Coordinates::Polar => &[Field::Range, Field::CosTheta, Field::ThetaDegrees],
+            Coordinates::Polar => &[Field::Range, Field::AngleDegrees, Field::CosTheta],
         }
     }
 
@@ -104,16 +104,10 @@ impl Field {
                     0.0
                 }
             }
-            (Field::ThetaDegrees, _) => {
-                if range > 0.0 {
-                    y.atan2(x).to_degrees()
-                } else {
-                    90.0
-                }
-            }
+            (Field::AngleDegrees, _) => x.atan2(y).to_degrees(),
             (Field::Reflectivity, _) => object.reflectivity(),
             (Field::Spacing, Object::Line(l)) => l.spacing_metres,
-            (Field::Direction, Object::Line(l)) => l.direction_degrees,
+            (Field::Direction, Object::Line(l)) => 90.0 - l.direction_degrees,
             (Field::Count, Object::Line(l)) => l.count as f64,
             (Field::Count, Object::Gaussian(g)) => g.count as f64,
             (Field::SpreadX, Object::Gaussian(g)) => g.x_std_metres,
@@ -128,10 +122,10 @@ impl Field {
         match (self, &mut *object) {
             (Field::X, _) => *object.anchor_mut()[0] = value,
             (Field::Y, _) => *object.anchor_mut()[1] = value,
-            (Field::Range | Field::CosTheta | Field::ThetaDegrees, _) => self.set_polar(object, value),
+            (Field::Range | Field::CosTheta | Field::AngleDegrees, _) => self.set_polar(object, value),
             (Field::Reflectivity, _) => object.set_reflectivity(value),
             (Field::Spacing, Object::Line(l)) => l.spacing_metres = value,
-            (Field::Direction, Object::Line(l)) => l.direction_degrees = value,
+            (Field::Direction, Object::Line(l)) => l.direction_degrees = 90.0 - value,
             (Field::Count, Object::Line(l)) => l.count = value.round().max(1.0) as usize,
             (Field::Count, Object::Gaussian(g)) => g.count = value.round().max(1.0) as usize,
             (Field::SpreadX, Object::Gaussian(g)) => g.x_std_metres = value.max(0.0),
@@ -153,9 +147,8 @@ impl Field {
                 (range * cos, (range * (1.0 - cos * cos).sqrt()).copysign(*y))
             }
             _ => {
-                // Counted from straight ahead, where sine and cosine are exact.
-                let (sin, cos) = (value - 90.0).to_radians().sin_cos();
-                (-range * sin, range * cos)
+                let (sin, cos) = value.to_radians().sin_cos();
+                (range * sin, range * cos)
             }
         };
     }
@@ -218,13 +211,26 @@ mod tests {
         Field::CosTheta.set(&mut p, 0.8);
         let [x, y] = p.anchor_metres();
         assert!((x - 8.0).abs() < 1e-12 && (y + 6.0).abs() < 1e-12, "behind stays behind: {x}, {y}");
-        Field::ThetaDegrees.set(&mut p, 90.0);
+        Field::AngleDegrees.set(&mut p, 0.0);
         assert_eq!(p.anchor_metres()[0], 0.0, "straight ahead is exact");
         Field::CosTheta.set(&mut p, 7.0);
         assert_eq!(p.anchor_metres()[1], 0.0, "no cosine is larger than 1");
         let mut origin = Object::Point(Point::new(0.0, 0.0));
         Field::Range.set(&mut origin, 5.0);
         assert_eq!(origin.anchor_metres(), [0.0, 5.0]);
+    }
+
+    #[test]
+    fn angles_are_counted_from_straight_ahead_to_the_right() {
+        let mut p = Object::Point(Point::new(3.0, 3.0));
+        assert!((Field::AngleDegrees.get(&p).unwrap() - 45.0).abs() < 1e-12);
+        Field::AngleDegrees.set(&mut p, -90.0);
+        assert!(p.anchor_metres()[0] < -4.2, "{p:?}");
+        let mut wall = Object::Line(Line::vertical(3.0, 4.0, 0.5, 5));
+        assert_eq!(Field::Direction.get(&wall), Some(0.0));
+        Field::Direction.set(&mut wall, 90.0);
+        let Object::Line(line) = &wall else { panic!() };
+        assert!((line.end_metres()[0] - 5.0).abs() < 1e-12, "it leads to the right: {line:?}");
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! The parts of an object that can be grabbed, and what dragging each of them means.
 //!
 //! ```text
-//!     o  far end: more or fewer reflectors, spacing kept; the line turns with it
+//!     ↻  turn: the line turns about its middle; length and number kept
+//!     |
+//!     o  far end: more or fewer reflectors; direction and spacing kept
 //!     :
 //!     :◇ spacing: reflectors move apart, their number kept            ┌───────┐
 //!     ●  body: moves the whole line                                   │   ●   ◇ spread in x
@@ -18,6 +20,9 @@ pub const MAX_LINE_COUNT: usize = 2000;
 /// How far beside its line the spacing's grip lies, in points of the view.
 const SPACING_GRIP_OFFSET_POINTS: f64 = 16.0;
 
+/// How far beyond the far end the grip lies that turns a line, in points of the view.
+const TURN_GRIP_OFFSET_POINTS: f64 = 26.0;
+
 /// Part of an object that can be grabbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Grip {
@@ -29,6 +34,8 @@ pub enum Grip {
     FarEnd,
     /// The spacing of a line.
     Spacing,
+    /// The direction of a line.
+    Turn,
     /// The standard deviation of a cluster along x.
     SpreadX,
     /// The standard deviation of a cluster along y.
@@ -43,6 +50,7 @@ impl Grip {
             Grip::NearEnd => "move the near end: more or fewer reflectors",
             Grip::FarEnd => "move the far end: more or fewer reflectors",
             Grip::Spacing => "spread the reflectors",
+            Grip::Turn => "turn the line about its middle",
             Grip::SpreadX => "widen the cluster",
             Grip::SpreadY => "deepen the cluster",
         }
@@ -70,10 +78,12 @@ pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
             // To the right of the line as it leads.
             let (sin, cos) = (l.direction_degrees - 90.0).to_radians().sin_cos();
             let beside = SPACING_GRIP_OFFSET_POINTS * metres_per_point;
+            let (beyond, [along_x, along_y]) = (TURN_GRIP_OFFSET_POINTS * metres_per_point, along(l));
             vec![
                 at(Grip::NearEnd, l.x_metres, l.y_start_metres),
                 at(Grip::FarEnd, x, y),
                 at(Grip::Spacing, spread_x + beside * cos, spread_y + beside * sin),
+                at(Grip::Turn, x + beyond * along_x, y + beyond * along_y),
                 body,
             ]
         }
@@ -95,12 +105,16 @@ pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
         }
         (Object::Line(l), Grip::NearEnd) => {
             let far = Place::from(l.end_metres());
-            lead(l, to, far);
+            stretch(l, -length_along(l, far, to));
             let [dx, dy] = l.step_metres();
             let steps = l.count.saturating_sub(1) as f64;
             (l.x_metres, l.y_start_metres) = (far.x_metres - steps * dx, far.y_metres - steps * dy);
         }
-        (Object::Line(l), Grip::FarEnd) => lead(l, Place::new(l.x_metres, l.y_start_metres), to),
+        (Object::Line(l), Grip::FarEnd) => {
+            let length = length_along(l, Place::new(l.x_metres, l.y_start_metres), to);
+            stretch(l, length);
+        }
+        (Object::Line(l), Grip::Turn) => turn(l, to),
         (Object::Line(l), Grip::Spacing) => {
             let steps = 0.75 * l.count.saturating_sub(1).max(1) as f64;
             let (sin, cos) = (l.direction_degrees - 90.0).to_radians().sin_cos();
@@ -114,17 +128,38 @@ pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
     after
 }
 
-/// Turns `line` so that it leads from `from` to `to`, with as many reflectors as fit between them. Its start stays.
-fn lead(line: &mut Line, from: Place, to: Place) {
-    let (dx, dy) = (to.x_metres - from.x_metres, to.y_metres - from.y_metres);
-    if let Some(count) = count_over(dx.hypot(dy), line.spacing_metres.abs()) {
+/// The direction from a line's first reflector to its last, of length 1.
+fn along(line: &Line) -> [f64; 2] {
+    let sign = if line.spacing_metres < 0.0 { -1.0 } else { 1.0 };
+    Line { spacing_metres: sign, ..line.clone() }.step_metres()
+}
+
+/// How far `to` is from `from` along the line, metres; negative against it.
+fn length_along(line: &Line, from: Place, to: Place) -> f64 {
+    let [x, y] = along(line);
+    (to.x_metres - from.x_metres) * x + (to.y_metres - from.y_metres) * y
+}
+
+/// Gives `line` as many reflectors as fit a length; one where that is negative. Its start, direction and spacing stay.
+fn stretch(line: &mut Line, length_metres: f64) {
+    if let Some(count) = count_over(length_metres, line.spacing_metres.abs()) {
         line.count = count;
-        if count > 1 {
-            // Counted from straight ahead, so that a vertical line stays exactly vertical.
-            line.direction_degrees = 90.0 + (-dx).atan2(dy).to_degrees();
-            line.spacing_metres = line.spacing_metres.abs();
-        }
     }
+}
+
+/// Turns `line` about its middle so that it leads towards `to`.
+fn turn(line: &mut Line, to: Place) {
+    let half_steps = line.count.saturating_sub(1) as f64 / 2.0;
+    let [x, y] = line.place_metres(half_steps);
+    let (dx, dy) = (to.x_metres - x, to.y_metres - y);
+    if dx == 0.0 && dy == 0.0 {
+        return;
+    }
+    // Counted from straight ahead, so that a vertical line can be had exactly.
+    let leads = 90.0 + (-dx).atan2(dy).to_degrees();
+    line.direction_degrees = if line.spacing_metres < 0.0 { leads - 180.0 } else { leads };
+    let [step_x, step_y] = line.step_metres();
+    (line.x_metres, line.y_start_metres) = (x - half_steps * step_x, y - half_steps * step_y);
 }
 
 /// How many reflectors fit a length; `None` where the spacing says nothing.
@@ -187,16 +222,46 @@ mod tests {
         assert_eq!(l.count, MAX_LINE_COUNT);
     }
 
+    fn is_at([x, y]: [f64; 2], wanted_x: f64, wanted_y: f64) -> bool {
+        (x - wanted_x).hypot(y - wanted_y) < 1e-9
+    }
+
     #[test]
-    fn an_end_turns_the_line_and_the_other_end_stays() {
-        let close = |[x, y]: [f64; 2], a: f64, b: f64| (x - a).hypot(y - b) < 1e-9;
-        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(4.0, 14.0)) else { panic!() };
-        assert_eq!((l.count, l.x_metres, l.y_start_metres), (11, 1.0, 10.0));
-        assert!(close(l.end_metres(), 4.0, 14.0), "{l:?}");
-        let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(-4.0, 15.0)) else { panic!() };
-        assert!(close([l.x_metres, l.y_start_metres], -4.0, 15.0) && close(l.end_metres(), 1.0, 15.0), "{l:?}");
-        let Object::Line(spread) = move_grip(&Object::Line(l), Grip::Spacing, Place::new(3.5, 9.0)) else { panic!() };
+    fn an_end_keeps_the_direction() {
+        let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(9.0, 12.0)) else { panic!() };
+        assert_eq!((l.count, l.x_metres, l.direction_degrees), (5, 1.0, 90.0));
+        let slanted = Object::Line(Line { direction_degrees: 0.0, ..Line::vertical(1.0, 10.0, 0.5, 11) });
+        let Object::Line(l) = move_grip(&slanted, Grip::NearEnd, Place::new(-4.0, 17.0)) else { panic!() };
+        assert!(is_at([l.x_metres, l.y_start_metres], -4.0, 10.0) && is_at(l.end_metres(), 6.0, 10.0), "{l:?}");
+        let Object::Line(l) = move_grip(&slanted, Grip::FarEnd, Place::new(-4.0, 17.0)) else { panic!() };
+        assert_eq!(l.count, 1, "behind the other end");
+    }
+
+    #[test]
+    fn the_turning_grip_turns_the_line_about_its_middle() {
+        let Object::Line(l) = move_grip(&line(), Grip::Turn, Place::new(9.0, 12.5)) else { panic!() };
+        assert_eq!((l.count, l.spacing_metres), (11, 0.5));
+        assert!(is_at([l.x_metres, l.y_start_metres], -1.5, 12.5) && is_at(l.end_metres(), 3.5, 12.5), "{l:?}");
+        let Object::Line(back) = move_grip(&Object::Line(l.clone()), Grip::Turn, Place::new(1.0, 99.0)) else {
+            panic!()
+        };
+        assert_eq!(back.direction_degrees, 90.0, "exactly straight ahead");
+        let Object::Line(spread) = move_grip(&Object::Line(l), Grip::Spacing, Place::new(6.0, 9.0)) else { panic!() };
         assert!((spread.spacing_metres - 1.0).abs() < 1e-12, "{spread:?}");
+    }
+
+    #[test]
+    fn the_turning_grip_stands_beyond_the_far_end() {
+        for line in [line(), Object::Line(Line { spacing_metres: -0.5, ..Line::vertical(1.0, 15.0, 0.5, 11) })] {
+            let handles = grips(&line, 0.1);
+            let place = |grip| handles.iter().find(|g| g.grip == grip).unwrap().place;
+            let (end, turn) = (place(Grip::FarEnd), place(Grip::Turn));
+            let leads = end.y_metres - place(Grip::NearEnd).y_metres;
+            let beyond = (turn.y_metres - end.y_metres) * leads.signum();
+            assert!((beyond - 2.6).abs() < 1e-9 && (turn.x_metres - 1.0).abs() < 1e-9, "{end:?}, {turn:?}");
+            let Object::Line(same) = move_grip(&line, Grip::Turn, turn) else { panic!() };
+            assert!(is_at(same.end_metres(), end.x_metres, end.y_metres), "{same:?}");
+        }
     }
 
     #[test]

@@ -1,17 +1,30 @@
-//! A scene's samples and maps as a NumPy archive with the keys of the thesis author's program.
+//! A scene's samples and maps as a NumPy archive with the keys of the thesis author's program, the axes and the radar's constants.
 
 use super::{Aperture, LogMap, RangeAngleMap, angle_transform, channels_map, network_input, range_transform};
-use crate::files::npz::{NpzError, NpzOutput, write_npz};
-use crate::radar::{End, Radar};
+use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
+use crate::radar::{Carrier, End, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, TwoEnds};
-use ndarray::Axis;
+use ndarray::{Array1, Axis, Ix0, arr0};
 use std::path::Path;
 
-/// Writes `all_point_x`, `all_point_y` (f64 [L], metres), `sub0`, `sub1` (complex128 [samples, end elements], the samples of the two
-/// ends), `polar_full` (f64 [1, range bins, columns], log10 magnitude of the whole array, not normalised) and
-/// `polar_partial_mag_phase` (f64 [4, range bins, columns], the network's input); and where there is one, `output` (f32 [1, range bins,
-/// columns], Lambda as a method estimates it). Arrays are in NumPy's usual (C) order.
+/// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants.
+pub const FORMAT_VERSION: i64 = 2;
+
+/// Key of [`FORMAT_VERSION`].
+const VERSION_KEY: &str = "format_version";
+
+/// Writes the author's keys: `all_point_x`, `all_point_y` (f64 `[L]`, metres), `sub0`, `sub1` (complex128 `[samples, end elements]`, the
+/// samples of the two ends), `polar_full` (f64 `[1, range bins, columns]`, log10 magnitude of the whole array, not normalised) and
+/// `polar_partial_mag_phase` (f64 `[4, range bins, columns]`, the network's input). Where there is one, `output` (f32 `[1, range bins,
+/// columns]`) is Lambda as a method estimates it. Arrays are in NumPy's usual (C) order.
+///
+/// Beside them stand the axes: `range_metres` (f64 `[range bins]`), `cos_theta` (f64 `[columns]`; the map shows a blob there that
+/// squint may have moved from its true direction), `element_x_metres` (f64 `[elements]`; `sub0` has the first of them, `sub1` the
+/// last). Each constant of the radar is a number of its own: `carrier_hz`, `bandwidth_hz`, `element_spacing_metres`,
+/// `transmit_power_watts` (f64), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
+/// and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the weights of the
+/// two transforms. `format_version` is [`FORMAT_VERSION`].
 ///
 /// # Errors
 /// [`NpzError`] where the file can't be written; nothing is left half-written.
@@ -27,7 +40,8 @@ pub fn write_maps(
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
         add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
-        add_output(out, output)
+        add_output(out, output)?;
+        add_axes(out, radar)
     })
 }
 
@@ -44,8 +58,79 @@ pub fn write_recorded_maps(
 ) -> Result<(), NpzError> {
     write_npz(path, |out| {
         add_samples_and_maps(out, radar, ends, full)?;
-        add_output(out, output)
+        add_output(out, output)?;
+        add_axes(out, radar)
     })
+}
+
+/// The radar of an archive that [`write_maps`] wrote; `None` for one without the radar's constants: version 1, or the author's own.
+///
+/// # Errors
+/// [`NpzError`] names a constant that is missing, damaged or of another type, or what of the radar makes no sense.
+pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
+    if !archive.has(VERSION_KEY) {
+        return Ok(None);
+    }
+    let version = number(archive, VERSION_KEY)?;
+    if version > FORMAT_VERSION as f64 {
+        return Err(expected(VERSION_KEY, version, format!("at most {FORMAT_VERSION}, what this program writes")));
+    }
+    let turns = number(archive, "carrier_turns_per_wavelength")?;
+    let carrier = [Carrier::OneWay, Carrier::TwoWay].into_iter().find(|c| c.turns_per_wavelength() == turns);
+    let mut count = |key: &str| Ok::<_, NpzError>(number(archive, key)? as usize);
+    let (elements, end_elements, samples) = (count("elements")?, count("end_elements")?, count("samples")?);
+    let radar = Radar {
+        transmit_power_watts: number(archive, "transmit_power_watts")?,
+        bandwidth_hz: number(archive, "bandwidth_hz")?,
+        carrier_hz: number(archive, "carrier_hz")?,
+        element_spacing_metres: number(archive, "element_spacing_metres")?,
+        elements,
+        end_elements,
+        samples,
+        carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
+        window: WindowFunction::default(),
+    };
+    radar.validate().map_err(|e| NpzError::Damaged { key: e.field().to_owned(), reason: e.to_string() })?;
+    let weights = archive.reals::<ndarray::Ix1>("element_window")?;
+    let like = |window: &WindowFunction| window.weights(elements) == weights.to_vec();
+    let window = WindowFunction::ALL.into_iter().find(like).ok_or_else(|| NpzError::Damaged {
+        key: "element_window".to_owned(),
+        reason: "its weights are those of no window that this program knows".to_owned(),
+    })?;
+    Ok(Some(Radar { window, ..radar }))
+}
+
+fn number(archive: &mut Npz, key: &str) -> Result<f64, NpzError> {
+    Ok(archive.reals::<Ix0>(key)?.into_scalar())
+}
+
+fn expected(key: &str, found: f64, expected: String) -> NpzError {
+    NpzError::Damaged { key: key.to_owned(), reason: format!("it is {found}; expected {expected}") }
+}
+
+/// Axes and constants, one array each.
+fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
+    let axis = |count: usize, at: &dyn Fn(usize) -> f64| (0..count).map(at).collect::<Array1<f64>>();
+    out.add(VERSION_KEY, &arr0(FORMAT_VERSION))?;
+    out.add("range_metres", &axis(radar.samples, &|bin| radar.range_of_bin_metres(bin as f64)))?;
+    out.add("cos_theta", &axis(radar.elements, &|column| radar.cos_of_column(column as f64)))?;
+    out.add("element_x_metres", &axis(radar.elements, &|n| radar.element_x_metres(n)))?;
+    out.add("sample_window", &Array1::from(radar.window.weights(radar.samples)))?;
+    out.add("element_window", &Array1::from(radar.window.weights(radar.elements)))?;
+    for (key, constant) in [
+        ("carrier_hz", radar.carrier_hz),
+        ("bandwidth_hz", radar.bandwidth_hz),
+        ("element_spacing_metres", radar.element_spacing_metres),
+        ("transmit_power_watts", radar.transmit_power_watts),
+        ("carrier_turns_per_wavelength", radar.carrier.turns_per_wavelength()),
+    ] {
+        out.add(key, &arr0(constant))?;
+    }
+    for (key, count) in [("elements", radar.elements), ("end_elements", radar.end_elements), ("samples", radar.samples)]
+    {
+        out.add(key, &arr0(count as i64))?;
+    }
+    Ok(())
 }
 
 fn add_output(out: &mut NpzOutput, output: Option<&RangeAngleMap>) -> Result<(), NpzError> {
@@ -66,4 +151,68 @@ fn add_samples_and_maps(
         out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
     }
     out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::exact;
+    use ndarray::{Ix1, Ix3};
+
+    fn small() -> Radar {
+        let window = WindowFunction::Blackman;
+        Radar { elements: 32, end_elements: 6, samples: 16, carrier: Carrier::TwoWay, window, ..Radar::default() }
+    }
+
+    /// An archive of one reflector at (0, 0.5) m before `radar`.
+    fn archive(radar: &Radar) -> (tempfile::TempDir, Npz) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("maps.npz");
+        let scene = Scene::of_points([(0.0, 0.5)]);
+        let signal = exact::beat_signal(radar, &scene.reflectors());
+        write_maps(&path, radar, &scene, &signal, None).unwrap();
+        let archive = Npz::open(&path).unwrap();
+        (folder, archive)
+    }
+
+    #[test]
+    fn the_axes_name_the_cell_of_the_peak() {
+        let radar = Radar { elements: 32, end_elements: 6, samples: 16, ..Radar::default() };
+        let (_folder, mut archive) = archive(&radar);
+        let [range, cos, x] =
+            ["range_metres", "cos_theta", "element_x_metres"].map(|key| archive.reals::<Ix1>(key).unwrap());
+        let full = archive.reals::<Ix3>("polar_full").unwrap();
+        let ((_, bin, column), _) = full.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        assert_eq!(full.dim(), (1, range.len(), cos.len()));
+        assert!((range[bin] - 0.5).abs() <= radar.range_resolution_metres() / 2.0, "{}", range[bin]);
+        assert!(cos[column].abs() < 1e-12, "{}", cos[column]);
+        let spacing = radar.element_spacing_metres;
+        assert!((x[31] - 15.5 * spacing).abs() < 1e-12 && (x[0] + 15.5 * spacing).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_radar_is_read_back_as_it_was() {
+        for radar in [Radar::default(), small()] {
+            let radar = Radar { elements: 32, end_elements: 6, samples: 16, ..radar };
+            let (_folder, mut archive) = archive(&radar);
+            assert_eq!(read_radar(&mut archive).unwrap(), Some(radar));
+        }
+    }
+
+    #[test]
+    fn an_archive_of_version_1_has_no_radar() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("older.npz");
+        npz::write(&path, &Scene::of_points([(1.0, 2.0)])).unwrap();
+        assert_eq!(read_radar(&mut Npz::open(&path).unwrap()).unwrap(), None);
+    }
+
+    #[test]
+    fn an_archive_of_a_later_version_is_refused_by_its_version() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("later.npz");
+        write_npz(&path, |out| out.add(VERSION_KEY, &arr0(FORMAT_VERSION + 1))).unwrap();
+        let error = read_radar(&mut Npz::open(&path).unwrap()).unwrap_err().to_string();
+        assert!(error.contains("format_version") && error.contains("it is 3; expected at most 2"), "{error}");
+    }
 }

@@ -2,9 +2,15 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{Command, MapKind, Panel};
-use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, vec2};
+use apertura::radar::Radar;
+use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::scene::generate::Kind;
+use apertura::signal::TwoEnds;
+use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Shape, ViewportCommand, vec2};
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::Duration;
 
 #[test]
 fn one_key_begins_a_presentation_and_the_same_brings_everything_back() {
@@ -14,17 +20,124 @@ fn one_key_begins_a_presentation_and_the_same_brings_everything_back() {
     s.ask(Command::ClosePanel(Panel::Inspector));
     s.ask(Command::ZoomIn);
     let (zoom, before) = (s.app.ctx.zoom_factor(), s.state().arrangement().shown().clone());
-    assert!(s.app.query_by_label_contains("objects").is_some(), "the status bar tells numbers");
     s.press(Modifiers::NONE, Key::F11);
-    let shown = [Panel::Scene, Panel::Map(MapKind::Input0), Panel::Map(MapKind::Target), Panel::Map(MapKind::Output)];
-    assert_eq!(*s.state().arrangement().shown(), BTreeSet::from(shown));
+    let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output].map(Panel::Map);
+    let shown: BTreeSet<Panel> = maps.into_iter().chain([Panel::Scene]).collect();
+    assert_eq!(*s.state().arrangement().shown(), shown);
     assert!((s.app.ctx.zoom_factor() / zoom - 1.5).abs() < 1e-6, "larger type");
-    assert!(s.app.query_by_label_contains("objects").is_none(), "no numbers");
     s.ask(Command::OpenPanel(Panel::Roc));
     s.press(Modifiers::NONE, Key::F11);
     assert_eq!(s.app.ctx.zoom_factor(), zoom);
     assert_eq!(*s.state().arrangement().shown(), before, "whatever was opened meanwhile");
     assert!(!s.state().arrangement().is_open(Panel::Inspector) && !before.contains(&Panel::Inspector));
+}
+
+/// Every text of the last frame, and its height in pixels of the screen.
+fn texts(s: &Session) -> Vec<(String, f32)> {
+    fn gather(shape: &Shape, found: &mut Vec<(String, f32)>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
+            Shape::Text(text) => found.push((text.galley.text().to_owned(), text.galley.size().y)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    s.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
+    let zoom = s.app.ctx.zoom_factor();
+    found.into_iter().map(|(text, height)| (text, height * zoom)).collect()
+}
+
+#[test]
+fn both_presentations_enlarge_the_axes() {
+    for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
+        let mut s = Session::start();
+        let tallest = |s: &Session, text: &str| {
+            let of = texts(s).into_iter().filter(|(t, _)| t.starts_with(text)).map(|(_, height)| height);
+            of.fold(0.0, f32::max)
+        };
+        let labels = ["range, m", "cos θ", "Λ", "baseline"];
+        let before = labels.map(|label| tallest(&s, label));
+        s.press(modifiers, Key::F11);
+        for (label, before) in labels.into_iter().zip(before) {
+            let now = tallest(&s, label);
+            assert!(before > 0.0 && now > 1.4 * before, "{label} with {modifiers:?}: {before}, then {now}");
+        }
+        s.press(modifiers, Key::F11);
+        assert_eq!(tallest(&s, "range, m"), before[0]);
+    }
+}
+
+/// Whether a picture of the window was asked for in the last frame.
+fn is_photographed(s: &Session) -> bool {
+    let mut commands = s.app.output().viewport_output.values().flat_map(|viewport| &viewport.commands);
+    commands.any(|command| matches!(command, ViewportCommand::Screenshot(_)))
+}
+
+/// Takes its time.
+struct Slow;
+
+impl Reconstructor for Slow {
+    fn about(&self) -> About {
+        About { name: "slow", description: "takes half a second", told: "nothing", eta: 0.5 }
+    }
+
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        std::thread::sleep(Duration::from_millis(500));
+        Baseline.reconstruct(radar, ends, request)
+    }
+}
+
+#[test]
+fn an_exported_picture_waits_for_the_maps() {
+    let mut s = Session::with_methods(vec![Arc::new(Slow)]);
+    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    s.app.state_mut().ask(Command::ExportPictureTo(s.folder.path().join("window.png")));
+    step_until(&mut s, "the picture is taken", is_photographed);
+    assert!(!s.state().output_is_outdated());
+    let said: Vec<String> = texts(&s).into_iter().map(|(text, _)| text).collect();
+    assert!(
+        !said.iter().any(|t| t.contains("(updating)") || t.contains("earlier scene") || t == "computing…"),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn an_exported_picture_holds_no_message() {
+    let mut s = Session::start();
+    s.app.state_mut().ask(Command::OpenPath(s.folder.path().join("missing.toml")));
+    s.app.state_mut().ask(Command::ExportPictureTo(s.folder.path().join("window.png")));
+    let holds =
+        |s: &Session| texts(s).iter().any(|(text, _)| text.contains("Exporting") || text.contains("missing.toml"));
+    step_until(&mut s, "the messages are seen", holds);
+    step_until(&mut s, "the picture is taken", is_photographed);
+    assert!(!holds(&s), "{:?}", texts(&s));
+    step_until(&mut s, "the messages are seen again", holds);
+}
+
+#[test]
+fn a_recorded_drag_holds_no_message() {
+    let mut s = Session::start();
+    s.app.state_mut().ask(Command::RecordDragTo(s.folder.path().join("drag.gif")));
+    let holds = |s: &Session| texts(s).iter().any(|(text, _)| text.contains("Drag something now"));
+    step_until(&mut s, "the message is seen", holds);
+    let at = s.handle("point 1: move");
+    s.app.hover_at(at);
+    s.app.step();
+    s.app.drag_at(at);
+    s.app.step();
+    let mut taken = 0;
+    for step in 1..=60 {
+        s.app.hover_at(at + vec2(step as f32, 0.0));
+        s.app.step();
+        std::thread::sleep(Duration::from_millis(10));
+        if is_photographed(&s) {
+            taken += 1;
+            assert!(!holds(&s), "frame {taken}");
+        }
+    }
+    s.app.drop_at(at + vec2(60.0, 0.0));
+    s.settle();
+    assert!(taken >= 2, "{taken} frames in more than half a second");
 }
 
 #[test]

@@ -3,13 +3,16 @@
 use crate::session::{Session, step_until};
 use apertura::app::{Command, MapKind, NewObject, Panel};
 use apertura::engine::{Outcome, StageReport};
+use apertura::files::npz::Npz;
 use apertura::radar::{Carrier, Radar};
 use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use eframe::egui::{self, vec2};
 use egui_kittest::kittest::Queryable;
+use ndarray::IxDyn;
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -253,6 +256,30 @@ fn exported_maps_hold_the_output() {
     let bytes = std::fs::read(&path).unwrap();
     let named = |key: &[u8]| bytes.windows(key.len()).any(|w| w == key);
     assert!(named(b"output.npy") && named(b"polar_full.npy"));
+}
+
+#[test]
+fn the_window_exports_what_apertura_maps_writes() {
+    let mut s = Session::start();
+    let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.folder.path().join(name));
+    s.ask(Command::ExportMapsTo(by_window.clone()));
+    step_until(&mut s, "it is written", |_| by_window.exists());
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.arg("maps").arg(s.folder.path().join("scene.toml")).arg("-o").arg(&by_command);
+    assert!(command.args(["--method", "baseline"]).status().unwrap().success());
+    let [mut window, mut command] = [by_window, by_command].map(|path| Npz::open(&path).unwrap());
+    let keys = |archive: &Npz| archive.keys().iter().cloned().collect::<BTreeSet<_>>();
+    assert_eq!(keys(&window), keys(&command));
+    for key in keys(&window) {
+        match window.reals::<IxDyn>(&key) {
+            Ok(array) => assert_eq!(array, command.reals::<IxDyn>(&key).unwrap(), "{key}"),
+            Err(_) => {
+                let array = window.complexes::<IxDyn>(&key).unwrap();
+                assert_eq!(array, command.complexes::<IxDyn>(&key).unwrap(), "{key}");
+            }
+        }
+    }
+    assert!(keys(&window).contains("cos_theta") && keys(&window).contains("output"));
 }
 
 #[test]

@@ -76,6 +76,10 @@ fn maps_have_the_keys_and_shapes_of_the_authors_program() {
     let magnitude = input.slice(s![0, .., ..]).mapv(|v| v * v) + input.slice(s![1, .., ..]).mapv(|v| v * v);
     let (min, max) = magnitude.iter().fold((f64::MAX, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
     assert!(min < 1e-12 && (max - 1.0).abs() < 1e-9, "Lambda runs from 0 to 1, found {min} to {max}");
+    for (key, count) in [("range_metres", 512), ("cos_theta", 1024), ("element_x_metres", 1024)] {
+        assert_eq!(found.reals::<Ix1>(key).unwrap().len(), count, "{key}");
+    }
+    assert!(!found.has("output"), "no method was asked for");
     // What was written is a scene again.
     apertura(&folder).args(["maps", "maps.npz", "-o", "again.npz"]).assert().success();
     let again = Npz::open(&folder.path().join("again.npz")).unwrap().reals::<Ix3>("polar_full").unwrap();

@@ -101,7 +101,10 @@ fn exports(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Comma
         Command::ExportMetrics => return choose(state, jobs, Purpose::ExportMetrics),
         Command::RecordDrag => return choose(state, jobs, Purpose::RecordDrag),
         Command::DrawLesson => return choose(state, jobs, Purpose::DrawLesson),
-        Command::StopRecording => Ok(jobs.recorder.cancel().unwrap_or_else(|| "Nothing is recorded.".to_owned())),
+        Command::StopRecording => {
+            let given_up = jobs.recorder.cancel().or_else(|| jobs.exports.give_up());
+            Ok(given_up.unwrap_or_else(|| "Nothing is recorded.".to_owned()))
+        }
         Command::RecordDragTo(path) => jobs.recorder.record_drag(path),
         Command::DrawLessonTo(path) => jobs.recorder.draw_lesson(state, path),
         Command::ExportPictureTo(path) => jobs.exports.picture(state, path),

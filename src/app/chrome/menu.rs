@@ -230,6 +230,7 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.separator();
     let of_maps = [
         Command::ToggleProjection,
+        Command::ToggleUnits,
         Command::ResetMaps,
         Command::ToggleReflectors,
         Command::ToggleFound,

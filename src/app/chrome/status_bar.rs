@@ -1,6 +1,7 @@
 //! One line at the bottom: where the pointer is, what the scene holds, what the last update cost.
 
 use crate::app::state::Cursor;
+use crate::app::widgets::direction::angle_degrees;
 use eframe::egui;
 use eframe::egui::{Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
@@ -66,10 +67,11 @@ fn texts_of(cursor: Option<Cursor>) -> Vec<String> {
         let hints = ["Drag a reflector", "double-click to add one", "scroll to zoom", "right-click for more"];
         return (1..=hints.len()).map(|count| hints[..count].join(" · ")).collect();
     };
-    let polar = format!("range {:6.2} m   cos θ {:+.3}", c.range_metres, c.cos_theta);
+    let range = format!("range {:6.2} m   {:+5.1}°", c.range_metres, angle_degrees(c.cos_theta));
+    let polar = format!("{range}   cos θ {:+.3}", c.cos_theta);
     let place = format!("x {:+7.2} m   y {:+7.2} m", c.place.x_metres, c.place.y_metres);
     let cell = format!("bin {:5.1}   column {:6.1}", c.bin, c.column);
-    let texts = [polar.clone(), format!("{place}   {polar}"), format!("{place}   {polar}   {cell}")];
+    let texts = [range, polar.clone(), format!("{place}   {polar}"), format!("{place}   {polar}   {cell}")];
     texts.map(|text| text.replace('-', "−")).to_vec()
 }
 
@@ -83,6 +85,14 @@ mod tests {
     use crate::app::widgets::seen;
     use crate::radar::Radar;
     use egui_kittest::Harness;
+
+    #[test]
+    fn the_cursor_is_told_in_degrees_from_straight_ahead() {
+        let cursor = Cursor::at_place(&Radar::default(), crate::interact::Place::new(-10.0, 10.0));
+        let texts = texts_of(Some(cursor));
+        assert!(texts.iter().all(|text| text.contains("−45.0°")), "{texts:?}");
+        assert!(texts.iter().any(|text| text.contains("−45.0°   cos θ −0.707")), "{texts:?}");
+    }
 
     #[test]
     fn nothing_is_overprinted_at_any_width_and_the_cursor_comes_first() {

@@ -16,7 +16,7 @@ pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) 
         colours: state.settings.colours,
         random: (state.settings.random_seed, state.settings.random_number),
         recent: &state.recent,
-        is_recording: jobs.recorder.is_at_work(),
+        is_recording: jobs.recorder.is_at_work() || jobs.exports.is_waiting(),
         left: state.editor.left(),
         is_open,
     }

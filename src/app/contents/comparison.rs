@@ -1,7 +1,7 @@
 //! What the panels are told that set maps beside each other.
 
+use super::Contents;
 use super::maps::{caption, cells, is_updating, map_input, marked};
-use super::{Contents, shows_numbers};
 use crate::app::jobs::Jobs;
 use crate::app::panels::{compare, values};
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
@@ -55,7 +55,7 @@ impl Contents<'_> {
 fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let method = kind.slot().and_then(|slot| state.method_in(slot)).map_or("", |m| m.name());
     let updating = if is_updating(jobs, kind) { " (updating)" } else { "" };
-    let slot = kind.slot().filter(|_| shows_numbers(state) && !state.is_predicting());
+    let slot = kind.slot().filter(|_| !state.is_predicting());
     let figures = slot.and_then(|slot| jobs.pipeline.scores_in(slot)).map(|s| s.metrics);
     match kind {
         MapKind::Output | MapKind::Second => {

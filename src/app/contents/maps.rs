@@ -1,6 +1,6 @@
 //! What maps, cuts and the ROC are told.
 
-use super::{Contents, Reflectors, shown_found, shows_numbers};
+use super::{Contents, Reflectors, shown_found};
 use crate::app::jobs::{Jobs, TheoryResult};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
@@ -98,7 +98,6 @@ pub(super) fn map_input<'a>(
         cursor: state.shown_cursor(),
         error: error(state, jobs, kind),
         veil: veil(state, kind),
-        numbers: shows_numbers(state),
     }
 }
 
@@ -124,6 +123,8 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
         target_eta: state.settings.target_eta,
         output_eta: pipeline.eta(state, slot),
         explained: pipeline.unexplained().map(|u| u.explained),
+        units: state.settings.units,
+        range_db: pipeline.range_db(),
     })
 }
 

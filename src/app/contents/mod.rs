@@ -114,15 +114,10 @@ impl Draw for Contents<'_> {
 
     fn caption(&self, panel: Panel) -> Option<String> {
         match panel {
-            Panel::Map(kind) if shows_numbers(self.state) => self.map_caption(kind),
+            Panel::Map(kind) => self.map_caption(kind),
             _ => None,
         }
     }
-}
-
-/// Whether numbers are told: not in a presentation.
-fn shows_numbers(state: &State) -> bool {
-    !state.without_numbers
 }
 
 /// Where the method found something, if that is to be drawn: over a recording always.

@@ -1,6 +1,6 @@
 //! What the panels are told that show the scene, or the radar before it.
 
-use super::{Contents, shown_found, shows_numbers};
+use super::{Contents, shown_found};
 use crate::app::panels::{disturbances, elements, inspector, objects, radar, scene};
 use crate::app::state::{Command, MapKind};
 use eframe::egui::Ui;
@@ -20,7 +20,7 @@ impl Contents<'_> {
             trails: self.jobs.failures.search.trails(state.editor.document().id()),
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
-            numbers: shows_numbers(state),
+            numbers: true,
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }

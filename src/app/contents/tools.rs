@@ -24,6 +24,7 @@ impl Contents<'_> {
             methods: &state.methods.all,
             method: state.method().map(|m| m.as_ref()),
             eta: pipeline.eta(state, MethodSlot::First),
+            range_db: pipeline.range_db(),
             run,
         };
         controls::show(ui, input)

@@ -1,5 +1,6 @@
 //! Pictures, arrays and figures for other programs, written on threads of their own.
 
+use super::camera::Camera;
 use super::failures::{RowTable, write_rows_to};
 use super::pipeline::Pipeline;
 use super::recorded::seen_by;
@@ -17,6 +18,10 @@ use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// Between asking for a picture of the window and taking it: menus and dialogs are gone by then.
+const PAUSE: Duration = Duration::from_millis(300);
 
 /// What came of an export.
 pub struct Export {
@@ -44,12 +49,15 @@ impl Export {
 pub struct Exports {
     wake: Context,
     done: (Sender<Export>, Receiver<Export>),
+    camera: Camera,
+    /// Pictures of the window that wait for its maps, and when they were asked for.
+    waiting: Vec<(PathBuf, Instant)>,
 }
 
 impl Exports {
     /// Nothing yet; `wake` draws another frame when one is finished.
     pub fn new(wake: Context) -> Self {
-        Exports { wake, done: channel() }
+        Exports { camera: Camera::new(wake.clone()), wake, done: channel(), waiting: Vec::new() }
     }
 
     /// What has been finished since the last call.
@@ -61,25 +69,55 @@ impl Exports {
     ///
     /// # Errors
     /// Why it could not be begun.
-    pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
+    pub fn picture(&mut self, state: &State, path: PathBuf) -> Result<String, String> {
         match Format::of_path(&path) {
             Some(Format::Svg) => self.drawing(state, path),
             _ => Ok(self.window(path)),
         }
     }
 
-    /// Takes a picture of the window and writes it as PNG.
-    fn window(&self, mut path: PathBuf) -> String {
+    /// Takes a picture of the window as soon as its maps are there, and writes it as PNG.
+    fn window(&mut self, mut path: PathBuf) -> String {
         path.set_extension("png");
-        let said = format!("Exporting {}…", path.display());
-        let (done, wake) = (self.done.0.clone(), self.wake.clone());
-        self.wake.request_screenshot(move |picture| {
-            // Compressing takes longer than a frame.
-            if let Err(error) = in_background(done, wake, path, move |path| write_png(path, &picture).map(|()| None)) {
-                tracing::warn!("the picture could not be exported: {error}");
-            }
-        });
+        let said = format!("Exporting {} as soon as all maps are there…", path.display());
+        self.waiting.push((path, Instant::now()));
         said
+    }
+
+    /// Takes the pictures that wait, once everything that is drawn `is_whole`; called at the end of each frame.
+    pub fn look(&mut self, is_whole: bool, now: Instant) {
+        let Some((_, asked)) = self.waiting.last() else { return };
+        if !is_whole || now.duration_since(*asked) < PAUSE {
+            self.wake.request_repaint_after(PAUSE);
+            return;
+        }
+        for (path, _) in std::mem::take(&mut self.waiting) {
+            let (done, wake) = (self.done.0.clone(), self.wake.clone());
+            self.camera.take(now, move |picture| {
+                // Compressing takes longer than a frame.
+                if let Err(error) =
+                    in_background(done, wake, path, move |path| write_png(path, &picture).map(|()| None))
+                {
+                    tracing::warn!("the picture could not be exported: {error}");
+                }
+            });
+        }
+    }
+
+    /// Whether a picture of the window waits for its maps.
+    pub fn is_waiting(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    /// Whether a picture is taken: no message may stand in it.
+    pub fn hides_messages(&self, now: Instant) -> bool {
+        self.camera.is_taking(now)
+    }
+
+    /// Gives up the pictures that wait. Returns what to tell.
+    pub fn give_up(&mut self) -> Option<String> {
+        let (path, _) = std::mem::take(&mut self.waiting).pop()?;
+        Some(format!("{} was not written.", path.display()))
     }
 
     /// Draws the panels that `apertura maps` draws, with the method and the settings on screen.

@@ -3,6 +3,7 @@
 
 mod bounds;
 mod calibration;
+mod camera;
 mod dialogs;
 mod evaluation;
 mod export;
@@ -42,6 +43,7 @@ pub use lessons::Lessons;
 pub use method::Refusal;
 pub use pipeline::Pipeline;
 pub use recording::Recorder;
+use recording::Window;
 pub use run_time::RunTime;
 pub use scene_maps::Scores;
 pub use several::{SeveralMaps, Small};
@@ -52,7 +54,7 @@ use crate::app::state::{Command, Panel, State};
 use crate::interact::Autosave;
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Time between two looks at what runs, where a bar shows how far it is.
 const BAR: Duration = Duration::from_millis(100);
@@ -184,8 +186,32 @@ impl Jobs {
         if self.pipeline.is_busy() {
             self.wake.request_repaint_after(BAR);
         }
-        self.recorder.look(state.editor.dragged().is_some(), std::time::Instant::now());
+        self.take_pictures(state, Instant::now());
         self.keep_unsaved(state);
+    }
+
+    /// Takes the pictures of the window that are due.
+    fn take_pictures(&mut self, state: &State, now: Instant) {
+        let is_whole = !self.draws_more();
+        self.exports.look(is_whole, now);
+        let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
+        self.recorder.look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, now);
+    }
+
+    /// Whether a picture of the window is taken: no message may stand in it.
+    pub fn hides_messages(&self) -> bool {
+        let now = Instant::now();
+        self.exports.hides_messages(now) || self.recorder.hides_messages(now)
+    }
+
+    /// Whether something that panels draw is still being computed.
+    fn draws_more(&self) -> bool {
+        self.pipeline.is_busy()
+            || self.bounds.is_busy()
+            || self.theory.is_busy()
+            || self.several.is_busy()
+            || self.kinds.is_busy()
+            || self.calibration.is_busy()
     }
 
     /// Keeps copies of what is unsaved, but not while something is dragged.
@@ -225,13 +251,9 @@ impl Jobs {
 
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.pipeline.is_busy()
-            || self.bounds.is_busy()
-            || self.theory.is_busy()
-            || self.several.is_busy()
-            || self.kinds.is_busy()
-            || self.calibration.is_busy()
+        self.draws_more()
             || self.failures.is_busy()
+            || self.exports.is_waiting()
             || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }

@@ -273,6 +273,12 @@ impl Pipeline {
         ready.chain(output).collect()
     }
 
+    /// What Lambda of the target on screen spans, decibels.
+    pub fn range_db(&self) -> Option<f64> {
+        let scale = self.result.as_ref()?.frame.full.as_ref()?.scale;
+        Some(20.0 * (scale.peak - scale.floor))
+    }
+
     /// What the reflectors on screen leave of the recording, where somebody looks at it.
     pub fn unexplained(&self) -> Option<&Unexplained> {
         self.result.as_ref()?.unexplained.as_ref()?.as_ref().ok()

@@ -1,5 +1,6 @@
 //! Pictures for slides: a drag as an animation, a lesson's steps as pictures. Both can be stopped, and say where they wrote.
 
+use super::camera::Camera;
 use crate::app::state::State;
 use crate::files::write_bytes;
 use crate::lesson::Lesson;
@@ -25,8 +26,10 @@ const INTERVAL: Duration = Duration::from_millis(100);
 const MOST_FRAMES: usize = 300;
 /// Widest animation, pixels.
 const WIDEST: u32 = 960;
-/// How long after a drag frames are still taken: until its maps have come.
+/// How long after a drag frames are still taken.
 const LINGER: Duration = Duration::from_millis(700);
+/// How long after a drag its last maps are waited for: they are the last frame.
+const LONGEST: Duration = Duration::from_secs(60);
 /// Frames that may wait to be packed; more are left out.
 const WAITING: usize = 4;
 
@@ -40,8 +43,21 @@ struct Recording {
     task: Task,
     taken: usize,
     last: Option<Instant>,
+    /// Whether the last frame shows the maps of the scene at rest.
+    is_whole: bool,
     /// When something was last being dragged; `None` before the drag.
     dragged: Option<Instant>,
+}
+
+/// What the window shows in a frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Window {
+    /// Whether something is being dragged.
+    pub is_dragged: bool,
+    /// Whether a map is dimmed, being of an earlier scene.
+    pub is_dimmed: bool,
+    /// Whether everything that is drawn is of the scene on screen at rest.
+    pub is_whole: bool,
 }
 
 /// A lesson whose steps are to be drawn.
@@ -54,6 +70,7 @@ struct Steps {
 /// What records, and what was recorded.
 pub struct Recorder {
     wake: Context,
+    camera: Camera,
     recording: Option<Recording>,
     steps: Worker<Steps, Told>,
     done: (Sender<Told>, Receiver<Told>),
@@ -68,7 +85,7 @@ impl Recorder {
         let work = |_: &mut (), steps: Steps, task: &Task| draw_steps(&steps, task);
         let again = wake.clone();
         let steps = Worker::spawn("lesson pictures", || (), work, move || again.request_repaint())?;
-        Ok(Recorder { wake, recording: None, steps, done: channel() })
+        Ok(Recorder { camera: Camera::new(wake.clone()), wake, recording: None, steps, done: channel() })
     }
 
     /// Records the next drag into `path`, a GIF. Returns what to tell.
@@ -90,8 +107,11 @@ impl Recorder {
         };
         let started = std::thread::Builder::new().name("recording".to_owned()).spawn(work);
         started.map_err(|e| format!("{}: the recording can't be started: {e}", path.display()))?;
-        let said = format!("Drag something now: it is recorded as {}. \"Stop recording\" gives it up.", path.display());
-        self.recording = Some(Recording { path, frames, task, taken: 0, last: None, dragged: None });
+        let said = format!(
+            "Drag something now: it is recorded as {}, without frames in which a map is of an earlier scene. \"Stop recording\" gives it up.",
+            path.display()
+        );
+        self.recording = Some(Recording { path, frames, task, taken: 0, last: None, is_whole: false, dragged: None });
         Ok(said)
     }
 
@@ -122,26 +142,33 @@ impl Recorder {
         self.recording.is_some() || self.steps.is_busy()
     }
 
-    /// Takes a picture of the window where one is due; called at the end of each frame with whether something is `dragged`.
-    pub fn look(&mut self, dragged: bool, now: Instant) {
+    /// Takes a picture of the window where one is due; called at the end of each frame.
+    pub fn look(&mut self, window: Window, now: Instant) {
         let Some(recording) = &mut self.recording else { return };
-        if dragged {
+        if window.is_dragged {
             recording.dragged = Some(now);
         }
-        let Some(since) = recording.dragged else { return };
-        if recording.taken >= MOST_FRAMES || now.duration_since(since) > LINGER {
+        let Some(since) = recording.dragged.map(|at| now.duration_since(at)) else { return };
+        if recording.taken >= MOST_FRAMES || since > if recording.is_whole { LINGER } else { LONGEST } {
             // Letting the frames go ends the thread that packs them.
             self.recording = None;
             return;
         }
-        if recording.last.is_none_or(|last| now.duration_since(last) >= INTERVAL) {
+        if !window.is_dimmed && recording.last.is_none_or(|last| now.duration_since(last) >= INTERVAL) {
             recording.last = Some(now);
             recording.taken += 1;
+            recording.is_whole = window.is_whole && !window.is_dragged;
             let frames = recording.frames.clone();
             // A frame for which there is no room is left out.
-            self.wake.request_screenshot(move |picture| _ = frames.try_send(picture));
+            self.camera.take(now, move |picture| _ = frames.try_send(picture));
         }
         self.wake.request_repaint_after(INTERVAL);
+    }
+
+    /// Whether a drag is being recorded: no message may stand in its frames.
+    pub fn hides_messages(&self, now: Instant) -> bool {
+        let dragged = self.recording.as_ref().and_then(|r| r.dragged);
+        self.camera.is_taking(now) || dragged.is_some_and(|at| now.duration_since(at) <= LINGER)
     }
 
     /// What was finished since the last call: where it was written, or why not.
@@ -294,21 +321,41 @@ mod tests {
     }
 
     #[test]
+    fn no_frame_is_taken_while_a_map_is_dimmed() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut recorder = Recorder::start(Context::default()).unwrap();
+        recorder.record_drag(folder.path().join("a")).unwrap();
+        let began = Instant::now();
+        for (tenth, is_dimmed) in [false, true, true, false, true].into_iter().enumerate() {
+            let window = Window { is_dragged: true, is_dimmed, is_whole: false };
+            recorder.look(window, began + Duration::from_millis(110 * tenth as u64));
+        }
+        assert_eq!(recorder.recording.as_ref().unwrap().taken, 2);
+        assert!(recorder.hides_messages(began + Duration::from_millis(500)));
+    }
+
+    #[test]
     fn a_recording_lasts_from_the_drag_until_its_maps_have_come() {
         let folder = tempfile::tempdir().unwrap();
         let mut recorder = Recorder::start(Context::default()).unwrap();
         recorder.record_drag(folder.path().join("a")).unwrap();
         let began = Instant::now();
         let at = |ms: u64| began + Duration::from_millis(ms);
-        recorder.look(false, at(0));
+        let look = |recorder: &mut Recorder, is_dragged: bool, is_whole: bool, ms: u64| {
+            recorder.look(Window { is_dragged, is_dimmed: false, is_whole }, at(ms));
+        };
+        look(&mut recorder, false, true, 0);
         assert_eq!(recorder.recording.as_ref().unwrap().taken, 0, "nothing is dragged yet");
         for ms in [10, 50, 120, 130, 250] {
-            recorder.look(true, at(ms));
+            look(&mut recorder, true, false, ms);
         }
         assert_eq!(recorder.recording.as_ref().unwrap().taken, 3, "one in a tenth of a second");
-        recorder.look(false, at(600));
+        look(&mut recorder, false, false, 600);
         assert_eq!(recorder.recording.as_ref().unwrap().taken, 4);
-        recorder.look(false, at(1000));
+        look(&mut recorder, false, false, 5000);
+        look(&mut recorder, false, true, 5110);
+        assert_eq!(recorder.recording.as_ref().unwrap().taken, 6, "the last maps took five seconds");
+        look(&mut recorder, false, true, 5220);
         assert!(recorder.recording.is_none() && !recorder.is_at_work());
         recorder.record_drag(folder.path().join("b")).unwrap();
         assert!(recorder.cancel().unwrap().contains("b.gif was not written"));

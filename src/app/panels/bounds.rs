@@ -5,6 +5,7 @@ use crate::app::state::{BoundsSettings, Command, Elements};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{self, Chart};
 use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::direction::direction;
 use crate::app::widgets::numbers::significant;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
@@ -118,7 +119,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     let half = [*columns, bins * radar.range_resolution_metres()];
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
-    let bar = Bar { table: colour_table(ColourMap::Viridis), low: 0.0, high: 1.0, title: "likeness" };
+    let bar = Bar::new(colour_table(ColourMap::Viridis), 0.0, 1.0, "likeness");
     let right = bar.width(ui.painter(), area.height() - axes::BOTTOM - 8.0);
     let x = Axis::new(-half[0], half[0], "cos θ off, columns");
     let chart = Chart { name: "Ambiguity function", x, y: Axis::new(-half[1], half[1], "range off, m") };
@@ -150,7 +151,7 @@ fn likeness_at(result: &BoundsResult, half: [f64; 2], columns: f64, metres: f64)
     let column = 2.0 / result.request.radar.elements as f64;
     let (cos, range) = (result.centre.cos_theta + columns * column, result.centre.range_metres + metres);
     let value = value.filter(|v| v.is_finite()).map_or_else(String::new, |v| format!("\nlikeness {v:.3}"));
-    format!("cos θ {cos:.4}\nrange {range:.3} m{value}")
+    format!("{}\nrange {range:.3} m{value}", direction(cos, 2))
 }
 
 /// Numbers and ellipse of the Cramer-Rao bound.

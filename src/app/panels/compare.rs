@@ -3,6 +3,7 @@
 use super::map::{self, Over};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView};
 use crate::app::widgets::entry::button;
+use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
 use crate::app::widgets::progress::progress;
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
@@ -124,15 +125,11 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 
 /// A method to choose; its name where another was chosen.
 fn method(ui: &mut Ui, label: &str, chosen: &'static str, methods: &[Arc<dyn Reconstructor>]) -> Option<&'static str> {
-    let mut name = chosen;
     let label = ui.label(label);
-    let combo = ComboBox::from_id_salt(("method", label.id)).width(100.0).selected_text(chosen).show_ui(ui, |ui| {
-        for method in methods {
-            ui.selectable_value(&mut name, method.name(), method.name()).on_hover_text(method.description());
-        }
-    });
+    let combo = ComboBox::from_id_salt(("method", label.id)).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
+    let combo = combo.show_ui(ui, |ui| method_list(ui, methods, chosen));
     combo.response.labelled_by(label.id);
-    (name != chosen).then_some(name)
+    combo.inner.flatten().filter(|name| *name != chosen)
 }
 
 fn choose_map(ui: &mut Ui, label: &str, map: &mut MapKind) {

@@ -2,6 +2,8 @@
 
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
+use crate::app::widgets::levels::{level, with_unit};
+use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::eta_text;
@@ -19,6 +21,9 @@ use std::time::Duration;
 /// Largest seed that a scene file holds: TOML knows no larger whole number.
 const MAX_NOISE_SEED: u64 = i64::MAX as u64;
 
+/// Between one figure and the next, points.
+const FIGURES_GAP: f32 = 20.0;
+
 /// What is chosen, and what came of it.
 pub struct Input<'a> {
     /// Whether a recording stands in the place of the scene: its floor is its own.
@@ -35,6 +40,8 @@ pub struct Input<'a> {
     pub method: Option<&'a dyn Reconstructor>,
     /// Its eta.
     pub eta: f32,
+    /// What the target's Lambda spans, decibels, where that is known.
+    pub range_db: Option<f64>,
     /// What it does.
     pub run: Run<'a>,
 }
@@ -127,14 +134,10 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     };
     Grid::new("reconstruction").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
         row(ui, "Method", method.description(), |ui| {
-            let combo = ComboBox::from_id_salt("method").width(150.0).selected_text(method.name());
+            let combo = ComboBox::from_id_salt("method").width(150.0).height(LIST_HEIGHT).selected_text(method.name());
             let listed = combo.show_ui(ui, |ui| {
-                for m in input.methods {
-                    let label = ui.selectable_label(m.name() == method.name(), m.name());
-                    if label.on_hover_text(m.description()).clicked() {
-                        asked.push(Command::Method(m.name()));
-                    }
-                }
+                let chosen = method_list(ui, input.methods, method.name());
+                asked.extend(chosen.map(Command::Method));
             });
             listed.response
         });
@@ -152,18 +155,30 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
                 if reset.on_hover_text(back).clicked() {
                     asked.push(Command::SetMethodEta(method.name(), None));
                 }
+                in_decibels(ui, input, input.eta);
                 slider
             })
             .inner
         });
         row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
-            let mut eta = input.settings.target_eta;
-            let slider = ui.add(threshold(&mut eta));
-            asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
-            slider
+            ui.horizontal(|ui| {
+                let mut eta = input.settings.target_eta;
+                let slider = ui.add(threshold(&mut eta));
+                asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
+                in_decibels(ui, input, input.settings.target_eta);
+                slider
+            })
+            .inner
         });
     });
     figures(ui, method, &input.run, asked);
+}
+
+/// A threshold in decibels relative to the target's peak, where these are chosen and known.
+fn in_decibels(ui: &mut Ui, input: &Input<'_>, eta: f32) {
+    if let Some(range_db) = input.range_db.filter(|_| input.settings.units == Units::Decibels) {
+        ui.weak(with_unit(&level(range_db * (f64::from(eta) - 1.0), range_db)));
+    }
 }
 
 /// The new eta, if it is another.
@@ -203,15 +218,18 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
     }
     let m = scores.metrics;
     ui.add_enabled_ui(!run.outdated || run.progress.is_none(), |ui| {
-        Grid::new("figures").num_columns(6).spacing([8.0, 2.0]).show(ui, |ui| {
+        Grid::new("figures").num_columns(3).spacing([FIGURES_GAP, 2.0]).show(ui, |ui| {
             let detection = m.detection.map_or("–".to_owned(), percent);
             for (name, value, tooltip) in [
                 ("P_D", detection, "Part of the target's cells above 0.9 that the output finds"),
                 ("P_FA", percent(m.false_alarm), "Part of the other cells where the output exceeds η"),
                 ("SE", format!("{:.0}", m.squared_error), "Sum of squared differences over all cells"),
             ] {
-                ui.weak(name).on_hover_text(tooltip);
-                ui.monospace(value).on_hover_text(tooltip);
+                // A name stands nearer to its own value than to the value before.
+                ui.horizontal(|ui| {
+                    ui.weak(name).on_hover_text(tooltip);
+                    ui.monospace(value).on_hover_text(tooltip);
+                });
             }
             ui.end_row();
         });
@@ -291,8 +309,8 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
         choices(ui, settings.projection, of, Command::SetProjection, asked);
     });
-    row_of(ui, "Scale", "What colour bars and cuts count", |ui| {
-        let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels below the peak")];
+    row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
+        let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, Command::SetUnits, asked);
     });
     row_of(ui, "Difference", "How the panel Difference is drawn", |ui| {

@@ -106,9 +106,14 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
     Grid::new("mirror").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
         number(ui, &metres("mirror's x", "Of a point of the wall"), &mut edited.x_metres);
         number(ui, &metres("mirror's y", "Of the same point"), &mut edited.y_metres);
-        let tooltip = "Where the wall leads: 0° along the array, 90° straight ahead";
+        let tooltip = "Where the wall leads: 0° straight ahead, 90° along the array to the right";
         let field = Field { name: "direction", tooltip, unit: "°", scale: 1.0, low: -360.0, high: 360.0, speed: 0.5 };
-        number(ui, &field, &mut edited.direction_degrees);
+        let before = 90.0 - now.direction_degrees;
+        let mut leads = before;
+        number(ui, &field, &mut leads);
+        if leads != before {
+            edited.direction_degrees = 90.0 - leads;
+        }
         let tooltip = "Part of an amplitude that the wall reflects; a ghost over it both ways has the square of it";
         let field = Field { name: "reflection", tooltip, unit: " %", scale: 100.0, low: 0.0, high: 100.0, speed: 0.5 };
         number(ui, &field, &mut edited.reflection);

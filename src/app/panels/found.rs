@@ -1,6 +1,7 @@
 //! What the method found, as a list: angle, range, strength.
 
 use crate::app::state::Command;
+use crate::app::widgets::direction::{CONVENTION, angle_degrees};
 use crate::app::widgets::numbers::{plain, signed};
 use crate::reconstruct::Detection;
 use eframe::egui;
@@ -47,11 +48,12 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             count => format!("{method} found {count} echoes, the strongest first"),
         });
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            Grid::new("found").num_columns(4).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
+            Grid::new("found").num_columns(5).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
                 if !found.is_empty() {
                     for (heading, tooltip) in [
                         ("", ""),
-                        ("angle", "From broadside; to the right is positive"),
+                        ("angle", CONVENTION),
+                        ("cos θ", "Cosine of the angle to the array's axis, as the maps count directions"),
                         ("range", "From the centre of the array"),
                         ("dB", "Power of the echo, relative to the strongest"),
                     ] {
@@ -72,8 +74,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
 fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
     ui.weak(number.to_string());
     let range = if has_ranges { format!("{:.2} m", found.range_metres) } else { "–".to_owned() };
-    let degrees = found.cos_theta.clamp(-1.0, 1.0).asin().to_degrees();
-    for text in [format!("{}°", signed(degrees, 2)), range] {
+    let angle = format!("{}°", signed(angle_degrees(found.cos_theta), 2));
+    for text in [angle, signed(found.cos_theta, 4), range] {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
     }
     // The last column takes all the room that is left: nothing is aligned to its end.
@@ -106,8 +108,9 @@ mod tests {
     fn angles_ranges_and_decibels_are_listed() {
         let list = vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)];
         let shown = panel(Some(list.clone()), None, true);
-        let _told = ["iaa found 2 echoes, the strongest first", "+6.96°", "15.00 m", "−3.50°", "7.25 m", "−2.0"]
-            .map(|text| shown.get_by_label(text));
+        let _told =
+            ["iaa found 2 echoes, the strongest first", "+6.96°", "+0.1212", "15.00 m", "−3.50°", "7.25 m", "−2.0"]
+                .map(|text| shown.get_by_label(text));
         let snapshot = panel(Some(list), None, false);
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
     }

@@ -1,7 +1,9 @@
 //! Numbers of what is selected, with units: of one object, or those that several have in common.
 
 use crate::app::state::{Command, NewObject};
+use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
+use crate::app::widgets::numbers::signed;
 use crate::interact::{Change, Coordinates, Editor, Field, Shared};
 use crate::radar::{Radar, counted};
 use crate::scene::Scene;
@@ -92,7 +94,7 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 fn toggle(ui: &mut Ui, shown: Coordinates, asked: &mut Vec<Command>) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         for (coordinates, label, tip) in [
-            (Coordinates::Polar, "R, θ", "Enter places as range and direction"),
+            (Coordinates::Polar, "R, angle", "Enter places as range and direction"),
             (Coordinates::Cartesian, "x, y", "Enter places as x and y"),
         ] {
             if ui.selectable_label(shown == coordinates, label).on_hover_text(tip).clicked() {
@@ -108,7 +110,10 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
     let blob = radar.blob_of(0.0, x, y);
     let (bin, column) = (radar.bin_of_range(polar.range_metres), radar.column_of_cos(blob.cos_theta));
     let other = match coordinates {
-        Coordinates::Cartesian => format!("range {:.3} m · cos θ {:.4}", polar.range_metres, polar.cos_theta),
+        Coordinates::Cartesian => {
+            let angle = signed(angle_of_place_degrees(x, y), 2);
+            format!("range {:.3} m · {angle}° · cos θ {}", polar.range_metres, signed(polar.cos_theta, 4))
+        }
         Coordinates::Polar => format!("x {x:.3} m · y {y:.3} m"),
     };
     let has_ranges = radar.samples > 1;
@@ -150,17 +155,17 @@ fn look(field: Field) -> Look {
             digits: 4,
             ..plain("cos θ", "Of the angle to the array's axis: the range stays")
         },
-        Field::ThetaDegrees => Look {
+        Field::AngleDegrees => Look {
             low: -180.0,
             high: 180.0,
-            ..degrees("θ", "0° along the array, 90° straight ahead, negative behind it")
+            ..degrees("angle", "0° straight ahead, positive to the right, beyond ±90° behind the array")
         },
         Field::Spacing => {
             Look { speed: 0.001, low: 1e-3, high: 100.0, digits: 4, ..metres("spacing", "Between neighbours") }
         }
         Field::Direction => degrees(
             "direction",
-            "Where the line leads from its first reflector: 0° along the array, 90° straight ahead",
+            "Where the line leads from its first reflector: 0° straight ahead, 90° along the array to the right",
         ),
         Field::SpreadX => spread("spread in x"),
         Field::SpreadY => spread("spread in y"),
@@ -332,7 +337,7 @@ mod tests {
         enter(&mut inspector, "cos θ", "-0.8");
         let [x, y] = places(&inspector)[0];
         assert!((x + 8.0).abs() < 1e-9 && (y - 6.0).abs() < 1e-9, "{x}, {y}");
-        enter(&mut inspector, "θ", "90");
+        enter(&mut inspector, "angle", "0");
         let [x, y] = places(&inspector)[0];
         assert!(x == 0.0 && (y - 10.0).abs() < 1e-9, "{x}, {y}");
         inspector.get_by_label("x, y").click();

@@ -90,7 +90,7 @@ const COLUMNS: [f32; 4] = [0.34, 0.56, 0.78, 1.0];
 fn place_fields(coordinates: Coordinates) -> [(Field, &'static str); 2] {
     match coordinates {
         Coordinates::Cartesian => [(Field::X, "x, m"), (Field::Y, "y, m")],
-        Coordinates::Polar => [(Field::Range, "range, m"), (Field::ThetaDegrees, "θ, °")],
+        Coordinates::Polar => [(Field::Range, "range, m"), (Field::AngleDegrees, "angle, °")],
     }
 }
 
@@ -160,7 +160,7 @@ fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<
         ui.painter().rect_filled(rect, 2.0, colour);
     }
     let place = |(field, _): (Field, &str)| {
-        let digits = if field == Field::ThetaDegrees { 0.1 } else { 0.01 };
+        let digits = if field == Field::AngleDegrees { 0.1 } else { 0.01 };
         field.get(object).map(|v| axes::tick_text(v, digits)).unwrap_or_default()
     };
     let [x, y] = place_fields(input.coordinates).map(place);

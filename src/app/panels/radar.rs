@@ -262,8 +262,7 @@ fn grating(follows: &Consequences) -> String {
         let cos = follows.grating_cos;
         format!("{columns:.0} columns, cos θ {cos:.2}, to the first grating lobe: some directions look alike")
     } else {
-        let seen = follows.visible_columns;
-        format!("{columns:.0} columns to the first grating lobe: out of sight, the map shows {seen:.0}")
+        "the first grating lobe is outside the visible directions".to_owned()
     }
 }
 

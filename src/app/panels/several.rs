@@ -2,6 +2,7 @@
 
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, Several, Variant};
+use crate::app::widgets::method_menu::method_lines;
 use crate::app::widgets::textures::Texture;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
@@ -111,15 +112,15 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
 
 fn methods(ui: &mut Ui, several: &mut Several, methods: &[Arc<dyn Reconstructor>]) {
     ui.menu_button("Methods", |ui| {
-        for method in methods {
+        method_lines(ui, methods, |ui, method| {
             let mut chosen = several.methods.contains(method.name());
-            if ui.checkbox(&mut chosen, method.name()).on_hover_text(method.description()).changed() {
+            if ui.checkbox(&mut chosen, method.name()).changed() {
                 match chosen {
                     true => several.methods.insert(method.name().to_owned()),
                     false => several.methods.remove(method.name()),
                 };
             }
-        }
+        });
     })
     .response
     .on_hover_text("Which methods, at most eight; the first eight where none is chosen");

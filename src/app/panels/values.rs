@@ -2,7 +2,7 @@
 
 use super::map::Cells;
 use crate::app::state::{Command, Cursor, MapKind};
-use crate::app::widgets::numbers::signed;
+use crate::app::widgets::direction::{CONVENTION, direction};
 use crate::radar::Radar;
 use eframe::egui;
 use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
@@ -54,15 +54,19 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             ui.weak("The pointer is beyond the maps.");
             return;
         };
-        let (range, cosine) = (input.cursor.range_metres, signed(input.cursor.cos_theta, 3));
-        ui.label(format!("range {range:.2} m · cos θ {cosine}"));
+        let (range, way) = (input.cursor.range_metres, direction(input.cursor.cos_theta, 1));
+        ui.label(format!("range {range:.2} m · {way}")).on_hover_text(CONVENTION);
         ui.weak(format!("range bin {bin}, column {column}"));
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("values").num_columns(3).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
                 for (heading, tooltip) in [
                     ("map", "Every map there is; those of the second method while the panel Compare is in sight"),
                     ("Λ", "Normalised magnitude, 0 to 1; of a difference with its sign"),
-                    ("dB", "Decibels below the map's peak; of a difference the decibels between both"),
+                    (
+                        "dB",
+                        "Decibels relative to the map's peak; of a difference the decibels between both. ≤: at the floor of the scale, or \
+                         lower than any receiver hears",
+                    ),
                 ] {
                     ui.strong(heading).on_hover_text(tooltip);
                 }
@@ -133,7 +137,7 @@ mod tests {
         let texts: Vec<String> = seen::texts(shown.output()).into_iter().map(|t| t.text).collect();
         let radar = Radar::default();
         let cursor = Cursor::at_cell(&radar, 100.0, 700.0);
-        let place = format!("range {:.2} m · cos θ {}", cursor.range_metres, signed(cursor.cos_theta, 3));
+        let place = format!("range {:.2} m · {}", cursor.range_metres, direction(cursor.cos_theta, 1));
         for expected in [&place, "range bin 100, column 700", "Input 0", "0.750", "−25.0", "Target", "1.000", "0.0"] {
             assert!(texts.iter().any(|t| t == expected), "{expected}: {texts:?}");
         }

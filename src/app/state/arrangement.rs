@@ -104,15 +104,15 @@ impl Arrangement {
     /// What is shown to many people at once: the scene, an end's map, the target and the output, large.
     pub fn presentation() -> Self {
         let mut tiles = Tiles::default();
-        let shown =
-            [Panel::Scene, Panel::Map(MapKind::Input0), Panel::Map(MapKind::Target), Panel::Map(MapKind::Output)];
-        let [scene, input, target, output] = shown.map(|panel| {
+        let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
+        let mut tab = |panel| {
             let pane = tiles.insert_pane(panel);
             tiles.insert_tab_tile(vec![pane])
-        });
-        let left = column(&mut tiles, vec![scene, input], &[1.0, 1.0]);
-        let right = column(&mut tiles, vec![target, output], &[1.0, 1.0]);
-        let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, right], &[1.0, 1.0]);
+        };
+        let (scene, [first, last, target, output]) = (tab(Panel::Scene), maps.map(|kind| tab(Panel::Map(kind))));
+        let upper = linear(&mut tiles, LinearDir::Horizontal, vec![scene, target], &[1.0, 1.0]);
+        let lower = linear(&mut tiles, LinearDir::Horizontal, vec![first, last, output], &[1.0, 1.0, 1.0]);
+        let root = column(&mut tiles, vec![upper, lower], &[1.0, 1.0]);
         let tree = Tree::new(egui::Id::unique("presentation"), root, tiles);
         Arrangement { tree, maximised: None, shown: BTreeSet::new() }
     }

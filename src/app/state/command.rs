@@ -185,7 +185,7 @@ pub enum Command {
     SetProjection(Projection),
     /// Lambda or decibels, the other way round.
     ToggleUnits,
-    /// Lambda or decibels on colour bars and cuts.
+    /// Lambda or decibels on colour bars, cuts, readouts and thresholds.
     SetUnits(Units),
     /// The difference with its sign or without, the other way round.
     ToggleAbsoluteDifference,
@@ -326,7 +326,7 @@ pub enum Command {
     SetLearner(String),
     /// Forget what the learner did.
     ForgetProgress,
-    /// Large type, few panels, no numbers; or everything as before.
+    /// The scene and the maps in large type, or everything as before.
     Present,
     /// Copy the picture of a map to the clipboard.
     CopyMap(MapKind),

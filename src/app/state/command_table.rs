@@ -110,7 +110,12 @@ const TABLE: &[Entry] = {
         entry(FitScene, "Fit scene", "Show the whole scene", key(Key::F)),
         entry(ResetMaps, "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
         entry(OpenLesson, "Open lesson…", "Begin a lesson from a TOML file", None),
-        entry(PresentLesson, "Lessons: whole screen", "Lesson, scene and maps large, for a projector", shift(Key::F11)),
+        entry(
+            PresentLesson,
+            "Lessons: whole screen",
+            "Lesson, scene and maps on the whole screen, in large type",
+            shift(Key::F11),
+        ),
         entry(LeaveLesson, "Leave lesson", "End the lesson; your scene and settings come back", None),
         entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
         entry(
@@ -127,9 +132,24 @@ const TABLE: &[Entry] = {
             "Λ is 0 at the smallest cell and 1 at the largest (the thesis)",
             key(Key::M),
         ),
-        entry(ToggleUnits, "Λ / dB", "Count Λ or decibels below the peak on colour bars and cuts", key(Key::D)),
-        entry(SetUnits(Units::Lambda), "Scale: Λ", "Count Λ, 0 to 1, on colour bars and cuts", None),
-        entry(SetUnits(Units::Decibels), "Scale: dB", "Count decibels below the peak on colour bars and cuts", None),
+        entry(
+            ToggleUnits,
+            "Λ / dB",
+            "Tell Λ, or decibels relative to the peak, on colour bars, cuts, readouts and thresholds",
+            key(Key::D),
+        ),
+        entry(
+            SetUnits(Units::Lambda),
+            "Scale: Λ",
+            "Tell Λ, 0 to 1, on colour bars, cuts, readouts and thresholds",
+            None,
+        ),
+        entry(
+            SetUnits(Units::Decibels),
+            "Scale: dB",
+            "Tell decibels relative to the peak on colour bars, cuts, readouts and thresholds",
+            None,
+        ),
         entry(ToggleAbsoluteDifference, "|Difference|", "Draw the difference with its sign or without", None),
         entry(
             ToggleWholeDifference,
@@ -218,7 +238,7 @@ const TABLE: &[Entry] = {
         entry(
             Present,
             "Presentation",
-            "Large type, few panels, no numbers; the same key brings everything back",
+            "The scene and the maps on the whole screen, in large type; the same key brings everything back",
             key(Key::F11),
         ),
         entry(CloseMessages, "Close messages", "Close every message in the corner", None),

@@ -76,8 +76,6 @@ pub struct State {
     pub lesson: Option<LessonRun>,
     /// Where the panels were before a lesson or a presentation took the whole screen.
     pub before_presenting: Option<Arrangement>,
-    /// Whether that is a presentation: large type, no numbers.
-    pub without_numbers: bool,
     /// Who has answered what.
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
@@ -125,20 +123,19 @@ impl State {
         }
     }
 
-    /// Gives the scene and three maps the whole screen, in large type and without numbers, or ends whatever has it.
+    /// Gives the scene and the maps the whole screen, in large type, or ends whatever has it.
     pub fn present(&mut self) {
         match self.is_presenting() {
             true => self.stop_presenting(),
             false => {
                 let before = std::mem::replace(&mut self.arrangement, Arrangement::presentation());
-                (self.before_presenting, self.without_numbers) = (Some(before), true);
+                self.before_presenting = Some(before);
             }
         }
     }
 
     /// Puts the panels back to where they were before a lesson or a presentation had the whole screen.
     pub fn stop_presenting(&mut self) {
-        self.without_numbers = false;
         if let Some(before) = self.before_presenting.take() {
             self.arrangement = before;
         }

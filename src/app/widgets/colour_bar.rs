@@ -1,6 +1,6 @@
 //! A bar of colours and what they stand for.
 
-use super::axes::{self, Axis};
+use super::axes::{self, Axis, Tick};
 use eframe::egui::{Align2, Color32, Mesh, Painter, Rect, Shape, Stroke, Ui, pos2};
 
 /// Width of the colours.
@@ -19,16 +19,30 @@ pub struct Bar {
     pub high: f64,
     /// What is counted.
     pub title: &'static str,
+    /// The lowest value that has a label: what is below it is no echo.
+    pub told_from: f64,
 }
 
 impl Bar {
+    /// From `low` to `high`, all of it labelled.
+    pub fn new(table: [Color32; 256], low: f64, high: f64, title: &'static str) -> Bar {
+        Bar { table, low, high, title, told_from: f64::NEG_INFINITY }
+    }
+
+    /// Its labels for a height.
+    fn labels(&self, height: f32) -> Vec<Tick> {
+        let mut labels = self.axis().upwards(height);
+        labels.retain(|tick| tick.value >= self.told_from);
+        labels
+    }
+
     fn axis(&self) -> Axis<'static> {
         Axis::new(self.low, self.high, self.title)
     }
 
     /// What it needs beside a map of a height, labels included.
     pub fn width(&self, painter: &Painter, height: f32) -> f32 {
-        let labels = self.axis().upwards(height);
+        let labels = self.labels(height);
         let labels = labels.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
         let beneath = axes::width(painter, self.title);
         GAPS[0] + (COLOURS + GAPS[1] + labels).max(beneath) + 5.0
@@ -54,7 +68,7 @@ impl Bar {
         }
         painter.add(Shape::mesh(mesh));
         let (ink, axis) = (ui.visuals().weak_text_color(), self.axis());
-        for tick in axis.upwards(rect.height()) {
+        for tick in self.labels(rect.height()) {
             let y = rect.bottom() - axis.part(tick.value) * rect.height();
             painter.hline(rect.right()..=rect.right() + 3.0, y, Stroke::new(1.0, ink));
             axes::text(painter, pos2(rect.right() + GAPS[1], y), Align2::LEFT_CENTER, &tick.text, ink);

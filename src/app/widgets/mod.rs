@@ -1,14 +1,16 @@
-//! What panels draw with: axes, charts, colours of the interface, buttons of commands, small drawn buttons, bars of progress, the ring
+//! What panels draw with: axes, charts, directions and levels as texts, colours of the interface, buttons of commands, small drawn buttons, bars of progress, the ring
 //! around what has the focus, pictures on the graphics card.
 
 pub mod axes;
 pub mod chart;
 pub mod colour_bar;
+pub mod direction;
 pub mod entry;
 pub mod focus_ring;
 pub mod icons;
 pub mod inline;
 pub mod legend;
+pub mod levels;
 pub mod list_rows;
 pub mod method_menu;
 pub mod nudge;

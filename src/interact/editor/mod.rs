@@ -260,7 +260,8 @@ impl Editor {
     pub fn drag_to(&mut self, pointer: Place, snap: Snap) -> bool {
         let Some(drag) = &self.drag else { return false };
         let target = Place::new(pointer.x_metres + drag.offset.x_metres, pointer.y_metres + drag.offset.y_metres);
-        let target = snap.apply(self.radar(), target);
+        // A direction doesn't come to rest where places do.
+        let target = if drag.hit.grip == Grip::Turn { target } else { snap.apply(self.radar(), target) };
         let start = drag.before.document.scene();
         let Some(grabbed) = start.objects.get(drag.hit.object) else { return false };
         let mut moved = Scene::clone(start);

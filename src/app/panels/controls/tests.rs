@@ -17,11 +17,55 @@ fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Comma
             methods: &methods,
             method: Some(&Baseline),
             eta: Baseline.eta(),
+            range_db: None,
             run: run(),
         };
         asked.extend(show(ui, input));
     };
     Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new())
+}
+
+#[test]
+fn a_figure_is_nearer_to_its_name_than_to_the_figure_before() {
+    let metrics = Metrics { squared_error: 321.4, detection: Some(1.0), false_alarm: 0.0163 };
+    let scores = Scores { metrics, target_blobs: 1, output_blobs: 2 };
+    let output = Some(("capon", Duration::from_millis(20)));
+    let shown = panel(move || Run { output, scores: Some(scores), ..Run::default() });
+    let texts = seen::texts(shown.output());
+    let rect = |text: &str| texts.iter().find(|t| t.text == text).map(|t| t.rect).unwrap();
+    let apart = rect("P_FA").left() - rect("100.00 %").right();
+    let beside = rect("1.63 %").left() - rect("P_FA").right();
+    assert!(apart > 15.0 && apart > 2.0 * beside && beside > 2.0, "{apart} before the name, {beside} after it");
+}
+
+#[test]
+fn every_method_of_the_list_says_in_a_line_what_it_is() {
+    let mut controls = panel(Run::default);
+    controls.run();
+    controls.get_by_role_and_label(eframe::egui::accesskit::Role::ComboBox, "Method").click();
+    controls.run();
+    for method in [&Baseline as &dyn Reconstructor, &CAPON] {
+        let name = controls.get_by_role_and_label(eframe::egui::accesskit::Role::Button, method.name()).rect();
+        let line = controls.get_by_label(method.description()).rect();
+        assert!(line.left() > name.left() && (line.center().y - name.center().y).abs() < 14.0, "{name:?} {line:?}");
+    }
+    controls.get_by_label(CAPON.description()).click();
+    controls.run();
+    assert_eq!(controls.state(), &[Command::Method("capon")]);
+}
+
+#[test]
+fn thresholds_are_told_in_decibels_where_these_are_chosen() {
+    let settings = Settings { units: Units::Decibels, target_eta: 0.9, ..Settings::default() };
+    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        let (radar, method, noise_seed, run) =
+            (&Radar::default(), Some(&Baseline as &dyn Reconstructor), 0, Run::default());
+        let (settings, range_db, is_recorded) = (&settings, Some(300.0), false);
+        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta: 0.8, range_db, run };
+        asked.extend(show(ui, input));
+    };
+    let controls = Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new());
+    let _told = ["−60.0 dB", "−30.0 dB"].map(|text| controls.get_by_label(text));
 }
 
 #[test]
@@ -55,7 +99,7 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
         let (eta, run) = (0.763_194_2, Run::default());
         let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
         let (is_recorded, settings, radar) = (false, &settings, &radar);
-        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, run };
+        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db: None, run };
         asked.extend(show(ui, input));
     };
     let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
@@ -101,6 +145,7 @@ fn no_choice_leaves_a_narrow_panel() {
             methods: &[],
             method: Some(method),
             eta: 0.5,
+            range_db: None,
             run,
         };
         asked.extend(show(ui, input));

@@ -2,8 +2,11 @@
 
 use super::measure::{Width, value_at, width_at};
 use super::trace::{Cut, Trace};
+use crate::app::state::Units;
 use crate::app::widgets::axes;
 use crate::app::widgets::chart::{Drawn, Span};
+use crate::app::widgets::direction::{angle_degrees, direction};
+use crate::app::widgets::levels;
 use crate::app::widgets::numbers::{signed, significant};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
@@ -83,18 +86,26 @@ impl Markers {
 }
 
 /// What is read off a line at the markers.
-pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, markers: &Markers) -> Vec<String> {
+pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, units: Units, markers: &Markers) -> Vec<String> {
     let decibels = trace.decibels();
     let level = |place: f64| decibels.as_ref().and_then(|points| value_at(points, place));
     let mut said = Vec::new();
     let one = |(place, name): (Option<f64>, &str)| {
-        let lambda = value_at(&trace.lambda, place?)?;
-        let level = level(place?).map_or_else(String::new, |db| format!(", {} dB", signed(db.min(0.0), 1)));
-        Some(format!("{name}: Λ {lambda:.3}{level}"))
+        let lambda = format!("Λ {:.3}", value_at(&trace.lambda, place?)?);
+        let level = level(place?).zip(trace.range_db());
+        let level = level.map(|(db, range_db)| levels::with_unit(&levels::level(db, range_db)));
+        let value = match (level, units) {
+            (None, _) => lambda,
+            (Some(level), Units::Lambda) => format!("{lambda}, {level}"),
+            (Some(level), Units::Decibels) => format!("{level}, {lambda}"),
+        };
+        let at = if cut == Cut::Angle { format!(" at {}", direction(place?, 2)) } else { String::new() };
+        Some(format!("{name}{at}: {value}"))
     };
     said.extend(markers.places.into_iter().zip(NAMES).filter_map(one));
     if let [Some(a), Some(b)] = markers.places {
-        let levels = level(a).zip(level(b)).map_or_else(String::new, |(a, b)| format!(", {} dB", signed(b - a, 1)));
+        let levels =
+            level(a).zip(level(b)).map_or_else(String::new, |(a, b)| format!(", {} dB", levels::difference(b - a)));
         said.push(format!("B − A: {}{levels}", between(cut, radar, a, b)));
     }
     let width = |(place, name): (Option<f64>, &str)| {
@@ -105,17 +116,13 @@ pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, markers: &Markers) -> Ve
     said
 }
 
-fn degrees(cos: f64) -> f64 {
-    cos.clamp(-1.0, 1.0).acos().to_degrees()
-}
-
 /// From one place to another, in everything that the axis counts.
 fn between(cut: Cut, radar: &Radar, a: f64, b: f64) -> String {
     match cut {
         Cut::Angle => {
             let columns = (b - a) / (radar.cos_of_column(1.0) - radar.cos_of_column(0.0));
-            let (cos, angle) = (signed(b - a, 4), signed(degrees(b) - degrees(a), 2));
-            format!("{cos} in cos θ = {} columns = {angle}°", signed(columns, 1))
+            let (cos, angle) = (signed(b - a, 4), signed(angle_degrees(b) - angle_degrees(a), 2));
+            format!("{angle}° = {cos} in cos θ = {} columns", signed(columns, 1))
         }
         Cut::Range => {
             let bins = radar.bin_of_range(b) - radar.bin_of_range(a);
@@ -128,8 +135,8 @@ fn extent(cut: Cut, low: f64, high: f64, cells: f64) -> String {
     let size = significant(high - low);
     match cut {
         Cut::Angle => {
-            let angle = significant((degrees(low) - degrees(high)).abs());
-            format!("{size} in cos θ = {} columns = {angle}°", significant(cells))
+            let angle = significant((angle_degrees(low) - angle_degrees(high)).abs());
+            format!("{angle}° = {size} in cos θ = {} columns", significant(cells))
         }
         Cut::Range => format!("{size} m = {} bins", significant(cells)),
     }
@@ -175,15 +182,16 @@ mod tests {
         let told = |cut, a: f64, b: f64| {
             let trace = Trace::of(&radar, &cursor, &map, cut, None).unwrap();
             let markers = Markers { places: [Some(a), Some(b)], held: None };
-            readings(cut, &radar, &trace, &markers)
+            readings(cut, &radar, &trace, Units::Lambda, &markers)
         };
         let range = |bin: f64| radar.range_of_bin_metres(bin);
         let told_range = told(Cut::Range, range(100.0), range(110.0));
-        assert_eq!(told_range[..2], ["A: Λ 1.000, ±0.0 dB", "B: Λ 0.500, −20.0 dB"]);
+        assert_eq!(told_range[..2], ["A: Λ 1.000, 0.0 dB", "B: Λ 0.500, −20.0 dB"]);
         let metres = signed(10.0 * radar.range_resolution_metres(), 3);
         assert_eq!(told_range[2], format!("B − A: {metres} m = +10.0 bins, −20.0 dB"));
         assert!(told_range[3].starts_with("3 dB width at A: ") && told_range.len() == 5, "{told_range:?}");
         let told_angle = told(Cut::Angle, radar.cos_of_column(512.0), radar.cos_of_column(640.0));
-        assert_eq!(told_angle[2], "B − A: +0.2500 in cos θ = +128.0 columns = −14.48°, −10.0 dB");
+        assert_eq!(told_angle[1], "B at +14.48° · cos θ +0.2500: Λ 0.750, −10.0 dB");
+        assert_eq!(told_angle[2], "B − A: +14.48° = +0.2500 in cos θ = +128.0 columns, −10.0 dB");
     }
 }

@@ -7,7 +7,9 @@ mod trace;
 use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Dash, Drawn, Span};
+use crate::app::widgets::direction::direction;
 use crate::app::widgets::entry::button;
+use crate::app::widgets::levels::lowest_db;
 use crate::app::widgets::theme::Inks;
 use crate::radar::Radar;
 use eframe::egui;
@@ -114,7 +116,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Com
         }
         ui.add_space(6.0);
         for (units, name) in [(Units::Lambda, "Λ"), (Units::Decibels, "dB")] {
-            let tip = "Λ, or decibels below each map's peak (D)";
+            let tip = "Λ, or decibels relative to each map's peak (D)";
             if ui.selectable_label(input.units == units, name).on_hover_text(tip).clicked() && input.units != units {
                 asked.push(Command::SetUnits(units));
             }
@@ -122,7 +124,8 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Com
         ui.add_space(6.0);
         button(ui, "Pin", Command::PinCuts, !input.maps.is_empty(), asked);
         for (index, pin) in input.pins.iter().enumerate() {
-            let place = format!("{}: {:.2} m, cos {:.3}", index + 1, pin.cursor.range_metres, pin.cursor.cos_theta);
+            let way = direction(pin.cursor.cos_theta, 1);
+            let place = format!("{}: {:.2} m · {way}", index + 1, pin.cursor.range_metres);
             let tip = "A cut that stays, drawn thin; click to let it go";
             if ui.button(format!("Unpin {place}")).on_hover_text(tip).clicked() {
                 asked.push(Command::Unpin(index));
@@ -194,13 +197,15 @@ fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut Memory, cut: Cu
     let whole = cut.whole(input.radar);
     let mut view = memory.views.get(&cut).copied().unwrap_or_default();
     let read = memory.read.and_then(|line| traces.iter().find(|t| (t.kind, t.pin) == (line.kind, line.pin)));
-    let said = read.map_or_else(Vec::new, |trace| markers::readings(cut, input.radar, trace, &view.markers));
+    let said =
+        read.map_or_else(Vec::new, |trace| markers::readings(cut, input.radar, trace, input.units, &view.markers));
     let area = if view.markers.is_empty() { area } else { readings(ui, area, cut, whole, &mut view.markers, &said) };
     let span = view.span.unwrap_or(whole);
     let range_db = traces.iter().filter_map(Trace::range_db).fold(1.0, f64::max);
     let y = match input.units {
         Units::Lambda => Axis::new(0.0, 1.05, "Λ"),
-        Units::Decibels => Axis::new(-range_db, 0.05 * range_db, "below the peak, dB"),
+        // What is lower is no echo.
+        Units::Decibels => Axis::new(lowest_db(range_db), -0.05 * lowest_db(range_db), "relative to the peak, dB"),
     };
     let title = cut.title(input.radar, &input.cursor);
     let title = axes::fitting(ui.painter(), area.width() - 20.0, &[&title, cut.unit()]);

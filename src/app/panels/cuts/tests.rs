@@ -140,7 +140,7 @@ fn decibels_are_an_axis_and_a_choice() {
     cuts.state_mut().units = Units::Decibels;
     cuts.run_steps(2);
     let texts = seen::texts(cuts.output());
-    assert!(texts.iter().filter(|t| t.text == "below the peak, dB").count() == 2, "{texts:?}");
+    assert!(texts.iter().filter(|t| t.text == "relative to the peak, dB").count() == 2, "{texts:?}");
     assert!(texts.iter().any(|t| t.text == "−80" || t.text == "−50"), "{texts:?}");
 }
 

@@ -2,6 +2,7 @@
 
 use crate::app::state::{Cursor, CutMap, MapKind, Units};
 use crate::app::widgets::chart::Span;
+use crate::app::widgets::direction::direction;
 use crate::maps::LambdaScale;
 use crate::radar::Radar;
 
@@ -57,7 +58,9 @@ impl Cut {
     pub fn title(self, radar: &Radar, cursor: &Cursor) -> String {
         match self {
             Cut::Angle => format!("{}, at range {:.2} m", self.unit(), radar.range_of_bin_metres(cursor.bin.round())),
-            Cut::Range => format!("{}, at cos θ {:.3}", self.unit(), radar.cos_of_column(cursor.column.round())),
+            Cut::Range => {
+                format!("{}, at {}", self.unit(), direction(radar.cos_of_column(cursor.column.round()), 1))
+            }
         }
     }
 }

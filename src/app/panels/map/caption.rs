@@ -1,6 +1,7 @@
 //! Figures for a map's title bar.
 
-use crate::app::state::MapKind;
+use crate::app::state::{MapKind, Units};
+use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::numbers::percent;
 use crate::evaluate::{Metrics, eta_text};
 
@@ -20,19 +21,23 @@ pub struct Caption {
     pub output_eta: f32,
     /// Part of a recording's power that the reflectors laid over it explain.
     pub explained: Option<f64>,
+    /// What thresholds are told in.
+    pub units: Units,
+    /// What the target's Lambda spans, decibels, where that is known.
+    pub range_db: Option<f64>,
 }
 
 /// What stands in the title bar of a map's panel.
 pub fn caption(input: Caption) -> Option<String> {
     let updating = if input.updating { "(updating) " } else { "" };
     let text = match input.kind {
-        MapKind::TargetAbove => format!("η' = {} {updating}", eta_text(input.target_eta)),
+        MapKind::TargetAbove => format!("η' = {} {updating}", threshold(&input, input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let figures = input.metrics.map_or_else(String::new, |m| {
                 let detection = m.detection.map_or("–".to_owned(), percent);
                 format!("P_D {detection} · P_FA {} · ", percent(m.false_alarm))
             });
-            format!("{figures}η = {} {updating}", eta_text(input.output_eta))
+            format!("{figures}η = {} {updating}", threshold(&input, input.output_eta))
         }
         MapKind::Output | MapKind::Second => format!("{} {updating}", input.method.unwrap_or_default()),
         MapKind::Difference | MapKind::SecondDifference => {
@@ -45,4 +50,38 @@ pub fn caption(input: Caption) -> Option<String> {
         _ => updating.to_owned(),
     };
     (!text.trim().is_empty()).then_some(text)
+}
+
+/// A threshold in Lambda, or in decibels relative to the target's peak where these are chosen and known.
+fn threshold(input: &Caption, eta: f32) -> String {
+    match input.range_db.filter(|_| input.units == Units::Decibels) {
+        Some(range_db) => with_unit(&level(range_db * (f64::from(eta) - 1.0), range_db)),
+        None => eta_text(eta),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thresholds_are_told_in_the_chosen_units() {
+        let of = |units, range_db| {
+            let input = Caption {
+                kind: MapKind::TargetAbove,
+                method: None,
+                updating: false,
+                metrics: None,
+                target_eta: 0.9,
+                output_eta: 0.8,
+                explained: None,
+                units,
+                range_db,
+            };
+            caption(input).unwrap()
+        };
+        assert_eq!(of(Units::Lambda, Some(320.0)).trim(), "η' = 0.90");
+        assert_eq!(of(Units::Decibels, Some(320.0)).trim(), "η' = −32.0 dB");
+        assert_eq!(of(Units::Decibels, None).trim(), "η' = 0.90", "no map is there yet");
+    }
 }

@@ -1,6 +1,7 @@
 //! A map on screen: where its places are, and the numbers behind them.
 
 use crate::app::state::{Cursor, MapView, Projection};
+use crate::app::widgets::levels;
 use crate::app::widgets::numbers::signed;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{Polar, Radar};
@@ -97,8 +98,10 @@ pub struct Cells<'a> {
 pub struct Value {
     /// Lambda, or a difference of it.
     pub lambda: f64,
-    /// Decibels below the peak, or a difference of them, where the scale is known.
+    /// Decibels relative to the peak, or a difference of them, where the scale is known.
     pub decibels: Option<f64>,
+    /// What Lambda spans, decibels, where the scale is known.
+    pub range_db: Option<f64>,
 }
 
 impl Cells<'_> {
@@ -109,21 +112,21 @@ impl Cells<'_> {
         Some(match self.minus {
             Some(minus) => {
                 let difference = f64::from(lambda - minus.lambda.get((bin, column))?);
-                Value { lambda: difference, decibels: range_db.map(|range| range * difference) }
+                Value { lambda: difference, decibels: range_db.map(|range| range * difference), range_db }
             }
             None => {
                 let lambda = f64::from(lambda);
-                Value { lambda, decibels: range_db.map(|range| range * (lambda - 1.0)) }
+                Value { lambda, decibels: range_db.map(|range| range * (lambda - 1.0)), range_db }
             }
         })
     }
 }
 
 impl Value {
-    /// Its decibels in words: the peak itself, and silence, are 0 dB below the peak, not -0.
+    /// Its decibels in words, without the unit.
     pub fn decibels_text(&self, is_difference: bool) -> Option<String> {
-        let db = self.decibels?;
-        Some(if db > -0.05 && !is_difference { "0.0".to_owned() } else { signed(db, 1) })
+        let (db, range_db) = self.decibels.zip(self.range_db)?;
+        Some(if is_difference { levels::difference(db) } else { levels::level(db, range_db) })
     }
 
     /// Its Lambda in words, with its sign where it is a difference.

@@ -79,8 +79,6 @@ pub struct Input<'a> {
     pub error: Option<Problem<'a>>,
     /// Hides the picture: a prediction is asked for.
     pub veil: Option<Veil>,
-    /// Whether axes, values and the colours' scale are told.
-    pub numbers: bool,
 }
 
 #[cfg(test)]
@@ -114,7 +112,6 @@ impl<'a> Input<'a> {
             cursor: None,
             error: None,
             veil: None,
-            numbers: true,
         }
     }
 }
@@ -124,7 +121,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let is_told = !input.kind.is_above() && input.numbers && area.width() > 200.0;
+    let is_told = !input.kind.is_above() && area.width() > 200.0;
     let bar = is_told.then(|| bar_of(&input));
     let legend = legend_of(ui.painter(), &input, area);
     let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection, legend.height());
@@ -148,10 +145,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(rect.intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
-    if input.numbers {
-        draw_axes(ui, &painter, frame);
-        legend.draw(ui, &painter, rect.left_top() - vec2(0.0, legend.height() + 4.0));
-    }
+    draw_axes(ui, &painter, frame);
+    legend.draw(ui, &painter, rect.left_top() - vec2(0.0, legend.height() + 4.0));
     point(&input, frame, &response, &mut asked);
     draw_over(&inner, frame, &input, &response, is_drawn);
     if let Some(bar) = bar {
@@ -166,7 +161,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
 
 /// What hatches and marks stand for, where there is room to say so.
 fn legend_of(painter: &Painter, input: &Input<'_>, area: Rect) -> Legend {
-    let has_room = input.numbers && input.veil.is_none() && area.height() > 150.0;
+    let has_room = input.veil.is_none() && area.height() > 150.0;
     let told_apart = input.told_apart && has_room;
     Legend::new(painter, told_apart, input.kinds.as_ref().filter(|_| has_room), area.width() - axes::LEFT - 12.0)
 }
@@ -181,20 +176,20 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     }
     // Beneath all that is to be read.
     if let Some(cursor) = &input.cursor {
-        let told = input.veil.is_none() && input.numbers;
+        let told = input.veil.is_none();
         let beneath = input.cells.as_ref();
         let cells = match &input.over {
             Some(over) => over.cells_at(rect, frame.cursor(cursor).x, beneath),
             None => beneath,
         };
-        overlay::cursor(inner, frame, cursor, cells.filter(|_| told));
+        overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.units);
     }
     if input.veil.is_none() {
-        let pointer = response.hover_pos().filter(|_| input.numbers);
+        let pointer = response.hover_pos();
         overlay::marks(inner, frame, input.marks.objects, pointer);
         overlay::found(inner, frame, input.marks.found, input.stale);
         overlay::selected(inner, frame, input.scene, input.selection);
-        input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame, pointer));
+        input.theory.iter().for_each(|theory| theory.draw(inner, frame, pointer));
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }

@@ -2,8 +2,10 @@
 
 use super::frame::{Cells, Frame, Marked};
 use super::outline::outline;
-use crate::app::state::{Cursor, Projection};
+use crate::app::state::{Cursor, Projection, Units};
 use crate::app::widgets::axes;
+use crate::app::widgets::direction::direction;
+use crate::app::widgets::levels::with_unit;
 use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
 use crate::interact::Selection;
 use crate::scene::{Object, Reflector, Scene};
@@ -111,7 +113,7 @@ fn true_direction(painter: &Painter, frame: Frame<'_>, reflector: &Reflector) {
 fn direction_text(frame: Frame<'_>, reflector: &Reflector) -> String {
     let seen = frame.radar.polar_of(reflector.x_metres - frame.centre_x_metres, reflector.y_metres);
     let blob = frame.radar.blob_of(frame.centre_x_metres, reflector.x_metres, reflector.y_metres);
-    format!("stands at cos θ {:+.3}, seen at {:+.3}", seen.cos_theta, blob.cos_theta)
+    format!("stands at {}\nseen at {}", direction(seen.cos_theta, 1), direction(blob.cos_theta, 1))
 }
 
 fn cross(painter: &Painter, at: Pos2, r: f32, stroke: Stroke) {
@@ -120,7 +122,7 @@ fn cross(painter: &Painter, at: Pos2, r: f32, stroke: Stroke) {
 }
 
 /// The cell under the pointer of whichever panel has it, and its value here.
-pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>) {
+pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>, units: Units) {
     let Some((bin, column)) = cursor.cell(frame.radar) else { return };
     let (rect, at, gap) = (frame.rect, frame.cursor(cursor), 7.0);
     for stroke in [Stroke::new(2.6, Color32::from_black_alpha(110)), Stroke::new(1.0, MARK)] {
@@ -132,7 +134,7 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
         }
         painter.circle_stroke(at, gap, stroke);
     }
-    if let Some(text) = cells.and_then(|cells| value_text(cells, bin, column)) {
+    if let Some(text) = cells.and_then(|cells| value_text(cells, units, bin, column)) {
         // Away from the pointer: in the corner where it isn't.
         let (corner, align) = if at.y < rect.top() + 40.0 && at.x > rect.center().x {
             (rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP)
@@ -143,14 +145,15 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
     }
 }
 
-/// Value of a cell in Lambda and decibels below the peak.
-fn value_text(cells: &Cells<'_>, bin: usize, column: usize) -> Option<String> {
+/// Value of a cell in Lambda and in decibels relative to the peak, in the chosen units first.
+fn value_text(cells: &Cells<'_>, units: Units, bin: usize, column: usize) -> Option<String> {
     let (value, is_difference) = (cells.value(bin, column)?, cells.minus.is_some());
-    let lambda = value.lambda_text(is_difference);
-    let decibels = value.decibels_text(is_difference);
-    Some(match is_difference {
-        true => format!("ΔΛ {lambda}{}", decibels.map_or_else(String::new, |db| format!("  {db} dB"))),
-        false => format!("Λ {lambda}{}", decibels.map_or_else(String::new, |db| format!("  {db:>6} dB"))),
+    let lambda = format!("{} {}", if is_difference { "ΔΛ" } else { "Λ" }, value.lambda_text(is_difference));
+    let Some(decibels) = value.decibels_text(is_difference) else { return Some(lambda) };
+    let decibels = format!("{}{}", if is_difference { "Δ " } else { "" }, with_unit(&decibels));
+    Some(match units {
+        Units::Lambda => format!("{lambda}  ({decibels})"),
+        Units::Decibels => format!("{decibels}  ({lambda})"),
     })
 }
 
@@ -167,17 +170,27 @@ mod tests {
     use ndarray::array;
 
     #[test]
-    fn values_are_told_in_lambda_and_decibels_and_nothing_is_minus_zero() {
+    fn values_are_told_in_lambda_with_decibels_beside() {
         let map = RangeAngleMap { lambda: array![[1.0f32, 0.5], [0.0, 0.25]] };
         let cells = |peak, floor| Cells { map: &map, minus: None, scale: Some(LambdaScale { peak, floor }) };
-        assert_eq!(value_text(&cells(5.0, 0.0), 0, 1).unwrap(), "Λ 0.500   −50.0 dB");
-        assert_eq!(value_text(&cells(5.0, 0.0), 0, 0).unwrap(), "Λ 1.000     0.0 dB");
-        assert_eq!(value_text(&cells(0.0, 0.0), 1, 0).unwrap(), "Λ 0.000     0.0 dB", "silence");
+        let value_text = |cells: &Cells<'_>, bin, column| value_text(cells, Units::Lambda, bin, column);
+        assert_eq!(value_text(&cells(5.0, 0.0), 0, 1).unwrap(), "Λ 0.500  (−50.0 dB)");
+        assert_eq!(value_text(&cells(5.0, 0.0), 0, 0).unwrap(), "Λ 1.000  (0.0 dB)");
+        assert_eq!(value_text(&cells(0.0, 0.0), 1, 0).unwrap(), "Λ 0.000  (no echo)", "silence");
         let difference = Cells { map: &map, minus: Some(&map), scale: None };
         assert_eq!(value_text(&difference, 1, 1).unwrap(), "ΔΛ ±0.000");
         let other = RangeAngleMap { lambda: array![[0.75f32]] };
         let difference = Cells { minus: Some(&other), ..cells(5.0, 0.0) };
-        assert_eq!(value_text(&difference, 0, 0).unwrap(), "ΔΛ +0.250  +25.0 dB");
+        assert_eq!(value_text(&difference, 0, 0).unwrap(), "ΔΛ +0.250  (Δ +25.0 dB)");
+    }
+
+    #[test]
+    fn decibels_come_first_where_they_are_chosen() {
+        let map = RangeAngleMap { lambda: array![[1.0f32, 0.1]] };
+        // The span of a map whose least cell is a rounding error of f64: the cell of Λ 0.1 is at -281.5 dB.
+        let cells = Cells { map: &map, minus: None, scale: Some(LambdaScale { peak: 1.6, floor: 1.6 - 281.5 / 18.0 }) };
+        assert_eq!(value_text(&cells, Units::Decibels, 0, 0).unwrap(), "0.0 dB  (Λ 1.000)");
+        assert_eq!(value_text(&cells, Units::Decibels, 0, 1).unwrap(), "≤ −200 dB  (Λ 0.100)");
     }
 
     #[test]
@@ -211,7 +224,11 @@ mod tests {
         let (away, near) = (draw(None), draw(Some(blob)));
         assert!(!seen::texts(&away).iter().any(|t| t.text.starts_with("stands at")));
         let told = seen::texts(&near).into_iter().find(|t| t.text.starts_with("stands at")).unwrap();
-        assert!(told.text.starts_with("stands at cos θ -0.832, seen at -0.81"), "{}", told.text);
+        assert!(
+            told.text.starts_with("stands at −56.3° · cos θ −0.832\nseen at −54.1° · cos θ −0.81"),
+            "{}",
+            told.text
+        );
         // Four rings at most are drawn around a wall: two for the wall, two for its being selected.
         let shapes = away.shapes.iter().filter(|s| matches!(s.shape, Shape::Path(_) | Shape::Circle(_))).count();
         assert_eq!(shapes, 4, "{:?}", away.shapes);

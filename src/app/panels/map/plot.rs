@@ -59,7 +59,14 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
             let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);
             let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
             let title = match radar.carrier {
-                Carrier::OneWay => "cos θ",
+                Carrier::OneWay => {
+                    let titles = [
+                        "cos θ: −1 is −90° (left), 0 straight ahead, 1 is +90° (right)",
+                        "cos θ (0 straight ahead, 1 at 90° right)",
+                        "cos θ",
+                    ];
+                    axes::fitting(painter, rect.width(), &titles)
+                }
                 Carrier::TwoWay => {
                     let titles = ["cos θ, folded: each column stands for two directions", "cos θ, folded"];
                     axes::fitting(painter, rect.width(), &titles)

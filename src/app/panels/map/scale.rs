@@ -2,6 +2,7 @@
 
 use crate::app::state::{DifferenceView, MapKind, Units};
 use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::levels::lowest_db;
 use crate::app::widgets::textures::colour_table;
 use crate::maps::LambdaScale;
 use crate::picture::ColourMap;
@@ -30,17 +31,17 @@ impl Scale {
         if !self.kind.is_difference() {
             let table = colour_table(self.colours);
             return match range_db {
-                Some(range) => Bar { table, low: -range, high: 0.0, title: "dB" },
-                None => Bar { table, low: 0.0, high: 1.0, title: "Λ" },
+                Some(range) => Bar { told_from: lowest_db(range), ..Bar::new(table, -range, 0.0, "dB") },
+                None => Bar::new(table, 0.0, 1.0, "Λ"),
             };
         }
         let high = f64::from(self.end) * range_db.unwrap_or(1.0);
         let decibels = range_db.is_some();
         match (self.difference.absolute, decibels) {
-            (true, true) => Bar { table: colour_table(self.colours), low: 0.0, high, title: "|Δ| dB" },
-            (true, false) => Bar { table: colour_table(self.colours), low: 0.0, high, title: "|ΔΛ|" },
-            (false, true) => Bar { table: colour_table(ColourMap::Diverging), low: -high, high, title: "Δ dB" },
-            (false, false) => Bar { table: colour_table(ColourMap::Diverging), low: -high, high, title: "ΔΛ" },
+            (true, true) => Bar::new(colour_table(self.colours), 0.0, high, "|Δ| dB"),
+            (true, false) => Bar::new(colour_table(self.colours), 0.0, high, "|ΔΛ|"),
+            (false, true) => Bar::new(colour_table(ColourMap::Diverging), -high, high, "Δ dB"),
+            (false, false) => Bar::new(colour_table(ColourMap::Diverging), -high, high, "ΔΛ"),
         }
     }
 }

@@ -80,16 +80,16 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
     let Canvas { rect, view, extent_metres: extent, inks, .. } = canvas;
     let thin = Stroke::new(1.0, inks.grid);
     let visible = f64::from(rect.width().min(2.0 * rect.height())) * view.metres_per_point;
-    let spokes = [15, 30, 45, 60, 75, 90, 105, 120, 135, 150, 165];
-    for degrees in spokes {
-        let angle = f64::from(degrees) * PI / 180.0;
+    // From straight ahead, positive to the right.
+    for degrees in [-75, -60, -45, -30, -15, 0, 15, 30, 45, 60, 75] {
+        let angle = f64::from(90 - degrees) * PI / 180.0;
         let end = view.to_screen(rect, Place::new(extent * angle.cos(), extent * angle.sin()));
         let stroke = if degrees % 30 == 0 { thin } else { Stroke::new(1.0, inks.grid.gamma_multiply(0.5)) };
         painter.line_segment([view.to_screen(rect, Place::new(0.0, 0.0)), end], stroke);
         if degrees % 30 == 0 {
             // Beyond the arc, on the side of the label that faces it.
             let out = end + 4.0 * vec2(angle.cos() as f32, -angle.sin() as f32);
-            let label = format!("{degrees}°");
+            let label = format!("{degrees}°").replace('-', "−");
             let half = vec2(axes::width(painter, &label) / 2.0, 7.0);
             let away = vec2(angle.cos() as f32 * half.x, -angle.sin() as f32 * half.y);
             axes::text(painter, out + away, Align2::CENTER_CENTER, &label, inks.grid_text);
@@ -190,6 +190,10 @@ pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look
     }
     if selected {
         let handles = grips(object, view.metres_per_point);
+        let place = |grip| handles.iter().find(|g| g.grip == grip).map(|g| at(g.place));
+        if let Some((end, turn)) = place(Grip::FarEnd).zip(place(Grip::Turn)) {
+            painter.line_segment([end, turn], Stroke::new(1.0, colour));
+        }
         for g in handles.into_iter().filter(|g| g.grip != Grip::Body) {
             grip(painter, at(g.place), g.grip, colour, inks);
         }
@@ -217,10 +221,24 @@ fn grip(painter: &Painter, at: Pos2, grip: Grip, colour: Color32, inks: Inks) {
             let diamond = vec![at + vec2(0.0, -r), at + vec2(r, 0.0), at + vec2(0.0, r), at + vec2(-r, 0.0)];
             painter.add(Shape::convex_polygon(diamond, inks.ground, stroke));
         }
+        Grip::Turn => {
+            painter.circle(at, 7.0, inks.ground, stroke);
+            turning_arrow(painter, at, stroke);
+        }
         _ => {
             let square = Rect::from_center_size(at, vec2(8.0, 8.0));
             painter.rect(square, 1.0, inks.ground, stroke, egui::StrokeKind::Middle);
         }
+    }
+}
+
+/// Most of a circle with an arrow's head at its end.
+fn turning_arrow(painter: &Painter, at: Pos2, stroke: Stroke) {
+    let on = |degrees: f32| at + 3.5 * vec2(degrees.to_radians().cos(), -degrees.to_radians().sin());
+    painter.add(Shape::line((0..=12).map(|i| on(60.0 + 25.0 * i as f32)).collect(), stroke));
+    let tip = on(60.0);
+    for side in [vec2(-2.8, -1.2), vec2(-0.6, 2.8)] {
+        painter.line_segment([tip, tip + side], stroke);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The scene's canvas: what the pointer does in it.
 
+mod beyond;
 mod canvas;
 mod disturbances;
 mod trail;
@@ -85,12 +86,14 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     }
     if input.numbers {
         canvas::scale_bar(&painter, canvas);
+        beyond::warn(ui, &painter, canvas, editor.scene());
     }
     say(ui, &painter, rect, editor.scene().objects.is_empty() && input.found.is_empty(), input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
             (Grip::Body, Some(_)) => CursorIcon::Grabbing,
-            (Grip::Body, None) => CursorIcon::Grab,
+            (Grip::Body | Grip::Turn, None) => CursorIcon::Grab,
+            (Grip::Turn, Some(_)) => CursorIcon::Grabbing,
             (Grip::SpreadX, _) => CursorIcon::ResizeHorizontal,
             (Grip::NearEnd | Grip::FarEnd, _) => CursorIcon::Move,
             _ => CursorIcon::ResizeVertical,

@@ -83,8 +83,7 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
         let mut state = (Editor::new(Scene::default()), SceneView::default());
         let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
             let (snap, fields_of_view) = (Snap::Off, false);
-            let (found, numbers) = (&[], true);
-            let (trails, cursor, error, snapshot_range_metres) = (&[], None, None, None);
+            let (found, trails, cursor, error, snapshot_range_metres) = (&[], &[], None, None, None);
             let radar = &radar;
             let input = Input {
                 radar,
@@ -96,7 +95,7 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
                 trails,
                 cursor,
                 error,
-                numbers,
+                numbers: true,
             };
             _ = show(ui, input, editor, view);
         };
@@ -119,7 +118,7 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
     let found = [Reflector { x_metres: 0.0, y_metres: 15.0, reflectivity: 1.0 }];
     let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
-        let (snap, fields_of_view, numbers) = (Snap::Off, false, true);
+        let (snap, fields_of_view) = (Snap::Off, false);
         let (radar, found, trails, cursor, error) = (&radar, &found, &[], None, None);
         let snapshot_range_metres = Some(15.0);
         let input = Input {
@@ -132,7 +131,7 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
             trails,
             cursor,
             error,
-            numbers,
+            numbers: true,
         };
         _ = show(ui, input, editor, view);
     };
@@ -143,41 +142,102 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     assert!(rect.contains(scene.state().1.to_screen(rect, Place::new(0.0, 15.0))), "what was found is in sight");
 }
 
-#[test]
-fn either_end_of_a_line_can_be_dragged_to_any_slant_and_back() {
-    use crate::scene::{Line, Object};
-    let before = Line::vertical(0.0, 10.0, 0.5, 21);
-    let mut scene = panel(Scene { objects: vec![Object::Line(before.clone())], ..Scene::default() });
+fn wall() -> Harness<'static, Held> {
+    let line = crate::scene::Object::Line(crate::scene::Line::vertical(0.0, 10.0, 0.5, 21));
+    let mut scene = panel(Scene { objects: vec![line], ..Scene::default() });
     scene.state_mut().editor.select_all();
     scene.step();
-    let line = |scene: &Harness<'static, Held>| match &scene.state().editor.scene().objects[0] {
-        Object::Line(line) => line.clone(),
+    scene
+}
+
+fn line(scene: &Harness<'static, Held>) -> crate::scene::Line {
+    match &scene.state().editor.scene().objects[0] {
+        crate::scene::Object::Line(line) => line.clone(),
         other => panic!("{other:?}"),
-    };
-    let drag = |scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2| {
-        let from = scene.get_by_label(handle).rect().center();
-        scene.hover_at(from);
+    }
+}
+
+/// Drags a handle in several steps; metres per point.
+fn drag(scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2) -> f64 {
+    let from = scene.get_by_label(handle).rect().center();
+    scene.hover_at(from);
+    scene.step();
+    scene.drag_at(from);
+    scene.step();
+    for part in [0.3, 0.7, 1.0] {
+        scene.hover_at(from + by * part);
         scene.step();
-        scene.drag_at(from);
-        scene.step();
-        scene.hover_at(from + by);
-        scene.step();
-        scene.drop_at(from + by);
-        scene.step();
-        scene.state().view.metres_per_point
-    };
-    let metres = drag(&mut scene, "line 1: move the far end: more or fewer reflectors", vec2(50.0, 10.0));
+    }
+    scene.drop_at(from + by);
+    scene.step();
+    scene.state().view.metres_per_point
+}
+
+#[test]
+fn an_end_of_a_line_stretches_it_in_one_step_of_undo() {
+    let mut scene = wall();
+    let before = line(&scene);
+    let metres = drag(&mut scene, "line 1: move the far end: more or fewer reflectors", vec2(50.0, 40.0));
+    let shorter = line(&scene);
+    assert_eq!((shorter.direction_degrees, shorter.x_metres, shorter.y_start_metres), (90.0, 0.0, 10.0));
+    let wanted = before.end_metres()[1] - 40.0 * metres;
+    assert!((shorter.end_metres()[1] - wanted).abs() <= 0.25, "{shorter:?} ends at {wanted}");
+    assert!(scene.state_mut().editor.undo() && line(&scene) == before && !scene.state_mut().editor.undo());
+}
+
+#[test]
+fn the_handle_of_a_line_turns_it_in_one_step_of_undo() {
+    let mut scene = wall();
+    let (before, middle) = (line(&scene), [0.0, 15.0]);
+    let handle = "line 1: turn the line about its middle";
+    let rect = scene.get_by_label("Scene").rect();
+    let place = scene.state().view.to_scene(rect, scene.get_by_label(handle).rect().center());
+    let metres = drag(&mut scene, handle, vec2(60.0, 30.0));
     let turned = line(&scene);
-    let wanted = 90.0 - (50.0 * metres).atan2(10.0 - 10.0 * metres).to_degrees();
+    let [dx, dy] = [place.x_metres + 60.0 * metres - middle[0], place.y_metres - 30.0 * metres - middle[1]];
+    let wanted = 90.0 - dx.atan2(dy).to_degrees();
     assert!((turned.direction_degrees - wanted).abs() < 0.1, "{turned:?}, not {wanted}");
-    assert_eq!([turned.x_metres, turned.y_start_metres], [0.0, 10.0], "the other end stays");
-    let far = turned.end_metres();
-    drag(&mut scene, "line 1: move the near end: more or fewer reflectors", vec2(-60.0, -20.0));
-    let [x, y] = line(&scene).end_metres();
-    assert!((x - far[0]).hypot(y - far[1]) < 1e-9 && line(&scene).x_metres < -1.0, "{:?}", line(&scene));
-    let editor = &mut scene.state_mut().editor;
-    assert!(editor.undo() && editor.undo() && !editor.undo());
-    assert_eq!(line(&scene), before);
+    assert_eq!((turned.count, turned.spacing_metres), (before.count, before.spacing_metres));
+    let [x, y] = turned.place_metres(10.0);
+    assert!((x - middle[0]).hypot(y - middle[1]) < 1e-9, "the middle stays: {x}, {y}");
+    assert!(scene.state_mut().editor.undo() && line(&scene) == before && !scene.state_mut().editor.undo());
+}
+
+#[test]
+fn the_spokes_are_labelled_from_straight_ahead() {
+    let scene = panel(Scene::default());
+    let texts = seen::texts(scene.output());
+    let middle = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.center().x);
+    let labels = ["−60°", "−30°", "0°", "30°", "60°"].map(middle);
+    assert!(labels[0].is_some() && labels.is_sorted(), "{texts:?}");
+}
+
+#[test]
+fn what_stands_beyond_the_maximum_range_is_warned_of() {
+    let sentence = "point 2 stands beyond the maximum range of 38.4 m: the maps show it at 21.6 m.";
+    let mut scene = panel(Scene::of_points([(0.0, 20.0), (0.0, 60.0)]));
+    let _told = scene.get_by_label(sentence);
+    assert!(seen::texts(scene.output()).iter().any(|t| t.text == sentence), "it is seen, too");
+    let view = &mut scene.state_mut().view;
+    (view.centre, view.metres_per_point, view.fit) = (Place::new(0.0, 18.0), 0.1, false);
+    view.fitted = None;
+    scene.step();
+    let (canvas, sign) =
+        (scene.get_by_label("Scene").rect(), scene.get_by_label("point 2 beyond the maximum range").rect());
+    assert!((sign.center().y - canvas.top()).abs() < 20.0, "at the upper edge, where it would be: {sign:?}");
+    assert!((sign.center().x - canvas.center().x).abs() < 1.0);
+    let near = panel(Scene::of_points([(0.0, 20.0), (0.0, 38.0)]));
+    assert!(near.query_by_label_contains("maximum range").is_none());
+}
+
+#[test]
+fn a_wall_that_reaches_beyond_the_maximum_range_says_so() {
+    let line = crate::scene::Object::Line(crate::scene::Line::vertical(0.0, 30.0, 0.5, 21));
+    let scene = panel(Scene { objects: vec![line.clone()], ..Scene::default() });
+    let _told =
+        scene.get_by_label("line 1 reaches beyond the maximum range of 38.4 m: its far part wraps around in the maps.");
+    let two = panel(Scene { objects: vec![line.clone(), line], ..Scene::default() });
+    let _told = two.get_by_label("2 objects reach beyond the maximum range of 38.4 m: they wrap around in the maps.");
 }
 
 #[test]

@@ -1,0 +1,141 @@
+//! A warning for what stands beyond the maximum range: the maps show it elsewhere.
+
+use super::canvas::Canvas;
+use crate::interact::Place;
+use crate::radar::Radar;
+use crate::scene::{Object, Scene};
+use eframe::egui::{self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
+
+/// From the edge of the canvas to the middle of a sign there, points.
+const INSET: f32 = 13.0;
+
+/// Most signs; the sentence counts all.
+const SIGNS: usize = 100;
+
+/// Widest sentence, points, and its part of the canvas.
+const WIDEST: f32 = 330.0;
+const PART: f32 = 0.45;
+
+/// An object that the maps show elsewhere.
+struct Beyond<'a> {
+    index: usize,
+    object: &'a Object,
+    /// Its farthest reflector.
+    farthest: Place,
+    /// Whether all of it is beyond.
+    is_whole: bool,
+}
+
+/// Draws a sign beside every object beyond the maximum range, or at the edge of the canvas where it is out of sight, and one sentence.
+pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
+    if canvas.radar.samples == 1 {
+        // A snapshot has no ranges.
+        return;
+    }
+    let beyond = beyond(canvas.radar, scene);
+    let Some(said) = sentence(canvas.radar, &beyond) else { return };
+    let ink = ui.visuals().warn_fg_color;
+    for one in beyond.iter().take(SIGNS) {
+        let at = sign(painter, canvas, one, ink);
+        let name = format!("{} {} beyond the maximum range", one.object.kind(), one.index + 1);
+        let place = Rect::from_center_size(at, Vec2::splat(18.0));
+        let response = ui.interact(place, Id::unique(("beyond the maximum range", one.index)), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &name));
+        response.on_hover_text(&said);
+    }
+    write(ui, painter, canvas.rect, &said, ink);
+}
+
+fn beyond<'a>(radar: &Radar, scene: &'a Scene) -> Vec<Beyond<'a>> {
+    let most = radar.max_range_metres();
+    let range = |place: &Place| place.x_metres.hypot(place.y_metres);
+    let of = |(index, object): (usize, &'a Object)| {
+        let places: Vec<Place> = match object {
+            Object::Line(l) => vec![[l.x_metres, l.y_start_metres].into(), l.end_metres().into()],
+            other => vec![other.centre_metres().into()],
+        };
+        let farthest = places.iter().copied().max_by(|a, b| range(a).total_cmp(&range(b)))?;
+        let is_whole = places.iter().all(|place| range(place) > most);
+        (range(&farthest) > most).then_some(Beyond { index, object, farthest, is_whole })
+    };
+    scene.objects.iter().enumerate().filter_map(of).collect()
+}
+
+/// What is said of them; `None` where there are none.
+fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
+    let most = radar.max_range_metres();
+    Some(match beyond {
+        [] => return None,
+        [Beyond { index, object: Object::Point(p), .. }] => {
+            let shown = p.x_metres.hypot(p.y_metres).rem_euclid(most);
+            format!(
+                "point {} stands beyond the maximum range of {most:.1} m: the maps show it at {shown:.1} m.",
+                index + 1
+            )
+        }
+        [Beyond { index, object, is_whole, .. }] => {
+            let (name, part) = (object.kind(), if *is_whole { "it wraps" } else { "its far part wraps" });
+            format!("{name} {} reaches beyond the maximum range of {most:.1} m: {part} around in the maps.", index + 1)
+        }
+        several => {
+            let count = several.len();
+            format!("{count} objects reach beyond the maximum range of {most:.1} m: they wrap around in the maps.")
+        }
+    })
+}
+
+/// A triangle with an exclamation mark beside the farthest reflector; at the edge of the canvas, with an arrow outwards, where that is out
+/// of sight. Where it is.
+fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -> Pos2 {
+    let (target, inner) = (canvas.at(one.farthest), canvas.rect.shrink(INSET));
+    let in_sight = inner.contains(target);
+    let at = if in_sight { target + vec2(14.0, -10.0) } else { on_edge(inner, target) };
+    let corners = vec![at + vec2(0.0, -7.5), at + vec2(7.5, 6.0), at + vec2(-7.5, 6.0)];
+    painter.add(Shape::convex_polygon(corners, canvas.inks.ground, Stroke::new(1.5, ink)));
+    painter.line_segment([at + vec2(0.0, -3.0), at + vec2(0.0, 1.5)], Stroke::new(1.6, ink));
+    painter.circle_filled(at + vec2(0.0, 4.0), 0.9, ink);
+    if !in_sight {
+        let out = (target - at).normalized();
+        let (tip, side) = (at + out * 12.5, vec2(-out.y, out.x) * 3.5);
+        painter.add(Shape::convex_polygon(
+            vec![tip, tip - out * 4.0 + side, tip - out * 4.0 - side],
+            ink,
+            Stroke::NONE,
+        ));
+    }
+    at
+}
+
+/// Where the line from the middle of `inner` to `target` leaves it.
+fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
+    let (middle, to) = (inner.center(), target - inner.center());
+    let part = |half: f32, way: f32| if way == 0.0 { f32::INFINITY } else { half / way.abs() };
+    let part = part(inner.width() / 2.0, to.x).min(part(inner.height() / 2.0, to.y)).min(1.0);
+    if part.is_finite() { middle + to * part } else { middle }
+}
+
+/// Writes the sentence in the upper left corner, below the scale.
+fn write(ui: &Ui, painter: &Painter, rect: Rect, said: &str, ink: Color32) {
+    let width = (PART * rect.width()).min(WIDEST);
+    let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
+    let at = rect.min + vec2(12.0, 28.0);
+    let patch = Rect::from_min_size(at, galley.size()).expand(4.0);
+    painter.rect_filled(patch, 3.0, ui.visuals().extreme_bg_color);
+    painter.galley(at, galley, ink);
+    let response = ui.interact(patch, Id::unique("beyond the maximum range"), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, said));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::pos2;
+
+    #[test]
+    fn a_sign_is_on_the_edge_that_the_object_is_beyond() {
+        let inner = Rect::from_min_max(pos2(0.0, 0.0), pos2(200.0, 100.0));
+        assert_eq!(on_edge(inner, pos2(100.0, -900.0)), pos2(100.0, 0.0));
+        assert_eq!(on_edge(inner, pos2(900.0, 50.0)), pos2(200.0, 50.0));
+        assert!((on_edge(inner, pos2(1100.0, -950.0)) - pos2(150.0, 0.0)).length() < 1e-3);
+    }
+}
