@@ -19,7 +19,7 @@ impl Contents<'_> {
             trails: self.jobs.failures.search.trails(state.editor.document().id()),
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
-            numbers: shows_numbers(state),
+            numbers: shows_numbers(state) && state.shows_axes(),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }

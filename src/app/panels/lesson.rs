@@ -3,11 +3,11 @@
 use crate::app::state::{Command, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
-use crate::lesson::question::Answer;
+use crate::lesson::question::{Answer, number_text};
 use crate::lesson::shipped::Shipped;
-use crate::lesson::{Challenge, Guess, Lesson, Progress, Question};
+use crate::lesson::{Challenge, Guess, Judgement, Lesson, Progress, Question, Truth};
 use eframe::egui;
-use eframe::egui::{RichText, ScrollArea, Slider, TextEdit, TextureId, Ui};
+use eframe::egui::{Color32, RichText, ScrollArea, Sense, Slider, Stroke, TextEdit, TextureId, Ui, pos2, vec2};
 use std::sync::OnceLock;
 
 /// What is shown.
@@ -74,7 +74,9 @@ fn shipped() -> &'static [(&'static Shipped, Lesson)] {
 }
 
 fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<Command>) {
-    ui.label("Each step asks before it shows. Guess: a wrong guess teaches as much as a right one.");
+    ui.label(
+        "Each step asks a question before it shows the maps. Guess: a wrong guess teaches as much as a right one.",
+    );
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Learner");
         let field =
@@ -129,7 +131,10 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
         ui.label(large(ui, &question.ask).strong());
         match run.guess {
             None => answer(ui, question, memory, asked),
-            Some(_) => judgement(ui, run, &mut memory.told),
+            Some(guess) => {
+                answered(ui, question, guess, run.judgement.as_ref().and_then(|j| j.as_ref().ok()));
+                judgement(ui, run, &mut memory.told);
+            }
         }
     }
     if let Some(challenge) = step.challenge.as_ref().filter(|_| !run.is_predicting()) {
@@ -148,8 +153,8 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         if !is_last && ui.button("Next").clicked() {
             asked.push(Command::LessonStep(run.step + 1));
         }
-        let leave = if is_last { "Finish" } else { "Leave" };
-        if ui.button(leave).on_hover_text("Your scene and your settings come back").clicked() {
+        let leave = if is_last { "Finish" } else { "Exit lesson" };
+        if ui.button(leave).on_hover_text("Your scene, settings, panels and zoom come back").clicked() {
             asked.push(Command::LeaveLesson);
         }
         whole_screen(ui, presenting, asked);
@@ -207,13 +212,62 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
     }
 }
 
+/// The guess beside the truth: places are drawn on their map instead.
+fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&Judgement>) {
+    let truth = judged.map(|j| j.truth);
+    match (&question.answer, guess) {
+        (Answer::Choice { options, .. }, Guess::Choice(chosen)) => {
+            let right = if let Some(Truth::Choice(right)) = truth { Some(right) } else { None };
+            for (option, number) in options.iter().zip(1..) {
+                let said = match (number == chosen, right == Some(number)) {
+                    (true, true) => "your answer, right",
+                    (true, false) if right.is_some() => "your answer, wrong",
+                    (true, false) => "your answer",
+                    (false, true) => "the right answer",
+                    (false, false) => "",
+                };
+                ui.horizontal(|ui| {
+                    ui.add_enabled(false, egui::Button::new(option));
+                    ui.label(said);
+                });
+            }
+        }
+        (Answer::Number { unit, .. }, Guess::Number(number)) => {
+            let exact =
+                if let Some(Truth::Number(exact)) = truth { number_text(exact, unit) } else { "…".to_owned() };
+            ui.label(format!("Your answer: {}. Exact: {exact}.", number_text(number, unit)));
+        }
+        (Answer::Threshold { .. }, Guess::Eta(eta)) => {
+            let right = if let Some(Truth::Etas { low, high }) = truth { Some((low, high)) } else { None };
+            threshold(ui, eta, right);
+        }
+        _ => {}
+    }
+}
+
+/// The threshold that was chosen on a scale from 0 to 1, and those that are right.
+fn threshold(ui: &mut Ui, eta: f32, right: Option<(f32, f32)>) {
+    let (scale, _) = ui.allocate_exact_size(vec2(ui.available_width().min(300.0), 14.0), Sense::hover());
+    let at = |value: f32| scale.left() + value.clamp(0.0, 1.0) * scale.width();
+    let painter = ui.painter();
+    painter.rect_filled(scale, 2.0, ui.visuals().extreme_bg_color);
+    if let Some((low, high)) = right.filter(|(low, high)| low < high) {
+        let band = egui::Rect::from_x_y_ranges(at(low)..=at(high), scale.y_range());
+        painter.rect_filled(band, 2.0, Color32::from_rgb(60, 140, 80));
+    }
+    let guess = [pos2(at(eta), scale.top()), pos2(at(eta), scale.bottom())];
+    painter.line_segment(guess, Stroke::new(3.0, Color32::from_rgb(255, 170, 60)));
+    let told = right.map_or_else(String::new, |_| " The green part of the scale is right.".to_owned());
+    ui.label(format!("Your answer: {eta:.2}.{told}"));
+}
+
 fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
     match &run.judgement {
-        None => _ = ui.weak("looking…"),
+        None => _ = ui.weak("computing…"),
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
-            let verdict = if judged.is_right { "Right" } else { "Not quite" };
-            ui.label(large(ui, format!("{verdict}: {}", judged.distance)).strong());
+            let verdict = if judged.is_right { "Correct" } else { "Not quite" };
+            ui.label(large(ui, format!("{verdict}: {}.", judged.distance)).strong());
             let sentence = ui.label(inline(ui, &judged.sentence, LARGE));
             if !std::mem::replace(told, true) {
                 sentence.scroll_to_me(None);
@@ -231,7 +285,7 @@ fn requirements(
 ) {
     ui.label(large(ui, &challenge.ask).strong());
     if let Some(texture) = hidden {
-        ui.label("The map to be explained:");
+        ui.label("The map to reproduce:");
         let width = ui.available_width().min(420.0);
         ui.image((texture, egui::vec2(width, width / 2.0)));
     }
@@ -240,22 +294,31 @@ fn requirements(
         Some(Err(reason)) => _ = ui.label(reason),
         Some(Ok(measured)) => {
             for m in measured {
-                let verdict = if m.holds { "holds" } else { "not yet" };
-                ui.label(format!("{}: {:.3}, {} — {verdict}", m.name, m.value, m.bound));
+                let verdict = if m.holds { "met" } else { "not met yet" };
+                ui.label(format!("{}: {:.3}, required {}: {verdict}", m.name, m.value, m.bound));
             }
         }
     }
-    if run.is_met() {
-        ui.label(large(ui, "Done. Change more, or go on.").strong());
-    } else if ui.button("Show a way").on_hover_text("Puts a scene and a radar on screen that meet it").clicked() {
-        asked.push(Command::ShowSolution);
+    if run.gave_up {
+        ui.label("The solution was shown: the challenge counts as unsolved.");
+        if ui.button("Start this step again").on_hover_text("Puts the step's scene and radar back").clicked() {
+            asked.push(Command::LessonStep(run.step));
+        }
+    } else if run.is_met() {
+        ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
+    } else {
+        let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
+        if ui.button("Show a solution").on_hover_text(tip).clicked() {
+            asked.push(Command::ShowSolution);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::{Settings, Setup};
+    use crate::app::state::{Before, MapViews, SceneView, Settings, Setup};
+    use crate::lesson::Stage;
     use crate::radar::Radar;
     use crate::scene::Scene;
     use egui_kittest::Harness;
@@ -264,13 +327,14 @@ mod tests {
 
     fn run(lesson: &str, step: usize) -> LessonRun {
         let shipped = crate::lesson::shipped::ALL.iter().find(|s| s.id == lesson).unwrap();
-        let before = Setup {
+        let setup = Setup {
             settings: Settings::default(),
             radar: Radar::default(),
             scene: Arc::new(Scene::default()),
             depth: 0,
         };
-        let mut run = LessonRun::new(lesson.to_owned(), shipped.load().unwrap(), before);
+        let before = Before { setup, scene_view: SceneView::default(), map_views: MapViews::default() };
+        let mut run = LessonRun::new(lesson.to_owned(), Arc::new(shipped.load().unwrap()), before);
         run.go_to(step);
         run
     }
@@ -307,7 +371,7 @@ mod tests {
     #[test]
     fn options_are_predictions_and_results_stay_hidden_before() {
         let mut panel = harness(Some(run("range-and-bandwidth", 3)));
-        assert!(panel.query_by_label_contains("Right").is_none());
+        assert!(panel.query_by_label_contains("Correct").is_none());
         panel.get_by_label("It stays").click();
         panel.step();
         assert_eq!(panel.state().2, [Command::Predict(Guess::Choice(3))]);
@@ -326,10 +390,65 @@ mod tests {
     }
 
     #[test]
-    fn a_challenge_offers_a_way_until_it_is_met() {
+    fn a_challenge_offers_its_solution() {
         let mut panel = harness(Some(run("range-and-bandwidth", 4)));
-        panel.get_by_label("Show a way").click();
+        panel.get_by_label("Show a solution").click();
         panel.step();
         assert_eq!(panel.state().2, [Command::ShowSolution]);
+    }
+
+    /// A run in which a step was answered.
+    fn answered_run(lesson: &str, step: usize, guess: Guess) -> LessonRun {
+        let mut run = run(lesson, step);
+        let current = run.current().unwrap();
+        let stage = Stage::new(&current.radar, &current.scene(), &current.view, false).unwrap();
+        let judged = current.predict.as_ref().unwrap().judge(&stage, guess);
+        (run.guess, run.judgement) = (Some(guess), Some(judged));
+        run
+    }
+
+    #[test]
+    fn a_wrong_choice_leaves_the_options_and_marks_the_right_one() {
+        let panel = harness(Some(answered_run("range-and-bandwidth", 3, Guess::Choice(1))));
+        for text in ["It shrinks to a third", "your answer, wrong", "It stays", "the right answer"] {
+            assert_eq!(panel.query_all_by_label(text).count(), 1, "{text}");
+        }
+        let _verdict = panel.get_by_label("Not quite: the answer is “It stays”.");
+    }
+
+    #[test]
+    fn a_number_stands_beside_the_exact_one() {
+        let panel = harness(Some(answered_run("range-and-bandwidth", 1, Guess::Number(0.075))));
+        let _both =
+            (panel.get_by_label("Your answer: 0.075 m. Exact: 0.075 m."), panel.get_by_label("Correct: 0.075 m."));
+        let panel = harness(Some(answered_run("range-and-bandwidth", 1, Guess::Number(0.15))));
+        let _off = panel.get_by_label("Not quite: it is 0.075 m; you were 100 % off.");
+    }
+
+    #[test]
+    fn a_threshold_stands_beside_those_that_are_right() {
+        let panel = harness(Some(answered_run("windows-and-side-lobes", 1, Guess::Eta(0.01))));
+        let _told = panel.get_by_label("Your answer: 0.01. The green part of the scale is right.");
+        assert!(panel.query_by_label_contains("Any threshold from").is_some());
+    }
+
+    #[test]
+    fn a_shown_solution_counts_as_unsolved() {
+        let mut run = run("range-and-bandwidth", 4);
+        run.gave_up = true;
+        let mut panel = harness(Some(run));
+        assert!(panel.query_by_label_contains("Solved").is_none());
+        panel.get_by_label("Start this step again").click();
+        panel.step();
+        assert_eq!(panel.state().2, [Command::LessonStep(4)]);
+    }
+
+    #[test]
+    fn previous_keeps_the_verdict() {
+        let mut run = answered_run("range-and-bandwidth", 3, Guess::Choice(1));
+        run.go_to(2);
+        assert!(run.guess.is_none() && run.judgement.is_none() && run.is_predicting());
+        run.go_to(3);
+        assert!(!run.is_predicting() && run.judgement.is_some_and(|j| j.is_ok_and(|j| !j.is_right)));
     }
 }

@@ -111,7 +111,7 @@ const TABLE: &[Entry] = {
         entry(ResetMaps, "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
         entry(OpenLesson, "Open lesson…", "Begin a lesson from a TOML file", None),
         entry(PresentLesson, "Lessons: whole screen", "Lesson, scene and maps large, for a projector", shift(Key::F11)),
-        entry(LeaveLesson, "Leave lesson", "End the lesson; your scene and settings come back", None),
+        entry(LeaveLesson, "Exit lesson", "End the lesson; your scene and settings come back", None),
         entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
         entry(
             ToggleProjection,
@@ -165,8 +165,18 @@ const TABLE: &[Entry] = {
             "White noise at a signal-to-noise ratio",
             None,
         ),
-        entry(SetCarrier(Carrier::OneWay), "Carrier: one-way", "Unambiguous over all of cos θ", None),
-        entry(SetCarrier(Carrier::TwoWay), "Carrier: two-way", "As equation 3.1 is printed: cos θ folds twice", None),
+        entry(
+            SetCarrier(Carrier::OneWay),
+            "Carrier: one-way",
+            "The thesis' convention: unambiguous over all of cos θ",
+            None,
+        ),
+        entry(
+            SetCarrier(Carrier::TwoWay),
+            "Carrier: two-way",
+            "As equation 3.1 is printed: each column stands for two directions",
+            None,
+        ),
         entry(SetWindow(WindowFunction::Hann), "Window: Hann", "Side lobes that fall fast (the thesis)", None),
         entry(
             SetWindow(WindowFunction::Hamming),

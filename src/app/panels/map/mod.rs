@@ -1,5 +1,6 @@
 //! One map: picture, axes, colour bar, cursor, marks.
 
+mod answer;
 mod blank;
 mod caption;
 mod frame;
@@ -81,6 +82,10 @@ pub struct Input<'a> {
     pub veil: Option<Veil>,
     /// Whether axes, values and the colours' scale are told.
     pub numbers: bool,
+    /// Whether the axes are told where numbers are: not while they would answer a lesson's question.
+    pub axes: bool,
+    /// The place that was guessed in a lesson, and the true one.
+    pub places: Option<(crate::lesson::Cell, crate::lesson::Cell)>,
 }
 
 #[cfg(test)]
@@ -115,6 +120,8 @@ impl<'a> Input<'a> {
             error: None,
             veil: None,
             numbers: true,
+            axes: true,
+            places: None,
         }
     }
 }
@@ -124,7 +131,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let is_told = !input.kind.is_above() && input.numbers && area.width() > 200.0;
+    let is_told = !input.kind.is_above() && input.numbers && input.veil.is_none() && area.width() > 200.0;
     let bar = is_told.then(|| bar_of(&input));
     let legend = legend_of(ui.painter(), &input, area);
     let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection, legend.height());
@@ -149,7 +156,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let inner = ui.painter().with_clip_rect(rect.intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
     if input.numbers {
-        draw_axes(ui, &painter, frame);
+        if input.axes {
+            draw_axes(ui, &painter, frame);
+        }
         legend.draw(ui, &painter, rect.left_top() - vec2(0.0, legend.height() + 4.0));
     }
     point(&input, frame, &response, &mut asked);
@@ -194,13 +203,16 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         overlay::marks(inner, frame, &input.marks, pointer);
         overlay::selected(inner, frame, input.scene, input.selection);
         input.theory.iter().filter(|_| input.numbers).for_each(|theory| theory.draw(inner, frame));
+        if let Some((guess, truth)) = input.places {
+            answer::draw(inner, frame, guess, truth);
+        }
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }
     }
     if is_old {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
+        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, "Previous scene; updating…");
     }
 }
 
