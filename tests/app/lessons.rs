@@ -5,7 +5,7 @@ use apertura::app::{Command, MapKind, Panel};
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
 use apertura::radar::Radar;
-use eframe::egui::{Event, Modifiers, MouseWheelUnit, Shape, TouchPhase, pos2, vec2};
+use eframe::egui::{Event, Shape, pos2};
 use egui_kittest::kittest::Queryable;
 
 /// Whether a text stands somewhere on screen.
@@ -251,8 +251,7 @@ fn the_end_of_a_lesson_gives_the_zoom_back() {
     let over = s.app.get_by_label("Target map").rect().center();
     s.app.hover_at(over);
     s.app.step();
-    let (unit, delta) = (MouseWheelUnit::Point, vec2(0.0, 120.0));
-    s.app.event(Event::MouseWheel { unit, delta, phase: TouchPhase::Move, modifiers: Modifiers::NONE });
+    s.app.event(Event::Zoom(1.5));
     s.app.run_steps(30);
     s.settle();
     let (views, zoom) = (s.state().views(), s.app.ctx.zoom_factor());

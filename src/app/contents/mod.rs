@@ -121,9 +121,10 @@ impl Draw for Contents<'_> {
     }
 }
 
-/// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike.
+/// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far
+/// the axes reach.
 fn tells_answers(panel: Panel) -> bool {
-    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds)
+    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts)
 }
 
 /// In the place of a panel that would answer the question.

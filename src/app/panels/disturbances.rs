@@ -70,7 +70,7 @@ fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
 fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let now = input.disturbances.interferer;
     let mut on = now.is_some();
-    let tooltip = "Another radar whose chirps are not synchronised: heard while its frequency crosses ours";
+    let tooltip = "Another radar whose chirps are not synchronised: received while its frequency crosses ours";
     if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
         asked.push(Command::SetInterferer(on.then(|| Interferer::before(input.radar))));
         return;
@@ -86,7 +86,7 @@ fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         number(ui, &field, &mut edited.strength);
         let tooltip = "When its frequency crosses ours, as a part of the chirp";
         number(ui, &percent("crossing time (% of chirp)", tooltip, -100.0), &mut edited.crossing);
-        let tooltip = "For which part of the chirp it is heard: less, the steeper its chirp against ours";
+        let tooltip = "For which part of the chirp it is received: the steeper its chirp relative to ours, the shorter";
         number(ui, &percent("duration (% of chirp)", tooltip, 0.1), &mut edited.duration);
     });
     if edited != now {

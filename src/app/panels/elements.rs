@@ -68,7 +68,7 @@ fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             return;
         }
         ui.label(told(input.elements));
-        let tooltip = "Every element as it should be; undo brings the errors back";
+        let tooltip = "Remove all element errors; undo brings them back";
         if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
             asked.push(Command::SetElements(Arc::default()));
         }

@@ -138,7 +138,7 @@ const CARRIER: Number = Number {
 };
 const BANDWIDTH: Number = Number {
     name: "bandwidth",
-    tooltip: "How far a chirp sweeps: a range bin is the speed of light over twice of it",
+    tooltip: "How far a chirp sweeps. A range bin is the speed of light over twice the bandwidth",
     unit: " MHz",
     speed: 2.0,
     low: 1.0,
@@ -262,7 +262,7 @@ fn grating(follows: &Consequences) -> String {
         let cos = follows.grating_cos;
         format!("first grating lobe {columns:.0} columns away, cos θ {cos:.2}: some directions are indistinguishable")
     } else {
-        "The first grating lobe is outside the visible directions.".to_owned()
+        "the first grating lobe is outside the visible directions".to_owned()
     }
 }
 

@@ -187,7 +187,7 @@ impl Arrangement {
         }
     }
 
-    /// Closes what a lesson doesn't use; each panel that was open, and whether it was in sight.
+    /// Closes what a lesson doesn't use; each panel that was open, and whether its tab was in front.
     pub fn close_unused(&mut self, uses: Uses) -> Vec<(Panel, bool)> {
         let unused = |panel: &Panel| match panel {
             Panel::Map(MapKind::TargetAbove) => !uses.threshold,
@@ -196,21 +196,28 @@ impl Arrangement {
             Panel::Found | Panel::Roc | Panel::Compare => !uses.output,
             _ => false,
         };
-        let open: Vec<Panel> = Panel::all().into_iter().filter(|p| unused(p) && self.is_open(*p)).collect();
-        let close = |panel: Panel| {
-            let was_in_sight = self.shown.contains(&panel);
-            self.set_open(panel, false);
-            (panel, was_in_sight)
-        };
-        open.into_iter().map(close).collect()
+        let open = Panel::all().into_iter().filter(|p| unused(p) && self.is_open(*p));
+        let closed: Vec<(Panel, bool)> = open.map(|panel| (panel, self.is_in_front(panel))).collect();
+        closed.iter().for_each(|(panel, _)| self.set_open(*panel, false));
+        closed
     }
 
-    /// Opens again what [`Arrangement::close_unused`] closed; what was in sight comes to the front.
+    /// Whether no other tab is over a panel's.
+    fn is_in_front(&self, panel: Panel) -> bool {
+        let tiles = &self.tree.tiles;
+        let Some(id) = tiles.find_pane(&panel) else { return false };
+        match tiles.parent_of(id).and_then(|parent| tiles.get(parent)) {
+            Some(Tile::Container(Container::Tabs(tabs))) => tabs.active == Some(id),
+            _ => true,
+        }
+    }
+
+    /// Opens again what [`Arrangement::close_unused`] closed; what was in front is in front again.
     pub fn open_again(&mut self, closed: &[(Panel, bool)]) {
-        for (panel, was_in_sight) in closed {
+        for (panel, was_in_front) in closed {
             let Some(id) = self.tree.tiles.find_pane(panel) else { continue };
             self.tree.tiles.set_visible(id, true);
-            if *was_in_sight {
+            if *was_in_front {
                 self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if p == panel));
             }
         }

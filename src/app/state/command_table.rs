@@ -203,7 +203,7 @@ const TABLE: &[Entry] = {
         entry(Colours(ColourMap::Diverging), "Colours: diverging", "Blue below the middle, red above", None),
         entry(Colours(ColourMap::Inferno), "Colours: inferno", "Dark to bright through red", None),
         entry(ToggleReflectors, "Mark true reflectors", "Draw the scene's reflectors over the maps", key(Key::R)),
-        entry(ToggleFound, "Mark found reflectors", "Draw the reflectors that the method believes in", None),
+        entry(ToggleFound, "Mark found reflectors", "Draw the reflectors that the method found", None),
         entry(ToggleFieldsOfView, "Fields of view", "Draw what each end can see in the scene", key(Key::V)),
         entry(
             ToggleTheory,

@@ -41,7 +41,7 @@ pub struct LessonRun {
     pub gave_up: bool,
     /// The scene as the step set it up.
     pub set_up: Option<Arc<Scene>>,
-    /// Panels that the lesson closed, since it doesn't use them, and whether each was in sight.
+    /// Panels that the lesson closed, since it doesn't use them, and whether each tab was in front.
     pub closed: Vec<(Panel, bool)>,
     /// As everything was before the lesson.
     pub before: Before,
