@@ -72,6 +72,8 @@ pub struct App {
     is_full_screen: bool,
     /// Size of the interface before the presentation that is shown.
     zoom_before: Option<f32>,
+    /// Size of the interface before the lesson that is taken.
+    zoom_before_lesson: Option<f32>,
     /// Keys that came too quickly for one frame.
     later: input::Later,
 }
@@ -136,6 +138,7 @@ impl App {
             title: String::new(),
             is_full_screen: false,
             zoom_before: None,
+            zoom_before_lesson: None,
             later: Default::default(),
         })
     }
@@ -219,6 +222,22 @@ impl App {
         }
     }
 
+    /// The zoom of before a lesson comes back after it.
+    fn update_lesson_zoom(&mut self, ctx: &egui::Context) {
+        match (self.state.lesson.is_some(), self.zoom_before_lesson) {
+            (true, None) => self.zoom_before_lesson = Some(self.zoom_before.unwrap_or_else(|| ctx.zoom_factor())),
+            (false, Some(before)) => {
+                self.zoom_before_lesson = None;
+                // A presentation gives it back when it ends.
+                match &mut self.zoom_before {
+                    Some(zoom) => *zoom = before,
+                    None => ctx.set_zoom_factor(before),
+                }
+            }
+            _ => {}
+        }
+    }
+
     fn update_full_screen(&mut self, ctx: &egui::Context) {
         let full_screen = self.state.is_presenting();
         if full_screen != self.is_full_screen {
@@ -295,6 +314,7 @@ impl eframe::App for App {
         self.update_title(&ctx);
         self.update_full_screen(&ctx);
         self.update_type(&ctx);
+        self.update_lesson_zoom(&ctx);
         if !self.jobs.hides_messages() {
             messages::show(&ctx, &mut self.state.notices);
         }
@@ -310,7 +330,7 @@ impl eframe::App for App {
             arrangement,
             recent: state.recent.clone(),
             progress: state.progress.clone(),
-            zoom: self.zoom_before,
+            zoom: self.zoom_before_lesson.or(self.zoom_before),
         };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         *state.kept_arrangement() = kept.arrangement;

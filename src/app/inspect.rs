@@ -2,7 +2,7 @@
 
 use super::application::App;
 use super::apply;
-use super::state::{Arrangement, Command, MapKind, MethodSlot, Settings};
+use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, SceneView, Settings};
 use crate::bounds::PositionBound;
 use crate::engine::Report;
 use crate::evaluate::Metrics;
@@ -10,6 +10,7 @@ use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::Finding;
 use crate::interact::Editor;
+use crate::lesson::Progress;
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
@@ -39,6 +40,16 @@ impl App {
     /// Asks for a command, as a menu entry would.
     pub fn ask(&mut self, command: Command) {
         self.asked.push(command);
+    }
+
+    /// Who has answered what in lessons.
+    pub fn progress(&self) -> &Progress {
+        &self.state.progress
+    }
+
+    /// The visible part of the scene and of the maps.
+    pub fn views(&self) -> (SceneView, MapViews) {
+        (self.state.scene_view, self.state.map_views)
     }
 
     /// Whether a worker has something to do.

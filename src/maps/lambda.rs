@@ -49,9 +49,9 @@ impl fmt::Display for Normalisation {
 /// The straight line from decades to Lambda.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LambdaScale {
-    /// FastLogMap where Lambda is 0.
+    /// Log10 magnitude (decades of amplitude) that maps to Lambda = 0.
     pub floor: f64,
-    /// FastLogMap where Lambda is 1.
+    /// Log10 magnitude (decades of amplitude) that maps to Lambda = 1.
     pub peak: f64,
 }
 

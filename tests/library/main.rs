@@ -7,6 +7,7 @@ mod damage;
 mod disturbances;
 mod failures;
 mod house;
+mod lessons;
 #[cfg(feature = "network")]
 mod live_network;
 mod memory;

@@ -5,6 +5,7 @@ use crate::app::jobs::{Jobs, TheoryResult};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
+use crate::lesson::Cell;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
 
 impl Contents<'_> {
@@ -98,6 +99,8 @@ pub(super) fn map_input<'a>(
         cursor: state.shown_cursor(),
         error: error(state, jobs, kind),
         veil: veil(state, kind),
+        axes: state.shows_axes(),
+        places: places(state, kind),
     }
 }
 
@@ -174,6 +177,12 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
         snr: result.request.snr,
         comb: kind.needs_output(),
     })
+}
+
+/// The place that was guessed in a lesson's step, and the true one.
+fn places(state: &State, kind: MapKind) -> Option<(Cell, Cell)> {
+    let scene = state.editor.scene();
+    state.lesson.as_ref().and_then(|run| run.places(kind, state.radar(), scene))
 }
 
 /// Why a map is hidden: a lesson asks for a prediction first.

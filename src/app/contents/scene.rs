@@ -20,7 +20,7 @@ impl Contents<'_> {
             trails: self.jobs.failures.search.trails(state.editor.document().id()),
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
-            numbers: true,
+            numbers: state.shows_axes(),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }

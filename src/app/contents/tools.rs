@@ -12,7 +12,8 @@ impl Contents<'_> {
             progress: pipeline.method_progress(),
             refusal: pipeline.refusal(),
             output: pipeline.output().map(|o| (o.method, o.took)),
-            scores: pipeline.scores(),
+            // How many blobs there are answers many a question.
+            scores: pipeline.scores().filter(|_| !state.is_predicting()),
             outdated: pipeline.output_is_outdated(),
             wanted: pipeline.wants_output(),
         };
@@ -26,6 +27,7 @@ impl Contents<'_> {
             eta: pipeline.eta(state, MethodSlot::First),
             range_db: pipeline.range_db(),
             run,
+            uses: state.uses(),
         };
         controls::show(ui, input)
     }

@@ -8,6 +8,7 @@ use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::eta_text;
 use crate::interact::Snap;
+use crate::lesson::Uses;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, Decibels, Radar, WindowFunction};
@@ -44,6 +45,8 @@ pub struct Input<'a> {
     pub range_db: Option<f64>,
     /// What it does.
     pub run: Run<'a>,
+    /// What the lesson being taken uses: the rest is not shown.
+    pub uses: Uses,
 }
 
 /// How the reconstruction goes.
@@ -69,9 +72,18 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let settings = input.settings;
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            heading(ui, "Reconstruction");
-            reconstruction(ui, &input, &mut asked);
-            ui.add_space(6.0);
+            if input.uses.output {
+                heading(ui, "Reconstruction");
+                reconstruction(ui, &input, &mut asked);
+                ui.add_space(6.0);
+            } else if input.uses.threshold {
+                heading(ui, "Threshold");
+                Grid::new("threshold")
+                    .num_columns(2)
+                    .spacing([12.0, 5.0])
+                    .show(ui, |ui| target_eta(ui, &input, &mut asked));
+                ui.add_space(6.0);
+            }
             heading(ui, "Maps");
             Grid::new("maps").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
                 normalisation(ui, settings, &mut asked);
@@ -84,7 +96,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             });
             ui.add_space(6.0);
             heading(ui, "Display");
-            Grid::new("display").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| display(ui, settings, &mut asked));
+            Grid::new("display")
+                .num_columns(2)
+                .spacing([12.0, 5.0])
+                .show(ui, |ui| display(ui, settings, input.uses, &mut asked));
         });
     });
     asked
@@ -141,6 +156,9 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             });
             listed.response
         });
+        if !input.uses.threshold {
+            return;
+        }
         row(ui, "η", "Cells of the output above this count as detections", |ui| {
             ui.horizontal(|ui| {
                 let mut eta = input.eta;
@@ -160,18 +178,23 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             })
             .inner
         });
-        row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
-            ui.horizontal(|ui| {
-                let mut eta = input.settings.target_eta;
-                let slider = ui.add(threshold(&mut eta));
-                asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
-                in_decibels(ui, input, input.settings.target_eta);
-                slider
-            })
-            .inner
-        });
+        target_eta(ui, input, asked);
     });
     figures(ui, method, &input.run, asked);
+}
+
+/// The threshold of the target.
+fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
+        ui.horizontal(|ui| {
+            let mut eta = input.settings.target_eta;
+            let slider = ui.add(threshold(&mut eta));
+            asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
+            in_decibels(ui, input, input.settings.target_eta);
+            slider
+        })
+        .inner
+    });
 }
 
 /// A threshold in decibels relative to the target's peak, where these are chosen and known.
@@ -287,7 +310,8 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
 }
 
 fn carrier(ui: &mut Ui, carrier: Carrier, asked: &mut Vec<Command>) {
-    row_of(ui, "Carrier", "One-way is unambiguous; two-way (as equation 3.1 is printed) folds cos θ twice", |ui| {
+    let tooltip = "One-way: the thesis' convention, unambiguous. Two-way: as equation 3.1 is printed; each column stands for two directions";
+    row_of(ui, "Carrier", tooltip, |ui| {
         let of = [(Carrier::OneWay, "One-way", ""), (Carrier::TwoWay, "Two-way", "")];
         choices(ui, carrier, of, Command::SetCarrier, asked);
     });
@@ -304,7 +328,7 @@ fn window(ui: &mut Ui, window: WindowFunction, asked: &mut Vec<Command>) {
     });
 }
 
-fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+fn display(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
         let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
         choices(ui, settings.projection, of, Command::SetProjection, asked);
@@ -313,6 +337,25 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, Command::SetUnits, asked);
     });
+    if uses.output {
+        difference(ui, settings, asked);
+    }
+    row_of(ui, "Colours", "Colours of Λ", |ui| {
+        let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
+        choices(ui, settings.colours, of, Command::Colours, asked);
+    });
+    marks(ui, settings, uses, asked);
+    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
+        let of = [
+            (Snap::Off, "Off", ""),
+            (Snap::Metres(0.5), "0.5 m", ""),
+            (Snap::Cells, "Cells", "Whole range bins and columns"),
+        ];
+        choices(ui, settings.snap, of, Command::SetSnap, asked);
+    });
+}
+
+fn difference(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Difference", "How the panel Difference is drawn", |ui| {
         let DifferenceView { mut absolute, whole } = settings.difference;
         let tip = "Its absolute value, or output minus target";
@@ -325,10 +368,10 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
             asked.push(Command::ToggleWholeDifference);
         }
     });
-    row_of(ui, "Colours", "Colours of Λ", |ui| {
-        let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
-        choices(ui, settings.colours, of, Command::Colours, asked);
-    });
+}
+
+/// What is drawn over maps and scene.
+fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Mark", "What is drawn over maps and scene", |ui| {
         let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: Command| {
             if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
@@ -337,26 +380,23 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         };
         let tooltip = "The scene's own reflectors, over every map (R)";
         mark(ui, settings.show_reflectors, "reflectors", tooltip, Command::ToggleReflectors);
-        mark(ui, settings.show_found, "found", "Reflectors that the method believes in", Command::ToggleFound);
+        if uses.output {
+            mark(ui, settings.show_found, "found", "Reflectors that the method found", Command::ToggleFound);
+        }
         let tooltip = "What each end can see, in the scene (V)";
         mark(ui, settings.show_fields_of_view, "views", tooltip, Command::ToggleFieldsOfView);
         let tooltip = "What the formulas say of the selected reflector, over every map (T)";
         mark(ui, settings.show_theory, "theory", tooltip, Command::ToggleTheory);
     });
+    if !uses.output {
+        return;
+    }
     row_of(ui, "Failures", "Kinds of failure", |ui| {
         let mut marked = settings.show_kinds;
         let tip = "What became of every object: found, missed, merged, on the wrong tooth; and ghosts (H)";
         if ui.checkbox(&mut marked, "mark").on_hover_text(tip).changed() {
             asked.push(Command::ToggleKinds);
         }
-    });
-    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
-        let of = [
-            (Snap::Off, "Off", ""),
-            (Snap::Metres(0.5), "0.5 m", ""),
-            (Snap::Cells, "Cells", "Whole range bins and columns"),
-        ];
-        choices(ui, settings.snap, of, Command::SetSnap, asked);
     });
 }
 

@@ -64,12 +64,12 @@ fn with(input: &Input<'_>, n: usize, change: impl FnOnce(&mut ElementError)) -> 
 fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if input.elements.is_ideal() {
-            ui.weak("Every element is as it should be. Click one to silence it.");
+            ui.weak("No element errors. Click an element to disable it.");
             return;
         }
         let living = input.elements.elements.len() - input.elements.dead();
         ui.label(told(input.elements)).on_hover_text(spread_tooltip(living));
-        let tooltip = "Every element as it should be; undo brings the errors back";
+        let tooltip = "Remove all element errors; undo brings them back";
         if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
             asked.push(Command::SetElements(Arc::default()));
         }
@@ -224,7 +224,7 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &m
 fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let found = match &input.calibration {
         None => {
-            ui.weak("Select a point of the scene: what is heard of it calibrates the elements.");
+            ui.weak("Select a point to calibrate the elements on its echo.");
             return;
         }
         Some(Err(reason)) => {
@@ -235,11 +235,11 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     };
     ui.strong(format!("Calibration on {}", found.name));
     Grid::new("calibration").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-        let unexplained = format!("{:.1} % of the power is not its echo", 100.0 * found.calibration.unexplained);
+        let unexplained = format!("{:.1} % of the power comes from elsewhere", 100.0 * found.calibration.unexplained);
         let rows = [
             ("found", told(&found.calibration.array), "Gain and phase that the reflector's echo tells of each element"),
             ("left", told(&found.left), "What is wrong with the elements once that is taken off: places can't be"),
-            ("besides", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
+            ("residual", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
         ];
         for (name, text, tooltip) in rows {
             ui.weak(name).on_hover_text(tooltip);
@@ -343,8 +343,10 @@ mod tests {
         let left = array.corrected(&calibration.array);
         let calibrated = Calibrated { name: "point 1".to_owned(), calibration, left };
         let mut panel = panel(array, Some(calibrated));
-        let _told =
-            (panel.get_by_label("Calibration on point 1"), panel.get_by_label("0.0 % of the power is not its echo"));
+        let _told = (
+            panel.get_by_label("Calibration on point 1"),
+            panel.get_by_label("0.0 % of the power comes from elsewhere"),
+        );
         panel.get_by_label("Calibrate on this reflector").click();
         panel.run();
         let left = panel.state().elements.spread();

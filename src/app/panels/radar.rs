@@ -24,8 +24,8 @@ pub struct Measured {
 impl Measured {
     fn told(self) -> &'static str {
         match self.by_all_elements {
-            true => "Measured with this radar: how many elements an end has, and the windows, are yours to choose.",
-            false => "Measured with this radar by its two ends: the windows are yours to choose.",
+            true => "Recorded radar: only the size of the ends and the windows can be changed.",
+            false => "Recorded radar, two ends alone: only the windows can be changed.",
         }
     }
 }
@@ -138,7 +138,7 @@ const CARRIER: Number = Number {
 };
 const BANDWIDTH: Number = Number {
     name: "bandwidth",
-    tooltip: "How far a chirp sweeps: a range bin is the speed of light over twice of it",
+    tooltip: "How far a chirp sweeps. A range bin is the speed of light over twice the bandwidth",
     unit: " MHz",
     speed: 2.0,
     low: 1.0,
@@ -182,7 +182,7 @@ const SPACING_MILLIMETRES: Number = Number {
     decimals: 3,
 };
 const SPACING_WAVELENGTHS: Number = Number {
-    name: "the same in wavelengths",
+    name: "spacing / λ",
     tooltip: "Above half a wavelength (a quarter, for the two-way carrier) a direction has grating lobes",
     unit: " λ",
     speed: 0.005,
@@ -201,7 +201,7 @@ const POWER: Number = Number {
 };
 
 /// What follows from the bandwidth of a snapshot.
-const NO_RANGES: &str = "one sample tells no range from another";
+const NO_RANGES: &str = "one sample has no range resolution";
 
 fn rows(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, free: Free) {
     let is_free = free.constants;
@@ -260,7 +260,7 @@ fn grating(follows: &Consequences) -> String {
     let columns = follows.grating_columns;
     if follows.grating_cos < 2.0 {
         let cos = follows.grating_cos;
-        format!("{columns:.0} columns, cos θ {cos:.2}, to the first grating lobe: some directions look alike")
+        format!("first grating lobe {columns:.0} columns away, cos θ {cos:.2}: some directions are indistinguishable")
     } else {
         "the first grating lobe is outside the visible directions".to_owned()
     }
@@ -276,8 +276,10 @@ fn choices(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, is_free: bool
         });
     });
     let text = match radar.carrier {
-        Carrier::OneWay => "a turn for each wavelength of distance".to_owned(),
-        Carrier::TwoWay => format!("two turns for each wavelength: cos θ repeats after {:.2}", follows.grating_cos),
+        Carrier::OneWay => "one phase cycle per wavelength of range (the thesis' convention)".to_owned(),
+        Carrier::TwoWay => {
+            format!("two phase cycles per wavelength of range: cos θ repeats after {:.2}", follows.grating_cos)
+        }
     };
     last_cell(ui, &text);
     let label = ui.label("windows").on_hover_text("Weights of samples and elements in the two transforms");
@@ -295,14 +297,17 @@ fn choices(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, is_free: bool
         }
     });
     let text = match follows.range_width_metres {
-        Some(width) => format!("a blob is {} long", metres(width)),
-        None => "no range is told from another".to_owned(),
+        Some(width) => format!("range resolution (-3 dB): {}", metres(width)),
+        None => "no range resolution".to_owned(),
     };
     last_cell(ui, &text);
     let label =
         ui.label("range migration").on_hover_text("How much a range differs between both sides of the array, at most");
     ui.label("").labelled_by(label.id);
-    last_cell(ui, &format!("up to {:.1} bins from side to side", follows.migration_bins));
+    last_cell(
+        ui,
+        &format!("up to {:.1} bins from side to side; half with a common transmitter", follows.migration_bins),
+    );
 }
 
 /// A length in the unit that reads best.

@@ -102,7 +102,7 @@ impl Panel {
             Panel::Training => "Training",
             Panel::Guide => "Guide",
             Panel::Lesson => "Lessons",
-            Panel::Several => "Several at once",
+            Panel::Several => "Compare settings",
             Panel::Compare => "Compare",
             Panel::Values => "Values",
         }

@@ -6,6 +6,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
+    panel_for(Uses::ALL, run)
+}
+
+fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
     let (settings, radar) = (Settings::default(), Radar::default());
     let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
@@ -19,6 +23,7 @@ fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Comma
             eta: Baseline.eta(),
             range_db: None,
             run: run(),
+            uses,
         };
         asked.extend(show(ui, input));
     };
@@ -99,7 +104,8 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
         let (eta, run) = (0.763_194_2, Run::default());
         let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
         let (is_recorded, settings, radar) = (false, &settings, &radar);
-        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db: None, run };
+        let (range_db, uses) = (None, Uses::ALL);
+        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db, run, uses };
         asked.extend(show(ui, input));
     };
     let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
@@ -147,6 +153,7 @@ fn no_choice_leaves_a_narrow_panel() {
             eta: 0.5,
             range_db: None,
             run,
+            uses: Uses::ALL,
         };
         asked.extend(show(ui, input));
     };
@@ -167,4 +174,21 @@ fn figures_stand_beside_the_bar_that_cancels() {
     controls.get_by_label("Cancel").click();
     controls.step();
     assert_eq!(controls.state(), &[Command::CancelMethod]);
+}
+
+#[test]
+fn what_a_lesson_does_not_use_is_not_shown() {
+    let shown = |uses: Uses| {
+        let panel = panel_for(uses, Run::default);
+        ["Reconstruction", "Method", "η", "η'", "found", "hann", "Colours"]
+            .map(|text| panel.query_all_by_label(text).count() > 0)
+    };
+    let [reconstruction, method, eta, target_eta, found, ..] = shown(Uses::ALL);
+    assert!(reconstruction && method && eta && target_eta && found);
+    let [reconstruction, method, eta, target_eta, found, _, colours] = shown(Uses { output: false, threshold: false });
+    assert!(!reconstruction && !method && !eta && !target_eta && !found && colours);
+    let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: false, threshold: true });
+    assert!(!reconstruction && !method && !eta && target_eta);
+    let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: true, threshold: false });
+    assert!(reconstruction && method && !eta && !target_eta);
 }

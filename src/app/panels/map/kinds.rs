@@ -191,10 +191,7 @@ impl Kinds<'_> {
         let eta = eta_text(*eta);
         let cells = verdict.cells;
         let Some(index) = verdict.object else {
-            return format!(
-                "ghost: {} above η = {eta}\nwhere the scene has nothing",
-                counted(cells, "cell", "cells")
-            );
+            return format!("ghost: {} above η = {eta}\nwhere the scene has nothing", counted(cells, "cell", "cells"));
         };
         let named = |index: usize| {
             let kind = scene.objects.get(index).map_or("object", |o| o.kind());

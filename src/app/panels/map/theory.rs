@@ -131,7 +131,7 @@ impl Theory<'_> {
             lines.push((LOBE, format!("first side lobe {:.1} dB, {:.1} columns off", lobe.level.0, lobe.columns)));
         }
         let [across, along] = [streak.columns, streak.bins].map(|[low, high]| low + high + 1);
-        lines.push((DRAWN_OUT, format!("drawn out over {across} columns, {along} bins at −{:.0} dB", STREAK.0)));
+        lines.push((DRAWN_OUT, format!("smeared over {across} columns and {along} bins (at −{:.0} dB)", STREAK.0)));
         if self.comb {
             let spacing = crate::theory::comb::tooth_spacing_cos(radar, *place) / column_cos;
             lines.push((COMB, format!("comb of the two ends: a tooth every {spacing:.2} columns")));
