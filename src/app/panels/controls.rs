@@ -2,6 +2,7 @@
 
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::interact::Snap;
@@ -11,7 +12,7 @@ use crate::radar::{Carrier, Decibels, Radar, WindowFunction};
 use crate::reconstruct::Reconstructor;
 use crate::signal::Floor;
 use eframe::egui;
-use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, SliderClamping, Ui};
+use eframe::egui::{ComboBox, Grid, ScrollArea, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -140,7 +141,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         row(ui, "η", "Cells of the output above this count as detections", |ui| {
             ui.horizontal(|ui| {
                 let mut eta = input.eta;
-                let slider = ui.add(threshold(&mut eta));
+                let slider = threshold(ui, "η in numbers", &mut eta);
                 asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
                 let own = input.settings.method_eta.contains_key(method.name());
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
@@ -157,9 +158,12 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         });
         row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
             let mut eta = input.settings.target_eta;
-            let slider = ui.add(threshold(&mut eta));
-            asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
-            slider
+            ui.horizontal(|ui| {
+                let slider = threshold(ui, "η' in numbers", &mut eta);
+                asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
+                slider
+            })
+            .inner
         });
     });
     figures(ui, method, &input.run, asked);
@@ -171,9 +175,14 @@ fn moved(before: f32, after: f32) -> Option<f32> {
     (shown(before) != shown(after)).then_some(after)
 }
 
-/// A slider that shows two decimals; what nobody moves keeps all of its own.
-fn threshold(eta: &mut f32) -> Slider<'_> {
-    Slider::new(eta, 0.0..=1.0).fixed_decimals(2).clamping(SliderClamping::Edits)
+/// A slider, and beside it a field called `name` that shows two decimals; what nobody moves keeps all of its own.
+fn threshold(ui: &mut Ui, name: &str, eta: &mut f32) -> egui::Response {
+    let slider = Slider::new(eta, 0.0..=1.0).fixed_decimals(2).clamping(SliderClamping::Edits).show_value(false);
+    let slider = ui.add(slider);
+    let field = NumberField::new(eta).range(0.0..=1.0).clamp_existing_to_range(false).speed(0.005).fixed_decimals(2);
+    let field = ui.add(field);
+    ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));
+    slider
 }
 
 /// P_D, P_FA and SE, or why there are none.
@@ -233,7 +242,7 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         ];
         choices(ui, settings.normalisation, of, Command::Normalise, asked);
         if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
-            let drag = ui.add(DragValue::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
+            let drag = ui.add(NumberField::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
             if drag.on_hover_text("Any other dynamic range").changed() {
                 asked.push(Command::Normalise(Normalisation::DynamicRange(Decibels(range))));
             }
@@ -250,7 +259,7 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
         ];
         choices(ui, settings.floor, of, Command::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {
-            let drag = ui.add(DragValue::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
+            let drag = ui.add(NumberField::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
             if drag.changed() {
                 asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
             }
@@ -258,7 +267,7 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
     });
     if settings.floor != Floor::Exact {
         row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
-            let drag = ui.add(DragValue::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
+            let drag = ui.add(NumberField::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
             if drag.changed() {
                 asked.push(Command::SetNoiseSeed(noise_seed));
             }

@@ -110,6 +110,10 @@ impl Reconstructor for LiveMethod {
         }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn reads_eta(&self) -> bool {
         true
     }
