@@ -76,6 +76,8 @@ pub struct App {
     zoom_before_lesson: Option<f32>,
     /// Keys that came too quickly for one frame.
     later: input::Later,
+    /// Whether a field had the focus at the end of the last frame.
+    in_a_field: bool,
 }
 
 /// What chrome and panels remember from frame to frame.
@@ -140,6 +142,7 @@ impl App {
             zoom_before: None,
             zoom_before_lesson: None,
             later: Default::default(),
+            in_a_field: false,
         })
     }
 
@@ -170,6 +173,7 @@ impl App {
             keys_taken: self.memory.palette.is_open()
                 || self.memory.file_dialog.is_open()
                 || self.state.save_question.is_some(),
+            in_a_field: self.in_a_field,
             selected: !self.state.editor.selection().is_empty(),
             bin_metres: self.state.radar().range_resolution_metres(),
         };
@@ -319,6 +323,7 @@ impl eframe::App for App {
             messages::show(&ctx, &mut self.state.notices);
         }
         focus_ring::draw(&ctx);
+        self.in_a_field = ctx.text_edit_focused();
         self.write_frame_log(frame.info().cpu_usage);
     }
 

@@ -73,6 +73,10 @@ impl Reconstructor for ThesisMethod {
         About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn reads_eta(&self) -> bool {
         true
     }
@@ -138,6 +142,10 @@ impl Reconstructor for UnetMethod {
             told: TOLD,
             eta: 0.5,
         }
+    }
+
+    fn finds_reflectors(&self) -> bool {
+        false
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

@@ -21,6 +21,10 @@ impl Reconstructor for Baseline {
         }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn check_hearing(&self, _: &TwoEnds) -> Result<(), ReconstructError> {
         Ok(())
     }

@@ -140,6 +140,11 @@ pub trait Reconstructor: Send + Sync {
         false
     }
 
+    /// Whether it looks for places of echoes, which can be listed; the others only draw a map.
+    fn finds_reflectors(&self) -> bool {
+        true
+    }
+
     /// The threshold for an answer of this method: its own, or [`About::eta`].
     fn eta_of(&self, answer: &Reconstruction) -> f32 {
         answer.eta.unwrap_or_else(|| self.eta())

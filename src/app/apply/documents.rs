@@ -49,9 +49,10 @@ fn show(state: &mut State, label: &str, document: Document) {
     }
 }
 
-/// The list of what was found in front, and what reflectors leave unexplained behind the output.
+/// The list of what was found in front, where the method finds anything, and what reflectors leave unexplained behind the output.
 pub fn show_recording_panels(state: &mut State) {
-    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output), Panel::Found] {
+    let lists = state.finds_reflectors().then_some(Panel::Found);
+    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
         state.arrangement.set_open(panel, true);
     }
 }

@@ -37,6 +37,7 @@ impl Contents<'_> {
         let output = pipeline.output_of(self.state);
         let recording = self.state.editor.document().recording();
         let input = found::Input {
+            draws_only: self.state.method().map(|m| m.name()).filter(|_| !self.state.finds_reflectors()),
             method: output.map(|o| o.method),
             found: output.filter(|_| !self.state.is_predicting()).and_then(|o| o.found.as_deref()),
             refusal: pipeline.refusal().map(|r| r.reason.as_str()),

@@ -6,6 +6,7 @@ use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{self, Chart};
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::direction::direction;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::significant;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
@@ -13,7 +14,7 @@ use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, DragValue, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{Color32, ComboBox, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
 use std::f64::consts::TAU;
 
 /// What is chosen, and what came of it.
@@ -85,16 +86,17 @@ fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
         });
         combo.response.labelled_by(label.id);
         if let Elements::Random(count) = &mut settings.elements {
-            ui.add(DragValue::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
+            ui.add(NumberField::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
             let label = ui.label("seed");
-            ui.add(DragValue::new(&mut settings.seed).speed(0.05)).labelled_by(label.id);
+            ui.add(NumberField::new(&mut settings.seed).speed(0.05)).labelled_by(label.id);
         }
         let label = ui.label("SNR").on_hover_text("Of one sample, averaged over the elements");
-        ui.add(DragValue::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB")).labelled_by(label.id);
-        let label = ui.label("±").on_hover_text("What the picture spans around the reflector");
-        ui.add(DragValue::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns"))
+        ui.add(NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB"))
             .labelled_by(label.id);
-        ui.add(DragValue::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins")).labelled_by(label.id);
+        let label = ui.label("±").on_hover_text("What the picture spans around the reflector");
+        ui.add(NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns"))
+            .labelled_by(label.id);
+        ui.add(NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins")).labelled_by(label.id);
     });
 }
 

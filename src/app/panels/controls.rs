@@ -4,6 +4,7 @@ use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::eta_text;
@@ -15,7 +16,7 @@ use crate::radar::{Carrier, Decibels, Radar, WindowFunction};
 use crate::reconstruct::Reconstructor;
 use crate::signal::Floor;
 use eframe::egui;
-use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, SliderClamping, Ui};
+use eframe::egui::{ComboBox, Grid, ScrollArea, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -162,7 +163,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         row(ui, "η", "Cells of the output above this count as detections", |ui| {
             ui.horizontal(|ui| {
                 let mut eta = input.eta;
-                let slider = ui.add(threshold(&mut eta));
+                let slider = threshold(ui, "η in numbers", &mut eta);
                 asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
                 let own = input.settings.method_eta.contains_key(method.name());
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
@@ -188,7 +189,7 @@ fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
         ui.horizontal(|ui| {
             let mut eta = input.settings.target_eta;
-            let slider = ui.add(threshold(&mut eta));
+            let slider = threshold(ui, "η' in numbers", &mut eta);
             asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
             in_decibels(ui, input, input.settings.target_eta);
             slider
@@ -209,10 +210,15 @@ fn moved(before: f32, after: f32) -> Option<f32> {
     (before != after).then_some(after)
 }
 
-/// A slider that shows every digit: the field writes back what it shows when the focus only passes through, and P_FA is of what is shown.
-fn threshold(eta: &mut f32) -> Slider<'_> {
-    let slider = Slider::new(eta, 0.0..=1.0).clamping(SliderClamping::Edits);
-    slider.custom_formatter(|eta, _| eta_text(eta as f32)).custom_parser(|text| text.trim().parse().ok())
+/// A slider, and beside it a field called `name` that shows every digit: P_FA is of what is shown.
+fn threshold(ui: &mut Ui, name: &str, eta: &mut f32) -> egui::Response {
+    let slider = Slider::new(eta, 0.0..=1.0).clamping(SliderClamping::Edits).show_value(false);
+    let slider = ui.add(slider);
+    let text = eta_text(*eta);
+    let field = NumberField::new(eta).range(0.0..=1.0).clamp_existing_to_range(false).speed(0.005).standing_for(&text);
+    let field = ui.add(field);
+    ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));
+    slider
 }
 
 /// P_D, P_FA and SE, or why there are none.
@@ -275,7 +281,7 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         ];
         choices(ui, settings.normalisation, of, Command::Normalise, asked);
         if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
-            let drag = ui.add(DragValue::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
+            let drag = ui.add(NumberField::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
             if drag.on_hover_text("Any other dynamic range").changed() {
                 asked.push(Command::Normalise(Normalisation::DynamicRange(Decibels(range))));
             }
@@ -292,7 +298,7 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
         ];
         choices(ui, settings.floor, of, Command::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {
-            let drag = ui.add(DragValue::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
+            let drag = ui.add(NumberField::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
             if drag.changed() {
                 asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
             }
@@ -300,7 +306,7 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
     });
     if settings.floor != Floor::Exact {
         row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
-            let drag = ui.add(DragValue::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
+            let drag = ui.add(NumberField::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
             if drag.changed() {
                 asked.push(Command::SetNoiseSeed(noise_seed));
             }

@@ -1,10 +1,11 @@
 //! What disturbs the scene: somebody else's radar, and a wall that mirrors.
 
 use crate::app::state::Command;
+use crate::app::widgets::number_field::NumberField;
 use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
 use eframe::egui;
-use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, ScrollArea, Ui};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -52,10 +53,9 @@ const fn metres(name: &'static str, tooltip: &'static str) -> Field {
 fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
     let label = ui.label(field.name).on_hover_text(field.tooltip);
     let mut shown = *value * field.scale;
-    let drag = DragValue::new(&mut shown)
+    let drag = NumberField::new(&mut shown)
         .range(field.low..=field.high)
         .clamp_existing_to_range(false)
-        .update_while_editing(false)
         .speed(field.speed)
         .max_decimals(4)
         .suffix(field.unit);

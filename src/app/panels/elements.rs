@@ -2,12 +2,11 @@
 
 use crate::app::jobs::Calibrated;
 use crate::app::state::Command;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{BuiltArray, Decibels, ElementError, End, Radar, Tolerances};
 use eframe::egui;
-use eframe::egui::{
-    DragValue, EventFilter, Grid, Key, Modifiers, PointerButton, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
-};
+use eframe::egui::{EventFilter, Grid, Key, Modifiers, PointerButton, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use std::sync::Arc;
 
 /// What is shown.
@@ -162,10 +161,9 @@ fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Co
 fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64) -> Option<f64> {
     let label = ui.label(name);
     let mut edited = value;
-    let drag = DragValue::new(&mut edited)
+    let drag = NumberField::new(&mut edited)
         .range(-most..=most)
         .clamp_existing_to_range(false)
-        .update_while_editing(false)
         .speed(speed)
         .max_decimals(3)
         .suffix(unit);
@@ -180,7 +178,7 @@ fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
     ui.horizontal_wrapped(|ui| {
         let label = ui.label("element");
         let most = input.radar.elements - 1;
-        ui.add(DragValue::new(&mut memory.chosen).range(0..=most).speed(0.2)).labelled_by(label.id);
+        ui.add(NumberField::new(&mut memory.chosen).range(0..=most).speed(0.2)).labelled_by(label.id);
         let mut dead = error.dead;
         if ui.checkbox(&mut dead, "dead").changed() {
             asked.push(with(input, n, |e| e.dead = dead));
@@ -207,11 +205,11 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &m
             ("places ±", position_millimetres, " mm", 100.0),
         ] {
             let label = ui.label(name).on_hover_text("Standard deviation");
-            ui.add(DragValue::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit))
+            ui.add(NumberField::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit))
                 .labelled_by(label.id);
         }
         let label = ui.label("seed");
-        ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+        ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
         let tooltip = "Give every element an error of its own; the dead stay dead";
         if ui.button("Draw").on_hover_text(tooltip).clicked() {
             let mut drawn = memory.tolerances.build(input.radar, memory.seed);

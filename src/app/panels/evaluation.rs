@@ -3,13 +3,14 @@
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice};
 use crate::app::widgets::method_menu::method_menu;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::eta_text;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
 use crate::radar::{Radar, counted};
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
-use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, ScrollArea, Ui};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -101,9 +102,9 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
                 ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
             }
             let label = ui.label("scenes a set");
-            ui.add(DragValue::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
+            ui.add(NumberField::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
             let label = ui.label("seed");
-            ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+            ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
         });
     });
 }

@@ -15,6 +15,8 @@ const OLD_OPACITY: f32 = 0.45;
 
 /// What is listed.
 pub struct Input<'a> {
+    /// The method in use, where it draws a map and finds nothing that could be listed.
+    pub draws_only: Option<&'static str>,
     /// The method whose output is shown.
     pub method: Option<&'static str>,
     /// What it found, the strongest first; `None` until the list is there.
@@ -30,6 +32,10 @@ pub struct Input<'a> {
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        if let Some(method) = input.draws_only {
+            ui.weak(format!("{method} draws a map and finds no echoes to list. Choose another method in Settings."));
+            return;
+        }
         let Some((method, found)) = input.method.zip(input.found).filter(|_| input.refusal.is_none()) else {
             match input.refusal {
                 Some(reason) => _ = ui.colored_label(ui.visuals().error_fg_color, reason),
@@ -92,8 +98,8 @@ mod tests {
 
     fn panel(found: Option<Vec<Detection>>, refusal: Option<&'static str>, has_ranges: bool) -> Harness<'static> {
         let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
-            let asked =
-                show(ui, Input { method: Some("iaa"), found: found.as_deref(), refusal, stale: false, has_ranges });
+            let (method, found) = (Some("iaa"), found.as_deref());
+            let asked = show(ui, Input { draws_only: None, method, found, refusal, stale: false, has_ranges });
             assert!(asked.is_empty());
         });
         panel.run();
@@ -113,6 +119,23 @@ mod tests {
                 .map(|text| shown.get_by_label(text));
         let snapshot = panel(Some(list), None, false);
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
+    }
+
+    #[test]
+    fn a_method_that_only_draws_has_no_list() {
+        let panel = Harness::new_ui(|ui| {
+            let list = [detection(6.96, 15.0, 0.0)];
+            let input = Input {
+                draws_only: Some("live"),
+                method: Some("iaa"),
+                found: Some(&list),
+                refusal: None,
+                has_ranges: true,
+            };
+            show(ui, input);
+        });
+        let _told = panel.get_by_label_contains("live draws a map");
+        assert!(panel.query_by_label("15.00 m").is_none());
     }
 
     #[test]

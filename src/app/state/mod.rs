@@ -238,6 +238,11 @@ impl State {
         self.methods.named(&self.settings.method)
     }
 
+    /// Whether the method in use finds places of echoes; some only draw a map.
+    pub fn finds_reflectors(&self) -> bool {
+        self.method().is_some_and(|method| method.finds_reflectors())
+    }
+
     /// The method that the panel "Compare" sets beside it: the one that was chosen, or a plain one, or any other.
     pub fn second_method(&self) -> Option<&Arc<dyn Reconstructor>> {
         let first = self.method().map(|m| m.name());

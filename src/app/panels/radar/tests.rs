@@ -39,6 +39,40 @@ fn every_consequence_is_in_sight_in_a_panel_beside_the_maps() {
     }
 }
 
+/// Widths of the panel in a window of 1280 by 720 points: among the settings, and with the guide beside it.
+const NARROW: [f32; 2] = [438.0, 342.0];
+
+#[test]
+fn every_consequence_can_be_read_in_a_small_window() {
+    for width in NARROW.into_iter().chain([600.0]) {
+        let draw = |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None });
+        let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, ());
+        seen::assert_readable(panel.output());
+        for label in
+            ["wavelength", "range bin", "maximum range", "far field", "first grating lobe", "from side to side"]
+        {
+            let text = panel.get_by_label_contains(label).rect();
+            let lines = text.height() / panel.get_by_label("power").rect().height();
+            assert!(text.right() <= width && lines < 4.5, "{label} at {width}: {text}");
+        }
+    }
+}
+
+#[test]
+fn the_table_stays_where_it_is_when_the_preset_goes() {
+    for width in NARROW.into_iter().chain([640.0]) {
+        let place = |radar: Radar| {
+            let draw = |ui: &mut Ui, radar: &mut Radar| _ = show(ui, Input { radar, measured: None });
+            let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, radar);
+            panel.get_by_role_and_label(egui::accesskit::Role::SpinButton, "bandwidth").rect().top()
+        };
+        let own = place(Radar { bandwidth_hz: 123e6, ..Radar::default() });
+        for preset in presets::ALL {
+            assert_eq!(place(preset.radar.clone()), own, "{} at {width}", preset.name);
+        }
+    }
+}
+
 #[test]
 fn a_bandwidth_changes_its_consequence() {
     let mut panel = panel(Radar::default(), None);
