@@ -178,6 +178,21 @@ struct RobustnessFigure<'a> {
     methods: &'a [Arc<dyn Reconstructor>],
 }
 
+impl RobustnessFigure<'_> {
+    /// The errors at scale 1; "" where no scale is above 0.
+    fn unit(&self) -> String {
+        let one = self.rows.iter().find(|r| r.scale > 0.0);
+        one.map_or_else(String::new, |r| {
+            format!(
+                "{:.2} dB, {:.1} degrees, {:.2} mm",
+                r.gain_decibels / r.scale,
+                r.phase_degrees / r.scale,
+                r.position_millimetres / r.scale
+            )
+        })
+    }
+}
+
 impl Figure for RobustnessFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (900, 540)
@@ -192,15 +207,6 @@ impl Figure for RobustnessFigure<'_> {
         let (low, high) = ends.fold((f64::INFINITY, LEAST), |(a, b), v| (a.min(v), b.max(v)));
         let bottom = low / 1.3;
         let furthest = self.rows.iter().map(|r| r.scale).fold(0.0, f64::max).max(1e-3);
-        let one = self.rows.iter().find(|r| r.scale > 0.0);
-        let unit = one.map_or_else(String::new, |r| {
-            format!(
-                "{:.2} dB, {:.1} degrees, {:.2} mm",
-                r.gain_decibels / r.scale,
-                r.phase_degrees / r.scale,
-                r.position_millimetres / r.scale
-            )
-        });
         let mut chart = ChartBuilder::on(area)
             .caption("What elements that are off cost each method", ("sans-serif", 22))
             .margin(14)
@@ -209,7 +215,7 @@ impl Figure for RobustnessFigure<'_> {
             .build_cartesian_2d(-0.02 * furthest..furthest * 1.03, (bottom..high * 1.3).log_scale())?;
         chart
             .configure_mesh()
-            .x_desc(format!("errors of the elements, times {unit} (standard deviations)"))
+            .x_desc(format!("errors of the elements, times {} (standard deviations)", self.unit()))
             .y_desc(format!(
                 "squared error of the map, mean ± standard error over {}",
                 counted(self.scenes, "scene", "scenes")
@@ -218,7 +224,7 @@ impl Figure for RobustnessFigure<'_> {
             .y_label_formatter(&tick)
             .draw()?;
         // Bars of several methods at one scale stand side by side.
-        let step = furthest / 250.0;
+        let step = furthest / 150.0;
         for (i, method) in self.methods.iter().enumerate() {
             let colour = Palette99::pick(i).to_rgba();
             let aside = step * (i as f64 - (self.methods.len() - 1) as f64 / 2.0);

@@ -30,10 +30,8 @@ pub fn train<S: Student>(
     resume: bool,
     mut watch: impl FnMut(&Progress),
 ) -> Result<Progress, TrainError> {
-    let no_time = run.max_steps == Some(0) || run.max_time == Some(Duration::ZERO);
-    if no_time && !resume && !run.untrained {
-        return Err(TrainError::Untrained);
-    }
+    let has_time = run.max_steps != Some(0) && run.max_time != Some(Duration::ZERO);
+    refuse_untrained(run, resume || has_time)?;
     let device = run.device.clone().autodiff();
     let at = run.folder.join("checkpoint");
     let (mut network, mut optimizer, mut progress) = begin::<S>(recipe, config, run, resume.then_some(&at), &device)?;
@@ -80,12 +78,15 @@ pub fn train<S: Student>(
         progress.step_of_epoch = 0;
     }
     checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
-    if progress.maps == 0 && !run.untrained {
-        return Err(TrainError::Untrained);
-    }
+    refuse_untrained(run, progress.maps > 0)?;
     let validation = validate::<S>(&network.valid(), recipe, config, run)?;
     export::<S>(&network.valid(), recipe, run, &progress, &validation)?;
     Ok(progress)
+}
+
+/// Refuses weights that no step moved, unless the run asks for them.
+fn refuse_untrained(run: &Run, is_trained: bool) -> Result<(), TrainError> {
+    if is_trained || run.untrained { Ok(()) } else { Err(TrainError::Untrained) }
 }
 
 /// Network, optimizer and progress of a run that starts, or goes on from the checkpoint `from`; its new part is recorded.

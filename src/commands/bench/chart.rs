@@ -129,3 +129,34 @@ fn front<B: DrawingBackend>(
         .draw()?;
     area.present()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row as `bench.json` has it.
+    fn row(algorithm: &str, chosen: &str, tolerance: f64, median_ms: f64) -> FrontRow {
+        serde_json::from_value(serde_json::json!({
+            "task": "scratch", "reflectors": 10, "algorithm": algorithm, "chosen": chosen, "precision": "f64", "tolerance": tolerance,
+            "floor": "thesis", "normalisation": "min-max", "median_ms": median_ms, "spread_ms": 0.0, "fastest_ms": median_ms, "repeats": 1,
+            "signal_error": 1e-13, "lambda_error": 0.0, "lambda_rms_error": 0.0, "lambda": [], "peak_bytes": null,
+        }))
+        .unwrap()
+    }
+
+    #[test]
+    fn a_ring_stands_on_the_dot_of_what_the_planner_chose() {
+        let [plan, alone] = [row("plan", "split", 1e-9, 5.0), row("plan", "direct", 1e-9, 6.0)];
+        let [other, chosen] = [row("split", "split", 1e-12, 1.0), row("split", "split", 1e-9, 2.0)];
+        let rows = [&plan, &alone, &other, &chosen];
+        assert_eq!(dot_of(&plan, &rows).median_ms, 2.0);
+        assert_eq!(dot_of(&other, &rows).median_ms, 1.0);
+        assert_eq!(dot_of(&alone, &rows).median_ms, 6.0, "its own place where the algorithm took no part");
+    }
+
+    #[test]
+    fn one_size_of_dots_is_not_explained() {
+        assert_eq!(sizes(&[1]), "1 reflector");
+        assert_eq!(sizes(&[1, 75]), "1, 75 reflectors, from the smallest to the largest dot");
+    }
+}

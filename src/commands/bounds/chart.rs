@@ -49,6 +49,7 @@ impl ErrorAxes {
             .configure_mesh()
             .x_desc("signal-to-noise ratio of a sample, dB")
             .y_desc(self.vertical)
+            .x_label_formatter(&tick)
             .y_label_formatter(&tick)
             .draw()?;
         Ok(chart)
