@@ -170,34 +170,51 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
     ui.strong(format!("Least error for {name}")).on_hover_text(
         "The Cramér–Rao bound: no unbiased estimator has smaller standard deviations. One that knows scenes beforehand may.",
     );
-    Grid::new("bound").num_columns(3).spacing([12.0, 3.0]).show(ui, |ui| {
-        ui.weak("σ of");
-        for (gains, tooltip) in [
-            ("one gain", "All elements hear the reflector with one unknown gain: the phase between the ends is known"),
-            (
-                "a gain an end",
-                "Either half of the elements has an unknown gain of its own: the phase between the ends is not known",
-            ),
-        ] {
-            ui.weak(gains).on_hover_text(tooltip);
+    numbers(ui, bound, result.gain_per_end.as_ref(), column);
+    ellipse(ui, bound);
+}
+
+/// Least width that has room for both bounds, points.
+const BOTH: f32 = 250.0;
+
+/// The standard deviations of both bounds side by side; in a narrow panel the second is told where the pointer rests.
+fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, column_cos: f64) {
+    let rows = |b: &PositionBound| {
+        [
+            ("x", millimetres(b.x_metres)),
+            ("y", millimetres(b.y_metres)),
+            ("range", millimetres(b.range_metres)),
+            ("column", significant(b.cos_theta / column_cos)),
+            ("amplitude", format!("{} dB", significant(b.amplitude_db()))),
+        ]
+    };
+    let both = ui.available_width() > BOTH;
+    let second = per_end.map_or_else(|| std::array::from_fn(|_| "–".to_owned()), |b| rows(b).map(|r| r.1));
+    let grid = Grid::new("bound").num_columns(if both { 3 } else { 2 }).spacing([12.0, 3.0]);
+    grid.show(ui, |ui| {
+        if both {
+            ui.weak("σ of");
+            ui.weak("one gain").on_hover_text(
+                "All elements hear the reflector with one unknown gain: the phase between the ends is known",
+            );
+            ui.weak("a gain an end").on_hover_text(PER_END);
+            ui.end_row();
         }
-        ui.end_row();
-        let of: [(&str, &dyn Fn(&PositionBound) -> String); 5] = [
-            ("x", &|b| millimetres(b.x_metres)),
-            ("y", &|b| millimetres(b.y_metres)),
-            ("range", &|b| millimetres(b.range_metres)),
-            ("column", &|b| significant(b.cos_theta / column)),
-            ("amplitude", &|b| format!("{} dB", significant(b.amplitude_db()))),
-        ];
-        for (what, value) in of {
-            ui.weak(what);
-            ui.monospace(value(bound));
-            ui.monospace(result.gain_per_end.as_ref().map_or("–".to_owned(), value));
+        for ((what, value), second) in rows(bound).into_iter().zip(second) {
+            ui.weak(if both { what.to_owned() } else { format!("σ of {what}") });
+            let shown = ui.monospace(value);
+            match both {
+                true => _ = ui.monospace(second),
+                false => _ = shown.on_hover_text(format!("{second} with a gain an end. {PER_END}.")),
+            }
             ui.end_row();
         }
     });
-    ellipse(ui, bound);
 }
+
+/// What the second bound is.
+const PER_END: &str =
+    "Either half of the elements has an unknown gain of its own: the phase between the ends is not known";
 
 fn millimetres(metres: f64) -> String {
     if metres.is_finite() { format!("{} mm", significant(metres * 1e3)) } else { "∞".to_owned() }
