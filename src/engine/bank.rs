@@ -27,11 +27,22 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// Amplitude that noise of a level of its own hardly ever exceeds: echoes may be far beneath it, as no other floor lets them be.
+    fn noise_amplitude(&self) -> f64 {
+        match self.wanted.floor {
+            Floor::Level(level) => 10.0 * level.watts().sqrt(),
+            Floor::Thesis | Floor::Exact | Floor::Snr(_) => 0.0,
+        }
+    }
+
     /// What is said of maps of which these rows were made.
     fn made(&self, rows: &Rows, over_noise: bool) -> String {
         let all = self.radar.samples;
         match rows.count() {
-            made if made == all && over_noise => format!("{all} rows: the floor's level follows the scene"),
+            made if made == all && over_noise => match self.wanted.floor {
+                Floor::Level(_) => format!("{all} rows: noise lies in each"),
+                _ => format!("{all} rows: the floor's level follows the scene"),
+            },
             made if made == all => format!("{all} rows"),
             some => {
                 format!("{some} of {all} rows, the others changed by less than {:.0e} of the peak", self.plan.tolerance)
@@ -193,7 +204,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
             }
             let Some(kept) = kept else { continue };
             kept.stale.extend(&changed);
-            // The noise's level follows the scene, and with it every row.
+            // The level of most noise follows the scene, and with it every row.
             if noise.is_some() || kept.over_noise {
                 kept.stale = Rows::all(job.radar.samples);
             }
@@ -208,7 +219,8 @@ impl<T: Real, const W: usize> Bank<T, W> {
         for (made, missing) in made.iter_mut().zip(job.missing) {
             *made = made.take().filter(|_| missing);
         }
-        self.maker.fill(Sources { profiles: &profiles, noise, bound: job.amplitude * gain }, made, &rows);
+        let bound = gain * (job.amplitude + job.noise_amplitude());
+        self.maker.fill(Sources { profiles: &profiles, noise, bound }, made, &rows);
 
         let took = start.elapsed();
         let count = job.missing.iter().filter(|m| **m).count() as u32;
@@ -293,6 +305,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 rest.iter().zip(active).map(|(a, b)| a + b).collect()
             }
             Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &job.scene.reflectors(), snr),
+            Floor::Level(level) => floor::level_noise_variance(job.radar, level),
         };
         let seed = job.wanted.seed;
         if self.noise.as_ref().is_none_or(|(s, _)| *s != seed) {

@@ -29,7 +29,7 @@ impl Hearing {
     /// Of what lies beneath the samples of `ends`: where that is rounding, the echoes themselves tell how much of it there is, even
     /// where they fill every range bin.
     pub fn beneath(radar: &Radar, ends: &TwoEnds, floor: Floor) -> Self {
-        if matches!(floor, Floor::Snr(_)) {
+        if floor.is_thermal() {
             return Hearing::any();
         }
         let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();

@@ -7,7 +7,7 @@ use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::presets::{self as radar_presets, RadarPreset};
-use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
@@ -163,6 +163,12 @@ const TABLE: &[Entry] = {
             SetFloor(Floor::Snr(Decibels(20.0))),
             "Floor: thermal noise",
             "White noise at a signal-to-noise ratio",
+            None,
+        ),
+        entry(
+            SetFloor(Floor::Level(DecibelMilliwatts(-20.0))),
+            "Floor: thermal noise of a level",
+            "White noise of -20 dBm in every sample, whatever the scene: an empty scene is noise alone",
             None,
         ),
         entry(SetCarrier(Carrier::OneWay), "Carrier: one-way", "Unambiguous over all of cos θ", None),

@@ -1,7 +1,7 @@
 use super::super::Outcome;
 use super::*;
 use crate::maps::{Aperture, LogMaps, Normalisation, RangeAngleMap};
-use crate::radar::{Decibels, End};
+use crate::radar::{DecibelMilliwatts, Decibels, End};
 use crate::scene::{Object, Point};
 use crate::signal::{self, Floor};
 use proptest::prelude::*;
@@ -78,11 +78,20 @@ fn a_bad_scene_is_refused_and_the_engine_lives_on() {
 #[test]
 fn frames_agree_with_the_plain_path() {
     let radar = Radar::default();
-    let scene = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (8.0, 3.3)]);
-    for floor in [Floor::Thesis, Floor::Snr(Decibels(20.0))] {
+    let points = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (8.0, 3.3)]);
+    let mut weak = points.clone();
+    weak.objects.iter_mut().for_each(|o| o.set_reflectivity(1e-9));
+    let level = Floor::Level(DecibelMilliwatts(40.0));
+    for (floor, scene) in [
+        (Floor::Thesis, &points),
+        (Floor::Snr(Decibels(20.0)), &points),
+        (level, &points),
+        (level, &weak),
+        (level, &Scene::default()),
+    ] {
         let wanted = Wanted { floor, seed: 5, ..Wanted::default() };
-        let frame = Engine::new(radar.clone()).update(&scene, &wanted).unwrap();
-        let signal = signal::simulate(&radar, &scene, floor, 5).unwrap();
+        let frame = Engine::new(radar.clone()).update(scene, &wanted).unwrap();
+        let signal = signal::simulate(&radar, scene, floor, 5).unwrap();
         let maps = LogMaps::of_signal(&radar, &signal);
         for (aperture, log) in [
             (Aperture::End(End::First), &maps.first),

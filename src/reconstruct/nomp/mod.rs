@@ -179,8 +179,8 @@ impl Found {
             // What was found may be far from what rounds there.
             Floor::Thesis => Noise::RoundingHeard(self.noise_variance),
             Floor::Exact => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
-            Floor::Snr(_) if self.complete => Noise::Variance(self.residual_variance),
-            Floor::Snr(_) => Noise::Variance(self.noise_variance),
+            Floor::Snr(_) | Floor::Level(_) if self.complete => Noise::Variance(self.residual_variance),
+            Floor::Snr(_) | Floor::Level(_) => Noise::Variance(self.noise_variance),
         };
         expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
     }
