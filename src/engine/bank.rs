@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::frame::Wanted;
 use super::report::{Report, Stage};
-use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources};
+use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources, silence_decades};
 use crate::radar::Radar;
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan;
@@ -58,11 +58,18 @@ pub(super) struct Kept {
     pub stale: Rows,
     /// Whether noise lies beneath it.
     over_noise: bool,
+    /// Decades of its silent cells.
+    silence: f32,
 }
 
 impl Kept {
     fn silence(radar: &Radar) -> Self {
-        Kept { decades: FastLogMap::silence(radar), stale: Rows::all(radar.samples), over_noise: false }
+        Kept {
+            decades: FastLogMap::silence(radar),
+            stale: Rows::all(radar.samples),
+            over_noise: false,
+            silence: f32::NAN,
+        }
     }
 }
 
@@ -197,6 +204,9 @@ impl<T: Real, const W: usize> Bank<T, W> {
             (Some((_, unit)), Some(deviation)) => Some(Noise { unit, deviation }),
             _ => None,
         };
+        let gain = (job.radar.samples as f64 * job.radar.elements as f64).sqrt();
+        let bound = gain * (job.amplitude + job.noise_amplitude());
+        let silence = silence_decades(bound);
         let mut rows = Rows::none(job.radar.samples);
         for (kept, missing) in maps.iter_mut().zip(job.missing) {
             if missing {
@@ -205,21 +215,19 @@ impl<T: Real, const W: usize> Bank<T, W> {
             let Some(kept) = kept else { continue };
             kept.stale.extend(&changed);
             // The level of most noise follows the scene, and with it every row.
-            if noise.is_some() || kept.over_noise {
+            if noise.is_some() || kept.over_noise || kept.silence != silence {
                 kept.stale = Rows::all(job.radar.samples);
             }
             if missing {
-                kept.over_noise = noise.is_some();
+                (kept.over_noise, kept.silence) = (noise.is_some(), silence);
                 rows.extend(&std::mem::replace(&mut kept.stale, Rows::none(job.radar.samples)));
             }
         }
-        let gain = (job.radar.samples as f64 * job.radar.elements as f64).sqrt();
         let profiles = [&self.rest.profiles, &self.active.profiles];
         let mut made = maps.each_mut().map(|kept| kept.as_mut().map(|k| &mut k.decades));
         for (made, missing) in made.iter_mut().zip(job.missing) {
             *made = made.take().filter(|_| missing);
         }
-        let bound = gain * (job.amplitude + job.noise_amplitude());
         self.maker.fill(Sources { profiles: &profiles, noise, bound }, made, &rows);
 
         let took = start.elapsed();

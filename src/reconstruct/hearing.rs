@@ -9,7 +9,7 @@ use ndarray::{ArrayView1, ArrayView2};
 use num_complex::Complex64;
 
 /// Variance of the white complex noise of a sample of either end, over `floor`.
-pub(super) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -> f64 {
+pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -> f64 {
     Hearing::beneath(radar, ends, floor).ends_noise_variance(radar, ends)
 }
 

@@ -54,7 +54,7 @@ impl Floor {
     pub fn snr(self, radar: &Radar, reflectors: &[Reflector]) -> Option<Decibels> {
         match self {
             Floor::Thesis | Floor::Exact => None,
-            Floor::Snr(snr) => Some(snr).filter(|_| mean_power(radar, reflectors) > 0.0),
+            Floor::Snr(snr) => Some(snr).filter(|_| reflectors.iter().any(|r| r.reflectivity != 0.0)),
             Floor::Level(level) => {
                 let ratio = mean_power(radar, reflectors) / level.watts();
                 (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))

@@ -11,6 +11,8 @@ mod house;
 mod live_network;
 mod memory;
 mod methods;
+#[cfg(feature = "network")]
+mod noise_alone;
 mod radars;
 mod snapshot;
 mod stress;

@@ -193,7 +193,7 @@ impl MethodJob {
         latest: Option<&MapsResult>,
     ) {
         let MethodRequest { basis, target, method, .. } = request;
-        let Reconstruction { lambda, mut reflectors, eta } = answer;
+        let Reconstruction { lambda, mut reflectors, eta, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }

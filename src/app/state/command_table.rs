@@ -283,6 +283,7 @@ pub fn listed() -> &'static [Entry] {
             let keys = [Key::Num1, Key::Num2, Key::Num3];
             let (tooltip, key) = match kind.test_set() {
                 Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
+                None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
                 None => ("A scene of a kind that the thesis' sets leave out", None),
             };
             named(Command::RandomScene(kind), format!("Random scene: {}", kind.description()), tooltip, key)

@@ -37,7 +37,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
     method: Vec<String>,
 
-    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near), separated by commas
+    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, noise), separated by commas
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
 
@@ -124,6 +124,9 @@ impl Args {
         if scenes == 0 {
             let message = format!("--shard {} has no scene; expected I below the number of scenes", self.shard);
             return Err(CommandError::Usage(message));
+        }
+        for said in campaign.untrained(&sets, &methods).map_err(CommandError::failed)? {
+            eprintln!("apertura: {said}");
         }
         // Drawn on a terminal only: indicatif hides itself where standard error is a file or a pipe.
         let bar = ProgressBar::new(u64::from(scenes) * methods.len() as u64).with_style(bar_style());

@@ -87,6 +87,7 @@ fn frames_agree_with_the_plain_path() {
         (Floor::Snr(Decibels(20.0)), &points),
         (level, &points),
         (level, &weak),
+        (Floor::Thesis, &weak),
         (level, &Scene::default()),
     ] {
         let wanted = Wanted { floor, seed: 5, ..Wanted::default() };
@@ -107,6 +108,28 @@ fn frames_agree_with_the_plain_path() {
             assert!(rms < 1e-3 && worst < 2e-2, "{floor} {aperture:?}: rms {rms:e}, worst {worst}");
         }
         assert_eq!(*frame.ends.unwrap(), signal.two_ends(&radar), "not a bit off");
+    }
+}
+
+#[test]
+fn an_empty_scene_without_noise_is_dark_however_it_is_normalised() {
+    let radar = Radar::default();
+    let point = Scene::of_points([(1.0, 6.0)]);
+    for floor in [Floor::Thesis, Floor::Exact] {
+        for normalisation in [Normalisation::MinMax, Normalisation::DynamicRange(Decibels(100.0))] {
+            let wanted = Wanted { floor, normalisation, ..Wanted::default() };
+            let mut engine = Engine::new(radar.clone());
+            engine.update(&point, &wanted).unwrap();
+            // The reflector was taken away.
+            let moving = engine.update(&Scene::default(), &wanted).unwrap();
+            let settled = engine.settle(&Scene::default(), &wanted).unwrap();
+            for (frame, how) in [(moving, "in motion"), (settled, "at rest")] {
+                for map in [&frame.first, &frame.last, &frame.full] {
+                    let brightest = map.as_ref().unwrap().lambda.lambda.iter().copied().fold(0.0, f32::max);
+                    assert_eq!(brightest, 0.0, "{floor} {normalisation} {how}");
+                }
+            }
+        }
     }
 }
 
