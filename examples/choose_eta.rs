@@ -126,7 +126,7 @@ fn live() -> Outcome {
     let radar = Radar::default();
     let method = methods::by_name("live")?;
     let thermal = [40.0, 20.0].map(|db| Floor::Snr(Decibels(db)));
-    let over_thesis = Kind::all().map(|kind| (kind, Floor::Thesis));
+    let over_thesis = Kind::with_echoes().map(|kind| (kind, Floor::Thesis));
     let over_thermal = Kind::TEST_SETS.into_iter().flat_map(|kind| thermal.map(|floor| (kind, floor)));
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
     let mut means = [[0.0; 2]; PARTS.len()];
@@ -207,7 +207,7 @@ fn weights() -> Outcome {
     let request = Request::default();
     let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
     let mut all = [[Cells::default(); BINS]; LEFT.len() + 1];
-    for kind in Kind::all() {
+    for kind in Kind::with_echoes() {
         for trial in validation(&radar, kind, SCENES) {
             let trial = trial?;
             let found = find(&radar, &trial.ends, &request, &Settings::default())?;

@@ -10,8 +10,10 @@ use std::str::FromStr;
 /// What lies beneath the reflectors of the maps.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FloorArgs {
-    /// What lies beneath the reflectors: thesis (its f64 rounding noise), exact (nothing) or snr=DB (thermal noise)
-    #[arg(long, value_name = "thesis|exact|snr=DB", default_value_t = Floor::Thesis)]
+    /// What lies beneath the reflectors: thesis (its f64 rounding noise), exact (nothing), snr=DB (thermal noise, DB from -100 to
+    /// 300) or dbm=LEVEL (thermal noise of LEVEL dBm a sample whatever the scene, from -300 to 200; a reflector of sigma 1 at 20 m is
+    /// +18 dBm)
+    #[arg(long, value_name = "thesis|exact|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
     pub floor: Floor,
 }
 

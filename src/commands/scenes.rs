@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 /// Write random test scenes of one kind to a folder
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic, near
+    /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic,
+    /// near; or noise, whose scenes are empty: give --floor dbm=LEVEL to what opens them
     #[arg(long, value_name = "1|2|3|KIND")]
     set: Kind,
 

@@ -6,7 +6,7 @@ pub use super::shard::Shard;
 use super::trial::{Answer, RowPlace, Trial};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::reconstruct::{ReconstructError, Reconstructor, Request, untrained_noise};
 use crate::scene::SceneError;
 use crate::scene::file::SceneFileError;
 use crate::scene::generate::{Generator, Purpose, Reading};
@@ -159,7 +159,7 @@ impl Campaign {
             let scenes = self.origin_of_scenes(set)?;
             let origin = |method: &&dyn Reconstructor| Origin {
                 program: env!("CARGO_PKG_VERSION").to_owned(),
-                floor: self.floor,
+                floor: set.floor(self.floor),
                 normalisation: self.normalisation,
                 scenes: scenes.clone(),
                 weights: method.weights(),
@@ -198,12 +198,15 @@ impl Campaign {
         mut on_row: impl FnMut(&Row, &Trial, &Answer),
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
-        let request =
-            Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
+        let request = |floor| {
+            let normalisation = self.normalisation;
+            Request { floor, normalisation, task: task.clone(), ..Request::default() }
+        };
         let mut rows = Vec::new();
         let mut warm = false;
         for (set, origins) in sets.iter().zip(origins) {
             let (count, name) = (set.len().unwrap_or(self.count), set.to_string());
+            let request = request(set.floor(self.floor));
             let rest = |index| -> Vec<usize> {
                 (0..methods.len()).filter(|i| !is_done(&name, index, methods[*i].name())).collect()
             };
@@ -223,13 +226,49 @@ impl Campaign {
         Ok(rows)
     }
 
+    /// For each set and method, on how many of the scenes the method was trained on other noise, in words; nothing where on none.
+    ///
+    /// # Errors
+    /// [`CampaignError`] names a scene that can't be read.
+    pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
+        let generator = self.generator();
+        let mut told = Vec::new();
+        for set in sets {
+            let floor = set.floor(self.floor);
+            let trained: Vec<_> =
+                methods.iter().filter(|m| floor.is_thermal() && m.trained_noise().is_some()).collect();
+            if trained.is_empty() {
+                continue;
+            }
+            let count = set.len().unwrap_or(self.count);
+            let mut said = vec![(0, None); trained.len()];
+            for index in (0..count).filter(|&n| self.shard.contains(n)) {
+                let Case { radar, scene } = set.case(&self.radar, &generator, index)?;
+                let reflectors = scene.reflectors();
+                for (said, method) in said.iter_mut().zip(&trained) {
+                    if let Some(why) = untrained_noise(**method, &radar, &reflectors, floor) {
+                        *said = (said.0 + 1, said.1.take().or(Some(why)));
+                    }
+                }
+            }
+            let (name, all) = (set_name(set), self.shard.size(count));
+            told.extend(said.into_iter().filter_map(|(scenes, why)| {
+                Some(format!(
+                    "{scenes} of {all} scenes of {name} have noise that was not trained on, the first: {}",
+                    why?
+                ))
+            }));
+        }
+        Ok(told)
+    }
+
     /// Reads or makes a scene, simulates it, and finds where its objects show.
     ///
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
         let Case { radar, scene } = set.case(&self.radar, generator, index)?;
-        let trial = Trial::new(&radar, &scene, self.floor, self.normalisation)
+        let trial = Trial::new(&radar, &scene, set.floor(self.floor), self.normalisation)
             .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
         trial.footprints();
         Ok(trial)
@@ -339,6 +378,22 @@ mod tests {
         let origins = campaign.origins(&sets, &methods).unwrap();
         let rest = campaign.run_rest(&sets, &methods, &origins, &is_done, &Task::default(), |_, _, _| ()).unwrap();
         assert_eq!(figures(&rest), figures(&whole[3..]));
+    }
+
+    #[test]
+    fn scenes_of_noise_alone_have_no_detection_rate() {
+        let campaign = Campaign { count: 2, ..Campaign::default() };
+        let sets = [SceneSet::Generated(Kind::Noise)];
+        let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| ()).unwrap();
+        assert_eq!(rows.len(), 4);
+        for row in rows {
+            assert_eq!(
+                (row.set.as_str(), row.objects, row.detection, row.detection_at_printed),
+                ("noise", 0, None, None)
+            );
+            assert_eq!((row.false_alarm, row.ghosts), (0.0, 0), "{}", row.method);
+            assert!(row.squared_error > 1.0, "the target is noise");
+        }
     }
 
     #[test]

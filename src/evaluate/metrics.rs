@@ -10,7 +10,7 @@ pub const TARGET_ETA: f32 = 0.9;
 pub struct Metrics {
     /// SE: sum of squared differences over every cell.
     pub squared_error: f64,
-    /// P_D: part of the target cells where the output exceeds eta; `None` where the target has no such cell (an empty scene).
+    /// P_D: part of the target cells where the output exceeds eta; `None` where the target has no such cell, or nothing reflects.
     pub detection: Option<f64>,
     /// P_FA: part of the other cells where the output exceeds eta.
     pub false_alarm: f64,
@@ -21,6 +21,19 @@ impl Metrics {
     pub fn of(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
         let (detection, false_alarm) = detection_rates(target, output, eta);
         Metrics { squared_error: squared_error(target, output), detection, false_alarm }
+    }
+
+    /// The same of a scene in which nothing reflects. Its target holds noise, or nothing: whatever exceeds 0.9 there is no echo, so that there
+    /// is nothing to detect, and every cell of the output above eta is a false alarm.
+    pub fn of_silence(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
+        let alarms = output.above(eta).count() as f64;
+        let false_alarm = alarms / output.lambda.len().max(1) as f64;
+        Metrics { squared_error: squared_error(target, output), detection: None, false_alarm }
+    }
+
+    /// [`Metrics::of`] where something reflects, else [`Metrics::of_silence`].
+    pub fn of_echoes(has_echoes: bool, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
+        if has_echoes { Metrics::of(target, output, eta) } else { Metrics::of_silence(target, output, eta) }
     }
 }
 
@@ -65,6 +78,15 @@ mod tests {
         let m = Metrics::of(&target, &output, 0.7);
         assert_eq!((m.detection, m.false_alarm), (Some(0.5), 0.5));
         assert!((m.squared_error - (0.36 + 0.25)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn noise_above_the_target_threshold_is_no_echo() {
+        let noise = RangeAngleMap { lambda: array![[0.95, 0.8], [1.0, 0.0]] };
+        let output = RangeAngleMap { lambda: array![[0.95, 0.8], [0.2, 0.0]] };
+        let m = Metrics::of_echoes(false, &noise, &output, 0.9);
+        assert_eq!((m.detection, m.false_alarm), (None, 0.25));
+        assert_eq!(Metrics::of_echoes(true, &noise, &output, 0.9), Metrics::of(&noise, &output, 0.9));
     }
 
     #[test]

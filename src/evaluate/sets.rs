@@ -2,16 +2,20 @@
 
 use super::tables::PRINTED_EXPERIMENT_2;
 use crate::files::{read_bounded, sha256};
-use crate::radar::Radar;
+use crate::radar::{DecibelMilliwatts, Radar};
 use crate::scene::Scene;
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
 use crate::scene::generate::{Generator, Kind};
+use crate::signal::Floor;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// A false-alarm rate for scenes that the thesis prints no table of.
 const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
+
+/// Level of the noise of scenes of noise alone, where none was asked for.
+pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
 
 /// A set of scenes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -138,6 +142,16 @@ impl SceneSet {
                 let path = folder.file(index).unwrap_or(&folder.path);
                 file::load(path).map(|file| Case { radar: file.radar, scene: file.scene })
             }
+        }
+    }
+
+    /// What lies beneath the scenes of this set where `floor` was asked for. Beneath scenes of noise alone that is thermal noise of a level of
+    /// its own, [`NOISE_LEVEL`] where another floor was asked for: all others have no noise where there is no echo.
+    pub fn floor(&self, floor: Floor) -> Floor {
+        match (self, floor) {
+            (SceneSet::Generated(Kind::Noise), Floor::Level(_)) => floor,
+            (SceneSet::Generated(Kind::Noise), _) => Floor::Level(NOISE_LEVEL),
+            _ => floor,
         }
     }
 

@@ -74,7 +74,12 @@ impl Trial {
         let found = method.reconstruct(&self.radar, &self.ends, request)?;
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);
-        Ok(Answer { metrics: Metrics::of(&self.target, &found.lambda, eta), found, milliseconds, eta })
+        Ok(Answer {
+            metrics: Metrics::of_echoes(!self.scene.is_silent(), &self.target, &found.lambda, eta),
+            found,
+            milliseconds,
+            eta,
+        })
     }
 
     /// Where each object shows in the target; found when first asked for.
@@ -89,7 +94,7 @@ impl Trial {
 
     /// The row of an answer. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
     pub fn row(&self, place: &RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
-        let roc = Roc::of(&self.target, &answer.found.lambda);
+        let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
         let facts = Facts::of(&self.radar, &self.scene);
         let failures = self.failures(answer);
         Row {

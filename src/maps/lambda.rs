@@ -56,10 +56,11 @@ pub struct LambdaScale {
 }
 
 impl LambdaScale {
-    /// The scale for a map whose cells lie between `min` and `max` decades.
+    /// The scale for a map whose cells lie between `min` and `max` decades. A map that is flat has no range: nothing in it is a peak.
     pub fn new(min: f64, max: f64, normalisation: Normalisation) -> Self {
         let floor = match normalisation {
             Normalisation::MinMax => min,
+            Normalisation::DynamicRange(_) if max <= min => max,
             Normalisation::DynamicRange(db) => max - db.amplitude_decades(),
         };
         LambdaScale { floor, peak: max }

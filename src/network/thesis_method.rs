@@ -9,7 +9,7 @@ use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights};
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
@@ -18,7 +18,8 @@ use ndarray::{Array2, Array3};
 const THESIS_ETA: f32 = 0.7;
 
 /// What the thesis' networks learned beside the samples.
-const TOLD: &str = "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor";
+const TOLD: &str =
+    "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
 /// The thesis' encoder-decoder with weights. Its output is Lambda as it stands: what it learned to answer, and what the thesis takes the
 /// squared error of. Its threshold is one for the output stretched to [0, 1], as the thesis' is.
@@ -64,7 +65,7 @@ impl ThesisMethod {
     fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         let eta = unstretched(&map, self.eta);
-        Ok(Reconstruction { lambda: Thesis::finish(map), reflectors: Vec::new(), eta: Some(eta) })
+        Ok(Reconstruction { lambda: Thesis::finish(map), reflectors: Vec::new(), eta: Some(eta), least_eta: None })
     }
 }
 
@@ -87,6 +88,10 @@ impl Reconstructor for ThesisMethod {
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         check_radar(self.name, radar)
+    }
+
+    fn trained_noise(&self) -> Option<TrainedNoise> {
+        Some(TrainedNoise::None)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -156,13 +161,17 @@ impl Reconstructor for UnetMethod {
         Some(self.weights.clone())
     }
 
+    fn trained_noise(&self) -> Option<TrainedNoise> {
+        Some(TrainedNoise::None)
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let tables: UnetTables = Unet::tables(&self.config, radar)?;
         let rows = self.config.rows;
         let cartesian =
             estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
         let lambda = to_polar(radar, &cartesian);
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: None })
+        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: None, least_eta: None })
     }
 }
 

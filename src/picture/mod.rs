@@ -160,7 +160,9 @@ impl Panels<'_> {
     /// The three figures of the tables for this scene, then the scene's notes.
     fn figures_and_notes<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
         let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
-        let metrics = Metrics::of(target, self.output, self.eta);
+        // What was found in a recording says nothing of what it holds.
+        let has_echoes = !self.scene.is_silent() || self.objects_title != "Scene";
+        let metrics = Metrics::of_echoes(has_echoes, target, self.output, self.eta);
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
             ("SE", format!("{:.0}", metrics.squared_error)),

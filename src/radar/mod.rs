@@ -15,7 +15,7 @@ pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
 pub use memory::MAX_MEMORY_BYTES;
-pub use units::{Bytes, Decibels, counted};
+pub use units::{Bytes, DecibelMilliwatts, Decibels, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};

@@ -46,6 +46,11 @@ pub struct Reconstruction {
     pub reflectors: Vec<Reflector>,
     /// The threshold that fits this very answer, where the method reads one off what it measured.
     pub eta: Option<f32>,
+    /// Lambda that noise alone does not exceed in this map, where the method knows it: no threshold lies lower. [`reconstruct`] has raised
+    /// `eta` to it already.
+    ///
+    /// [`reconstruct`]: super::Reconstructor::reconstruct
+    pub least_eta: Option<f32>,
 }
 
 /// A reflector as the array's centre hears it.
@@ -72,7 +77,7 @@ impl Reconstruction {
     /// The answer to silence: Lambda 0 everywhere, no reflector.
     pub fn silence(radar: &Radar) -> Self {
         let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
-        Reconstruction { lambda, reflectors: Vec::new(), eta: None }
+        Reconstruction { lambda, reflectors: Vec::new(), eta: None, least_eta: None }
     }
 
     /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.

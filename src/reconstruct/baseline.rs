@@ -31,6 +31,11 @@ impl Reconstructor for Baseline {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let log = channels_map(radar, ends.first.view()).log_magnitude();
-        Ok(Reconstruction { lambda: log.normalise(request.normalisation), reflectors: Vec::new(), eta: None })
+        Ok(Reconstruction {
+            lambda: log.normalise(request.normalisation),
+            reflectors: Vec::new(),
+            eta: None,
+            least_eta: None,
+        })
     }
 }

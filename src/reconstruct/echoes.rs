@@ -40,7 +40,8 @@ pub(super) fn of_echoes(radar: &Radar, found: &[Gained], noise_variance: f64, re
     let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full);
     let power = map.cells.mapv(|v| v.norm_sqr());
     let reflectors = found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
-    Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors, eta: None }
+    let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
+    Reconstruction { lambda, reflectors, eta: None, least_eta: Some(least) }
 }
 
 /// Echoes added up at neighbouring elements.

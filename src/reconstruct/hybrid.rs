@@ -39,13 +39,14 @@ impl Hybrid {
         let expected = found.expected(radar, request);
         // Nothing fills in on a radar that the fallback doesn't know.
         if found.complete || self.fallback.check_radar(radar).is_err() {
-            return Ok(found.as_drawn(expected.map));
+            return Ok(found.as_drawn(expected.map, Some(expected.least_eta)));
         }
-        let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;
+        let filled = self.fallback.reconstruct(radar, ends, request)?;
+        let least_eta = filled.least_eta.unwrap_or(0.0).max(expected.least_eta);
         let unexplained = found.unexplained_cells(radar, ends, &expected);
         let left = found.energy_left() as f32;
-        let filled = on_one_scale(&expected.map, filled, &unexplained, left);
-        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, most_weight(left))))
+        let filled = on_one_scale(&expected.map, filled.lambda, &unexplained, left);
+        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, most_weight(left)), Some(least_eta)))
     }
 
     fn about_itself() -> About {

@@ -2,6 +2,9 @@
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
+use super::hearing::ends_noise_variance;
+use super::noise_test::tested;
+use super::trained::TrainedNoise;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
 use ndarray::Array3;
@@ -54,8 +57,9 @@ pub trait Reconstructor: Send + Sync {
     /// [`ReconstructError`] when cancelled, or as the method says.
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError>;
 
-    /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], and takes the scale
-    /// off what was found. Silence is answered with [`Reconstruction::silence`].
+    /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], takes the scale
+    /// off what was found, and raises the answer's threshold to where noise does not reach (`noise_test.rs`). Silence is answered
+    /// with [`Reconstruction::silence`].
     ///
     /// # Errors
     /// [`ReconstructError`], on a radar the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
@@ -72,9 +76,11 @@ pub trait Reconstructor: Send + Sync {
         self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
         // From within, a parallel step is handed to whoever is idle; from without, its caller would sleep through each one.
-        let mut found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
+        let found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
         // What was cancelled while it was drawn is no answer.
         request.task.check()?;
+        let noise_variance = ends_noise_variance(radar, &ends, request.floor);
+        let mut found = tested(radar, &ends, noise_variance, self.eta(), found);
         found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
         let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
         Ok(match range {
@@ -120,6 +126,11 @@ pub trait Reconstructor: Send + Sync {
         Err(self.unusable(reason))
     }
 
+    /// The thermal noise beneath the scenes that it was trained on, where it was trained.
+    fn trained_noise(&self) -> Option<TrainedNoise> {
+        None
+    }
+
     /// The method's [`About::name`].
     fn name(&self) -> &'static str {
         self.about().name
@@ -135,7 +146,7 @@ pub trait Reconstructor: Send + Sync {
         self.about().eta
     }
 
-    /// Whether its answers bring thresholds of their own.
+    /// Whether all of its answers bring thresholds of their own; others do where noise reaches the method's.
     fn reads_eta(&self) -> bool {
         false
     }

@@ -12,6 +12,8 @@ mod lessons;
 mod live_network;
 mod memory;
 mod methods;
+#[cfg(feature = "network")]
+mod noise_alone;
 mod physical_captures;
 mod radars;
 mod snapshot;

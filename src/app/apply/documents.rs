@@ -8,6 +8,7 @@ use crate::recording;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
 use crate::scene::presets;
+use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
 /// Does those commands, and hands others on.
@@ -98,5 +99,9 @@ fn random_scene(state: &mut State, kind: Kind) {
     let scene = Generator::new(state.radar(), Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
     state.settings.random_number = number.wrapping_add(1);
     let file = SceneFile { scene, radar: state.radar().clone() };
+    if kind == Kind::Noise && !matches!(state.settings.floor, Floor::Level(_)) {
+        // No other floor has noise in an empty scene.
+        state.settings.floor = Floor::Level(state.settings.level);
+    }
     state.set_document("random scene", Document::made(file));
 }

@@ -6,6 +6,7 @@ use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
 use crate::lesson::Cell;
+use crate::reconstruct::untrained_noise;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
 
 impl Contents<'_> {
@@ -97,11 +98,20 @@ pub(super) fn map_input<'a>(
         over: None,
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
+        note: note(state, kind),
         error: error(state, jobs, kind),
         veil: veil(state, kind),
         axes: state.shows_axes(),
         places: places(state, kind),
     }
+}
+
+/// What is to be known of the method whose map it is: over how much noise it was trained, where the scene has another amount. Nobody knows
+/// that of a recording.
+fn note(state: &State, kind: MapKind) -> Option<String> {
+    let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
+    method.trained_noise()?;
+    untrained_noise(method.as_ref(), state.radar(), &state.editor.scene().reflectors(), state.settings.floor)
 }
 
 /// What became of every object, where that is to be marked: on the maps of the whole array.

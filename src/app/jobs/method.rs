@@ -197,7 +197,7 @@ impl MethodJob {
         latest: Option<&MapsResult>,
     ) {
         let MethodRequest { document, basis, target, method, .. } = request;
-        let Reconstruction { lambda, mut reflectors, eta } = answer;
+        let Reconstruction { lambda, mut reflectors, eta, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }

@@ -12,9 +12,9 @@ use crate::interact::Snap;
 use crate::lesson::Uses;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Decibels, Radar, WindowFunction};
+use crate::radar::{Carrier, DecibelMilliwatts, Decibels, Radar, WindowFunction};
 use crate::reconstruct::Reconstructor;
-use crate::signal::Floor;
+use crate::signal::{self, Floor};
 use eframe::egui;
 use eframe::egui::{ComboBox, Grid, ScrollArea, Slider, SliderClamping, Ui};
 use std::sync::Arc;
@@ -289,18 +289,34 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
+/// What a floor of a level of its own is.
+const LEVEL: &str = "Thermal noise of this level in every sample, whatever the scene: an empty scene is noise alone. A reflector of σ 1 at \
+    20 m has +18 dBm";
+
 fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<Command>) {
     row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
         let of = [
             (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
             (Floor::Exact, "Exact", "No noise at all"),
-            (Floor::Snr(settings.snr), "SNR", "Thermal noise at a signal-to-noise ratio"),
+            (
+                Floor::Snr(settings.snr),
+                "SNR",
+                "Thermal noise at a signal-to-noise ratio: it is louder where the scene is",
+            ),
+            (Floor::Level(settings.level), "dBm", LEVEL),
         ];
         choices(ui, settings.floor, of, Command::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {
             let drag = ui.add(NumberField::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
             if drag.changed() {
                 asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
+            }
+        }
+        if let Floor::Level(DecibelMilliwatts(mut level)) = settings.floor {
+            let drag =
+                DragValue::new(&mut level).range(signal::floor::LEVEL_DECIBEL_MILLIWATTS).speed(0.5).suffix(" dBm");
+            if ui.add(drag).on_hover_text(LEVEL).changed() {
+                asked.push(Command::SetFloor(Floor::Level(DecibelMilliwatts(level))));
             }
         }
     });

@@ -7,7 +7,7 @@ use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::presets::{self as radar_presets, RadarPreset};
-use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
@@ -186,6 +186,12 @@ const TABLE: &[Entry] = {
             None,
         ),
         entry(
+            SetFloor(Floor::Level(DecibelMilliwatts(-20.0))),
+            "Floor: thermal noise of a level",
+            "White noise of -20 dBm in every sample, whatever the scene: an empty scene is noise alone",
+            None,
+        ),
+        entry(
             SetCarrier(Carrier::OneWay),
             "Carrier: one-way",
             "The thesis' convention: unambiguous over all of cos θ",
@@ -307,6 +313,7 @@ pub fn listed() -> &'static [Entry] {
             let keys = [Key::Num1, Key::Num2, Key::Num3];
             let (tooltip, key) = match kind.test_set() {
                 Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
+                None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
                 None => ("A scene of a kind that the thesis' sets leave out", None),
             };
             named(Command::RandomScene(kind), format!("Random scene: {}", kind.description()), tooltip, key)

@@ -51,7 +51,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
     method: Vec<String>,
 
-    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near), separated by commas
+    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, noise), separated by commas
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
 
@@ -151,6 +151,9 @@ impl Args {
         if scenes == 0 {
             let message = format!("--shard {} has no scene; expected I below the number of scenes", self.shard);
             return Err(CommandError::Usage(message));
+        }
+        for said in campaign.untrained(&sets, &methods).map_err(CommandError::failed)? {
+            eprintln!("apertura: {said}");
         }
         let named = sets.iter().zip(&origins).flat_map(|(set, origins)| {
             let pair = |(method, origin): (&&dyn Reconstructor, &_)| {

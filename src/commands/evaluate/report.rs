@@ -2,7 +2,7 @@
 
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
-use crate::evaluate::sets::false_alarm;
+use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
 use crate::evaluate::tables::{
     PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally, part_near_best,
 };
@@ -177,6 +177,14 @@ impl SetReport {
         let what = kind.map_or("scenes of a folder", Kind::description);
         let _ = match kind.and_then(Kind::test_set) {
             Some(set) => writeln!(text, "\nTable 4.{set}: test set {set}, {what}"),
+            None if kind == Some(Kind::Noise) => {
+                let level = NOISE_LEVEL.0;
+                writeln!(
+                    text,
+                    "\n{}: {what}, of {level} dBm a sample unless --floor names another level; all alarms are false",
+                    self.set
+                )
+            }
             None => writeln!(text, "\n{}: {what}", self.set),
         };
         let width = self.methods.iter().map(|m| m.label(count).chars().count()).fold(LABEL, usize::max);

@@ -51,6 +51,9 @@ const WORTH_ANOTHER: f64 = 0.9;
 /// Part of the energy that may be left unexplained: 130 dB down, above what rounding leaves, which is no white noise.
 const AS_GOOD_AS_NOTHING: f64 = 1e-13;
 
+/// Reflectors that leave no more than this many times as much are in their places, wherever those are: a millionth of the energy.
+const CERTAIN: f64 = 1e7;
+
 /// Work granted: about ten microseconds a unit.
 const MOST_WORK: usize = 30_000;
 
@@ -152,19 +155,20 @@ impl<'a> Settled<'a> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
-        let Settled { radar, task, bench, samples, mut fit, .. } = self;
+        let Settled { radar, task, bench, samples, mut fit, enough, .. } = self;
         if fit.atoms.len() <= MOST_TIED {
             let tied = bench.refine(&samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
             if tied.cost() <= TIED_COST * fit.cost() {
                 fit = tied;
             }
         }
+        let is_certain = fit.cost() <= enough * CERTAIN;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
             let place = radar.polar_of(x, y);
             let power = gains[0].norm_sqr();
             let peak = Peak { range_metres: place.range_metres, cos_theta: place.cos_theta, power };
-            is_heard_at_the_ends(radar, x, y).then_some(peak)
+            (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
         let peaks: Vec<Peak> = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
         gains(radar, &peaks, ends, task)

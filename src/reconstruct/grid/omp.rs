@@ -181,7 +181,11 @@ impl Omp {
         let samples = ends.flat();
         let noise = noise_variance * samples.len() as f64 * 1.1;
         let enough = noise.max(energy(&samples) * ROUNDING);
-        let cells = Cells::heard_by(radar, ends);
+        let mut cells = Cells::heard_by(radar, ends);
+        // Nothing stands at the centre: what is heard in bin 0 stands one range period beyond.
+        if radar.samples > 1 {
+            cells.range_metres[0] = radar.max_range_metres();
+        }
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let (picks, basis) = (Vec::new(), Vec::new());
         let mut pursuit = Pursuit { radar, cells, picks, basis, residual: samples.clone() };

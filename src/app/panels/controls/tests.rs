@@ -139,6 +139,14 @@ fn figures_stand_still_when_the_bar_comes() {
 }
 
 #[test]
+fn the_level_of_the_noise_can_be_chosen() {
+    let mut controls = panel(Run::default);
+    controls.get_by_label("dBm").click();
+    controls.run();
+    assert_eq!(controls.state(), &[Command::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))]);
+}
+
+#[test]
 fn no_choice_leaves_a_narrow_panel() {
     let (radar, settings) = (Radar::default(), Settings::default());
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
@@ -158,7 +166,7 @@ fn no_choice_leaves_a_narrow_panel() {
         asked.extend(show(ui, input));
     };
     let controls = Harness::builder().with_size([284.0, 900.0]).build_ui_state(draw, Vec::new());
-    for label in ["100 dB", "SNR", "Two-way", "rectangular", "inferno", "views", "Cells"] {
+    for label in ["100 dB", "SNR", "dBm", "Two-way", "rectangular", "inferno", "views", "Cells"] {
         assert!(controls.get_by_label(label).rect().right() <= 284.0, "{label}");
     }
     seen::assert_readable(controls.output());

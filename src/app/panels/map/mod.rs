@@ -76,6 +76,8 @@ pub struct Input<'a> {
     pub theory: Option<Theory<'a>>,
     /// Where the pointer is, in whichever panel.
     pub cursor: Option<Cursor>,
+    /// What is to be known of the method that made it.
+    pub note: Option<String>,
     /// Why there is no picture.
     pub error: Option<Problem<'a>>,
     /// Hides the picture: a prediction is asked for.
@@ -115,6 +117,7 @@ impl<'a> Input<'a> {
             over: None,
             theory: None,
             cursor: None,
+            note: None,
             error: None,
             veil: None,
             axes: true,
@@ -206,9 +209,10 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }
     }
-    if is_old {
+    let said = if is_old { Some("Previous scene; updating…") } else { input.note.as_deref() };
+    if let Some(said) = said.filter(|_| input.veil.is_none() || is_old) {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, "Previous scene; updating…");
+        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, said);
     }
 }
 
