@@ -12,6 +12,7 @@
 mod answer;
 mod baseline;
 mod coherent;
+mod confidence;
 mod echoes;
 mod error;
 pub mod found;

@@ -8,7 +8,7 @@ use super::sectors::Sectors;
 use super::settle::Settled;
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
-use crate::reconstruct::echoes::of_echoes;
+use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
@@ -66,17 +66,46 @@ impl Reconstructor for CoherentMethod {
             // A single sample tells no range to move reflectors along.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
         } else {
-            let mut settled = Settled::new(radar, ends, task);
-            for look in 0..LOOKS {
-                task.set_progress(0.9 * look as f32 / LOOKS as f32);
-                if !settled.take(&self.peaks(radar, &settled.left(), &hearing, task)?)? {
-                    break;
-                }
-            }
-            settled.found(ends)?
+            let look = |ends: &TwoEnds| self.peaks(radar, ends, &hearing, task);
+            explained(radar, ends, task, look)?
         };
-        Ok(of_echoes(radar, &found, hearing.ends_noise_variance(radar, ends), request))
+        Ok(of_echoes(radar, ends, &found, hearing.ends_noise_variance(radar, ends), request))
     }
+}
+
+/// Reflectors behind the peaks that `look` finds in `ends`, and in what those found so far leave of them.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`], and those of `look`.
+pub(in crate::reconstruct) fn explained(
+    radar: &Radar,
+    ends: &TwoEnds,
+    task: &Task,
+    look: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
+) -> Result<Vec<Gained>, ReconstructError> {
+    let mut first = None;
+    let mut looked = |mut settled: Settled<'_>, from: f32| {
+        for round in 0..LOOKS {
+            task.set_progress(from + 0.45 * round as f32 / LOOKS as f32);
+            // All start from the same samples, and so from the same peaks.
+            let peaks = match (round, &first) {
+                (0, Some(peaks)) => peaks.clone(),
+                _ => look(&settled.left())?,
+            };
+            if round == 0 {
+                first = Some(peaks.clone());
+            }
+            if !settled.take(&peaks)? {
+                break;
+            }
+        }
+        Ok::<_, ReconstructError>(settled)
+    };
+    let mut settled = looked(Settled::new(radar, ends, task), 0.0)?;
+    if settled.is_doubtful() {
+        settled = settled.or(looked(Settled::new(radar, ends, task).trying_two(), 0.45)?);
+    }
+    settled.found(ends)
 }
 
 impl CoherentMethod {

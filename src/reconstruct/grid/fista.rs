@@ -208,7 +208,7 @@ impl Reconstructor for Fista {
             .collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
         found.truncate(MOST_DRAWN);
-        Ok(of_echoes(radar, &found, ends_noise_variance(radar, ends, request.floor), request))
+        Ok(of_echoes(radar, ends, &found, ends_noise_variance(radar, ends, request.floor), request))
     }
 }
 

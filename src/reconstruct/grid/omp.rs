@@ -290,7 +290,7 @@ impl Reconstructor for Omp {
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let noise_variance = ends_noise_variance(radar, ends, request.floor);
         let found = self.pursue(radar, ends, noise_variance, request)?;
-        Ok(of_echoes(radar, &found, noise_variance, request))
+        Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }
 }
 
