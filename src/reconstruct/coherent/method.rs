@@ -84,28 +84,36 @@ pub(in crate::reconstruct) fn explained(
     look: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
 ) -> Result<Vec<Gained>, ReconstructError> {
     let mut first = None;
-    let mut looked = |mut settled: Settled<'_>, from: f32| {
-        for round in 0..LOOKS {
-            task.set_progress(from + 0.45 * round as f32 / LOOKS as f32);
-            // All start from the same samples, and so from the same peaks.
-            let peaks = match (round, &first) {
-                (0, Some(peaks)) => peaks.clone(),
-                _ => look(&settled.left())?,
-            };
-            if round == 0 {
-                first = Some(peaks.clone());
-            }
-            if !settled.take(&peaks)? {
-                break;
-            }
-        }
-        Ok::<_, ReconstructError>(settled)
-    };
-    let mut settled = looked(Settled::new(radar, ends, task), 0.0)?;
+    let mut settled = looked(Settled::new(radar, ends, task), &mut first, 0.0, &look)?;
     if settled.is_doubtful() {
-        settled = settled.or(looked(Settled::new(radar, ends, task).trying_two(), 0.45)?);
+        settled = settled.or(looked(Settled::new(radar, ends, task).trying_two(), &mut first, 0.45, &look)?);
     }
     settled.found(ends)
+}
+
+/// `settled` after all looks; `first` are the peaks of the first one, which are the same for whoever starts from the same samples. Progress
+/// goes on from `from`.
+fn looked<'a>(
+    mut settled: Settled<'a>,
+    first: &mut Option<Vec<Peak>>,
+    from: f32,
+    look: &impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
+) -> Result<Settled<'a>, ReconstructError> {
+    for round in 0..LOOKS {
+        settled.task.set_progress(from + 0.45 * round as f32 / LOOKS as f32);
+        let peaks = match first {
+            Some(peaks) if round == 0 => peaks.clone(),
+            _ => look(&settled.left())?,
+        };
+        let goes_on = settled.take(&peaks)?;
+        if round == 0 {
+            *first = Some(peaks);
+        }
+        if !goes_on {
+            break;
+        }
+    }
+    Ok(settled)
 }
 
 impl CoherentMethod {

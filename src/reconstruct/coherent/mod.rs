@@ -36,7 +36,11 @@ mod sbl;
 mod sectors;
 mod settle;
 mod split;
+#[cfg(test)]
+mod split_tests;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;
+pub(super) use method::explained;
+pub(super) use peaks::{Peak, gains};
 pub use sbl::SBL;
