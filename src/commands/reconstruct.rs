@@ -25,9 +25,10 @@ use std::time::Instant;
 /// IN holds sub0 and sub1 (complex128 [512, 12], any gain, or [samples, elements of an end] of another radar); for the thesis'
 /// networks it may hold polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` brings its radar along. OUT gets net_output (f32 [512, 1024] or
 /// [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and milliseconds; and of what the method
-/// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told) and found_db
-/// (relative to the strongest): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in place of IN.npz brings
-/// its radar along.
+/// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told), found_db (relative to
+/// the strongest) and found_confidence (0 to 1: of the energy around its range that the other echoes leave unexplained, the part that
+/// this one explains; NaN where the method does not say): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in
+/// place of IN.npz brings its radar along.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Archive with the samples (.npz), or a recording (.toml)
@@ -77,6 +78,11 @@ impl Args {
             Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
         };
         self.write(&answer).map_err(CommandError::on(&self.output))?;
+        let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
+        if doubtful > 0 {
+            let of = answer.found.len();
+            print(&format!("{doubtful} of {of} echoes are doubtful: found_confidence is less than {DOUBTFUL}"))?;
+        }
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
     }
 
@@ -177,10 +183,14 @@ impl Args {
             out.add("milliseconds", &arr0(answer.milliseconds))?;
             out.add("found_cos_theta", &list(|f| f.cos_theta))?;
             out.add("found_range_metres", &list(|f| f.range_metres))?;
-            out.add("found_db", &list(|f| f.relative_power.0))
+            out.add("found_db", &list(|f| f.relative_power.0))?;
+            out.add("found_confidence", &list(|f| f.confidence.unwrap_or(f64::NAN)))
         })
     }
 }
+
+/// Confidence beneath which an echo is called doubtful.
+const DOUBTFUL: f64 = 0.5;
 
 /// What is read.
 struct Input {

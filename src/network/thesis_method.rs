@@ -65,7 +65,13 @@ impl ThesisMethod {
     fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         let eta = unstretched(&map, self.eta);
-        Ok(Reconstruction { lambda: Thesis::finish(map), reflectors: Vec::new(), eta: Some(eta), least_eta: None })
+        Ok(Reconstruction {
+            lambda: Thesis::finish(map),
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: Some(eta),
+            least_eta: None,
+        })
     }
 }
 
@@ -171,7 +177,13 @@ impl Reconstructor for UnetMethod {
         let cartesian =
             estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
         let lambda = to_polar(radar, &cartesian);
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: None, least_eta: None })
+        Ok(Reconstruction {
+            lambda: RangeAngleMap { lambda },
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: None,
+            least_eta: None,
+        })
     }
 }
 

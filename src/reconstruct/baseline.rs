@@ -34,6 +34,7 @@ impl Reconstructor for Baseline {
         Ok(Reconstruction {
             lambda: log.normalise(request.normalisation),
             reflectors: Vec::new(),
+            confidences: Vec::new(),
             eta: None,
             least_eta: None,
         })

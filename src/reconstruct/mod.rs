@@ -12,6 +12,7 @@
 mod answer;
 mod baseline;
 mod coherent;
+mod confidence;
 mod echoes;
 mod error;
 pub mod found;
@@ -37,5 +38,8 @@ pub(crate) use hearing::ends_noise_variance;
 pub use hybrid::{Hybrid, on_one_scale};
 pub(crate) use noise_test::least_eta;
 pub use reconstructor::{About, Reconstructor, Weights, check_ends};
-pub use rows::{BARTLETT, CAPON, LINEAR_PREDICTION, MUSIC, ROOT_MUSIC, RowMethod};
+pub use rows::{
+    BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
+    ROOT_MUSIC_PEAKS, RowMethod,
+};
 pub use trained::{TrainedNoise, untrained_noise};

@@ -13,6 +13,10 @@ const LINES: usize = 200;
 /// How strong a list is drawn that belongs to an earlier scene.
 const OLD_OPACITY: f32 = 0.45;
 
+/// What the last column says.
+const NEEDED: &str = "How far the samples need this echo: of the energy around its range that the other echoes leave unexplained, the part \
+    that it explains. Low: the other echoes, noise or side lobes would do without it. – where the method does not say";
+
 /// What is listed.
 pub struct Input<'a> {
     /// The method in use, where it draws a map and finds nothing that could be listed.
@@ -62,6 +66,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                         ("cos θ", "Cosine of the angle to the array's axis, as the maps count directions"),
                         ("range", "From the centre of the array"),
                         ("dB", "Power of the echo, relative to the strongest"),
+                        ("needed", NEEDED),
                     ] {
                         ui.strong(heading).on_hover_text(tooltip);
                     }
@@ -84,8 +89,9 @@ fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
     for text in [angle, signed(found.cos_theta, 4), range] {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
     }
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(plain(found.relative_power.0, 1)));
     // The last column takes all the room that is left: nothing is aligned to its end.
-    ui.monospace(plain(found.relative_power.0, 1));
+    ui.monospace(found.confidence.map_or("–".to_owned(), |c| format!("{:.0} %", 100.0 * c)));
     ui.end_row();
 }
 
@@ -107,16 +113,31 @@ mod tests {
     }
 
     fn detection(degrees: f64, range_metres: f64, db: f64) -> Detection {
-        Detection { cos_theta: degrees.to_radians().sin(), range_metres, relative_power: Decibels(db) }
+        let relative_power = Decibels(db);
+        Detection {
+            cos_theta: degrees.to_radians().sin(),
+            range_metres,
+            relative_power,
+            confidence: Some(0.4 + 0.1 * db),
+        }
     }
 
     #[test]
     fn angles_ranges_and_decibels_are_listed() {
         let list = vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)];
         let shown = panel(Some(list.clone()), None, true);
-        let _told =
-            ["iaa found 2 echoes, the strongest first", "+6.96°", "+0.1212", "15.00 m", "−3.50°", "7.25 m", "−2.0"]
-                .map(|text| shown.get_by_label(text));
+        let _told = [
+            "iaa found 2 echoes, the strongest first",
+            "+6.96°",
+            "+0.1212",
+            "15.00 m",
+            "40 %",
+            "−3.50°",
+            "7.25 m",
+            "−2.0",
+            "20 %",
+        ]
+        .map(|text| shown.get_by_label(text));
         let snapshot = panel(Some(list), None, false);
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
     }

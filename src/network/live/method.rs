@@ -152,7 +152,13 @@ impl Reconstructor for LiveMethod {
         let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
         let noise_variance = ends_noise_variance(radar, ends, request.floor);
         let least_eta = Some(least_eta(radar, noise_variance, scale));
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: Some(eta), least_eta })
+        Ok(Reconstruction {
+            lambda: RangeAngleMap { lambda },
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: Some(eta),
+            least_eta,
+        })
     }
 }
 

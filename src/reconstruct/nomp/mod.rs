@@ -98,6 +98,7 @@ pub use finish::Found;
 pub(super) use groups::{Rows, distance_bins, rows_of};
 pub(super) use grow::Grower;
 pub(super) use peaks::Detector;
+pub(super) use profile::Profile;
 pub(super) use refine::{Fit, Limits, Tie, Workbench};
 pub use search::{find, find_from};
 pub use settings::Settings;
@@ -167,7 +168,7 @@ impl Found {
     /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors, eta: None, least_eta }
+        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta }
     }
 
     /// The expected map of what was found, and its scale.
