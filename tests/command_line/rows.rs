@@ -294,6 +294,9 @@ fn rows_of_something_else_are_not_written_over() {
     let folder = folder();
     apertura(&folder, "evaluate --set 1 --count 1 --rows rows.csv").assert().success();
     older(&folder, "rows.csv", "old.csv");
+    let text = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
+    let wide: String = text.lines().enumerate().map(|(i, line)| format!("note{i},{line}\n")).collect();
+    std::fs::write(folder.path().join("wide.csv"), wide).unwrap();
     std::fs::write(folder.path().join("notes.csv"), "day,what\n1,rain\n").unwrap();
     for (arguments, part) in [
         ("--set 1 --count 1 --floor exact --rows rows.csv", "floor is thesis there and exact here"),
@@ -302,6 +305,7 @@ fn rows_of_something_else_are_not_written_over() {
         ("--set 1 --count 1 --method bartlett --rows rows.csv", "rows of set 1 by baseline"),
         ("--set 1 --count 1 --rows old.csv", "an older program wrote them"),
         ("--set 1 --count 1 --rows notes.csv", "there is no column"),
+        ("--set 1 --count 1 --rows wide.csv", "its columns are not those"),
     ] {
         let name = arguments.split_whitespace().last().unwrap();
         let before = std::fs::read(folder.path().join(name)).unwrap();

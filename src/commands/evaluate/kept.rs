@@ -129,11 +129,13 @@ fn refused(path: &Path, why: &str, ways_out: &str) -> CommandError {
 
 /// The rows of this run that a file holds.
 fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, CommandError> {
-    let names = Column::ALL.map(Column::name).join(",");
-    let mut start = vec![0; names.len()];
-    let read = file.read(&mut start).and_then(|read| file.rewind().map(|()| read)).map_err(on_file(path))?;
+    let names: Vec<&str> = Column::ALL.map(Column::name).into_iter().chain(Part::ALL.map(Part::name)).collect();
+    let header = names.join(",") + "\n";
+    let mut start = Vec::new();
+    file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
+    file.rewind().map_err(on_file(path))?;
     // A run that was stopped before its first line was whole.
-    if start[..read] == names.as_bytes()[..read] && !is_line(file, path)? {
+    if start.len() < header.len() && header.as_bytes().starts_with(&start) {
         return Ok(Table::default());
     }
     let table = read_table(file).map_err(|e| refused(path, &e.to_string(), WAYS_OUT))?;
@@ -145,15 +147,10 @@ fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, Comma
             return Err(refused(path, &why, WAYS_OUT));
         }
     }
+    if start != header.as_bytes() {
+        return Err(refused(path, "its columns are not those that rows would be appended under", WAYS_OUT));
+    }
     Ok(table)
-}
-
-/// Whether the first line has an end; the file is rewound.
-fn is_line(mut file: &File, path: &Path) -> Result<bool, CommandError> {
-    let mut first = Vec::new();
-    file.take(64 << 10).read_to_end(&mut first).map_err(on_file(path))?;
-    file.rewind().map_err(on_file(path))?;
-    Ok(first.contains(&b'\n'))
 }
 
 /// Writes merged rows, unless a file is there whose rows are not among them.

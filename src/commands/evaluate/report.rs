@@ -109,7 +109,8 @@ impl Report {
             Scenes::Generated { carrier, reading, radar, .. } => Some((*carrier, *reading, radar.clone())),
             Scenes::Files { .. } => None,
         });
-        let of_all = |text: fn(&Origin) -> String| origins().next().map(text);
+        let usual = rows.iter().find(|row| !row.has_own_floor()).and_then(|row| row.origin.as_deref());
+        let of_all = |text: fn(&Origin) -> String| usual.or_else(|| origins().next()).map(text);
         Report {
             count: sets.iter().flat_map(|s| &s.methods).map(|m| m.scenes).max().unwrap_or(0),
             seed,

@@ -67,6 +67,11 @@ pub struct Row {
 }
 
 impl Row {
+    /// Whether its set lies over a floor of its own, whatever floor the others of a run have: scenes of noise alone do.
+    pub fn has_own_floor(&self) -> bool {
+        self.set == "noise"
+    }
+
     /// Whether a generator made its scene.
     pub fn is_generated(&self) -> bool {
         match &self.origin {

@@ -134,6 +134,12 @@ fn difference(a: &Row, b: &Row) -> Option<(&'static str, [String; 2])> {
         (Some(of_a), Some(of_b)) if Arc::ptr_eq(of_a, of_b) => None,
         (Some(of_a), Some(of_b)) => {
             let part = of_a.unlike(of_b, a.method == b.method, a.set == b.set)?;
+            // Scenes of noise alone may lie over another floor than the rest; what else differs counts.
+            if part == Part::Floor && a.has_own_floor() != b.has_own_floor() {
+                let of_a = Origin { floor: of_b.floor, ..Origin::clone(of_a) };
+                let part = of_a.unlike(of_b, a.method == b.method, a.set == b.set)?;
+                return Some((part.name(), [of_a.text(part), of_b.text(part)]));
+            }
             Some((part.name(), [of_a.text(part), of_b.text(part)]))
         }
         (of_a, of_b) => {
@@ -247,6 +253,9 @@ mod tests {
             |w: &str| Origin { weights: Some(Weights { sha256: w.into(), optimiser: "SGD".into() }), ..origin() };
         let weights = merged(of(0, "live", weighted("aa")), of(1, "live", weighted("bb")));
         assert!(weights.starts_with("weights is aa in a.csv") && weights.contains("bb in b.csv"), "{weights}");
+        let noise = Row { set: "noise".into(), ..of(0, "live", Origin { floor: Floor::Exact, ..origin() }) };
+        let beside = vec![of(0, "live", origin()), noise];
+        assert!(merge(vec![("a.csv".into(), beside)]).is_ok(), "noise alone has a floor of its own");
         let two = vec![of(0, "live", weighted("aa")), of(0, "thesis", weighted("bb"))];
         assert!(merge(vec![("a.csv".into(), two)]).is_ok(), "two networks have weights of their own");
     }

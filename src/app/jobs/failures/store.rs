@@ -64,7 +64,8 @@ pub fn read(path: &Path) -> Result<Kept, String> {
 fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
     let mut found: Option<Conditions> = None;
     let mut radar = Radar::default();
-    for row in rows {
+    let (own_floor, usual): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.has_own_floor());
+    for row in usual.into_iter().chain(own_floor) {
         let Some(origin) = &row.origin else { continue };
         if let Scenes::Generated { purpose, reading, carrier, radar: other } = &origin.scenes {
             if (*purpose, *reading) != (Purpose::Test, Reading::Program) {
@@ -80,7 +81,12 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
             }
             radar.carrier = *carrier;
         }
-        let own = Conditions { floor: origin.floor, normalisation: origin.normalisation, radar: radar.clone() };
+        let floor = match &found {
+            // It has that floor whatever the others have.
+            Some(found) if row.has_own_floor() => found.floor,
+            _ => origin.floor,
+        };
+        let own = Conditions { floor, normalisation: origin.normalisation, radar: radar.clone() };
         if found.as_ref().is_some_and(|found| (found.floor, found.normalisation) != (own.floor, own.normalisation)) {
             return Err(
                 "these rows were made over several floors or normalisations; expected rows that were made alike".into(),
