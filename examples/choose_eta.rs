@@ -1,5 +1,10 @@
-//! How the methods' thresholds and settings were chosen, on validation scenes: prints the figures, and fails where a method's own setting is
-//! not the best of those tried.
+//! How the methods' thresholds and settings were chosen, on validation scenes: prints the figures, and fails where a method's own setting
+//! is not the one chosen.
+//!
+//! One rule for the thresholds of all methods, exact maps and blurred ones alike: the threshold at which the mean false-alarm rate over
+//! the validation scenes of the three sets is the mean of the thesis' own rates, 0.65 %. A map that is nearly exact would keep most of its
+//! detections at a tenth of that rate: its printed P_FA is the rule's, not the method's need. Not by this rule are the thresholds that a
+//! method brings along: `baseline` and the thesis' networks keep the thesis' own, and `live` reads its off each scene (`live` below).
 //!
 //! `cargo run --release --example choose_eta -- thresholds|live|penalty|weights`; minutes each.
 
@@ -17,11 +22,14 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The false-alarm rate at which the methods that draw exact maps are thresholded: they need no more.
-const EXACT_FALSE_ALARM: f64 = 0.0005;
-
 /// Mean of the thesis' own false-alarm rates over its three sets (experiment 2: 0.37, 0.56 and 1.02 %).
 const FALSE_ALARM: f64 = 0.0065;
+
+/// How far a method's own threshold may lie from the one chosen: Lambda that a percent or two of one of the rates is worth.
+const TOLERANCE: f32 = 0.005;
+
+/// Methods with the thesis' own thresholds.
+const THE_THESIS_OWN: [&str; 3] = ["baseline", "thesis", "unet"];
 
 /// Scenes of each set for the thresholds.
 const SCENES: u32 = 8;
@@ -29,8 +37,8 @@ const SCENES: u32 = 8;
 /// Choose thresholds and settings on validation scenes.
 #[derive(Parser)]
 enum Choice {
-    /// For every method, the threshold at which its false-alarm rate over all three sets is the thesis' own; for the methods that draw
-    /// exact maps, 0.05 %
+    /// For every method, the threshold at which its mean false-alarm rate over all three sets is the thesis' own, 0.65 %; fails where a
+    /// method's own threshold is another
     Thresholds {
         /// Methods; all where none is named
         methods: Vec<String>,
@@ -40,7 +48,7 @@ enum Choice {
     /// Squared error of FISTA over its penalty
     Penalty,
     /// Weight of the hybrid's fallback over the parts of a cell's power and of a scene's energy that are unexplained, on validation scenes
-    /// of every kind
+    /// of every kind: figures to judge by, which fail nowhere
     Weights,
 }
 
@@ -96,15 +104,19 @@ fn thresholds(names: &[String]) -> Outcome {
             }
         }
     }
-    println!("{:<28}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}", "method", "eta", "P_D %", "SE 1", "SE 2", "SE 3", "ms");
+    let heading = ["own eta", "eta", "P_D %", "SE 1", "SE 2", "SE 3", "ms"];
+    println!("{:<28}{}", "method", heading.map(|h| format!("{h:>9}")).concat());
+    let mut others = Vec::new();
     for f in &mut all {
-        let exact = matches!(f.method.name(), "nomp" | "hybrid");
-        let limit = if exact { EXACT_FALSE_ALARM } else { FALSE_ALARM };
-        let point = f.roc.at_false_alarm(limit).ok_or("no threshold keeps the false-alarm rate")?;
+        let point = f.roc.at_false_alarm(FALSE_ALARM).ok_or("no threshold keeps the false-alarm rate")?;
+        let (name, own) = (f.method.name(), f.method.eta());
+        let brings_its_own = f.method.reads_eta() || THE_THESIS_OWN.iter().any(|n| name.starts_with(n));
+        if !brings_its_own && (own - point.eta as f32).abs() > TOLERANCE {
+            others.push(format!("{name} {:.3}, not {own:.3}", point.eta));
+        }
         f.milliseconds.sort_by(f64::total_cmp);
         println!(
-            "{:<28}{:>8.3}{:>9.2}{:>9.0}{:>9.0}{:>9.0}{:>10.0}",
-            f.method.name(),
+            "{name:<28}{own:>9.3}{:>9.3}{:>9.2}{:>9.0}{:>9.0}{:>9.0}{:>9.0}",
             point.eta,
             point.detection * 100.0,
             f.squared_error[0],
@@ -113,7 +125,7 @@ fn thresholds(names: &[String]) -> Outcome {
             f.milliseconds[f.milliseconds.len() / 2]
         );
     }
-    Ok(())
+    if others.is_empty() { Ok(()) } else { Err(format!("thresholds chosen: {}", others.join("; ")).into()) }
 }
 
 /// Thresholds that are tried for live, as parts of its own distance below the peak.
@@ -126,7 +138,7 @@ fn live() -> Outcome {
     let radar = Radar::default();
     let method = methods::by_name("live")?;
     let thermal = [40.0, 20.0].map(|db| Floor::Snr(Decibels(db)));
-    let over_thesis = Kind::all().map(|kind| (kind, Floor::Thesis));
+    let over_thesis = Kind::with_echoes().map(|kind| (kind, Floor::Thesis));
     let over_thermal = Kind::TEST_SETS.into_iter().flat_map(|kind| thermal.map(|floor| (kind, floor)));
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
     let mut means = [[0.0; 2]; PARTS.len()];
@@ -207,7 +219,7 @@ fn weights() -> Outcome {
     let request = Request::default();
     let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
     let mut all = [[Cells::default(); BINS]; LEFT.len() + 1];
-    for kind in Kind::all() {
+    for kind in Kind::with_echoes() {
         for trial in validation(&radar, kind, SCENES) {
             let trial = trial?;
             let found = find(&radar, &trial.ends, &request, &Settings::default())?;

@@ -43,7 +43,7 @@
 //! | [`signal`] | reflectors | the sampled beat signal, over a named floor |
 //! | [`maps`] | the beat signal | range-angle maps, Lambda, masks, Cartesian views |
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
-//! | [`bounds`] | a layout and a noise level | how well any estimator can do |
+//! | [`bounds`] | a layout and a noise level | how well any unbiased estimator can do |
 //! | [`theory`] | a radar and a place | what the formulas predict of the map: peak, beam width, lobes, comb, streak, squint |
 //! | [`evaluate`] | target and output | SE, P_D, P_FA, ROC, the thesis' tables |
 //! | [`benchmark`] | scenes of any size | run time against error, and whether numerics hold |

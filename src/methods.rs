@@ -3,8 +3,8 @@
 use crate::radar::Radar;
 use crate::reconstruct::nomp::Nomp;
 use crate::reconstruct::{
-    BARTLETT, Baseline, CAPON, Fista, Hybrid, IAA, LINEAR_PREDICTION, MUSIC, MatchedFilter, Omp, ROOT_MUSIC,
-    Reconstructor, SBL,
+    BARTLETT, Baseline, CAPON, CAPON_PEAKS, ESPRIT, Fista, Hybrid, IAA, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS,
+    MUSIC, MUSIC_PEAKS, MatchedFilter, Omp, ROOT_MUSIC, ROOT_MUSIC_PEAKS, Reconstructor, SBL,
 };
 use std::sync::Arc;
 
@@ -22,9 +22,14 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
         Arc::new(MatchedFilter::Coherent),
         Arc::new(MatchedFilter::Incoherent),
         Arc::new(CAPON),
+        Arc::new(CAPON_PEAKS),
         Arc::new(MUSIC),
+        Arc::new(MUSIC_PEAKS),
         Arc::new(ROOT_MUSIC),
+        Arc::new(ROOT_MUSIC_PEAKS),
+        Arc::new(ESPRIT),
         Arc::new(LINEAR_PREDICTION),
+        Arc::new(LINEAR_PREDICTION_PEAKS),
         Arc::new(Fista::default()),
         Arc::new(Omp::default()),
         Arc::new(IAA),

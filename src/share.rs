@@ -234,7 +234,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::radar::{Carrier, Decibels, Radar};
+    use crate::radar::{Carrier, DecibelMilliwatts, Decibels, Radar};
     use crate::scene::{Object, Point, Scene, presets};
     use proptest::prelude::*;
 
@@ -278,16 +278,17 @@ mod tests {
             places in prop::collection::vec((-30.0..30.0f64, 0.5..38.0f64, -5.0..5.0f64), 0..20),
             (seed, snr, range) in (0..1u64 << 62, -100.0..300.0f64, 1.0..400.0f64),
             (eta, target_eta) in (prop::option::of(0.0..=1.0f32), 0.0..=1.0f32),
-            (cartesian, theory, step) in (any::<bool>(), any::<bool>(), prop::option::of(1..9usize)),
+            (cartesian, theory, marks, step) in (any::<bool>(), any::<bool>(), any::<bool>(), prop::option::of(1..9usize)),
             (name, samples) in ("\\PC{0,40}", 1..600usize),
         ) {
             let point = |(x_metres, y_metres, reflectivity)| Object::Point(Point { x_metres, y_metres, reflectivity });
             let objects = places.into_iter().map(point).collect();
             let scene = Scene { name, noise_seed: seed, objects, ..Scene::default() };
             let lesson = step.map(|step| LessonPlace { id: "a-line".to_owned(), step });
-            let floor = Floor::Snr(Decibels(snr));
+            let level = Floor::Level(DecibelMilliwatts(snr - 100.0));
+            let floor = if marks { level } else { Floor::Snr(Decibels(snr)) };
             let normalisation = Normalisation::DynamicRange(Decibels(range));
-            let view = View { floor, normalisation, eta, target_eta, cartesian, theory, lesson, ..view() };
+            let view = View { floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
             let shared = Shared { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
             let text = shared.to_text().unwrap();
             prop_assert!(is_shared(&text) && !text.contains(char::is_whitespace));
@@ -336,6 +337,7 @@ mod tests {
             ("target_eta = 0.8999999761581421", "target_eta = 1.5", "expected 0 to 1"),
             ("left = 0.25", "left = 0.9999", "expected edges"),
             ("snr = 12.5", "snr = nan", "floor"),
+            ("snr = 12.5", "dbm = 1e4", "between -300 and 200"),
             ("dynamic-range = 60.0", "dynamic-range = 0.0", "normalisation"),
         ] {
             assert!(valid.contains(from), "{from} in\n{valid}");

@@ -22,6 +22,7 @@ fn run(folder: &Path, max_steps: u64) -> Run {
         radar: Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() },
         max_steps: Some(max_steps),
         max_time: None,
+        untrained: false,
         checkpoint_every: Duration::from_secs(3600),
         origin: Default::default(),
     }
@@ -71,6 +72,7 @@ fn a_run_in_two_parts_ends_where_a_whole_one_does() {
     let written = std::fs::read(parts.path().join("weights.safetensors")).unwrap();
     let record = WeightFile::parse("weights", &written).unwrap().provenance;
     assert!(record.get("parts").contains(started), "the weights say what they were made of");
+    assert_eq!(record.optimiser(), "SGD");
     let log = std::fs::read_to_string(parts.path().join("log.csv")).unwrap();
     assert_eq!(log.lines().count(), 6, "a header and five steps");
 }

@@ -32,15 +32,15 @@ def commit():
 
 
 class Part:
-    """One start of the program, until it stops or is killed. `initial` is the file its weights came from, if any."""
+    """One start of the program, until it stops or is killed. `initial` is the file its weights came from, if any; `optimiser` a name such as "AdamW"."""
 
-    def __init__(self, initial, maps):
+    def __init__(self, initial, maps, optimiser):
         import torch
         self.began, self.first = time.time(), maps
         # Of paths the last part says enough; where it lies on somebody's disk is nobody's business.
         self.record = {
             "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-            "commit": commit(), "programs_sha256": programs(), "arguments": [a.rsplit("/", 1)[-1] for a in sys.argv[1:]], "torch": torch.__version__,
+            "commit": commit(), "programs_sha256": programs(), "arguments": [a.rsplit("/", 1)[-1] for a in sys.argv[1:]], "torch": torch.__version__, "optimiser": optimiser,
             "initial_weights_sha256": sha256(initial) if initial else None, "maps_before": maps,
         }
 
@@ -51,7 +51,29 @@ class Part:
                 "processor_minutes": round(time.process_time() / 60, 1)}
 
 
+def parts_of(path):
+    """The record in the weight file at `path`, for a run that goes on from it: one part without particulars where it has none."""
+    with open(path, "rb") as f:
+        header = json.loads(f.read(int.from_bytes(f.read(8), "little")))
+    meta = header.get("__metadata__", {})
+    if "parts" in meta:
+        return json.loads(meta["parts"])
+    maps = float(meta.get("maps_seen", 0))
+    return [{"started": "not recorded", "optimiser": meta.get("optimiser", "not recorded"), "maps_before": 0, "maps_seen": maps,
+             "wall_minutes": float(meta.get("minutes", 0))}]
+
+
+def maps_of(parts):
+    return sum(p["maps_seen"] for p in parts)
+
+
+def optimisers(parts):
+    """The optimisers in the order they followed each other: "SGD, then Muon"."""
+    names = [p.get("optimiser", "not recorded") for p in parts if p["maps_seen"]]
+    return ", then ".join(name for name, before in zip(names, [None, *names]) if name != before)
+
+
 def metadata(parts):
     """For a weight file, whose values are strings."""
-    return {"maps_seen": str(sum(p["maps_seen"] for p in parts)), "minutes": f"{sum(p['wall_minutes'] for p in parts):.0f}",
+    return {"optimiser": optimisers(parts), "maps_seen": f"{maps_of(parts):.0f}", "minutes": f"{sum(p['wall_minutes'] for p in parts):.0f}",
             "parts": json.dumps(parts)}

@@ -17,10 +17,14 @@ again with the next scenes of the training stream.
 Every scene comes with a noise draw of its own, a third of them over thermal noise from 60 to 10 dB. Training, validation and test scenes come
 from generators with different keys; the figures in the README come from `apertura evaluate`, whose test scenes this program never sees.
 """
-import argparse
 import json
 import os
 import time
+
+import options
+
+if __name__ == "__main__":
+    ARGUMENTS = options.live()  # before PyTorch, which takes seconds to load
 
 import torch
 import torch.multiprocessing as mp
@@ -109,12 +113,18 @@ class Run:
                 from safetensors.torch import load_file
                 initial = args.init
                 self.model.load_state_dict(widened(load_file(initial)))
-                self.drawn = args.first_scene
+                self.drawn, self.parts = args.first_scene, provenance.parts_of(initial)
             self.average.load_state_dict(self.model.state_dict())
-        self.part = provenance.Part(initial, self.step * self.batch)
+        #: Maps that the weights saw before the steps of this run.
+        self.before = provenance.maps_of(self.parts) - self.step * self.batch
+        self.part = provenance.Part(initial, self.seen(), "AdamW")
+
+    def seen(self):
+        """Maps that the weights saw, in all parts."""
+        return self.before + self.step * self.batch
 
     def records(self):
-        return [*self.parts, self.part.now(self.step * self.batch)]
+        return [*self.parts, self.part.now(self.seen())]
 
     @torch.no_grad()
     def follow(self):
@@ -169,31 +179,7 @@ def helper(args, model, counter, worker):
     train(args, model, counter, worker, optimizer_of(model, args), pick, None)
 
 
-def arguments():
-    ap = argparse.ArgumentParser()
-    ap.add_argument("--out")
-    ap.add_argument("--minutes", type=float, default=80, help="of this part of the run")
-    ap.add_argument("--seed", type=int, default=0)
-    ap.add_argument("--batch", type=int, default=4)
-    ap.add_argument("--new-scenes", type=int, default=1, help="scenes simulated a step (each enters with its mirror image)")
-    ap.add_argument("--buffer", type=int, default=512, help="maps kept a worker")
-    ap.add_argument("--workers", type=int, default=1)
-    ap.add_argument("--threads", type=int, default=1, help="threads a worker")
-    ap.add_argument("--lr", type=float, default=5e-4)
-    ap.add_argument("--bf16", action="store_true", help="convolutions in bfloat16 (weights, sums and loss stay in f32): faster where the processor has AMX")
-    ap.add_argument("--edge-weight", type=float, default=0.0)
-    ap.add_argument("--validation", type=int, default=6, help="validation scenes a kind")
-    ap.add_argument("--validate-every", type=float, default=15, help="minutes")
-    ap.add_argument("--snr-share", type=float, default=1 / 3, help="part of the scenes over thermal noise, 10 to 60 dB SNR")
-    ap.add_argument("--init", help="weight file to start from; one of the first edition gets channels of zeros for what it lacks")
-    ap.add_argument("--first-scene", type=int, default=0, help="with --init: number of the first training scene, so that none is seen twice")
-    ap.add_argument("--export", help="write the averaged weights to this file, with their validation figures, and stop")
-    ap.add_argument("--judge", help="print the validation figures of this weight file, and stop")
-    return ap.parse_args()
-
-
-def main():
-    args = arguments()
+def main(args):
     torch.set_num_threads(args.threads)
     torch.manual_seed(args.seed)
     if args.judge:
@@ -204,6 +190,7 @@ def main():
         return
     os.makedirs(args.out, exist_ok=True)
     run = Run(args)
+    options.refuse_untrained(args, run.seen())
     if args.export:
         report = figures(estimate_with(run.average), validation_sets(args.seed, args.validation))
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
@@ -225,7 +212,7 @@ def main():
         run.follow()
         done = time.time() - began > args.minutes * 60
         if time.time() - clock["validate"] > args.validate_every * 60 or done:
-            line = {"maps": run.step * args.batch, "drawn": run.drawn, "loss": running, **figures(estimate_with(run.average), sets)}
+            line = {"maps": run.seen(), "drawn": run.drawn, "loss": running, **figures(estimate_with(run.average), sets)}
             with open(log_path, "a") as f:
                 f.write(json.dumps(line) + "\n")
             print(json.dumps(line), flush=True)
@@ -241,4 +228,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    main(ARGUMENTS)

@@ -2,8 +2,8 @@
 `apertura train experiment-1-small` and `experiment-2-small`, several times as fast on a CPU.
 
     python3 train_thesis.py --experiment 1 --out DIR --minutes 60    # start, or go on from DIR/checkpoint.pt
-    python3 train_thesis.py --experiment 1 --out DIR --init FILE     # start from a weight file (.safetensors), or from another run's checkpoint
-                                                                     # (.pt), its record and scenes included, with a new optimizer
+    python3 train_thesis.py --experiment 1 --out DIR --init FILE     # start from a weight file (.safetensors) with its record, or from another run's
+                                                                     # checkpoint (.pt), its scenes included too, with a new optimizer
     python3 train_thesis.py --experiment 1 --out DIR --validation 24 \\
         --export ../assets/weights/thesis-1.safetensors              # write the averaged weights and their figures, and stop
 
@@ -22,10 +22,14 @@ Scenes and loss are those of the experiments. What differs, so that hours on two
 A checkpoint holds weights, their average, optimizer, and the record of every part of the run. Training and validation scenes come from
 generators with different keys. `log.jsonl` has SE and P_D over maps seen (a crop is a quarter of a map).
 """
-import argparse
 import json
 import os
 import time
+
+import options
+
+if __name__ == "__main__":
+    ARGUMENTS = options.thesis()  # before PyTorch, which takes seconds to load
 
 import numpy as np
 import torch
@@ -117,7 +121,8 @@ def state_of(path):
     """What another run's checkpoint or a weight file holds: "model", and of a run where it stands."""
     if path.endswith(".safetensors"):
         from safetensors.torch import load_file
-        return {"model": load_file(path)}
+        parts = provenance.parts_of(path)
+        return {"model": load_file(path), "parts": json.dumps(parts), "maps": provenance.maps_of(parts)}
     return torch.load(path, weights_only=True)
 
 
@@ -153,7 +158,7 @@ class Run:
             self.model.load_state_dict(state["model"], strict=False)
             self.maps, self.scenes = state.get("maps", 0.0), state.get("scenes", args.first_scene)
             self.parts = json.loads(state.get("parts", "[]"))
-        self.part = provenance.Part(initial, self.maps)
+        self.part = provenance.Part(initial, self.maps, "Muon" if len(self.optimizers) > 1 else "AdamW")
 
     def records(self):
         return [*self.parts, self.part.now(self.maps)]
@@ -220,26 +225,12 @@ def train(run, args, sets):
         running = loss.item() if running is None else 0.98 * running + 0.02 * loss.item()
 
 
-def main():
-    ap = argparse.ArgumentParser()
-    ap.add_argument("--experiment", type=int, choices=[1, 2], required=True)
-    ap.add_argument("--out", required=True)
-    ap.add_argument("--minutes", type=float, default=60, help="of this part of the run")
-    ap.add_argument("--threads", type=int, default=1)
-    ap.add_argument("--lr", type=float, default=3e-3)
-    ap.add_argument("--whole-from", type=int, default=2000, help="step from which on batches hold whole maps")
-    ap.add_argument("--init", help="checkpoint (.pt) or weights (.safetensors) of another run to start from")
-    ap.add_argument("--muon", action="store_true", help="of a new run: Muon for the kernels, AdamW for the rest")
-    ap.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: weights, sums and loss stay in f32")
-    ap.add_argument("--first-scene", type=int, default=0, help="with --init of weights: number of the first training scene, so that none is seen twice")
-    ap.add_argument("--validation", type=int, default=8, help="validation scenes a set")
-    ap.add_argument("--validate-every", type=float, default=15, help="minutes")
-    ap.add_argument("--export", help="write the averaged weights to this file, with their validation figures, and stop")
-    args = ap.parse_args()
+def main(args):
     torch.set_num_threads(args.threads)
     torch.manual_seed(args.experiment)
     os.makedirs(args.out, exist_ok=True)
     run = Run(args)
+    options.refuse_untrained(args, run.maps)
     sets = validation_scenes(args.experiment, args.validation, entry)
     if args.export:
         settle(run.average, args.experiment)
@@ -253,4 +244,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    main(ARGUMENTS)

@@ -72,8 +72,12 @@ pub struct App {
     is_full_screen: bool,
     /// Size of the interface before the presentation that is shown.
     zoom_before: Option<f32>,
+    /// Size of the interface before the lesson that is taken.
+    zoom_before_lesson: Option<f32>,
     /// Keys that came too quickly for one frame.
     later: input::Later,
+    /// Whether a field had the focus at the end of the last frame.
+    in_a_field: bool,
 }
 
 /// What chrome and panels remember from frame to frame.
@@ -136,7 +140,9 @@ impl App {
             title: String::new(),
             is_full_screen: false,
             zoom_before: None,
+            zoom_before_lesson: None,
             later: Default::default(),
+            in_a_field: false,
         })
     }
 
@@ -167,6 +173,7 @@ impl App {
             keys_taken: self.memory.palette.is_open()
                 || self.memory.file_dialog.is_open()
                 || self.state.save_question.is_some(),
+            in_a_field: self.in_a_field,
             selected: !self.state.editor.selection().is_empty(),
             bin_metres: self.state.radar().range_resolution_metres(),
         };
@@ -214,6 +221,22 @@ impl App {
             (false, Some(before)) => {
                 self.zoom_before = None;
                 ctx.set_zoom_factor(before);
+            }
+            _ => {}
+        }
+    }
+
+    /// The zoom of before a lesson comes back after it.
+    fn update_lesson_zoom(&mut self, ctx: &egui::Context) {
+        match (self.state.lesson.is_some(), self.zoom_before_lesson) {
+            (true, None) => self.zoom_before_lesson = Some(self.zoom_before.unwrap_or_else(|| ctx.zoom_factor())),
+            (false, Some(before)) => {
+                self.zoom_before_lesson = None;
+                // A presentation gives it back when it ends.
+                match &mut self.zoom_before {
+                    Some(zoom) => *zoom = before,
+                    None => ctx.set_zoom_factor(before),
+                }
             }
             _ => {}
         }
@@ -295,10 +318,12 @@ impl eframe::App for App {
         self.update_title(&ctx);
         self.update_full_screen(&ctx);
         self.update_type(&ctx);
+        self.update_lesson_zoom(&ctx);
         if !self.jobs.hides_messages() {
             messages::show(&ctx, &mut self.state.notices);
         }
         focus_ring::draw(&ctx);
+        self.in_a_field = ctx.text_edit_focused();
         self.write_frame_log(frame.info().cpu_usage);
     }
 
@@ -310,7 +335,7 @@ impl eframe::App for App {
             arrangement,
             recent: state.recent.clone(),
             progress: state.progress.clone(),
-            zoom: self.zoom_before,
+            zoom: self.zoom_before_lesson.or(self.zoom_before),
         };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
         *state.kept_arrangement() = kept.arrangement;

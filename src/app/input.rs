@@ -2,7 +2,7 @@
 
 use super::state::{Command, shortcuts};
 use super::widgets::nudge::nudge;
-use eframe::egui::{Context, Event, Key, Modifiers, RawInput};
+use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
 /// Events of one frame that must wait for the next.
 ///
@@ -42,6 +42,8 @@ impl Later {
 pub struct Input {
     /// Whether the palette or a dialog is open: then the keys are its own.
     pub keys_taken: bool,
+    /// Whether a field had the focus at the end of the last frame: then Escape is its own.
+    pub in_a_field: bool,
     /// Whether something is selected that arrow keys can move.
     pub selected: bool,
     /// A range bin of the radar: what an arrow key moves by.
@@ -56,10 +58,13 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
         true => Command::OpenTable(path),
         false => Command::OpenPath(path),
     }));
-    if ctx.input(|i| i.pointer.any_released()) {
+    // Enter and Tab end an entry in a field as letting go ends a drag: each is a step of its own.
+    if ctx.input(|i| i.pointer.any_released() || i.key_pressed(Key::Enter) || i.key_pressed(Key::Tab)) {
         commands.push(Command::Seal);
     }
-    if input.keys_taken || ctx.text_edit_focused() {
+    let escapes_a_field = input.in_a_field && ctx.input(|i| i.key_pressed(Key::Escape));
+    // The keys of an open menu are its own too: Escape closes it.
+    if input.keys_taken || escapes_a_field || Popup::is_any_open(ctx) || ctx.text_edit_focused() {
         return commands;
     }
     let events = ctx.input(|i| i.events.clone());
@@ -100,7 +105,7 @@ mod tests {
     #[test]
     fn keys_mean_what_the_list_says_and_digits_alone_nothing() {
         let draw = |ui: &mut eframe::egui::Ui, asked: &mut Vec<Command>| {
-            let input = Input { keys_taken: false, selected: true, bin_metres: 0.5 };
+            let input = Input { keys_taken: false, in_a_field: false, selected: true, bin_metres: 0.5 };
             asked.extend(read(ui.ctx(), input));
         };
         let mut keys = Harness::new_ui_state(draw, Vec::new());

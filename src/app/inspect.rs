@@ -2,7 +2,7 @@
 
 use super::application::App;
 use super::apply;
-use super::state::{Arrangement, Command, MapKind, MethodSlot, Settings};
+use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, SceneView, Settings};
 use crate::bounds::PositionBound;
 use crate::engine::Report;
 use crate::evaluate::Metrics;
@@ -10,9 +10,11 @@ use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::Finding;
 use crate::interact::Editor;
+use crate::lesson::Progress;
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
+use crate::scene::Reflector;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.
@@ -40,6 +42,16 @@ impl App {
         self.asked.push(command);
     }
 
+    /// Who has answered what in lessons.
+    pub fn progress(&self) -> &Progress {
+        &self.state.progress
+    }
+
+    /// The visible part of the scene and of the maps.
+    pub fn views(&self) -> (SceneView, MapViews) {
+        (self.state.scene_view, self.state.map_views)
+    }
+
     /// Whether a worker has something to do.
     pub fn is_busy(&self) -> bool {
         self.jobs.is_busy()
@@ -65,9 +77,14 @@ impl App {
         (self.jobs.pipeline.requests(), self.jobs.pipeline.result().map_or(0, |r| r.painted))
     }
 
+    /// Where the method found something, as far as that is marked on the maps.
+    pub fn marked_found(&self) -> &[Reflector] {
+        super::contents::shown_found(&self.state, &self.jobs.pipeline)
+    }
+
     /// What the method found, where it is listed.
     pub fn found(&self) -> Option<&[Detection]> {
-        self.jobs.pipeline.output()?.found.as_deref()
+        self.jobs.pipeline.output_of(&self.state)?.found.as_deref()
     }
 
     /// Part of the recording that the reflectors laid over it explain, where that is looked at.

@@ -2,7 +2,10 @@
 //!
 //! S. M. Kay, "Fundamentals of Statistical Signal Processing: Estimation Theory", 1993, section 15.7: for samples
 //! `y = s(p) + w` with white complex noise `w` of variance `v`, the Fisher information is `2/v * Re(J^H J)`, J being the
-//! derivatives of `s`, and the errors of `p` have at least its inverse as covariance.
+//! derivatives of `s`, and the errors of `p` have at least its inverse as covariance (chapter 3 for real samples and for what follows
+//! from parameters by a function of them).
+//!
+//! It is said of unbiased estimators alone. One that knows something of the scene beforehand, and so is biased, may err less.
 
 use crate::radar::{Decibels, Layout, Radar};
 use crate::scene::Reflector;
@@ -24,12 +27,31 @@ pub struct PositionBound {
     pub y_metres: f64,
     /// Covariance of the errors of x and y, square metres; 0 where `y_metres` is infinite.
     pub xy_covariance_metres2: f64,
+    /// Of the reflector's amplitude (its reflectivity, the place being estimated too), as a part of it. With a gain for each half of
+    /// the layout it is that of the mean of both.
+    pub amplitude: f64,
+}
+
+/// What is unknown of the phase and the gain with which elements hear a reflector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Gains {
+    /// One complex gain a reflector: all elements hear it coherently, the two ends of a sparse array too.
+    #[default]
+    One,
+    /// One complex gain a reflector for the elements left of the array's middle, another for the others: nothing is known of the phase
+    /// between the two ends of a sparse array.
+    PerEnd,
 }
 
 impl PositionBound {
     /// Root of the mean square distance between the estimate and the reflector, metres.
     pub fn position_metres(&self) -> f64 {
         self.x_metres.hypot(self.y_metres)
+    }
+
+    /// [`PositionBound::amplitude`] in decibels, to first order.
+    pub fn amplitude_db(&self) -> f64 {
+        20.0 / std::f64::consts::LN_10 * self.amplitude
     }
 }
 
@@ -62,7 +84,7 @@ pub fn noise_variance(radar: &Radar, layout: &Layout, reflector: &Reflector, snr
 /// sample, every reflector's range, cos(theta) and complex gain being unknown.
 ///
 /// The gain takes in the phase of the reflection, so that the absolute carrier phase tells nothing about the range; it is one
-/// for the whole layout: both ends of a sparse array hear the same reflector coherently.
+/// for the whole layout: both ends of a sparse array hear the same reflector coherently. [`cramer_rao_of`] bounds it where they don't.
 ///
 /// # Errors
 /// [`BoundsError`] when the parameters can't be told apart, or the noise is not a positive number.
@@ -72,15 +94,33 @@ pub fn cramer_rao(
     reflectors: &[Reflector],
     noise_variance: f64,
 ) -> Result<Vec<PositionBound>, BoundsError> {
+    cramer_rao_of(radar, layout, reflectors, noise_variance, Gains::One)
+}
+
+/// [`cramer_rao`] with one or several unknown gains a reflector.
+///
+/// # Errors
+/// [`BoundsError`] when the parameters can't be told apart, or the noise is not a positive number.
+pub fn cramer_rao_of(
+    radar: &Radar,
+    layout: &Layout,
+    reflectors: &[Reflector],
+    noise_variance: f64,
+    gains: Gains,
+) -> Result<Vec<PositionBound>, BoundsError> {
     if !(noise_variance.is_finite() && noise_variance > 0.0) {
         return Err(BoundsError::Noise);
     }
-    let information = information(radar, layout, reflectors);
+    let model = Model::new(radar, layout, reflectors, gains);
     let not_identifiable = || BoundsError::NotIdentifiable { elements: layout.len(), reflectors: reflectors.len() };
-    let covariance = invert(&information).ok_or_else(not_identifiable)?;
+    let covariance = invert(&model.information(radar)).ok_or_else(not_identifiable)?;
     let bound = |(l, r): (usize, &Reflector)| {
-        let at = |i: usize, j: usize| noise_variance / 2.0 * covariance[(PARAMETERS * l + i, PARAMETERS * l + j)];
+        let first = model.parameters() * l;
+        let at = |i: usize, j: usize| noise_variance / 2.0 * covariance[(first + i, first + j)];
         let (range, cos, both) = (at(RANGE, RANGE), at(COS, COS), at(RANGE, COS));
+        let weights = model.amplitude_weights(l);
+        let pairs = weights.iter().flat_map(|a| weights.iter().map(move |b| (a, b)));
+        let amplitude: f64 = pairs.map(|((i, a), (j, b))| a * b * at(*i, *j)).sum();
         let polar = radar.polar_of(r.x_metres, r.y_metres);
         let sin = (1.0 - polar.cos_theta.powi(2)).max(0.0).sqrt();
         // x = range cos, y = range sin: the covariance goes through the derivatives of both.
@@ -100,15 +140,16 @@ pub fn cramer_rao(
             } else {
                 0.0
             },
+            amplitude: amplitude.max(0.0).sqrt(),
         }
     };
     Ok(reflectors.iter().enumerate().map(bound).collect())
 }
 
-/// Unknowns of one reflector, in this order: range, cos(theta), real and imaginary part of the relative gain.
-const PARAMETERS: usize = 4;
+/// Unknowns of one reflector, in this order: range, cos(theta), real and imaginary part of each relative gain.
 const RANGE: usize = 0;
 const COS: usize = 1;
+const GAIN: usize = 2;
 
 /// One reflector's echo at one element, and how it changes with the reflector's place.
 struct Echo {
@@ -153,48 +194,83 @@ impl Echo {
     }
 }
 
-/// `Re(J^H J)` over every sample, `[4 L, 4 L]`.
+/// Echoes of all reflectors at all elements, and which gain each element has.
 ///
-/// Each reflector's derivatives by range and cos(theta) are taken orthogonal to its own signal. That only says the gain by
+/// Each reflector's derivatives by range and cos(theta) are taken orthogonal to its own signal. That only says the gains by
 /// other numbers, so the bound on the position stays as it is, and keeps the matrix well conditioned: the carrier turns 250
 /// times for each metre, and all of that belongs to the unknown gain.
-fn information(radar: &Radar, layout: &Layout, reflectors: &[Reflector]) -> Mat<f64> {
-    let echoes: Vec<Vec<Echo>> =
-        reflectors.iter().map(|r| layout.x_metres.iter().map(|&x| Echo::new(radar, x, r)).collect()).collect();
-    let middle = (radar.samples as f64 - 1.0) / 2.0;
-    let own: Vec<[Complex64; 2]> = echoes
-        .iter()
-        .map(|elements| {
-            let power: f64 = elements.iter().map(|e| e.amplitude.powi(2)).sum();
+struct Model {
+    /// `[reflectors][elements]`.
+    echoes: Vec<Vec<Echo>>,
+    /// Which gain each element has, from 0.
+    group: Vec<usize>,
+    groups: usize,
+    /// Mean relative change by range and by cos(theta), `[reflectors][gains]`: what belongs to the gains.
+    own: Vec<Vec<[Complex64; 2]>>,
+}
+
+impl Model {
+    fn new(radar: &Radar, layout: &Layout, reflectors: &[Reflector], gains: Gains) -> Model {
+        let echoes: Vec<Vec<Echo>> =
+            reflectors.iter().map(|r| layout.x_metres.iter().map(|&x| Echo::new(radar, x, r)).collect()).collect();
+        let has_both = layout.x_metres.iter().any(|x| *x < 0.0) && layout.x_metres.iter().any(|x| *x >= 0.0);
+        let parts = gains == Gains::PerEnd && has_both;
+        let group: Vec<usize> = layout.x_metres.iter().map(|x| usize::from(parts && *x >= 0.0)).collect();
+        let groups = if parts { 2 } else { 1 };
+        let middle = (radar.samples as f64 - 1.0) / 2.0;
+        let own_of = |elements: &Vec<Echo>, g: usize| {
+            let of_group = || elements.iter().zip(&group).filter(|(_, of)| **of == g).map(|(e, _)| e);
+            let power: f64 = of_group().map(|e| e.amplitude.powi(2)).sum();
             [RANGE, COS].map(|p| {
-                let weighted: Complex64 =
-                    elements.iter().map(|e| e.relative_change(middle, p) * e.amplitude.powi(2)).sum();
+                let weighted: Complex64 = of_group().map(|e| e.relative_change(middle, p) * e.amplitude.powi(2)).sum();
                 weighted / power
             })
-        })
-        .collect();
+        };
+        let own = echoes.iter().map(|elements| (0..groups).map(|g| own_of(elements, g)).collect()).collect();
+        Model { echoes, group, groups, own }
+    }
 
-    let size = PARAMETERS * reflectors.len();
-    let mut information = Mat::zeros(size, size);
-    let mut row = vec![Complex64::default(); size];
-    for element in 0..layout.len() {
-        for sample in 0..radar.samples {
-            for (l, (elements, own)) in echoes.iter().zip(&own).enumerate() {
-                let echo = &elements[element];
-                let signal = echo.signal(sample);
-                row[PARAMETERS * l + RANGE] = signal * (echo.relative_change(sample as f64, RANGE) - own[RANGE]);
-                row[PARAMETERS * l + COS] = signal * (echo.relative_change(sample as f64, COS) - own[COS]);
-                row[PARAMETERS * l + 2] = signal;
-                row[PARAMETERS * l + 3] = Complex64::I * signal;
-            }
-            for i in 0..size {
-                for j in 0..=i {
-                    information[(i, j)] += row[i].re * row[j].re + row[i].im * row[j].im;
+    /// Unknowns of one reflector.
+    fn parameters(&self) -> usize {
+        GAIN + 2 * self.groups
+    }
+
+    /// The relative error of reflector `l`'s amplitude as a sum of its parameters' errors: which parameter, and its weight. What was
+    /// taken for the gain with the derivatives is given back.
+    fn amplitude_weights(&self, l: usize) -> Vec<(usize, f64)> {
+        let part = 1.0 / self.groups as f64;
+        let own = |p: usize| self.own[l].iter().map(|own| part * own[p].re).sum::<f64>();
+        let gains = (0..self.groups).map(|g| (GAIN + 2 * g, part));
+        [(RANGE, -own(RANGE)), (COS, -own(COS))].into_iter().chain(gains).collect()
+    }
+
+    /// `Re(J^H J)` over every sample, in its lower half.
+    fn information(&self, radar: &Radar) -> Mat<f64> {
+        let each = self.parameters();
+        let size = each * self.echoes.len();
+        let mut information = Mat::zeros(size, size);
+        let mut row = vec![Complex64::default(); size];
+        for (element, group) in self.group.iter().enumerate() {
+            row.fill(Complex64::default());
+            for sample in 0..radar.samples {
+                for (l, (elements, own)) in self.echoes.iter().zip(&self.own).enumerate() {
+                    let echo = &elements[element];
+                    let signal = echo.signal(sample);
+                    for p in [RANGE, COS] {
+                        row[each * l + p] = signal * (echo.relative_change(sample as f64, p) - own[*group][p]);
+                    }
+                    row[each * l + GAIN + 2 * group] = signal;
+                    row[each * l + GAIN + 2 * group + 1] = Complex64::I * signal;
+                }
+                for i in 0..size {
+                    for j in 0..=i {
+                        information[(i, j)] += row[i].re * row[j].re + row[i].im * row[j].im;
+                    }
                 }
             }
         }
+        information
     }
-    information
 }
 
 /// Inverse of a symmetric matrix given by its lower half, `None` when it is not safely positive definite.
@@ -213,110 +289,4 @@ fn invert(matrix: &Mat<f64>) -> Option<Mat<f64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::radar::End;
-
-    fn at(range: f64, cos: f64) -> Reflector {
-        Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).sqrt(), reflectivity: 1.0 }
-    }
-
-    fn alone(layout: &Layout, r: Reflector) -> PositionBound {
-        let radar = Radar::default();
-        cramer_rao(&radar, layout, &[r], noise_variance(&radar, layout, &r, Decibels(0.0))).unwrap()[0]
-    }
-
-    #[test]
-    fn one_point_at_0_db_a_sample() {
-        let radar = Radar::default();
-        let bin = 2.0 / radar.elements as f64;
-        // Against figures of an independent program, given to this many digits.
-        for (layout, millimetres, bins, digits) in [
-            (Layout::two_ends(&radar), 0.26, 0.0021, 0.03),
-            (Layout::one_end(&radar, End::First), 0.92, 0.5, 0.15),
-            (Layout::uniform(&radar), 0.04, 0.0006, 0.1),
-        ] {
-            let bound = alone(&layout, at(20.0, 0.3));
-            assert!((bound.range_metres * 1e3 / millimetres - 1.0).abs() < digits, "{bound:?}");
-            assert!((bound.cos_theta / bin / bins - 1.0).abs() < digits, "{bound:?}");
-        }
-    }
-
-    #[test]
-    fn far_ahead_the_closed_forms_hold() {
-        // Ahead of a symmetric layout range and cos(theta) part: the first is the frequency of a line in M N samples with unknown
-        // phase (Rife and Boorstyn, 1974), the second a phase slope over the elements.
-        let radar = Radar::default();
-        let layout = Layout::two_ends(&radar);
-        let bound = alone(&layout, at(1e4, 0.0));
-        let (elements, samples) = (layout.len() as f64, radar.samples as f64);
-        let frequency = (6.0 / (elements * samples * (samples * samples - 1.0))).sqrt();
-        let range = frequency * radar.max_range_metres() / TAU;
-        assert!((bound.range_metres / range - 1.0).abs() < 1e-3, "{} {range}", bound.range_metres);
-        // The chirp's own phase runs against the carrier's: in the middle of the chirp it takes 2.6 % off the wave number.
-        let wave_number = TAU / radar.wavelength_metres() - TAU * (samples - 1.0) / 2.0 / radar.max_range_metres();
-        let spread: f64 = layout.x_metres.iter().map(|x| x * x).sum();
-        let cos = (1.0 / (2.0 * samples * wave_number * wave_number * spread)).sqrt();
-        assert!((bound.cos_theta / cos - 1.0).abs() < 1e-3, "{} {cos}", bound.cos_theta);
-        assert!((bound.x_metres / (1e4 * cos) - 1.0).abs() < 1e-3, "x is range times cos");
-        assert_eq!(bound.y_metres, bound.range_metres, "y is the range ahead of the array");
-    }
-
-    #[test]
-    fn the_covariance_of_x_and_y_gives_the_range_back() {
-        let bound = alone(&Layout::two_ends(&Radar::default()), at(15.0, 0.6));
-        let (cos, sin) = (0.6, 0.8);
-        let along = cos * cos * bound.x_metres.powi(2)
-            + sin * sin * bound.y_metres.powi(2)
-            + 2.0 * cos * sin * bound.xy_covariance_metres2;
-        assert!((along.sqrt() / bound.range_metres - 1.0).abs() < 1e-6, "{bound:?}");
-    }
-
-    #[test]
-    fn noise_scales_it_and_gain_does_not() {
-        let radar = Radar::default();
-        let layout = Layout::two_ends(&radar);
-        let r = at(12.0, -0.4);
-        let at_20_db = noise_variance(&radar, &layout, &r, Decibels(20.0));
-        let bound = cramer_rao(&radar, &layout, &[r], at_20_db).unwrap()[0];
-        assert!((alone(&layout, r).range_metres / bound.range_metres - 10.0).abs() < 1e-6);
-        let faint = Reflector { reflectivity: 1e-20, ..r };
-        let same = cramer_rao(&radar, &layout, &[faint], at_20_db * 1e-40).unwrap()[0];
-        assert!((same.position_metres() / bound.position_metres() - 1.0).abs() < 1e-6);
-    }
-
-    #[test]
-    fn a_neighbour_costs_accuracy_only_when_near() {
-        let radar = Radar::default();
-        let layout = Layout::two_ends(&radar);
-        let r = at(20.0, 0.1);
-        let variance = noise_variance(&radar, &layout, &r, Decibels(0.0));
-        let beside = |neighbour| cramer_rao(&radar, &layout, &[r, neighbour], variance).unwrap()[0].cos_theta;
-        let alone = alone(&layout, r).cos_theta;
-        let far = beside(at(30.0, -0.5)) / alone;
-        assert!((far - 1.0).abs() < 0.01, "{far}");
-        let near = beside(at(20.0, 0.1002)) / alone;
-        assert!(near > 1.5, "{near}");
-        assert!(beside(at(20.0, 0.1001)) / alone > near, "nearer is worse");
-    }
-
-    #[test]
-    fn what_can_not_be_told_apart_is_an_error() {
-        let radar = Radar::default();
-        let layout = Layout::two_ends(&radar);
-        let r = at(20.0, 0.1);
-        for (layout, reflectors) in [
-            (&layout, vec![r, r]),
-            (&Layout { x_metres: vec![0.0] }, vec![r]),
-            (&Layout { x_metres: Vec::new() }, vec![r]),
-            (&layout, vec![Reflector { reflectivity: 0.0, ..r }]),
-        ] {
-            let error = cramer_rao(&radar, layout, &reflectors, 1.0).unwrap_err();
-            assert!(matches!(error, BoundsError::NotIdentifiable { .. }), "{error}");
-        }
-        assert_eq!(cramer_rao(&radar, &layout, &[], 1.0), Ok(Vec::new()));
-        assert_eq!(cramer_rao(&radar, &layout, &[r], 0.0), Err(BoundsError::Noise));
-        let beside = cramer_rao(&radar, &layout, &[at(20.0, 1.0)], 1.0).unwrap()[0];
-        assert!(beside.y_metres.is_infinite() && beside.x_metres.is_finite());
-    }
-}
+mod tests;

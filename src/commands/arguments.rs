@@ -3,12 +3,17 @@
 use crate::radar::Carrier;
 use crate::signal::Floor;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 /// What lies beneath the reflectors of the maps.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FloorArgs {
-    /// What lies beneath the reflectors: thesis (its f64 rounding noise), exact (nothing) or snr=DB (thermal noise)
-    #[arg(long, value_name = "thesis|exact|snr=DB", default_value_t = Floor::Thesis)]
+    /// What lies beneath the reflectors: thesis (its f64 rounding noise), exact (nothing), snr=DB (thermal noise, DB from -100 to
+    /// 300) or dbm=LEVEL (thermal noise of LEVEL dBm a sample whatever the scene, from -300 to 200; a reflector of sigma 1 at 20 m is
+    /// +18 dBm)
+    #[arg(long, value_name = "thesis|exact|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
     pub floor: Floor,
 }
 
@@ -18,4 +23,35 @@ pub fn carrier() -> impl TypedValueParser<Value = Carrier> {
         "two-way" => Carrier::TwoWay,
         _ => Carrier::OneWay,
     })
+}
+
+/// Parses a whole number within `range`; the message to anything else says what is allowed.
+pub fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    within("a whole number", range)
+}
+
+/// Parses a number within `range`; the message to anything else says what is allowed.
+pub fn real(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    within("a number", range)
+}
+
+fn within<T>(
+    what: &'static str,
+    range: RangeInclusive<T>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let value = text.trim().parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("expected {what} from {} to {}", range.start(), range.end()))
+    }
+}
+
+/// Parses a seed.
+pub fn seed(text: &str) -> Result<u64, String> {
+    whole(0..=u64::MAX)(text)
 }

@@ -6,6 +6,7 @@ use crate::picture::{self, encode_png};
 use image::RgbImage;
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use serde::Serialize;
 use std::path::Path;
 
 /// What a figure's drawing gives back.
@@ -39,6 +40,23 @@ pub fn save_bitmap(figure: &impl Figure, folder: &Path, stem: &str) -> Result<()
     write(folder, stem, "png", &encode_png(&bitmap).map_err(CommandError::failed)?)
 }
 
+/// Writes what a figure shows as `STEM.json` beside it.
+pub fn save_numbers(numbers: &impl Serialize, folder: &Path, stem: &str) -> Result<(), CommandError> {
+    let text = serde_json::to_string_pretty(numbers).map_err(CommandError::failed)?;
+    write(folder, stem, "json", text.as_bytes())
+}
+
+/// A number beside an axis, as short as a reader needs it: 0.3 and not 0.30000000000000004.
+pub fn tick(value: &f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-4..1e6).contains(&size) {
+        return format!("{value:.1e}").replace(".0e", "e");
+    }
+    let text = format!("{value:.6}");
+    let short = text.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
 fn ready(folder: &Path) -> Result<(), CommandError> {
     std::fs::create_dir_all(folder).map_err(|source| CommandError::File { path: folder.to_owned(), source })?;
     picture::register_fonts().map_err(CommandError::failed)
@@ -58,4 +76,16 @@ fn on_white<B: DrawingBackend>(figure: &impl Figure, backend: B) -> Drawn<B> {
     area.fill(&WHITE)?;
     figure.draw(&area)?;
     area.present()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_beside_an_axis_are_short() {
+        let numbers = [0.1 + 0.2, 100.0, 0.0, -0.0, -2.5, 1e-12, 3e7, 2.5e6, 0.0001, 70.0 * 0.01];
+        let texts = ["0.3", "100", "0", "0", "-2.5", "1e-12", "3e7", "2.5e6", "0.0001", "0.7"];
+        assert_eq!(numbers.map(|n| tick(&n)), texts);
+    }
 }

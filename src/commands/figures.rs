@@ -1,5 +1,6 @@
 //! `apertura figures`: every figure of the thesis from this program.
 
+use super::arguments::whole;
 use super::{CommandError, print};
 use crate::figures::{ALL, Figure, Source, by_number, draw, pages};
 use crate::files::write_bytes;
@@ -19,7 +20,7 @@ pub struct Args {
     only: Vec<String>,
 
     /// Test scenes a set for tables 4.1 to 4.3
-    #[arg(long, default_value_t = 10, value_name = "N")]
+    #[arg(long, default_value_t = 10, value_name = "N", value_parser = whole(1..=10_000u32))]
     scenes: u32,
 
     /// Folder to write into

@@ -22,10 +22,17 @@ impl Input {
             return Ok(Input::Scene(Box::new(Shared::from_text(text).map_err(CommandError::failed)?.file)));
         }
         if recording::file::is_recording_at(path) {
-            return Ok(Input::Recording(Box::new(recording::file::load(path).map_err(CommandError::failed)?)));
+            return Ok(Input::Recording(Box::new(load_recording(path)?)));
         }
         Ok(Input::Scene(Box::new(file::load(path).map_err(CommandError::failed)?)))
     }
+}
+
+/// Reads a recording, and says on standard error what looks wrong about it.
+pub fn load_recording(path: &Path) -> Result<Recording, CommandError> {
+    let recording = recording::file::load(path).map_err(CommandError::failed)?;
+    recording.doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
+    Ok(recording)
 }
 
 /// The text itself, where it stands in place of a file's name.

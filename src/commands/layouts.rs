@@ -1,11 +1,12 @@
 //! `apertura layouts`: two ends against as many elements at random places, and against others.
 
+use super::arguments::whole;
 use super::figure::{Drawn, Figure, save};
 use super::{CommandError, print};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
-use crate::radar::{Layout, LayoutKind, Polar, Radar};
+use crate::radar::{Layout, LayoutKind, Polar, Radar, counted};
 use crate::reconstruct::{Request, layout_matched_filter};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::{BeatSignal, simulate};
@@ -32,7 +33,7 @@ pub struct Args {
     layout: Vec<LayoutKind>,
 
     /// Scenes of each test set
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000u32))]
     count: u32,
 
     /// Print one JSON object instead of a table
@@ -179,7 +180,10 @@ impl Figure for CutFigure<'_> {
             area.margin(8, 0, 0, 0).titled("Which directions sound like a reflector 20 m ahead", ("sans-serif", 22))?;
         for (panel, row) in area.split_evenly((self.rows.len(), 1)).into_iter().zip(self.rows) {
             let mut chart = ChartBuilder::on(&panel)
-                .caption(format!("{} ({} elements)", row.layout, row.elements), ("sans-serif", 15))
+                .caption(
+                    format!("{} ({})", row.layout, counted(row.elements, "element", "elements")),
+                    ("sans-serif", 15),
+                )
                 .margin(4)
                 .margin_right(20)
                 .x_label_area_size(34)

@@ -3,6 +3,7 @@
 use super::{CommandError, print};
 use crate::app::{self, AppError};
 use crate::lesson::Lesson;
+use crate::radar::counted;
 use std::path::PathBuf;
 
 /// Begin a lesson from a file
@@ -23,7 +24,7 @@ impl Args {
     /// Opens the lesson.
     pub fn run(self) -> Result<(), CommandError> {
         let lesson = Lesson::load(&self.file).map_err(CommandError::failed)?;
-        let about = format!("{}: {} steps. {}", lesson.title, lesson.steps.len(), lesson.about);
+        let about = format!("{}: {}. {}", lesson.title, counted(lesson.steps.len(), "step", "steps"), lesson.about);
         if self.check {
             return print(&about);
         }

@@ -63,7 +63,7 @@ pub struct Args {
     explain: Option<PathBuf>,
 
     /// Seed of the floor's noise; overrides the scene's
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = arguments::seed)]
     seed: Option<u64>,
 }
 

@@ -32,7 +32,7 @@ pub use error::CommandError;
 pub use output::print;
 
 use crate::signal::simd::Simd;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
@@ -101,7 +101,9 @@ impl Command {
 /// Runs the program; errors go to standard error and make the exit status non-zero.
 pub fn main() -> ExitCode {
     log_to_stderr();
-    let cli = Cli::parse();
+    // A negative number is a value, so that what is allowed is told, and not an unknown option.
+    let command = Cli::command().mut_subcommands(|command| command.allow_negative_numbers(true));
+    let cli = Cli::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
     let result = Simd::requested().map_err(CommandError::failed).and_then(|_| match cli.command {
         Some(command) => command.run(),
         None => cli.open.run(),

@@ -8,7 +8,9 @@ use std::sync::Arc;
 /// Which weights the networks have, and what computes them.
 #[derive(Debug, Clone, clap::Args)]
 pub struct NetworkArgs {
-    /// Weights to use in place of the shipped ones: safetensors, or a PyTorch checkpoint (.pt) of the thesis' network
+    /// Weights to use in place of the shipped ones: safetensors, or a PyTorch checkpoint (.pt) of the thesis' or the live
+    /// network: a state_dict, by itself or under model, state_dict or model_state_dict; of a checkpoint of the training programs the
+    /// averaged weights
     #[cfg(feature = "network")]
     #[arg(long, value_name = "FILE")]
     weights: Option<std::path::PathBuf>,

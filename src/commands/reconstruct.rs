@@ -1,9 +1,11 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
+use super::input::{load_recording, shared_text};
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
+use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, write_npz};
 use crate::maps::archive::read_radar;
 use crate::methods;
@@ -11,6 +13,7 @@ use crate::radar::Radar;
 use crate::reconstruct::found::find;
 use crate::reconstruct::{Detection, ReconstructError, Reconstructor, Request};
 use crate::recording;
+use crate::scene::file;
 use crate::signal::{Floor, TwoEnds};
 use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
 use std::path::PathBuf;
@@ -22,9 +25,10 @@ use std::time::Instant;
 /// IN holds sub0 and sub1 (complex128 [512, 12], any gain, or [samples, elements of an end] of another radar); for the thesis'
 /// networks it may hold polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` brings its radar along. OUT gets net_output (f32 [512, 1024] or
 /// [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and milliseconds; and of what the method
-/// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told) and found_db
-/// (relative to the strongest): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in place of IN.npz brings
-/// its radar along.
+/// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told), found_db (relative to
+/// the strongest) and found_confidence (0 to 1: of the energy around its range that the other echoes leave unexplained, the part that
+/// this one explains; NaN where the method does not say): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in
+/// place of IN.npz brings its radar along.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Archive with the samples (.npz), or a recording (.toml)
@@ -74,6 +78,11 @@ impl Args {
             Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
         };
         self.write(&answer).map_err(CommandError::on(&self.output))?;
+        let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
+        if doubtful > 0 {
+            let of = answer.found.len();
+            print(&format!("{doubtful} of {of} echoes are doubtful: found_confidence is less than {DOUBTFUL}"))?;
+        }
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
     }
 
@@ -88,13 +97,16 @@ impl Args {
                 let message = "a recording says which radar made it; leave --radar out";
                 return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
             }
-            let recording = recording::file::load(&self.input).map_err(CommandError::failed)?;
+            let recording = load_recording(&self.input)?;
             let samples = Samples::Ends(recording.two_ends());
             let (radar, range_metres) = (recording.radar, recording.range_metres);
             return Ok(Input { radar, range_metres, floor: recording::FLOOR, samples });
         }
         let (asked, range_metres) = self.radar.load()?;
-        let mut archive = Npz::open(&self.input).map_err(CommandError::on(&self.input))?;
+        let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
+        if !archive.has("sub0") && !archive.has("polar_partial_mag_phase") && archive.has("all_point_x") {
+            return Err(self.is_scene());
+        }
         let own = match self.radar.is_given() {
             true => None,
             false => read_radar(&mut archive).map_err(CommandError::on(&self.input))?,
@@ -108,6 +120,29 @@ impl Args {
             Samples::Ends(self.two_ends(&mut archive, &radar)?)
         };
         Ok(Input { radar, range_metres, floor: self.floor.floor, samples })
+    }
+
+    /// The error of an input that is no archive: what it is, where that is recognised.
+    fn not_samples(&self, error: NpzError) -> CommandError {
+        if shared_text(&self.input).is_some() || file::load(&self.input).is_ok() {
+            return self.is_scene();
+        }
+        match kind_at(&self.input) {
+            Some(kind) if !kind.contains(".npz") => {
+                let expected =
+                    "an archive (.npz) with sub0 and sub1, the samples of the two ends, or a recording (.toml)";
+                CommandError::Usage(format!("{} is {kind}; expected {expected}", self.input.display()))
+            }
+            _ => CommandError::on(&self.input)(error),
+        }
+    }
+
+    fn is_scene(&self) -> CommandError {
+        let name = self.input.display();
+        CommandError::Usage(format!(
+            "{name} is a scene; expected samples of the two ends: `apertura maps {name} -o IN.npz` computes them, for \
+             `apertura reconstruct IN.npz -o OUT.npz`"
+        ))
     }
 
     fn two_ends(&self, archive: &mut Npz, radar: &Radar) -> Result<TwoEnds, CommandError> {
@@ -148,10 +183,14 @@ impl Args {
             out.add("milliseconds", &arr0(answer.milliseconds))?;
             out.add("found_cos_theta", &list(|f| f.cos_theta))?;
             out.add("found_range_metres", &list(|f| f.range_metres))?;
-            out.add("found_db", &list(|f| f.relative_power.0))
+            out.add("found_db", &list(|f| f.relative_power.0))?;
+            out.add("found_confidence", &list(|f| f.confidence.unwrap_or(f64::NAN)))
         })
     }
 }
+
+/// Confidence beneath which an echo is called doubtful.
+const DOUBTFUL: f64 = 0.5;
 
 /// What is read.
 struct Input {

@@ -1,17 +1,18 @@
 //! `apertura robustness`: each method's error over how far the array's elements are off.
 
-use super::arguments::FloorArgs;
-use super::figure::{Drawn, Figure, save};
+use super::arguments::{FloorArgs, real, seed, whole};
+use super::figure::{Drawn, Figure, save, save_numbers, tick};
 use super::{CommandError, print};
-use crate::evaluate::{Robustness, RobustnessRow};
+use crate::evaluate::{Estimate, Robustness, RobustnessRow};
 use crate::files::write_bytes;
 use crate::methods;
-use crate::radar::{Decibels, Radar, Tolerances};
+use crate::radar::{Decibels, Radar, Tolerances, counted};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use crate::task::Task;
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,6 +22,9 @@ use std::sync::Arc;
 /// Prints CSV, one line a method and scale: method, scale, gain_decibels, phase_degrees, position_millimetres (standard deviations),
 /// squared_error, squared_error_standard_error, detection, false_alarm. Maps are compared with that of the array as it should be;
 /// every scale meets the same scenes and the same errors but for their size.
+///
+/// With --json one object is printed: set, count, seed, floor, calibrated, and rows with the columns of the CSV, where squared_error,
+/// detection and false_alarm are objects of mean and standard_error. Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Methods, separated by commas
@@ -28,19 +32,19 @@ pub struct Args {
     method: Vec<String>,
 
     /// Standard deviation of the elements' gain at scale 1, decibels
-    #[arg(long, value_name = "DB", default_value_t = 0.5, value_parser = tolerance)]
+    #[arg(long, value_name = "DB", default_value_t = 0.5, value_parser = real(0.0..=MOST))]
     gain_db: f64,
 
     /// Standard deviation of the elements' phase at scale 1, degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = tolerance)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = real(0.0..=MOST))]
     phase_degrees: f64,
 
     /// Standard deviation of the elements' places at scale 1, millimetres
-    #[arg(long, value_name = "MM", default_value_t = 0.0, value_parser = tolerance)]
+    #[arg(long, value_name = "MM", default_value_t = 0.0, value_parser = real(0.0..=MOST))]
     position_millimetres: f64,
 
     /// What these are multiplied with
-    #[arg(long, value_name = "FACTOR,..", value_delimiter = ',', default_value = "0,0.5,1,2,4", value_parser = tolerance)]
+    #[arg(long, value_name = "FACTOR,..", value_delimiter = ',', default_value = "0,0.5,1,2,4", value_parser = real(0.0..=MOST))]
     scale: Vec<f64>,
 
     /// Calibrate each array on its scene's strongest reflector first
@@ -48,32 +52,31 @@ pub struct Args {
     calibrate: bool,
 
     /// Test set: 1, 2 or 3
-    #[arg(long, value_name = "SET", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=3))]
+    #[arg(long, value_name = "SET", default_value_t = 2, value_parser = whole(1..=3u8))]
     set: u8,
 
     /// Scenes
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000u32))]
     count: u32,
 
     /// Seed of scenes and errors
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
     #[command(flatten)]
     floor: FloorArgs,
 
-    /// Folder for robustness.csv, robustness.svg and robustness.png; made where it is missing
+    /// Print one JSON object instead of CSV
+    #[arg(long)]
+    json: bool,
+
+    /// Folder for robustness.csv, robustness.json, robustness.svg and robustness.png; made where it is missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
 
 /// Largest tolerance or scale that is taken.
 const MOST: f64 = 180.0;
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (0.0..=MOST).contains(v));
-    value.ok_or_else(|| format!("expected a number from 0 to {MOST}"))
-}
 
 impl Args {
     /// Measures, prints and draws.
@@ -102,13 +105,36 @@ impl Args {
         let rows = robustness.run(&borrowed, &Task::default(), || bar.inc(1)).map_err(CommandError::failed)?;
         bar.finish_and_clear();
         let csv = csv(&rows);
+        let report = Report {
+            set: self.set,
+            count: self.count,
+            seed: self.seed,
+            floor: self.floor.floor.to_string(),
+            calibrated: self.calibrate,
+            rows: &rows,
+        };
         if let Some(folder) = &self.output {
-            save(&RobustnessFigure { rows: &rows, methods: &methods }, folder, "robustness")?;
+            save(&RobustnessFigure { scenes: self.count, rows: &rows, methods: &methods }, folder, "robustness")?;
+            save_numbers(&report, folder, "robustness")?;
             let path = folder.join("robustness.csv");
             write_bytes(&path, csv.as_bytes()).map_err(|source| CommandError::File { path, source })?;
         }
+        if self.json {
+            return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+        }
         print(csv.trim_end())
     }
+}
+
+/// What was measured, and on what; its JSON is documented in the command's help.
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    set: u8,
+    count: u32,
+    seed: u64,
+    floor: String,
+    calibrated: bool,
+    rows: &'a [RobustnessRow],
 }
 
 fn csv(rows: &[RobustnessRow]) -> String {
@@ -136,10 +162,35 @@ fn csv(rows: &[RobustnessRow]) -> String {
     out
 }
 
+/// Least squared error that is drawn.
+const LEAST: f64 = 1.0;
+
+/// Mean less and plus its standard error, with the mean between them; never below [`LEAST`].
+fn bar_of(row: &RobustnessRow) -> [f64; 3] {
+    let Estimate { mean, standard_error } = row.squared_error;
+    [mean - standard_error, mean, mean + standard_error].map(|v| v.max(LEAST))
+}
+
 /// Squared error over the scale of the elements' errors, a line a method.
 struct RobustnessFigure<'a> {
+    scenes: u32,
     rows: &'a [RobustnessRow],
     methods: &'a [Arc<dyn Reconstructor>],
+}
+
+impl RobustnessFigure<'_> {
+    /// The errors at scale 1; "" where no scale is above 0.
+    fn unit(&self) -> String {
+        let one = self.rows.iter().find(|r| r.scale > 0.0);
+        one.map_or_else(String::new, |r| {
+            format!(
+                "{:.2} dB, {:.1} degrees, {:.2} mm",
+                r.gain_decibels / r.scale,
+                r.phase_degrees / r.scale,
+                r.position_millimetres / r.scale
+            )
+        })
+    }
 }
 
 impl Figure for RobustnessFigure<'_> {
@@ -148,37 +199,47 @@ impl Figure for RobustnessFigure<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
-        let errors = || self.rows.iter().map(|r| r.squared_error.mean);
-        let (low, high) = errors().fold((f64::INFINITY, 1.0f64), |(a, b), v| (a.min(v.max(1.0)), b.max(v)));
-        let furthest = self.rows.iter().map(|r| r.scale).fold(0.0, f64::max).max(1e-3);
-        let one = self.rows.iter().find(|r| r.scale > 0.0);
-        let unit = one.map_or_else(String::new, |r| {
-            format!(
-                "{:.2} dB, {:.1} degrees, {:.2} mm",
-                r.gain_decibels / r.scale,
-                r.phase_degrees / r.scale,
-                r.position_millimetres / r.scale
-            )
+        let ends = self.rows.iter().flat_map(|r| {
+            let [low, mean, high] = bar_of(r);
+            // A bar of one that is not sure at all would make the axis as long as it.
+            [low.max(mean / 3.0), high]
         });
+        let (low, high) = ends.fold((f64::INFINITY, LEAST), |(a, b), v| (a.min(v), b.max(v)));
+        let bottom = low / 1.3;
+        let furthest = self.rows.iter().map(|r| r.scale).fold(0.0, f64::max).max(1e-3);
         let mut chart = ChartBuilder::on(area)
             .caption("What elements that are off cost each method", ("sans-serif", 22))
             .margin(14)
             .x_label_area_size(46)
             .y_label_area_size(80)
-            .build_cartesian_2d(0.0..furthest * 1.02, (low / 1.3..high * 1.3).log_scale())?;
+            .build_cartesian_2d(-0.02 * furthest..furthest * 1.03, (bottom..high * 1.3).log_scale())?;
         chart
             .configure_mesh()
-            .x_desc(format!("errors of the elements, times {unit} (standard deviations)"))
-            .y_desc("squared error of the map")
-            .y_label_formatter(&|v| format!("{v:.0}"))
+            .x_desc(format!("errors of the elements, times {} (standard deviations)", self.unit()))
+            .y_desc(format!(
+                "squared error of the map, mean ± standard error over {}",
+                counted(self.scenes, "scene", "scenes")
+            ))
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick)
             .draw()?;
+        // Bars of several methods at one scale stand side by side.
+        let step = furthest / 150.0;
         for (i, method) in self.methods.iter().enumerate() {
             let colour = Palette99::pick(i).to_rgba();
-            let points = || {
-                self.rows.iter().filter(|r| r.method == method.name()).map(|r| (r.scale, r.squared_error.mean.max(1.0)))
+            let aside = step * (i as f64 - (self.methods.len() - 1) as f64 / 2.0);
+            let bars = || {
+                let own = self.rows.iter().filter(|r| r.method == method.name());
+                own.map(|r| (r.scale + aside, bar_of(r).map(|v| v.max(bottom))))
             };
+            // A bar from end to end, with a cap across either.
+            let lines = bars().flat_map(|(x, [low, _, high])| {
+                let cap = move |y| vec![(x - step, y), (x + step, y)];
+                [vec![(x, low), (x, high)], cap(low), cap(high)]
+            });
+            chart.draw_series(lines.map(|line| PathElement::new(line, colour.stroke_width(2))))?;
             chart
-                .draw_series(LineSeries::new(points(), colour.stroke_width(2)).point_size(4))?
+                .draw_series(LineSeries::new(bars().map(|(x, bar)| (x, bar[1])), colour.stroke_width(2)).point_size(4))?
                 .label(method.name())
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
         }

@@ -1,31 +1,33 @@
 //! `apertura scenes`: test scenes as files.
 
+use super::arguments::{seed, whole};
 use super::{CommandError, print};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::scene::file::{self, SceneFile};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Write random test scenes of one kind to a folder
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic, near
+    /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic,
+    /// near; or noise, whose scenes are empty: give --floor dbm=LEVEL to what opens them
     #[arg(long, value_name = "1|2|3|KIND")]
     set: Kind,
 
     /// Number of scenes
-    #[arg(long, value_name = "N", required_unless_present = "index", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", required_unless_present = "index", value_parser = whole(1..=1_000_000u32))]
     count: Option<u32>,
 
     /// This scene alone: the one in the row of `apertura evaluate --rows` with this index
-    #[arg(long, value_name = "I", conflicts_with_all = ["count", "format"])]
+    #[arg(long, value_name = "I", conflicts_with_all = ["count", "format"], value_parser = whole(0..=u32::MAX))]
     index: Option<u32>,
 
     /// Seed: the same seed gives the same scenes
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
-    /// Folder to write to, made where it is missing; with --index, the file (.toml or .npz)
+    /// Folder to write to; with --index, the file (.toml or .npz). Folders are made where they are missing
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
@@ -53,13 +55,16 @@ impl Args {
         let reading = if self.thesis_text { Reading::Text } else { Reading::Program };
         let generator = Generator::new(&radar, reading, Purpose::Test, self.seed);
         if let Some(index) = self.index {
+            file::Format::of_path(&self.output).map_err(CommandError::failed)?;
             let scene = generator.scene(self.set, index);
             let seed = scene.noise_seed;
+            if let Some(folder) = self.output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+                make(folder)?;
+            }
             file::save(&self.output, &SceneFile { scene, radar }).map_err(CommandError::failed)?;
             return print(&format!("wrote {} (noise seed {seed})", self.output.display()));
         }
-        std::fs::create_dir_all(&self.output)
-            .map_err(|source| CommandError::File { path: self.output.clone(), source })?;
+        make(&self.output)?;
         let extension = match self.format {
             FileFormat::Toml => "toml",
             FileFormat::Npz => "npz",
@@ -72,6 +77,11 @@ impl Args {
             let file = SceneFile { scene, radar: radar.clone() };
             file::save(&self.output.join(name), &file).map_err(CommandError::failed)?;
         }
-        print(&format!("wrote {count} scenes of {what}{} to {}", self.set, self.output.display()))
+        let scenes = counted(count, "scene", "scenes");
+        print(&format!("wrote {scenes} of {what}{} to {}", self.set, self.output.display()))
     }
+}
+
+fn make(folder: &Path) -> Result<(), CommandError> {
+    std::fs::create_dir_all(folder).map_err(|source| CommandError::File { path: folder.to_owned(), source })
 }

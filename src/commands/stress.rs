@@ -1,5 +1,6 @@
 //! `apertura stress`: scenes built to break numerics, and many random edits.
 
+use super::arguments::{seed, whole};
 use super::{CommandError, print};
 use crate::benchmark::stress::{self, StressReport, StressRequest};
 use crate::radar::Radar;
@@ -16,11 +17,11 @@ pub struct Args {
 
     /// Random edits through the incremental engine
     #[arg(long, value_name = "N", default_value_t = StressRequest::default().edits as u32,
-          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+          value_parser = whole(1..=1_000_000u32))]
     edits: u32,
 
     /// Picks the edits
-    #[arg(long, value_name = "SEED", default_value_t = StressRequest::default().seed)]
+    #[arg(long, value_name = "SEED", default_value_t = StressRequest::default().seed, value_parser = seed)]
     seed: u64,
 
     /// A radar of 64 elements and 64 samples, and fewer coincident points: seconds instead of minutes

@@ -1,16 +1,18 @@
 //! `apertura train`: trains a network by a recipe.
 
+use super::arguments::{real, whole};
 use super::{CommandError, print};
+use crate::files::sha256;
 use crate::network::backend::Backend;
+use crate::network::checkpoint;
 use crate::network::live::Live;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
 use crate::network::run::{Origin, Progress, Run};
-use crate::network::sha256;
 use crate::network::students::Student;
 use crate::network::thesis::Thesis;
 use crate::network::train::train;
 use crate::network::unet::Unet;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::process::Command;
@@ -21,8 +23,8 @@ use std::time::Duration;
 /// The folder gets log.csv, a checkpoint (replaced in one step) and, at the end, weights.safetensors with its record.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Recipe: the name of a shipped one, or a .toml file
-    #[arg(required_unless_present = "list")]
+    /// Recipe: the name of a shipped one, or a .toml file [with --resume: that of the run]
+    #[arg(required_unless_present_any = ["list", "resume"])]
     recipe: Option<String>,
 
     /// Name the shipped recipes
@@ -38,17 +40,27 @@ pub struct Args {
     resume: Option<PathBuf>,
 
     /// Stop, with a checkpoint, after so many steps in all
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u64::MAX))]
     steps: Option<u64>,
 
     /// Stop, with a checkpoint, after so many minutes
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = real(0.0..=MOST_MINUTES))]
     minutes: Option<f64>,
+
+    /// Write weights even where no step was taken, so that they are random
+    #[arg(long)]
+    untrained: bool,
 
     /// Where tensors are computed
     #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::NAMES.join(", ")))]
     backend: Backend,
 }
+
+/// A year.
+const MOST_MINUTES: f64 = 525_600.0;
+
+/// Folder of a run's checkpoint, inside the run's own.
+const CHECKPOINT: &str = "checkpoint";
 
 impl Args {
     /// Trains, showing progress and time left.
@@ -59,13 +71,13 @@ impl Args {
         let recipe = self.recipe()?;
         let resume = self.resume.is_some();
         let folder = self.resume.or(self.output).unwrap_or_else(|| PathBuf::from("runs").join(&recipe.name));
-        let minutes = self.minutes.filter(|m| m.is_finite() && *m >= 0.0);
         let run = Run {
             folder,
             device: self.backend.device(),
             radar: Radar::default(),
             max_steps: self.steps,
-            max_time: minutes.map(|m| Duration::from_secs_f64(60.0 * m)),
+            max_time: self.minutes.map(|m| Duration::from_secs_f64(60.0 * m)),
+            untrained: self.untrained,
             checkpoint_every: Duration::from_secs(120),
             origin: origin(),
         };
@@ -76,7 +88,11 @@ impl Args {
         }
     }
 
+    /// The recipe that is named; where none is, that of the run to go on with.
     fn recipe(&self) -> Result<Recipe, CommandError> {
+        if let (None, Some(folder)) = (&self.recipe, &self.resume) {
+            return checkpoint::recipe(&folder.join(CHECKPOINT)).map_err(CommandError::failed);
+        }
         let name = self.recipe.as_deref().unwrap_or_default();
         if let Some(recipe) = Recipe::shipped(name) {
             return recipe.map_err(CommandError::failed);
@@ -112,9 +128,9 @@ fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &Run, resume: bool) 
     let end = train::<S>(recipe, config, run, resume, watch).map_err(CommandError::failed)?;
     bar.finish_and_clear();
     print(&format!(
-        "{} steps, {} maps, {:.0} minutes, loss {:.5}; wrote {}",
-        end.step,
-        end.maps,
+        "{}, {}, {:.0} minutes, loss {:.5}; wrote {}",
+        counted(end.step, "step", "steps"),
+        counted(end.maps, "map", "maps"),
         end.seconds / 60.0,
         end.loss,
         run.folder.join("weights.safetensors").display()

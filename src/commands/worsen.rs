@@ -1,9 +1,10 @@
 //! `apertura worsen`: near a scene, one on which a method does worse; or the smallest move after which it is right.
 
-use super::arguments::FloorArgs;
+use super::arguments::{FloorArgs, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::worsen::{Aim, Finding, Measure, Outcome, Search, summary};
+use crate::radar::counted;
 use crate::scene::Scene;
 use crate::scene::file::{self, SceneFile};
 use crate::task::Task;
@@ -34,19 +35,20 @@ pub struct Args {
     repair: bool,
 
     /// How far objects may move, metres
-    #[arg(long, value_name = "METRES", default_value_t = Search::default().within_metres)]
+    #[arg(long, value_name = "METRES", default_value_t = Search::default().within_metres,
+          value_parser = real(LEAST_REACH..=1000.0))]
     within: f64,
 
     /// Scenes to try; 256, or as many as there is time for where --minutes is given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=u32::MAX))]
     tries: Option<u32>,
 
     /// Stop after so many minutes; 10 where nothing is said
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", value_parser = real(0.001..=MOST_MINUTES))]
     minutes: Option<f64>,
 
     /// Picks the scenes that are tried
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
     /// Scene file to write
@@ -60,14 +62,17 @@ pub struct Args {
     floor: FloorArgs,
 }
 
+/// Metres; a move below it changes nothing that a map shows.
+const LEAST_REACH: f64 = 1e-6;
+
+/// A year.
+const MOST_MINUTES: f64 = 525_600.0;
+
 impl Args {
     /// Searches, prints, and writes what was found.
     pub fn run(self) -> Result<(), CommandError> {
         file::Format::of_path(&self.output).map_err(CommandError::failed)?;
-        let minutes = self.minutes.unwrap_or(10.0);
-        let Some(time) = Duration::try_from_secs_f64(60.0 * minutes).ok().filter(|t| !t.is_zero()) else {
-            return Err(CommandError::Usage(format!("--minutes {minutes}: expected more than 0")));
-        };
+        let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));
         let SceneFile { scene, radar } = file::load(&self.scene).map_err(CommandError::failed)?;
         let methods = self.network.methods(std::slice::from_ref(&self.method))?;
         let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
@@ -135,8 +140,9 @@ impl Args {
         }
         let what = if self.repair { "right" } else { "worse" };
         let message = format!(
-            "no scene {what} than this within {} m in {} tries; try a larger --within, more --tries, or another --seed",
-            self.within, outcome.tries
+            "no scene {what} than this within {} m in {}; try a larger --within, more --tries, or another --seed",
+            self.within,
+            counted(outcome.tries, "try", "tries")
         );
         Err(CommandError::Usage(message))
     }

@@ -3,8 +3,8 @@
 use super::change::Change;
 use super::frame::Wanted;
 use super::report::{Report, Stage};
-use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources};
-use crate::radar::Radar;
+use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources, silence_decades};
+use crate::radar::{Radar, counted};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
@@ -27,11 +27,22 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// Amplitude that noise of a level of its own hardly ever exceeds: echoes may be far beneath it, as no other floor lets them be.
+    fn noise_amplitude(&self) -> f64 {
+        match self.wanted.floor {
+            Floor::Level(level) => 10.0 * level.watts().sqrt(),
+            Floor::Thesis | Floor::Exact | Floor::Snr(_) => 0.0,
+        }
+    }
+
     /// What is said of maps of which these rows were made.
     fn made(&self, rows: &Rows, over_noise: bool) -> String {
         let all = self.radar.samples;
         match rows.count() {
-            made if made == all && over_noise => format!("{all} rows: the floor's level follows the scene"),
+            made if made == all && over_noise => match self.wanted.floor {
+                Floor::Level(_) => format!("{all} rows: noise lies in each"),
+                _ => format!("{all} rows: the floor's level follows the scene"),
+            },
             made if made == all => format!("{all} rows"),
             some => {
                 format!("{some} of {all} rows, the others changed by less than {:.0e} of the peak", self.plan.tolerance)
@@ -47,11 +58,18 @@ pub(super) struct Kept {
     pub stale: Rows,
     /// Whether noise lies beneath it.
     over_noise: bool,
+    /// Decades of its silent cells.
+    silence: f32,
 }
 
 impl Kept {
     fn silence(radar: &Radar) -> Self {
-        Kept { decades: FastLogMap::silence(radar), stale: Rows::all(radar.samples), over_noise: false }
+        Kept {
+            decades: FastLogMap::silence(radar),
+            stale: Rows::all(radar.samples),
+            over_noise: false,
+            silence: f32::NAN,
+        }
     }
 }
 
@@ -186,6 +204,9 @@ impl<T: Real, const W: usize> Bank<T, W> {
             (Some((_, unit)), Some(deviation)) => Some(Noise { unit, deviation }),
             _ => None,
         };
+        let gain = (job.radar.samples as f64 * job.radar.elements as f64).sqrt();
+        let bound = gain * (job.amplitude + job.noise_amplitude());
+        let silence = silence_decades(bound);
         let mut rows = Rows::none(job.radar.samples);
         for (kept, missing) in maps.iter_mut().zip(job.missing) {
             if missing {
@@ -193,22 +214,21 @@ impl<T: Real, const W: usize> Bank<T, W> {
             }
             let Some(kept) = kept else { continue };
             kept.stale.extend(&changed);
-            // The noise's level follows the scene, and with it every row.
-            if noise.is_some() || kept.over_noise {
+            // The level of most noise follows the scene, and with it every row.
+            if noise.is_some() || kept.over_noise || kept.silence != silence {
                 kept.stale = Rows::all(job.radar.samples);
             }
             if missing {
-                kept.over_noise = noise.is_some();
+                (kept.over_noise, kept.silence) = (noise.is_some(), silence);
                 rows.extend(&std::mem::replace(&mut kept.stale, Rows::none(job.radar.samples)));
             }
         }
-        let gain = (job.radar.samples as f64 * job.radar.elements as f64).sqrt();
         let profiles = [&self.rest.profiles, &self.active.profiles];
         let mut made = maps.each_mut().map(|kept| kept.as_mut().map(|k| &mut k.decades));
         for (made, missing) in made.iter_mut().zip(job.missing) {
             *made = made.take().filter(|_| missing);
         }
-        self.maker.fill(Sources { profiles: &profiles, noise, bound: job.amplitude * gain }, made, &rows);
+        self.maker.fill(Sources { profiles: &profiles, noise, bound }, made, &rows);
 
         let took = start.elapsed();
         let count = job.missing.iter().filter(|m| **m).count() as u32;
@@ -263,7 +283,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 changed.extend(&self.active.profiles.touched);
                 let plan = self.syntheses[synthesis].plan();
                 let how = format!("{} in {}", plan.algorithm, T::NAME);
-                (format!("{evaluated} of {total} reflectors, {how}, the others as before"), changed)
+                (
+                    format!(
+                        "{evaluated} of {}, {how}, the others as before",
+                        counted(total, "reflector", "reflectors")
+                    ),
+                    changed,
+                )
             }
             _ => self.build_anew(job),
         }
@@ -281,7 +307,10 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let (tolerance, forced) = (job.plan.tolerance, job.forced);
         self.built = Some(Built { tolerance, forced, rounding: 0.0 });
         let plan = self.syntheses[synthesis].plan();
-        (format!("{total} reflectors from scratch, {} in {}", plan.algorithm, T::NAME), changed)
+        (
+            format!("{} from scratch, {} in {}", counted(total, "reflector", "reflectors"), plan.algorithm, T::NAME),
+            changed,
+        )
     }
 
     /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.
@@ -293,6 +322,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 rest.iter().zip(active).map(|(a, b)| a + b).collect()
             }
             Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &job.scene.reflectors(), snr),
+            Floor::Level(level) => floor::level_noise_variance(job.radar, level),
         };
         let seed = job.wanted.seed;
         if self.noise.as_ref().is_none_or(|(s, _)| *s != seed) {

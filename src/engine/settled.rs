@@ -3,7 +3,7 @@
 use super::frame::{Frame, ReadyMap, Wanted};
 use super::report::{Report, Stage};
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
-use crate::radar::{End, Radar};
+use crate::radar::{End, Radar, counted};
 use crate::scene::{Disturbances, Object, Scene};
 use crate::signal::{self, Floor, TwoEnds, Unfinished};
 use crate::task::Task;
@@ -91,7 +91,7 @@ impl Settled {
         }
         match made {
             0 => report.skipped(Stage::Normalise, "unchanged"),
-            _ => report.computed(Stage::Normalise, start.elapsed(), format!("{made} maps")),
+            _ => report.computed(Stage::Normalise, start.elapsed(), counted(made, "map", "maps")),
         }
         let map = |i: usize| self.maps[i].clone().filter(|_| visible[i]);
         let ends = Some(self.ends.clone()).filter(|_| wanted.ends);

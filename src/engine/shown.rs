@@ -5,7 +5,7 @@ use super::frame::{ReadyMap, Wanted};
 use super::report::{Report, Stage};
 use crate::maps::fast::{FastLogMap, normalise_into};
 use crate::maps::{Normalisation, RangeAngleMap};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::scene::{Object, Scene};
 use crate::signal::{Floor, Rows, TwoEnds};
 use ndarray::Array2;
@@ -93,7 +93,7 @@ impl Shown {
         }
         match count {
             0 => report.skipped(Stage::Normalise, "unchanged"),
-            _ => report.computed(Stage::Normalise, start.elapsed(), format!("{count} maps")),
+            _ => report.computed(Stage::Normalise, start.elapsed(), counted(count, "map", "maps")),
         }
     }
 }

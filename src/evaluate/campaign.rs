@@ -1,11 +1,12 @@
 //! Methods over many scenes: what fills tables 4.1 to 4.3, row by row.
 
-use super::rows::Row;
-use super::sets::{Case, SceneSet};
+use super::rows::{GivenTwice, Origin, Row, Scenes, Whole, radar_text};
+use super::sets::{Case, FolderError, SceneSet};
+pub use super::shard::Shard;
 use super::trial::{Answer, RowPlace, Trial};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::reconstruct::{ReconstructError, Reconstructor, Request, untrained_noise};
 use crate::scene::SceneError;
 use crate::scene::file::SceneFileError;
 use crate::scene::generate::{Generator, Purpose, Reading};
@@ -15,8 +16,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use std::fmt;
-use std::str::FromStr;
+use std::sync::Arc;
 
 /// Which scenes methods are tried on.
 #[derive(Debug, Clone)]
@@ -55,50 +55,6 @@ impl Default for Campaign {
     }
 }
 
-/// Every `of`-th scene, from scene `part` on: runs on several machines that together do all. Written and read as "0/4".
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
-    part: u32,
-    of: u32,
-}
-
-impl Default for Shard {
-    /// All scenes.
-    fn default() -> Self {
-        Shard { part: 0, of: 1 }
-    }
-}
-
-impl Shard {
-    /// Whether scene `index` is this shard's.
-    pub fn contains(self, index: u32) -> bool {
-        index % self.of == self.part
-    }
-
-    /// How many of the scenes 0 to `count - 1` are this shard's.
-    pub fn size(self, count: u32) -> u32 {
-        count.saturating_sub(self.part).div_ceil(self.of)
-    }
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.part, self.of)
-    }
-}
-
-impl FromStr for Shard {
-    type Err = String;
-
-    fn from_str(s: &str) -> Result<Self, String> {
-        let parts = s.split_once('/').and_then(|(part, of)| Some((part.trim().parse().ok()?, of.trim().parse().ok()?)));
-        match parts {
-            Some((part, of)) if part < of => Ok(Shard { part, of }),
-            _ => Err(format!("\"{s}\" is no part of a whole; expected I/N with I from 0 to N - 1, as in 0/4")),
-        }
-    }
-}
-
 /// Why a campaign stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
@@ -115,6 +71,12 @@ pub enum CampaignError {
     /// A scene can't be read.
     #[error(transparent)]
     File(#[from] SceneFileError),
+    /// A folder's scenes can't be read.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// A set or a method would count twice.
+    #[error(transparent)]
+    GivenTwice(#[from] GivenTwice),
     /// A method failed.
     #[error("{method} on scene {index} of {set}: {source}")]
     Method {
@@ -175,29 +137,129 @@ impl Campaign {
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
         task: &Task,
+        on_row: impl FnMut(&Row, &Trial, &Answer),
+    ) -> Result<Vec<Row>, CampaignError> {
+        let origins = self.origins(sets, methods)?;
+        self.run_rest(sets, methods, &origins, &|_, _, _| false, task, on_row)
+    }
+
+    /// What makes the rows of this campaign: for each set, one a method.
+    ///
+    /// # Errors
+    /// [`CampaignError`] for a folder whose scenes can't be read, and for a set or method that is there twice.
+    pub fn origins(
+        &self,
+        sets: &[SceneSet],
+        methods: &[&dyn Reconstructor],
+    ) -> Result<Vec<Vec<Arc<Origin>>>, CampaignError> {
+        let counted = |set: &SceneSet| (set.to_string(), set.len().unwrap_or(self.count));
+        let names = methods.iter().map(|method| method.name().to_owned()).collect();
+        let whole = Whole::new(sets.iter().map(counted).collect(), names)?;
+        let of_set = |set: &SceneSet| -> Result<Vec<Arc<Origin>>, CampaignError> {
+            let scenes = self.origin_of_scenes(set)?;
+            let origin = |method: &&dyn Reconstructor| Origin {
+                program: env!("CARGO_PKG_VERSION").to_owned(),
+                floor: set.floor(self.floor),
+                normalisation: self.normalisation,
+                scenes: scenes.clone(),
+                weights: method.weights(),
+                shard: self.shard,
+                whole: whole.clone(),
+            };
+            Ok(methods.iter().map(|method| Arc::new(origin(method))).collect())
+        };
+        sets.iter().map(of_set).collect()
+    }
+
+    fn origin_of_scenes(&self, set: &SceneSet) -> Result<Scenes, FolderError> {
+        match set {
+            SceneSet::Folder(folder) => Ok(Scenes::Files { fingerprint: folder.fingerprint()? }),
+            SceneSet::Generated(_) => Ok(Scenes::Generated {
+                purpose: self.purpose,
+                reading: self.reading,
+                carrier: self.radar.carrier,
+                radar: radar_text(&self.radar),
+            }),
+        }
+    }
+
+    /// [`Campaign::run_watched`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
+    /// `origins` are [`Campaign::origins`].
+    ///
+    /// # Errors
+    /// As [`Campaign::run`].
+    pub fn run_rest(
+        &self,
+        sets: &[SceneSet],
+        methods: &[&dyn Reconstructor],
+        origins: &[Vec<Arc<Origin>>],
+        is_done: &dyn Fn(&str, u32, &str) -> bool,
+        task: &Task,
         mut on_row: impl FnMut(&Row, &Trial, &Answer),
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
-        let request =
-            Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
+        let request = |floor| {
+            let normalisation = self.normalisation;
+            Request { floor, normalisation, task: task.clone(), ..Request::default() }
+        };
         let mut rows = Vec::new();
         let mut warm = false;
-        for set in sets {
-            let count = set.len().unwrap_or(self.count);
-            let numbers: Vec<u32> = (0..count).filter(|&n| self.shard.contains(n)).collect();
+        for (set, origins) in sets.iter().zip(origins) {
+            let (count, name) = (set.len().unwrap_or(self.count), set.to_string());
+            let request = request(set.floor(self.floor));
+            let rest = |index| -> Vec<usize> {
+                (0..methods.len()).filter(|i| !is_done(&name, index, methods[*i].name())).collect()
+            };
+            let numbers: Vec<u32> = (0..count).filter(|&n| self.shard.contains(n) && !rest(n).is_empty()).collect();
             for batch in numbers.chunks(rayon::current_num_threads()) {
                 let trials: Result<Vec<Trial>, _> =
                     batch.par_iter().map(|&index| self.trial(set, &generator, index)).collect();
                 for (trial, &index) in trials?.iter().zip(batch) {
-                    let job = Job { campaign: self, set, index, trial, request: &request };
+                    let job = Job { campaign: self, set, index, trial, request: &request, origins };
                     if !std::mem::replace(&mut warm, true) {
                         methods.iter().try_for_each(|&method| job.answer(method).map(drop))?;
                     }
-                    rows.extend(job.rows(methods, &mut on_row)?);
+                    rows.extend(job.rows(methods, rest(index), &mut on_row)?);
                 }
             }
         }
         Ok(rows)
+    }
+
+    /// For each set and method, on how many of the scenes the method was trained on other noise, in words; nothing where on none.
+    ///
+    /// # Errors
+    /// [`CampaignError`] names a scene that can't be read.
+    pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
+        let generator = self.generator();
+        let mut told = Vec::new();
+        for set in sets {
+            let floor = set.floor(self.floor);
+            let trained: Vec<_> =
+                methods.iter().filter(|m| floor.is_thermal() && m.trained_noise().is_some()).collect();
+            if trained.is_empty() {
+                continue;
+            }
+            let count = set.len().unwrap_or(self.count);
+            let mut said = vec![(0, None); trained.len()];
+            for index in (0..count).filter(|&n| self.shard.contains(n)) {
+                let Case { radar, scene } = set.case(&self.radar, &generator, index)?;
+                let reflectors = scene.reflectors();
+                for (said, method) in said.iter_mut().zip(&trained) {
+                    if let Some(why) = untrained_noise(**method, &radar, &reflectors, floor) {
+                        *said = (said.0 + 1, said.1.take().or(Some(why)));
+                    }
+                }
+            }
+            let (name, all) = (set_name(set), self.shard.size(count));
+            told.extend(said.into_iter().filter_map(|(scenes, why)| {
+                Some(format!(
+                    "{scenes} of {all} scenes of {name} have noise that was not trained on, the first: {}",
+                    why?
+                ))
+            }));
+        }
+        Ok(told)
     }
 
     /// Reads or makes a scene, simulates it, and finds where its objects show.
@@ -206,7 +268,7 @@ impl Campaign {
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
         let Case { radar, scene } = set.case(&self.radar, generator, index)?;
-        let trial = Trial::new(&radar, &scene, self.floor, self.normalisation)
+        let trial = Trial::new(&radar, &scene, set.floor(self.floor), self.normalisation)
             .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
         trial.footprints();
         Ok(trial)
@@ -227,6 +289,8 @@ struct Job<'a> {
     index: u32,
     trial: &'a Trial,
     request: &'a Request,
+    /// One a method.
+    origins: &'a [Arc<Origin>],
 }
 
 impl Job<'_> {
@@ -239,21 +303,21 @@ impl Job<'_> {
         })
     }
 
-    /// One row a method, in their order.
+    /// The rows of the methods of these places, in their order.
     fn rows(
         &self,
         methods: &[&dyn Reconstructor],
+        mut order: Vec<usize>,
         on_row: &mut impl FnMut(&Row, &Trial, &Answer),
     ) -> Result<Vec<Row>, CampaignError> {
         let set = self.set.to_string();
         let seed = if matches!(self.set, SceneSet::Generated(_)) { self.campaign.seed } else { 0 };
-        let place = RowPlace { set: &set, index: self.index, seed };
-        let mut order: Vec<usize> = (0..methods.len()).collect();
         order.shuffle(&mut ChaCha8Rng::seed_from_u64(u64::from(self.index)));
         let mut found = Vec::new();
         for i in order {
             let answer = self.answer(methods[i])?;
-            let row = self.trial.row(place, methods[i].name(), &answer, self.set.false_alarm());
+            let place = RowPlace { set: &set, index: self.index, seed, origin: Some(&self.origins[i]) };
+            let row = self.trial.row(&place, methods[i].name(), &answer, self.set.false_alarm());
             on_row(&row, self.trial, &answer);
             found.push((i, row));
         }
@@ -291,7 +355,45 @@ mod tests {
         assert_eq!(whole.len(), 12);
         assert_ne!(whole[0].squared_error, whole[2].squared_error);
         let shards = vec![("a".into(), run("1/2")), ("b".into(), run("0/2"))];
-        assert_eq!(super::super::rows::merge(shards).unwrap(), whole);
+        let merged = super::super::rows::merge(shards).unwrap();
+        let figures = |rows: &[Row]| rows.iter().map(|r| Row { origin: None, ..r.clone() }).collect::<Vec<_>>();
+        assert_eq!(figures(&merged), figures(&whole));
+        assert_eq!(super::super::rows::lacks(&merged), []);
+    }
+
+    #[test]
+    fn a_method_given_twice_does_not_count_twice() {
+        let sets = [SceneSet::Generated(Kind::Set1)];
+        let error = Campaign::default().run(&sets, &[&Baseline, &Baseline], &Task::default(), |_| ()).unwrap_err();
+        assert!(error.to_string().contains("\"baseline\" is given twice"), "{error}");
+    }
+
+    #[test]
+    fn the_rest_of_a_campaign_is_what_lacked() {
+        let sets = [SceneSet::Generated(Kind::Set1)];
+        let methods: [&dyn Reconstructor; 2] = [&Baseline, &BARTLETT];
+        let campaign = Campaign { count: 3, ..Campaign::default() };
+        let whole = campaign.run(&sets, &methods, &Task::default(), |_| ()).unwrap();
+        let is_done = |_: &str, index: u32, method: &str| index == 0 || (index, method) == (1, "baseline");
+        let origins = campaign.origins(&sets, &methods).unwrap();
+        let rest = campaign.run_rest(&sets, &methods, &origins, &is_done, &Task::default(), |_, _, _| ()).unwrap();
+        assert_eq!(figures(&rest), figures(&whole[3..]));
+    }
+
+    #[test]
+    fn scenes_of_noise_alone_have_no_detection_rate() {
+        let campaign = Campaign { count: 2, ..Campaign::default() };
+        let sets = [SceneSet::Generated(Kind::Noise)];
+        let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| ()).unwrap();
+        assert_eq!(rows.len(), 4);
+        for row in rows {
+            assert_eq!(
+                (row.set.as_str(), row.objects, row.detection, row.detection_at_printed),
+                ("noise", 0, None, None)
+            );
+            assert_eq!((row.false_alarm, row.ghosts), (0.0, 0), "{}", row.method);
+            assert!(row.squared_error > 1.0, "the target is noise");
+        }
     }
 
     #[test]
@@ -301,20 +403,5 @@ mod tests {
         let sets = [SceneSet::Generated(Kind::Set1)];
         let stopped = Campaign::default().run(&sets, &[&Baseline], &task, |_| ()).unwrap_err();
         assert!(stopped.is_cancelled() && stopped.to_string().contains("scene 0 of set 1"), "{stopped}");
-    }
-
-    #[test]
-    fn shards_share_all_scenes() {
-        for (count, of) in [(10, 3), (2, 5), (0, 2), (7, 1)] {
-            let shards: Vec<Shard> = (0..of).map(|part| Shard { part, of }).collect();
-            assert_eq!(shards.iter().map(|s| s.size(count)).sum::<u32>(), count);
-            for s in shards {
-                assert_eq!((0..count).filter(|&n| s.contains(n)).count() as u32, s.size(count), "{s}");
-            }
-        }
-        assert_eq!("1/4".parse(), Ok(Shard { part: 1, of: 4 }));
-        for wrong in ["4/4", "1", "a/b", "0/0", "-1/2"] {
-            assert!(wrong.parse::<Shard>().is_err_and(|e| e.contains(wrong)));
-        }
     }
 }

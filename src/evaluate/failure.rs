@@ -118,7 +118,9 @@ impl Footprints {
     pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
         let objects = scene.objects.iter().map(|o| footprint(radar, o, level)).collect();
-        Footprints { objects, target: Blobs::of(&target.above(TARGET_ETA)) }
+        // Where nothing reflects, whatever the target shows is noise, and a blob of the output at its place is a ghost all the same.
+        let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
+        Footprints { objects, target: Blobs::of(&shown) }
     }
 
     /// The cells of every object, in the scene's order; empty for one that the target doesn't show.

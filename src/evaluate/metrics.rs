@@ -10,7 +10,7 @@ pub const TARGET_ETA: f32 = 0.9;
 pub struct Metrics {
     /// SE: sum of squared differences over every cell.
     pub squared_error: f64,
-    /// P_D: part of the target cells where the output exceeds eta; `None` where the target has no such cell (an empty scene).
+    /// P_D: part of the target cells where the output exceeds eta; `None` where the target has no such cell, or nothing reflects.
     pub detection: Option<f64>,
     /// P_FA: part of the other cells where the output exceeds eta.
     pub false_alarm: f64,
@@ -22,11 +22,31 @@ impl Metrics {
         let (detection, false_alarm) = detection_rates(target, output, eta);
         Metrics { squared_error: squared_error(target, output), detection, false_alarm }
     }
+
+    /// The same of a scene in which nothing reflects. Its target holds noise, or nothing: whatever exceeds 0.9 there is no echo, so that there
+    /// is nothing to detect, and every cell of the output above eta is a false alarm.
+    pub fn of_silence(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
+        let alarms = output.above(eta).count() as f64;
+        let false_alarm = alarms / output.lambda.len().max(1) as f64;
+        Metrics { squared_error: squared_error(target, output), detection: None, false_alarm }
+    }
+
+    /// [`Metrics::of`] where something reflects, else [`Metrics::of_silence`].
+    pub fn of_echoes(has_echoes: bool, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
+        if has_echoes { Metrics::of(target, output, eta) } else { Metrics::of_silence(target, output, eta) }
+    }
 }
 
 /// Sum of squared differences over every cell.
 pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
     target.lambda.iter().zip(&output.lambda).map(|(t, o)| f64::from(t - o).powi(2)).sum()
+}
+
+/// A threshold as it is shown: with every digit it has, so that whoever types it gets the same P_D and P_FA, and with two at least.
+pub fn eta_text(eta: f32) -> String {
+    let exact = eta.to_string();
+    let decimals = exact.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if decimals < 2 { format!("{eta:.2}") } else { exact }
 }
 
 /// (P_D, P_FA) of `output > eta` against `target > 0.9`; P_D is `None` without target cells.
@@ -61,8 +81,24 @@ mod tests {
     }
 
     #[test]
+    fn noise_above_the_target_threshold_is_no_echo() {
+        let noise = RangeAngleMap { lambda: array![[0.95, 0.8], [1.0, 0.0]] };
+        let output = RangeAngleMap { lambda: array![[0.95, 0.8], [0.2, 0.0]] };
+        let m = Metrics::of_echoes(false, &noise, &output, 0.9);
+        assert_eq!((m.detection, m.false_alarm), (None, 0.25));
+        assert_eq!(Metrics::of_echoes(true, &noise, &output, 0.9), Metrics::of(&noise, &output, 0.9));
+    }
+
+    #[test]
     fn no_target_cells_give_no_detection_rate() {
         let flat = RangeAngleMap { lambda: ndarray::Array2::zeros((2, 2)) };
         assert_eq!(detection_rates(&flat, &flat, 0.5), (None, 0.0));
+    }
+
+    #[test]
+    fn a_shown_threshold_is_read_back_as_it_is() {
+        for (eta, text) in [(0.9, "0.90"), (1.0, "1.00"), (0.845, "0.845"), (0.763_194_2, "0.7631942")] {
+            assert_eq!((eta_text(eta).as_str(), eta_text(eta).parse()), (text, Ok(eta)));
+        }
     }
 }

@@ -12,13 +12,14 @@ mod robustness;
 mod roc;
 pub mod rows;
 pub mod sets;
+mod shard;
 pub mod tables;
 pub mod trial;
 pub mod worsen;
 
 pub use blobs::{Blobs, blobs};
 pub use estimate::Estimate;
-pub use metrics::{Metrics, TARGET_ETA, detection_rates, squared_error};
+pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, squared_error};
 pub use placement::{Placement, placement};
 pub use robustness::{Robustness, RobustnessRow};
 pub use roc::{Roc, RocPoint};

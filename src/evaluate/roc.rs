@@ -39,6 +39,11 @@ impl Roc {
         roc
     }
 
+    /// The same where something reflects; else that of no scene, as there is no P_D.
+    pub fn of_echoes(has_echoes: bool, target: &RangeAngleMap, output: &RangeAngleMap) -> Roc {
+        if has_echoes { Roc::of(target, output) } else { Roc::default() }
+    }
+
     /// Adds a scene to the average. A scene without target cells has no P_D and is left out.
     pub fn add(&mut self, target: &RangeAngleMap, output: &RangeAngleMap) {
         // Cell with output o exceeds eta_i = i/STEPS for i < o * STEPS: count it in the last such i, then sum from the top.

@@ -1,16 +1,21 @@
 //! Scenes that methods are tried on: a kind of generated scenes, or a folder of scene files.
 
 use super::tables::PRINTED_EXPERIMENT_2;
-use crate::radar::Radar;
+use crate::files::{read_bounded, sha256};
+use crate::radar::{DecibelMilliwatts, Radar};
 use crate::scene::Scene;
-use crate::scene::file::{self, SceneFileError};
+use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
 use crate::scene::generate::{Generator, Kind};
+use crate::signal::Floor;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// A false-alarm rate for scenes that the thesis prints no table of.
 const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
+
+/// Level of the noise of scenes of noise alone, where none was asked for.
+pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
 
 /// A set of scenes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,6 +75,22 @@ impl Folder {
         }
     }
 
+    /// What the names and contents of the files are known by: the same only where every scene is.
+    ///
+    /// # Errors
+    /// [`FolderError::Io`] names the file that can't be read.
+    pub fn fingerprint(&self) -> Result<String, FolderError> {
+        let mut pieces = Vec::new();
+        for path in &self.files {
+            let bytes =
+                read_bounded(path, MAX_FILE_BYTES).map_err(|source| FolderError::Io { path: path.clone(), source })?;
+            let name = path.file_name().unwrap_or_default().as_encoded_bytes().to_vec();
+            pieces.extend([name, sha256::of_pieces([bytes.as_slice()]).into_bytes()]);
+        }
+        let digest = sha256::of_pieces(pieces.iter().map(Vec::as_slice));
+        Ok(sha256::short(&digest).to_owned())
+    }
+
     /// The file of scene `index`.
     pub fn file(&self, index: u32) -> Option<&Path> {
         self.files.get(index as usize).map(PathBuf::as_path)
@@ -124,6 +145,16 @@ impl SceneSet {
         }
     }
 
+    /// What lies beneath the scenes of this set where `floor` was asked for. Beneath scenes of noise alone that is thermal noise of a level of
+    /// its own, [`NOISE_LEVEL`] where another floor was asked for: all others have no noise where there is no echo.
+    pub fn floor(&self, floor: Floor) -> Floor {
+        match (self, floor) {
+            (SceneSet::Generated(Kind::Noise), Floor::Level(_)) => floor,
+            (SceneSet::Generated(Kind::Noise), _) => Floor::Level(NOISE_LEVEL),
+            _ => floor,
+        }
+    }
+
     /// The false-alarm rate at which methods are held against each other: what the thesis prints for its experiment 2, and 1 % where it
     /// prints nothing.
     pub fn false_alarm(&self) -> f64 {
@@ -140,12 +171,15 @@ pub fn false_alarm(test_set: Option<usize>) -> f64 {
     printed.map_or(FALSE_ALARM_ELSEWHERE, |p| p.false_alarm)
 }
 
-/// As rows name it.
+/// As rows name it. A folder that is called like a kind is "./kind".
 impl fmt::Display for SceneSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SceneSet::Generated(kind) => kind.fmt(f),
-            SceneSet::Folder(folder) => folder.path.display().fmt(f),
+            SceneSet::Folder(folder) => {
+                let path = folder.path.display();
+                if path.to_string().parse::<Kind>().is_ok() { write!(f, "./{path}") } else { path.fmt(f) }
+            }
         }
     }
 }
@@ -171,6 +205,17 @@ mod tests {
         let case = set.case(&radar, &generator, 0).unwrap();
         assert_eq!((case.scene.name.as_str(), case.scene.noise_seed), ("a", 12));
         assert!(set.case(&radar, &generator, 7).is_err());
+        let fingerprint = || Folder::open(folder.path()).unwrap().fingerprint().unwrap();
+        let before = fingerprint();
+        assert_eq!((before.len(), fingerprint()), (12, before.clone()));
+        write("b.toml", "name = \"another\"");
+        assert_ne!(fingerprint(), before, "what stands in a file counts");
         assert!(Folder::open(&folder.path().join("missing")).unwrap_err().to_string().contains("missing"));
+    }
+
+    #[test]
+    fn a_folder_called_like_a_kind_stays_a_folder() {
+        let folder = Folder { path: "walls".into(), files: Vec::new() };
+        assert_eq!(SceneSet::Folder(folder).to_string(), "./walls");
     }
 }

@@ -81,10 +81,29 @@ impl Tally {
         self.rows.len()
     }
 
-    /// Threshold of the method: the mean of its answers', to three digits.
+    /// Threshold of the method, with all its digits; the mean of its answers' where each has its own ([`Tally::has_one_eta`]).
     pub fn eta(&self) -> f32 {
+        if let Some(first) = self.rows.first().filter(|_| self.has_one_eta()) {
+            return first.eta;
+        }
         let sum: f64 = self.rows.iter().map(|row| f64::from(row.eta)).sum();
-        (1e3 * sum / self.rows.len() as f64).round() as f32 / 1e3
+        (sum / self.rows.len() as f64) as f32
+    }
+
+    /// Whether every answer was judged at the same threshold.
+    pub fn has_one_eta(&self) -> bool {
+        self.rows.array_windows().all(|[a, b]| a.eta == b.eta)
+    }
+
+    /// The optimisers that trained the method's weights, as its rows say; empty where they don't, and for methods that learn nothing.
+    pub fn optimiser(&self) -> &str {
+        let weights = self.rows.first().and_then(|row| row.origin.as_ref()?.weights.as_ref());
+        weights.map_or("", |weights| &weights.optimiser)
+    }
+
+    /// What the method's weights are known by.
+    pub fn weights(&self) -> Option<&str> {
+        Some(self.rows.first()?.origin.as_ref()?.weights.as_ref()?.sha256.as_str())
     }
 
     /// SE.
@@ -148,7 +167,7 @@ mod tests {
 
     #[test]
     fn deviations_allow_for_the_printed_digits() {
-        let e = Estimate { mean: 0.0021, standard_error: 0.0001 };
+        let e = Estimate { mean: 0.0021, standard_error: 0.0001, median: 0.002 };
         assert!((e.deviation_from(0.002, 0.0) - 1.0).abs() < 1e-9);
         assert_eq!(e.deviation_from(0.002, PRINTED_BASELINE[0].rate_rounding()), 0.0);
         assert!((e.deviation_from(0.003, 0.0005) + 4.0).abs() < 1e-9);

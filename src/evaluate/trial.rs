@@ -1,14 +1,14 @@
 //! One scene as methods meet it, and how what they make of it is judged.
 
 use super::failure::{Failures, Fate, Footprints};
-use super::rows::Row;
+use super::rows::{Origin, Row};
 use super::{Metrics, Roc};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::{Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 /// A simulated scene: what methods get, and what they are held against.
@@ -74,7 +74,12 @@ impl Trial {
         let found = method.reconstruct(&self.radar, &self.ends, request)?;
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);
-        Ok(Answer { metrics: Metrics::of(&self.target, &found.lambda, eta), found, milliseconds, eta })
+        Ok(Answer {
+            metrics: Metrics::of_echoes(!self.scene.is_silent(), &self.target, &found.lambda, eta),
+            found,
+            milliseconds,
+            eta,
+        })
     }
 
     /// Where each object shows in the target; found when first asked for.
@@ -88,8 +93,8 @@ impl Trial {
     }
 
     /// The row of an answer. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
-    pub fn row(&self, place: RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
-        let roc = Roc::of(&self.target, &answer.found.lambda);
+    pub fn row(&self, place: &RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
+        let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
         let facts = Facts::of(&self.radar, &self.scene);
         let failures = self.failures(answer);
         Row {
@@ -114,12 +119,13 @@ impl Trial {
             found: Some(failures.count(|fate| fate == Fate::Found)),
             merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
             wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
+            origin: place.origin.cloned(),
         }
     }
 }
 
 /// Where a row's scene is from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowPlace<'a> {
     /// Name of the set.
     pub set: &'a str,
@@ -127,6 +133,8 @@ pub struct RowPlace<'a> {
     pub index: u32,
     /// Seed of the set.
     pub seed: u64,
+    /// What made it, if that is to be kept.
+    pub origin: Option<&'a Arc<Origin>>,
 }
 
 /// Where a reflector shows: (column, range bin), neither rounded, and its object.

@@ -120,7 +120,7 @@ pub const ALL: &[Figure] = &[
         true,
         waves::angle_spectra,
         "Angle spectrum at one range with 12 and with 1024 elements: two points at cos θ = 0.35 and 0.5, merged and apart.",
-        "The range is not given; at 20 m chosen here the array is in its near field, so each point is a plateau of some 40 columns, and 2.6 % nearer to the middle (beam squint).",
+        "The range is not given; at 20 m chosen here the array is in its near field, so each point is a plateau of some 40 columns, and 2.6 % nearer to the middle (the squint of the thesis' convention).",
     ),
     figure(
         "2-8",

@@ -1,9 +1,11 @@
 //! Files that are either whole or not there, and NumPy archives with errors that name the key.
 
 pub mod entries;
+pub mod kind;
 pub mod memory;
 pub mod npy;
 pub mod npz;
+pub mod sha256;
 
 use std::fs::{File, Permissions};
 use std::io::{self, BufWriter, Read, Write};
@@ -76,6 +78,19 @@ pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     // It may grow while it is read.
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
+}
+
+/// The first `most` bytes of a file, or all that it has.
+///
+/// # Errors
+/// As [`read_bounded`], but for the length.
+pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "is no file"));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Follows a link, so that it stays a link, and refuses what replacing would destroy.

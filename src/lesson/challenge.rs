@@ -1,5 +1,6 @@
 //! Challenges: "now change it until ...", checked by the engine.
 
+use super::fault::Fault;
 use super::object_number::ObjectNumber;
 use super::quantity::Quantity;
 use super::stage::{MapName, Stage};
@@ -20,7 +21,7 @@ pub struct Challenge {
     /// Objects the learner can't see but in the maps, to be explained by those placed.
     #[serde(default)]
     pub hidden: Vec<Object>,
-    /// A way to meet it: what tests try, and what is shown to who gives up.
+    /// One that meets it: tried before the lesson begins, and shown to who gives up.
     pub solution: Solution,
 }
 
@@ -120,27 +121,16 @@ pub struct Measured {
 
 impl Challenge {
     /// Checks that the challenge can be set on a scene of `objects` objects.
-    pub(super) fn check(&self, objects: usize) -> Result<(), String> {
+    pub(super) fn check(&self, objects: usize) -> Result<(), Fault> {
         if self.requirements.is_empty() {
-            return Err("the challenge requires nothing; expected [[step.challenge.require]]".to_owned());
+            let message = "the challenge requires nothing; expected [[step.challenge.require]]";
+            return Err(Fault::at("[step.challenge]", message));
         }
         let solved = if self.solution.objects.is_empty() { objects } else { self.solution.objects.len() };
-        for requirement in &self.requirements {
-            if requirement.at_least.is_none() && requirement.at_most.is_none() {
-                return Err("a requirement has no bound; expected at_least or at_most".to_owned());
-            }
-            match &requirement.measure {
-                Measure::Lambda { object, .. } | Measure::Range { object } => {
-                    object.index(objects.max(solved)).map(drop)?
-                }
-                Measure::Dip { objects: pair, .. } | Measure::Distance { objects: pair } => {
-                    pair.iter().try_for_each(|o| o.index(objects.max(solved)).map(drop))?;
-                }
-                Measure::Unexplained | Measure::UnexplainedOverMethod if self.hidden.is_empty() => {
-                    return Err("unexplained needs [[step.challenge.hidden]] objects".to_owned());
-                }
-                _ => {}
-            }
+        for (number, requirement) in self.requirements.iter().enumerate() {
+            requirement
+                .check(objects.max(solved), !self.hidden.is_empty())
+                .map_err(|message| Fault::at_number("[[step.challenge.require]]", number, message))?;
         }
         Ok(())
     }
@@ -174,6 +164,30 @@ impl Challenge {
 }
 
 impl Requirement {
+    /// Checks that it can be measured on a scene of `objects` objects, and met by some number.
+    fn check(&self, objects: usize, hides: bool) -> Result<(), String> {
+        match (self.at_least, self.at_most) {
+            (None, None) => return Err("a requirement has no bound; expected at_least or at_most".to_owned()),
+            (Some(low), Some(high)) if low > high => {
+                return Err(format!("at least {low} and at most {high} is required; no number is both"));
+            }
+            (low, high) if low.into_iter().chain(high).any(f64::is_nan) => {
+                return Err("a bound is not a number".to_owned());
+            }
+            _ => {}
+        }
+        match &self.measure {
+            Measure::Lambda { object, .. } | Measure::Range { object } => object.index(objects).map(drop),
+            Measure::Dip { objects: pair, .. } | Measure::Distance { objects: pair } => {
+                pair.iter().try_for_each(|o| o.index(objects).map(drop))
+            }
+            Measure::Unexplained | Measure::UnexplainedOverMethod if !hides => {
+                Err("unexplained needs [[step.challenge.hidden]] objects".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
         let (name, value) = self.measure.value(stage, hidden)?;
         let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);

@@ -1,6 +1,7 @@
 //! Lesson files: TOML that a teacher writes without Rust. `docs/lessons.md` describes the format with a worked example.
 
 use super::challenge::Challenge;
+use super::fault::Fault;
 use super::question::Question;
 use super::stage::View;
 use crate::files::read_bounded;
@@ -96,7 +97,7 @@ pub enum LessonError {
 }
 
 impl Lesson {
-    /// Reads a lesson from TOML and checks every step.
+    /// Reads a lesson from TOML and checks every step, without simulating any ([`Lesson::try_out`] does).
     ///
     /// # Errors
     /// [`LessonTextError`] names the line, the key or the step, and what was expected.
@@ -113,15 +114,15 @@ impl Lesson {
             return Err(whole("there is no [[step]]".to_owned()));
         }
         for (index, step) in lesson.steps.iter().enumerate() {
-            step.check().map_err(|message| LessonTextError {
-                line: line_of_step(text, index),
-                message: format!("step {}: {message}", index + 1),
+            step.check().map_err(|fault| LessonTextError {
+                line: fault.line(text, index),
+                message: format!("step {}: {}", index + 1, fault.message),
             })?;
         }
         Ok(lesson)
     }
 
-    /// Reads a lesson file.
+    /// Reads a lesson file and tries every step out, which takes a moment ([`Lesson::try_out`]).
     ///
     /// # Errors
     /// [`LessonError`] names the file, the line and what was expected.
@@ -132,7 +133,8 @@ impl Lesson {
             _ => io(error),
         })?;
         let text = String::from_utf8(bytes).map_err(|e| io(std::io::Error::other(e)))?;
-        Lesson::from_toml(&text).map_err(|source| LessonError::Text { path: path.to_owned(), source })
+        let lesson = Lesson::from_toml(&text).and_then(|lesson| lesson.try_out(&text).map(|()| lesson));
+        lesson.map_err(|source| LessonError::Text { path: path.to_owned(), source })
     }
 }
 
@@ -143,15 +145,16 @@ impl Step {
         preset.map_or_else(|| Scene { objects: self.objects.clone(), ..Scene::default() }, |file| file.scene)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), Fault> {
         if let Some(id) = &self.preset {
             if !self.objects.is_empty() {
-                return Err("has a preset and objects; expected one of them".to_owned());
+                return Err(Fault::at("preset", "has a preset and objects; expected one of them"));
             }
             let known = || crate::scene::presets::ALL.iter().map(|p| p.id).collect::<Vec<_>>().join(", ");
-            Preset::by_id(id).ok_or_else(|| format!("preset \"{id}\" is not known; known: {}", known()))?;
+            let unknown = || format!("preset \"{id}\" is not known; known: {}", known());
+            Preset::by_id(id).ok_or_else(|| Fault::at("preset", unknown()))?;
         }
-        self.radar.validate().map_err(|e| e.to_string())?;
+        self.radar.validate().map_err(|e| Fault::at("radar", e.to_string()))?;
         let scene = self.scene();
         scene.validate(&self.radar).map_err(|e: SceneError| e.to_string())?;
         let objects = scene.objects.len();
@@ -162,7 +165,7 @@ impl Step {
             challenge.check(objects)?;
         }
         if self.predict.is_none() && self.challenge.is_none() {
-            return Err("asks nothing; expected [step.predict] or [step.challenge]".to_owned());
+            return Err(Fault::at("", "asks nothing; expected [step.predict] or [step.challenge]"));
         }
         Ok(())
     }
@@ -170,11 +173,6 @@ impl Step {
 
 fn line_of(text: &str, byte: usize) -> usize {
     text.bytes().take(byte).filter(|b| *b == b'\n').count() + 1
-}
-
-fn line_of_step(text: &str, index: usize) -> usize {
-    let steps = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("[[step]]"));
-    steps.map(|(number, _)| number + 1).nth(index).unwrap_or(1)
 }
 
 #[cfg(test)]
@@ -209,12 +207,31 @@ answer = { kind = "click", map = "target", object = 1, within_columns = 30.0, wi
         let e = error("about = \"A.\"", "abuot = \"A.\"");
         assert!(e.message.contains("abuot") && e.line == 4, "{e}");
         let e = error("object = 1,", "object = 2,");
-        assert!(e.message.contains("step 1") && e.message.contains("objects 1 to 1") && e.line == 6, "{e}");
+        assert!(e.message.contains("step 1") && e.message.contains("objects 1 to 1") && e.line == 14, "{e}");
         let e = error("one-at-20-m", "nowhere");
         assert!(e.message.contains("nowhere") && e.message.contains("street"), "{e}");
         let e = error("format = 1", "format = 9");
         assert!(e.message.contains("format 1"), "{e}");
         assert!(Lesson::from_toml(&GOOD[..GOOD.len() / 2]).is_err());
+    }
+
+    #[test]
+    fn tolerances_that_no_guess_keeps_to_are_refused_with_their_line() {
+        for (from, to, name) in [
+            ("within_columns = 30.0", "within_columns = -1.0", "within_columns is -1"),
+            ("within_bins = 4.0", "within_bins = nan", "within_bins is NaN"),
+        ] {
+            let e = Lesson::from_toml(&GOOD.replace(from, to)).unwrap_err();
+            assert!(e.message.contains(name) && e.message.contains("at least 0") && e.line == 14, "{e}");
+        }
+    }
+
+    #[test]
+    fn a_requirement_that_nothing_can_meet_is_refused_with_its_line() {
+        let challenge = "\n[step.challenge]\nask = \"A\"\n[[step.challenge.require]]\nmeasure = { kind = \"objects\" }\n\
+                         at_least = 3.0\nat_most = 2.0\n[step.challenge.solution]\n";
+        let e = Lesson::from_toml(&format!("{GOOD}{challenge}")).unwrap_err();
+        assert!(e.message.contains("at least 3 and at most 2") && e.line == 18, "{e}");
     }
 
     #[test]

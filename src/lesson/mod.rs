@@ -10,6 +10,7 @@
 //! entertainment?", Am. J. Phys. 72, 2004).
 
 pub mod challenge;
+mod fault;
 pub mod file;
 pub mod object_number;
 pub mod progress;
@@ -17,12 +18,15 @@ pub mod quantity;
 pub mod question;
 pub mod shipped;
 pub mod stage;
+mod trial;
+mod uses;
 
 pub use challenge::{Challenge, Measured};
 pub use file::{Lesson, LessonError, LessonTextError, Step};
 pub use progress::Progress;
 pub use question::{Guess, Judgement, Question, Truth};
 pub use stage::{Cell, MapName, Stage, View};
+pub use uses::Uses;
 
 #[cfg(test)]
 mod tests;

@@ -19,7 +19,8 @@ pub enum Quantity {
     FarFieldMetres,
     /// Columns of one beam of an end: the map's columns over the end's elements.
     EndBeamColumns,
-    /// Wavelength over spacing: distance in cos(theta) from a reflector to its grating lobe, for the one-way carrier.
+    /// Distance in cos(theta) from a reflector to its grating lobe: wavelength over spacing and over the carrier's turns per wavelength,
+    /// at the frequency that the middle of the chirp has ([`Radar::squint`]). `theory::fold_period_cos` says the same.
     GratingLobeCos,
     /// The range at which an object appears: its own, wrapped at the maximum, metres.
     ApparentRangeMetres,
@@ -59,7 +60,8 @@ impl Quantity {
             Quantity::FarFieldMetres => radar.far_field_metres(),
             Quantity::EndBeamColumns => radar.elements as f64 / radar.end_elements as f64,
             Quantity::GratingLobeCos => {
-                radar.wavelength_metres() / radar.element_spacing_metres / radar.carrier.turns_per_wavelength().abs()
+                let turns = radar.carrier.turns_per_wavelength() * radar.squint();
+                radar.wavelength_metres() / radar.element_spacing_metres / turns.abs()
             }
             Quantity::ApparentRangeMetres => {
                 let [x, y] = centre()?;
@@ -83,7 +85,7 @@ mod tests {
         let (radar, scene) = (Radar::default(), Scene::of_points([(18.0, 8.717), (0.0, 60.0)]));
         let of = |q: Quantity, o| q.of(&radar, &scene, o).unwrap();
         assert!((of(Quantity::RangeBinMetres, None) - 0.07495).abs() < 1e-4);
-        assert!((of(Quantity::GratingLobeCos, None) - 2.0).abs() < 1e-12);
+        assert!((of(Quantity::GratingLobeCos, None) - 2.053).abs() < 1e-3);
         // The two ends see a point at cos 0.9 and 20 m some 24 bins apart.
         assert!((of(Quantity::EndsDifferenceBins, Some(ObjectNumber(1))) - 24.0).abs() < 1.0);
         assert!(

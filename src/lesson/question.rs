@@ -1,9 +1,10 @@
 //! Predictions: what a learner commits to before the maps are shown, and what it is worth.
 
+use super::fault::{Fault, check_tolerance};
 use super::object_number::ObjectNumber;
 use super::quantity::Quantity;
 use super::stage::{Cell, MapName, Stage};
-use crate::evaluate::{TARGET_ETA, detection_rates};
+use crate::evaluate::{TARGET_ETA, detection_rates, eta_text};
 use serde::Deserialize;
 
 /// A question with what is said of a right and of a wrong answer.
@@ -112,15 +113,30 @@ pub struct Judgement {
 
 impl Question {
     /// Checks that the question can be asked of a scene of `objects` objects.
-    pub(super) fn check(&self, objects: usize) -> Result<(), String> {
+    pub(super) fn check(&self, objects: usize) -> Result<(), Fault> {
+        const KEY: &str = "answer";
+        let is_there =
+            |number: &ObjectNumber| number.index(objects).map(drop).map_err(|message| Fault::at(KEY, message));
         match &self.answer {
-            Answer::Click { object: Some(number), .. } => number.index(objects).map(drop),
-            Answer::Number { object: Some(number), .. } => number.index(objects).map(drop),
-            Answer::Choice { options, right } if options.len() < 2 || !(1..=options.len()).contains(right) => {
-                Err(format!("right is {right}; there are options 1 to {} and at least two are needed", options.len()))
+            Answer::Click { object, within_columns, within_bins, .. } => {
+                object.iter().try_for_each(is_there)?;
+                check_tolerance(KEY, "within_columns", *within_columns)?;
+                check_tolerance(KEY, "within_bins", *within_bins)
             }
-            Answer::Threshold { keep, .. } => keep.iter().try_for_each(|number| number.index(objects).map(drop)),
-            _ => Ok(()),
+            Answer::Number { object, within_percent, .. } => {
+                object.iter().try_for_each(is_there)?;
+                check_tolerance(KEY, "within_percent", *within_percent)
+            }
+            Answer::Choice { options, right } if options.len() < 2 || !(1..=options.len()).contains(right) => {
+                let count = options.len();
+                let message = format!("right is {right}; there are options 1 to {count} and at least two are needed");
+                Err(Fault::at(KEY, message))
+            }
+            Answer::Choice { .. } => Ok(()),
+            Answer::Threshold { keep, false_alarm_at_most, .. } => {
+                keep.iter().try_for_each(is_there)?;
+                check_tolerance(KEY, "false_alarm_at_most", *false_alarm_at_most)
+            }
         }
     }
 
@@ -184,24 +200,41 @@ impl Question {
             }
             (Answer::Number { within_percent, unit, .. }, Guess::Number(value), Truth::Number(exact)) => {
                 let percent = 100.0 * (value - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
-                (percent <= *within_percent, format!("{percent:.0} % off; it is {exact:.3} {unit}"))
+                let is_right = percent <= *within_percent;
+                let it_is = if is_right { "" } else { "it is " };
+                let off = if percent < 0.5 { String::new() } else { format!("; you were {percent:.0} % off") };
+                (is_right, format!("{it_is}{}{off}", number_text(exact, unit)))
             }
-            (Answer::Choice { .. }, Guess::Choice(chosen), Truth::Choice(right)) => {
-                (chosen == right, if chosen == right { "right".to_owned() } else { format!("it is option {right}") })
+            (Answer::Choice { options, .. }, Guess::Choice(chosen), Truth::Choice(right)) => {
+                let option = options.get(right - 1).map_or("", String::as_str);
+                let told = if chosen == right { option.to_owned() } else { format!("the answer is “{option}”") };
+                (chosen == right, told)
             }
             (Answer::Threshold { map, .. }, Guess::Eta(eta), Truth::Etas { low, high }) => {
                 let through = 100.0 * detection_rates(stage.map(MapName::Target)?, stage.map(*map)?, eta).1;
                 let lost = if eta < high { "keeps what is asked for" } else { "loses what was to be kept" };
-                (
-                    eta >= low && eta < high,
-                    format!(
-                        "{eta:.2} {lost} and lets {through:.2} % of the dark cells through; {low:.2} to {high:.2} does"
-                    ),
-                )
+                // The highest of two decimals: at `high` itself an object is lost.
+                let highest = ((100.0 * high).ceil() - 1.0) / 100.0;
+                let told = format!(
+                    "{} {lost} and lets {through:.2} % of the dark cells through. Any threshold from {low:.2} to {highest:.2} works",
+                    eta_text(eta)
+                );
+                (eta >= low && eta < high, told)
             }
             _ => return Err("the answer is of another kind than the question".to_owned()),
         };
         let sentence = if is_right { &self.right } else { &self.wrong }.clone();
         Ok(Judgement { is_right, distance, sentence, truth })
     }
+}
+
+/// A number with its unit, to three digits or so.
+pub fn number_text(value: f64, unit: &str) -> String {
+    let decimals = match value.abs() {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 1.0 => 2,
+        _ => 3,
+    };
+    format!("{value:.decimals$} {unit}").trim_end().to_owned()
 }

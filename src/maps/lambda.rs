@@ -49,17 +49,18 @@ impl fmt::Display for Normalisation {
 /// The straight line from decades to Lambda.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LambdaScale {
-    /// FastLogMap where Lambda is 0.
+    /// Log10 magnitude (decades of amplitude) that maps to Lambda = 0.
     pub floor: f64,
-    /// FastLogMap where Lambda is 1.
+    /// Log10 magnitude (decades of amplitude) that maps to Lambda = 1.
     pub peak: f64,
 }
 
 impl LambdaScale {
-    /// The scale for a map whose cells lie between `min` and `max` decades.
+    /// The scale for a map whose cells lie between `min` and `max` decades. A map that is flat has no range: nothing in it is a peak.
     pub fn new(min: f64, max: f64, normalisation: Normalisation) -> Self {
         let floor = match normalisation {
             Normalisation::MinMax => min,
+            Normalisation::DynamicRange(_) if max <= min => max,
             Normalisation::DynamicRange(db) => max - db.amplitude_decades(),
         };
         LambdaScale { floor, peak: max }

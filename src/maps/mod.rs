@@ -15,7 +15,7 @@ pub mod tolerance;
 mod transform;
 
 pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};
-pub use log_map::{LOG_GUARD, LogMap};
+pub use log_map::{LOG_GUARD, LogMap, guard};
 pub use spectra::{Spectrum, centred_spectrum};
 pub use transform::{
     Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, channels_range_transform, range_transform,

@@ -1,6 +1,6 @@
 //! The windowed two-dimensional transform (thesis section 3.1).
 
-use super::log_map::{LOG_GUARD, LogMap};
+use super::log_map::{LOG_GUARD, LogMap, guard};
 use crate::radar::{End, Radar};
 use crate::signal::BeatSignal;
 use crate::signal::simd::Simd;
@@ -98,8 +98,11 @@ fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> Com
 }
 
 impl ComplexMap {
-    /// `log10(|Y| + 1e-20)` of every cell.
+    /// `log10(|Y| + guard)` of every cell, the [`guard`] that of the largest.
     pub fn log_magnitude(&self) -> LogMap {
-        LogMap::new(self.cells.mapv(|v| (v.norm() + LOG_GUARD).log10()))
+        let largest = self.cells.iter().map(Complex64::norm_sqr).filter(|v| v.is_finite()).fold(0.0, f64::max);
+        // Squares of what is smaller than 1e-160 are zero.
+        let guard = if largest > 0.0 { guard(largest.sqrt()) } else { LOG_GUARD };
+        LogMap::new(self.cells.mapv(|v| (v.norm() + guard).log10()))
     }
 }

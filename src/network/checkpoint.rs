@@ -2,12 +2,12 @@
 
 use super::recipe::Recipe;
 use super::run::{Progress, TrainError, file};
-use super::sha256;
 use super::students::Student;
+use crate::files::sha256;
 use burn::optim::ModuleOptimizer;
 use burn::store::{BurnpackStore, ModuleSnapshot};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Names inside a checkpoint.
 pub(super) const MODEL: &str = "model.bpk";
@@ -64,6 +64,27 @@ pub struct Checkpoint {
     pub weights_sha256: String,
 }
 
+/// The recipe of the run whose checkpoint is at `folder`.
+///
+/// # Errors
+/// [`TrainError`] when there is no checkpoint or its recipe can't be read.
+pub fn recipe(folder: &Path) -> Result<Recipe, TrainError> {
+    let there = there(folder);
+    let path = there.join(RECIPE);
+    if !path.exists() {
+        let reason = "there is none; expected it in the folder of a run that was started before".to_owned();
+        return Err(TrainError::Checkpoint { path: folder.to_owned(), reason });
+    }
+    let text = fs::read_to_string(&path).map_err(file(&path))?;
+    Ok(Recipe::parse(&path.display().to_string(), &text)?)
+}
+
+/// Where the checkpoint of `folder` is: under its second name where a run was stopped while the newest took its place.
+fn there(folder: &Path) -> PathBuf {
+    let old = folder.with_extension("old");
+    if !folder.exists() && old.exists() { old } else { folder.to_owned() }
+}
+
 /// Loads the checkpoint at `folder` into network and optimizer and says where the run stands.
 ///
 /// # Errors
@@ -74,9 +95,8 @@ pub fn load<S: Student>(
     network: &mut S,
     optimizer: &mut ModuleOptimizer,
 ) -> Result<Checkpoint, TrainError> {
-    let old = folder.with_extension("old");
-    let folder = if !folder.exists() && old.exists() { &old } else { folder };
-    let bad = |reason: String| TrainError::Checkpoint { path: folder.to_owned(), reason };
+    let folder = there(folder);
+    let bad = |reason: String| TrainError::Checkpoint { path: folder.clone(), reason };
     let read = |name: &str| {
         let path = folder.join(name);
         fs::read_to_string(&path).map_err(file(&path))

@@ -41,6 +41,7 @@ mod tests {
             radar: radar.clone(),
             max_steps: None,
             max_time: None,
+            untrained: false,
             checkpoint_every: Duration::ZERO,
             origin: Default::default(),
         };

@@ -6,7 +6,7 @@
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`unet`] | the thesis' failing U-Net |
 //! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |
-//! | [`run`], [`train`], [`checkpoint`], [`sha256`] | what a run is and what it was made of, how it goes, and going on with it |
+//! | [`run`], [`train`], [`checkpoint`] | what a run is and what it was made of, how it goes, and going on with it |
 //! | [`validation`] | what the trained network is worth, and its weight file |
 //! | [`backend`] | which of burn's backends computes |
 //! | [`weights`], [`pytorch`] | weight files: checking, loading, what they say about themselves |
@@ -19,7 +19,6 @@ pub mod losses;
 pub mod pytorch;
 pub mod recipe;
 pub mod run;
-pub mod sha256;
 pub mod students;
 pub mod thesis;
 pub mod thesis_method;
@@ -77,7 +76,7 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     .collect()
 }
 
-/// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' network.
+/// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' or the live network.
 ///
 /// # Errors
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to no network of ours.
@@ -87,9 +86,10 @@ pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>
 }
 
 fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
-    // A file of the thesis' author says nothing; its tensors do.
+    // PyTorch's own files name no network; their tensors do.
     let network = match file.network() {
         "" if Thesis::config_of(&file).is_ok() => Thesis::NAME,
+        "" if Live::is_in(&file) => Live::NAME,
         named => named,
     };
     Ok(match network {

@@ -1,6 +1,7 @@
 //! PyTorch checkpoints (`.pt`, `.pth`), translated to safetensors so that one reader checks and loads both.
 
 use super::weights::WeightsError;
+use crate::files::kind::kind_of;
 use crate::files::read_bounded;
 use burn::store::pytorch_reader::PytorchReader;
 use std::collections::BTreeMap;
@@ -9,8 +10,17 @@ use std::path::Path;
 /// Most bytes of a weight file, and of all tensors of a checkpoint together: 1 GiB, some 160 times the thesis' network.
 const MAX_BYTES: u64 = 1 << 30;
 
+/// Under which keys programs keep a network's state beside an optimizer's and others, the first that is there first. `average` is where
+/// `training` keeps the averaged weights: those that it validates and ships.
+const STATES: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
+/// States within states that are looked into.
+const DEEPEST: usize = 4;
+/// What `DataParallel` puts before every name.
+const PARALLEL: &str = "module.";
+
 /// The bytes of the weight file at `path` as safetensors: those of a safetensors file as they are; those of a PyTorch checkpoint,
-/// which holds a `state_dict` or a whole model, translated. Names, shapes and types stay PyTorch's.
+/// which holds a `state_dict` by itself or under one of [`STATES`], translated. Names, shapes and types stay PyTorch's; what stands beside
+/// the state, such as an optimizer's tensors, is not read.
 ///
 /// # Errors
 /// [`WeightsError::File`] when it can't be read, [`WeightsError::NotPytorch`] when it is neither.
@@ -18,7 +28,16 @@ pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
     let file = path.display().to_string();
     let bytes =
         read_bounded(path, MAX_BYTES).map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
-    if is_pytorch(&bytes) { translate(path) } else { Ok(bytes) }
+    if !is_pytorch(&bytes) {
+        return Ok(bytes);
+    }
+    translate(path).map_err(|reason| {
+        let reason = match kind_of(&bytes) {
+            Some(kind) if !kind.contains("PyTorch") => format!("it is {kind} ({reason})"),
+            _ => reason,
+        };
+        WeightsError::NotPytorch { file, reason }
+    })
 }
 
 /// A zip archive, which PyTorch has written since 1.6, or a bare pickle, which it wrote before.
@@ -26,24 +45,45 @@ fn is_pytorch(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(&[0x80, 2])
 }
 
-fn translate(path: &Path) -> Result<Vec<u8>, WeightsError> {
-    let bad = |reason: String| WeightsError::NotPytorch { file: path.display().to_string(), reason };
-    let reader = PytorchReader::new(path).map_err(|e| bad(e.to_string()))?;
-    let tensors: BTreeMap<_, _> = reader.into_tensors().into_iter().collect();
+/// What stands before the names of the network's own tensors among `names`: "" for a bare `state_dict`, such as "model." for one beside others.
+fn state_prefix(names: &[&str]) -> String {
+    let mut prefix = String::new();
+    for _ in 0..DEEPEST {
+        let under = |state: &&&str| {
+            let start = format!("{prefix}{state}.");
+            names.iter().any(|name| name.starts_with(&start))
+        };
+        match STATES.iter().find(under) {
+            Some(state) => prefix = format!("{prefix}{state}."),
+            None => break,
+        }
+    }
+    let mut own = names.iter().filter_map(|name| name.strip_prefix(prefix.as_str()));
+    if own.all(|name| name.starts_with(PARALLEL)) { prefix + PARALLEL } else { prefix }
+}
+
+fn translate(path: &Path) -> Result<Vec<u8>, String> {
+    let mut tensors = PytorchReader::new(path).map_err(|e| e.to_string())?.into_tensors();
+    if tensors.is_empty() {
+        return Err(format!("it holds no tensors; expected a state_dict, by itself or under {}", STATES.join(", ")));
+    }
+    let prefix = state_prefix(&tensors.keys().map(String::as_str).collect::<Vec<_>>());
+    tensors.retain(|name, _| name.starts_with(&prefix));
+    let tensors: BTreeMap<_, _> = tensors.into_iter().collect();
     // Tensors may share a storage, or repeat one value: the file's length bounds nothing.
     let asked = tensors.values().fold(0u64, |n, t| n.saturating_add(t.byte_len() as u64));
     if asked > MAX_BYTES {
-        return Err(bad(format!("its tensors ask for {asked} bytes; at most {MAX_BYTES} are read")));
+        return Err(format!("its tensors ask for {asked} bytes; at most {MAX_BYTES} are read"));
     }
     let mut header = serde_json::Map::new();
     let mut data = Vec::new();
     for (name, tensor) in tensors {
         let start = data.len();
-        data.extend(tensor.read().map_err(|e| bad(format!("tensor \"{name}\": {e}")))?);
+        data.extend(tensor.read().map_err(|e| format!("tensor \"{name}\": {e}"))?);
         let entry = serde_json::json!({
             "dtype": format!("{:?}", tensor.dtype()), "shape": tensor.shape(), "data_offsets": [start, data.len()],
         });
-        header.insert(name, entry);
+        header.insert(name[prefix.len()..].to_owned(), entry);
     }
     let header = serde_json::Value::Object(header).to_string().into_bytes();
     Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat())
@@ -54,6 +94,9 @@ mod tests {
     use super::*;
     use crate::network::weights::WeightFile;
     use std::fs;
+    use std::io::{Cursor, Read, Write};
+    use zip::write::SimpleFileOptions;
+    use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
     /// The weights of `thesis_reference_weights.safetensors` as `torch.save` writes a `state_dict`.
     const CHECKPOINT: &str = "tests/data/thesis_reference_weights.pt";
@@ -69,6 +112,81 @@ mod tests {
             let shape = expected.shape(name).unwrap();
             assert_eq!(found.tensor(name, shape).unwrap(), expected.tensor(name, shape).unwrap(), "{name}");
         }
+    }
+
+    /// `CHECKPOINT` with its state under `keys`, each inside the one before, beside an epoch and an optimizer's copy of one of its tensors.
+    fn nested(keys: &[&str]) -> Vec<u8> {
+        let mut archive = ZipArchive::new(Cursor::new(fs::read(CHECKPOINT).unwrap())).unwrap();
+        let mut out = ZipWriter::new(Cursor::new(Vec::new()));
+        for i in 0..archive.len() {
+            let mut entry = archive.by_index(i).unwrap();
+            let mut bytes = Vec::new();
+            entry.read_to_end(&mut bytes).unwrap();
+            if entry.name().ends_with("data.pkl") {
+                bytes = nest(&bytes, keys);
+            }
+            let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+            out.start_file(entry.name(), stored).unwrap();
+            out.write_all(&bytes).unwrap();
+        }
+        out.finish().unwrap().into_inner()
+    }
+
+    /// A pickle of `{keys[0]: {keys[1]: ... value of `pickle`}, "epoch": 3, "optimizer": {"state": {0: [the same value]}}}`.
+    fn nest(pickle: &[u8], keys: &[&str]) -> Vec<u8> {
+        let text = |text: &str| [b"X".as_slice(), &(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+        let value = pickle.strip_prefix(b"\x80\x02").unwrap().strip_suffix(b".").unwrap();
+        let mut out = b"\x80\x02".to_vec();
+        for key in keys {
+            // An empty dictionary, then a key of it.
+            out.extend([b"}".as_slice(), &text(key)].concat());
+        }
+        // The value is kept under a number that the pickle doesn't use, and put into the dictionaries (SETITEM).
+        out.extend([value, b"r\x00\x00\x01\x00".as_slice(), &b"s".repeat(keys.len())].concat());
+        out.extend(
+            [&text("epoch"), b"K\x03s".as_slice(), &text("optimizer"), b"}", &text("state"), b"}K\x00"].concat(),
+        );
+        out.extend(b"]j\x00\x00\x01\x00asss.");
+        out
+    }
+
+    #[test]
+    fn a_state_is_found_under_the_usual_keys() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("nested.pt");
+        let bare = read_weights(Path::new(CHECKPOINT)).unwrap();
+        for keys in
+            [["model"].as_slice(), &["state_dict"], &["model_state_dict"], &["model", "state_dict"], &["net", "module"]]
+        {
+            fs::write(&path, nested(keys)).unwrap();
+            assert_eq!(read_weights(&path).unwrap(), bare, "{keys:?}: the same weights, and nothing of the optimizer");
+        }
+        fs::write(&path, nested(&["epochs"])).unwrap();
+        let found = read_weights(&path).unwrap();
+        assert!(WeightFile::parse("x", &found).unwrap().shape("epochs.down.layer3x3.0.0.weight").is_some());
+    }
+
+    #[test]
+    fn a_checkpoint_of_the_training_programs_gives_the_averaged_weights() {
+        let shipped = include_bytes!("../../assets/weights/thesis-1.safetensors");
+        let found = read_weights(Path::new("training/checkpoints/thesis-1.pt")).unwrap();
+        let (found, shipped) = (WeightFile::parse("x", &found).unwrap(), WeightFile::parse("y", shipped).unwrap());
+        let name = "up.upconv.0.0.weight";
+        let shape = shipped.shape(name).unwrap();
+        assert_eq!(found.tensor(name, shape).unwrap(), shipped.tensor(name, shape).unwrap());
+        assert!(found.shape("model.up.upconv.0.0.weight").is_none(), "the weights that are not averaged are left out");
+    }
+
+    #[test]
+    fn what_holds_no_state_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("empty.pt");
+        fs::write(&path, b"\x80\x02}X\x05\x00\x00\x00epochK\x03s.").unwrap();
+        let message = read_weights(&path).unwrap_err().to_string();
+        assert!(message.contains("it holds no tensors; expected a state_dict"), "{message}");
+        crate::files::npz::write_npz(&path, |out| out.add("sub0", &ndarray::arr1(&[1.0]))).unwrap();
+        let message = read_weights(&path).unwrap_err().to_string();
+        assert!(message.contains("it is a NumPy archive (.npz)"), "{message}");
     }
 
     #[test]

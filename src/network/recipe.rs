@@ -64,6 +64,14 @@ impl Optimizer {
         }
     }
 
+    /// Its name, as weight files give it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Optimizer::Sgd { .. } => "SGD",
+            Optimizer::AdamW { .. } => "AdamW",
+        }
+    }
+
     /// Step size before any decay.
     pub fn learning_rate(&self) -> f64 {
         match self {

@@ -22,6 +22,8 @@ pub struct Run {
     pub max_steps: Option<u64>,
     /// Stop, with a checkpoint, after so long.
     pub max_time: Option<Duration>,
+    /// Write weights that no step was taken with all the same.
+    pub untrained: bool,
     /// Time between checkpoints.
     pub checkpoint_every: Duration,
     /// What trains, as found when this part of the run started.
@@ -129,6 +131,11 @@ pub enum TrainError {
         /// What is wrong with it.
         reason: String,
     },
+    /// No step was taken.
+    #[error(
+        "no step was taken, so the weights would be random; give the run steps and minutes, or write them all the same with --untrained"
+    )]
+    Untrained,
     /// The folder already holds another run.
     #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
     Occupied {

@@ -9,7 +9,7 @@ use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights};
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
@@ -18,7 +18,8 @@ use ndarray::{Array2, Array3};
 const THESIS_ETA: f32 = 0.7;
 
 /// What the thesis' networks learned beside the samples.
-const TOLD: &str = "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor";
+const TOLD: &str =
+    "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
 /// The thesis' encoder-decoder with weights. Its output is Lambda as it stands: what it learned to answer, and what the thesis takes the
 /// squared error of. Its threshold is one for the output stretched to [0, 1], as the thesis' is.
@@ -30,6 +31,7 @@ pub struct ThesisMethod {
     eta: f32,
     name: &'static str,
     description: &'static str,
+    weights: Weights,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -54,6 +56,7 @@ impl ThesisMethod {
             eta: file.provenance.eta().unwrap_or(THESIS_ETA),
             name,
             description,
+            weights: file.weights(),
             provenance: file.provenance,
         })
     }
@@ -62,7 +65,13 @@ impl ThesisMethod {
     fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
         let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
         let eta = unstretched(&map, self.eta);
-        Ok(Reconstruction { lambda: Thesis::finish(map), reflectors: Vec::new(), eta: Some(eta) })
+        Ok(Reconstruction {
+            lambda: Thesis::finish(map),
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: Some(eta),
+            least_eta: None,
+        })
     }
 }
 
@@ -71,12 +80,24 @@ impl Reconstructor for ThesisMethod {
         About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn reads_eta(&self) -> bool {
         true
     }
 
+    fn weights(&self) -> Option<Weights> {
+        Some(self.weights.clone())
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         check_radar(self.name, radar)
+    }
+
+    fn trained_noise(&self) -> Option<TrainedNoise> {
+        Some(TrainedNoise::None)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -105,6 +126,7 @@ pub struct UnetMethod {
     network: Unet,
     config: UnetConfig,
     device: Device,
+    weights: Weights,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -119,7 +141,7 @@ impl UnetMethod {
         let config = UnetConfig::default();
         let mut network = Unet::new(&config, &device);
         file.load_into(&mut network, |_| false)?;
-        Ok(UnetMethod { network, config, device, provenance: file.provenance })
+        Ok(UnetMethod { network, config, device, weights: file.weights(), provenance: file.provenance })
     }
 }
 
@@ -133,8 +155,20 @@ impl Reconstructor for UnetMethod {
         }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         check_radar(Unet::NAME, radar)
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        Some(self.weights.clone())
+    }
+
+    fn trained_noise(&self) -> Option<TrainedNoise> {
+        Some(TrainedNoise::None)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -143,7 +177,13 @@ impl Reconstructor for UnetMethod {
         let cartesian =
             estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
         let lambda = to_polar(radar, &cartesian);
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: None })
+        Ok(Reconstruction {
+            lambda: RangeAngleMap { lambda },
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: None,
+            least_eta: None,
+        })
     }
 }
 

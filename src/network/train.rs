@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
 ///
@@ -30,6 +30,8 @@ pub fn train<S: Student>(
     resume: bool,
     mut watch: impl FnMut(&Progress),
 ) -> Result<Progress, TrainError> {
+    let has_time = run.max_steps != Some(0) && run.max_time != Some(Duration::ZERO);
+    refuse_untrained(run, resume || has_time)?;
     let device = run.device.clone().autodiff();
     let at = run.folder.join("checkpoint");
     let (mut network, mut optimizer, mut progress) = begin::<S>(recipe, config, run, resume.then_some(&at), &device)?;
@@ -76,9 +78,15 @@ pub fn train<S: Student>(
         progress.step_of_epoch = 0;
     }
     checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
+    refuse_untrained(run, progress.maps > 0)?;
     let validation = validate::<S>(&network.valid(), recipe, config, run)?;
     export::<S>(&network.valid(), recipe, run, &progress, &validation)?;
     Ok(progress)
+}
+
+/// Refuses weights that no step moved, unless the run asks for them.
+fn refuse_untrained(run: &Run, is_trained: bool) -> Result<(), TrainError> {
+    if is_trained || run.untrained { Ok(()) } else { Err(TrainError::Untrained) }
 }
 
 /// Network, optimizer and progress of a run that starts, or goes on from the checkpoint `from`; its new part is recorded.
@@ -173,7 +181,6 @@ mod tests {
     use crate::network::recipe::{Decay, Network, Optimizer, Share};
     use crate::network::thesis::{Thesis, ThesisConfig};
     use crate::radar::Radar;
-    use std::time::Duration;
 
     fn radar() -> Radar {
         Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() }
@@ -205,6 +212,7 @@ mod tests {
             radar: radar(),
             max_steps: Some(max_steps),
             max_time: None,
+            untrained: false,
             checkpoint_every: Duration::from_secs(3600),
             origin: Default::default(),
         }
@@ -220,6 +228,23 @@ mod tests {
         let other = Recipe { batch: 3, ..recipe };
         let error = train::<Thesis>(&other, &config, &run(folder.path(), 2), true, |_| {}).unwrap_err().to_string();
         assert!(error.contains("another recipe"), "{error}");
+    }
+
+    #[test]
+    fn weights_that_no_step_moved_are_not_written_unless_asked_for() {
+        let (recipe, config) = recipe();
+        let folder = tempfile::tempdir().unwrap();
+        let weights = folder.path().join("weights.safetensors");
+        let idle = run(folder.path(), 0);
+        let error = train::<Thesis>(&recipe, &config, &idle, false, |_| {}).unwrap_err();
+        assert!(matches!(error, TrainError::Untrained), "{error}");
+        // As where the time ends before the first step does.
+        let hurried = Run { max_steps: None, max_time: Some(Duration::from_nanos(1)), ..idle.clone() };
+        let error = train::<Thesis>(&recipe, &config, &hurried, false, |_| {}).unwrap_err();
+        assert!(matches!(error, TrainError::Untrained) && !weights.exists(), "{error}");
+        let asked = Run { untrained: true, ..idle };
+        train::<Thesis>(&recipe, &config, &asked, true, |_| {}).unwrap();
+        assert!(weights.exists());
     }
 
     #[test]

@@ -14,8 +14,8 @@ pub(super) fn check_radar(method: &'static str, radar: &Radar) -> Result<(), Rec
     }
     Err(ReconstructError::Unusable {
         method,
-        reason: "the network was trained for the radar of table 3.1 (1024 elements, 512 samples, 2 GHz at 77 GHz) with its one-way \
-                 carrier and Hann window, and knows no other"
+        reason: "the network works only with the default radar (table 3.1: 1024 elements, 512 samples, 2 GHz at 77 GHz, one-way carrier, \
+                 Hann window)"
             .into(),
     })
 }

@@ -6,6 +6,7 @@ use super::run::{Progress, Run, TrainError};
 use super::students::Student;
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
 use crate::evaluate::{Roc, squared_error};
+use crate::radar::counted;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::Floor;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
@@ -102,6 +103,7 @@ pub fn export<S: Student>(
         .metadata("network", S::NAME)
         .metadata("recipe", &recipe.name)
         .metadata("trainer", "apertura train")
+        .metadata("optimiser", recipe.optimizer.name())
         .metadata("seed", recipe.seed.to_string())
         .metadata("steps", progress.step.to_string())
         .metadata("maps_seen", progress.maps.to_string())
@@ -110,6 +112,9 @@ pub fn export<S: Student>(
         .metadata("commit", &run.origin.commit)
         .metadata("parts", &parts)
         .metadata("eta", format!("{:.4}", validation.eta))
-        .metadata("validation", format!("{} scenes a set: {}", recipe.validation_scenes, figures.join("; ")));
+        .metadata(
+            "validation",
+            format!("{}: {}", counted(recipe.validation_scenes, "scene a set", "scenes a set"), figures.join("; ")),
+        );
     network.save_into(&mut store).map_err(|e| TrainError::Checkpoint { path, reason: e.to_string() })
 }

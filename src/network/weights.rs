@@ -3,6 +3,9 @@
 //! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
+use crate::files::kind::kind_of;
+use crate::files::sha256;
+use crate::reconstruct::Weights;
 use burn::module::Module;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
 use serde::{Deserialize, Serialize};
@@ -14,7 +17,8 @@ const MAX_TENSORS: usize = 10_000;
 /// What a weight file says about itself; kept in its safetensors header.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Provenance {
-    /// All entries, by name: `network`, `recipe`, `trainer`, `seed`, `maps_seen`, `validation`, `eta`, ...
+    /// All entries, by name: `network`, `recipe`, `trainer`, `optimiser`, `seed`, `maps_seen`, `validation`, `eta`, ... Of a run in
+    /// several parts `parts` has each one's record (JSON), in which what nobody kept says "not recorded".
     pub entries: BTreeMap<String, String>,
 }
 
@@ -22,6 +26,14 @@ impl Provenance {
     /// An entry, or "" where the file doesn't have it.
     pub fn get(&self, name: &str) -> &str {
         self.entries.get(name).map_or("", String::as_str)
+    }
+
+    /// How the weights followed the gradient, such as "AdamW" or "SGD, then Muon"; "not recorded" where the file doesn't say.
+    pub fn optimiser(&self) -> &str {
+        match self.get("optimiser") {
+            "" => "not recorded",
+            named => named,
+        }
     }
 
     /// The detection threshold chosen on validation scenes, if the file names a valid one.
@@ -75,6 +87,20 @@ pub enum WeightsError {
         /// Network named in the file.
         found: String,
         /// Network wanted.
+        expected: String,
+    },
+    /// The file names no network, and its tensors are those of none of ours.
+    #[error(
+        "{file} names no network, and none of ours has its tensors ({count} in all): {names}; expected weights of {expected}"
+    )]
+    Unknown {
+        /// Name of the file.
+        file: String,
+        /// How many tensors it holds.
+        count: usize,
+        /// Names of the first.
+        names: String,
+        /// Networks that would do.
         expected: String,
     },
     /// A tensor that the network needs is missing, or one it doesn't know is there.
@@ -141,7 +167,8 @@ impl<'a> WeightFile<'a> {
         let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(|| not("it is shorter than 8 bytes"))?;
         let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
         if length > 16 << 20 {
-            return Err(not("its first 8 bytes are no header length"));
+            let told = |kind| format!("it is {kind}; expected weights as safetensors, or PyTorch's .pt");
+            return Err(not(&kind_of(bytes).map_or("its first 8 bytes are no header length".to_owned(), told)));
         }
         if length > rest.len() {
             return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected: length + 8 });
@@ -208,6 +235,12 @@ impl<'a> WeightFile<'a> {
         Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), self.data].concat())
     }
 
+    /// What the weights are known by, whatever else the file says about itself.
+    pub fn weights(&self) -> Weights {
+        let sha256 = sha256::of_pieces([self.data]);
+        Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }
+    }
+
     /// Every 32-bit value in the file, whatever tensor it belongs to.
     pub fn all_values(&self) -> Vec<f32> {
         self.data.as_chunks::<4>().0.iter().map(|v| f32::from_le_bytes(*v)).collect()
@@ -226,9 +259,17 @@ impl<'a> WeightFile<'a> {
 
     /// The error of a file that holds other weights where those of `expected` are wanted.
     pub fn foreign(&self, expected: &str) -> WeightsError {
-        let found = self.network();
-        let found = if found.is_empty() { "no named network" } else { found }.to_owned();
-        WeightsError::Foreign { file: self.name.clone(), found, expected: expected.to_owned() }
+        let (file, expected) = (self.name.clone(), expected.to_owned());
+        match self.network() {
+            "" => {
+                let mut names: Vec<&str> = self.tensors.keys().map(String::as_str).take(3).collect();
+                if self.tensors.len() > names.len() {
+                    names.push("...");
+                }
+                WeightsError::Unknown { file, count: self.tensors.len(), names: names.join(", "), expected }
+            }
+            found => WeightsError::Foreign { file, found: found.to_owned(), expected },
+        }
     }
 
     /// The values of one tensor.
@@ -329,6 +370,29 @@ mod tests {
         assert!(matches!(file.expect_network("thesis"), Err(WeightsError::Foreign { .. })));
         let stranger = include_bytes!("../../tests/data/thesis_reference.safetensors");
         says(stranger, good, "is missing");
+    }
+
+    #[test]
+    fn shipped_weights_name_their_optimisers_and_every_map_they_saw() {
+        for (bytes, optimiser, maps) in [
+            (include_bytes!("../../assets/weights/live.safetensors").as_slice(), "AdamW", 11_172 + 55_124),
+            (include_bytes!("../../assets/weights/thesis-1.safetensors"), "SGD, then Muon", 3872 + 14_966),
+            (include_bytes!("../../assets/weights/thesis.safetensors"), "AdamW, then Muon", 20_986),
+        ] {
+            let record = WeightFile::parse("shipped", bytes).unwrap().provenance;
+            assert_eq!((record.optimiser(), record.get("maps_seen")), (optimiser, maps.to_string().as_str()));
+            let parts: Vec<serde_json::Value> = serde_json::from_str(record.get("parts")).unwrap();
+            let mut seen = 0;
+            for part in &parts {
+                assert_eq!(part["maps_before"].as_u64(), Some(seen), "no part is left out: {part}");
+                seen += part["maps_seen"].as_u64().unwrap();
+                assert!(part["optimiser"].is_string() && part["started"].is_string(), "{part}");
+            }
+            assert_eq!(seen, maps);
+        }
+        let unet = include_bytes!("../../assets/weights/unet.safetensors");
+        assert_eq!(WeightFile::parse("shipped", unet).unwrap().provenance.optimiser(), "SGD");
+        assert_eq!(Provenance::default().optimiser(), "not recorded");
     }
 
     #[test]

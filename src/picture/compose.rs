@@ -2,7 +2,7 @@
 
 use super::{ColourMap, Panels, PictureError, encode_png, render, render_svg};
 use crate::maps::{LogMaps, Normalisation};
-use crate::radar::{Carrier, Radar};
+use crate::radar::{Carrier, Radar, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::Scene;
 use crate::signal::{BeatSignal, Floor};
@@ -74,8 +74,7 @@ pub fn compose(
     };
     let reflectors = match scene.reflector_count() {
         0 => "no reflector".to_owned(),
-        1 => "1 reflector".to_owned(),
-        n => format!("{n} reflectors"),
+        n => counted(n, "reflector", "reflectors"),
     };
     let panels = Panels {
         scene,

@@ -24,7 +24,7 @@ pub use directions::{Curve, Directions, Mark};
 pub use png::{encode_png, is_our_png};
 pub use recording::{compose_recording, maps_of};
 
-use crate::evaluate::{Metrics, TARGET_ETA};
+use crate::evaluate::{Metrics, TARGET_ETA, eta_text};
 use crate::maps::RangeAngleMap;
 use crate::radar::{End, Radar};
 use crate::scene::Scene;
@@ -143,7 +143,7 @@ impl Panels<'_> {
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),
         ];
         let output = lambda(format!("Output: {}", self.method), self.output);
-        let title = format!("Output > {:.2}", self.eta);
+        let title = format!("Output > {}", eta_text(self.eta));
         let Some(target) = self.target else {
             panels.extend([output, MapPanel { title, cells: Cells::Above(self.output, self.eta) }]);
             return panels;
@@ -160,7 +160,9 @@ impl Panels<'_> {
     /// The three figures of the tables for this scene, then the scene's notes.
     fn figures_and_notes<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
         let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
-        let metrics = Metrics::of(target, self.output, self.eta);
+        // What was found in a recording says nothing of what it holds.
+        let has_echoes = !self.scene.is_silent() || self.objects_title != "Scene";
+        let metrics = Metrics::of_echoes(has_echoes, target, self.output, self.eta);
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
             ("SE", format!("{:.0}", metrics.squared_error)),

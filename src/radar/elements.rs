@@ -299,6 +299,20 @@ mod tests {
     }
 
     #[test]
+    fn draws_of_192_elements_scatter_by_five_per_cent_around_what_was_asked() {
+        let radar = Radar { elements: 192, ..Radar::default() };
+        let asked = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
+        let draws = 400;
+        let spreads: Vec<f64> = (0..draws).map(|seed| asked.build(&radar, seed).spread().phase_degrees).collect();
+        // The mean around which the phases are counted takes one element's worth: 191 of 192 remain.
+        let variance = spreads.iter().map(|s| s * s).sum::<f64>() / draws as f64;
+        assert!((variance / (100.0 * 191.0 / 192.0) - 1.0).abs() < 0.02, "{variance}");
+        let mean = spreads.iter().sum::<f64>() / draws as f64;
+        let scatter = (spreads.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / draws as f64).sqrt();
+        assert!((scatter / 10.0 - 0.051).abs() < 0.006, "1 / sqrt(2 * 192) is 5.1 %: {scatter}");
+    }
+
+    #[test]
     fn responses_and_places() {
         let radar = Radar::default();
         let off = ElementError { gain: Decibels(20.0), phase_degrees: 90.0, position_millimetres: 3.0, dead: false };

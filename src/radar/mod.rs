@@ -15,7 +15,7 @@ pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
 pub use memory::MAX_MEMORY_BYTES;
-pub use units::{Bytes, Decibels};
+pub use units::{Bytes, DecibelMilliwatts, Decibels, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};
@@ -29,12 +29,12 @@ pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Carrier {
-    /// `exp(-j 2 pi R / lambda)`: the usual half-wavelength virtual array, unambiguous over all of cos(theta).
-    /// It is the reading that reproduces the thesis' tables.
+    /// `exp(-j 2 pi R / lambda)`: the thesis' convention, unambiguous over all of cos(theta) with half-wavelength spacing. It reproduces
+    /// the thesis' tables. No physical array has it, since the beat's phase counts the distance there and back with the other sign.
     #[default]
     OneWay,
-    /// `exp(+j 4 pi R / lambda)`, as equation 3.1 is printed. With half-wavelength spacing every column then stands for two
-    /// directions: cos(theta) folds twice.
+    /// `exp(+j 4 pi R / lambda)`, as equation 3.1 is printed: carrier and beat count the same path with the same sign. With
+    /// half-wavelength spacing every column then stands for two directions.
     TwoWay,
 }
 

@@ -39,7 +39,7 @@ pub const ALL: &[RadarPreset] = &[
         id: "table-3.1",
         name: "The thesis' radar (table 3.1)",
         about: "1024 elements over 2 m at 77 GHz, 2 GHz of bandwidth: range bins of 7.5 cm, directions to a tenth of a degree. Every \
-                scene lies in its near field, which begins to end at 2 km.",
+                scene lies in the near field, which extends to about 2 km.",
         radar: TABLE_3_1,
     },
     RadarPreset {
@@ -73,8 +73,7 @@ pub const ALL: &[RadarPreset] = &[
     RadarPreset {
         id: "one-wavelength",
         name: "Elements one wavelength apart",
-        about: "Table 3.1 with twice the spacing: the beam is half as wide, but each echo appears in two directions (grating lobes), for \
-                elements so far apart cannot tell them apart.",
+        about: "Table 3.1 with twice the spacing: the beam is half as wide, but each column stands for two directions (grating lobes).",
         radar: Radar { element_spacing_metres: 2.0 * half_wavelength_metres(77e9), ..TABLE_3_1 },
     },
     RadarPreset {

@@ -1,9 +1,12 @@
-//! Where a map shows a reflector: not quite in its direction.
+//! Beam squint: where a map shows a reflector, which is beside its direction.
 //!
-//! Over a chirp the beat's phase is added to the carrier's. The carrier turns `s q / lambda` times a metre of distance (equation 3.1),
-//! the beat at sample `n` of `N` another `2 n B / (N c)` times. Halfway through, where windows weigh most, a line of elements therefore
-//! hears the carrier `f` as `f + B / (s q)`, and a direction's phase from element to element is that of another: the beam squints.
-//! For table 3.1 blobs stand 2.6 % nearer to broadside than their reflectors.
+//! Over a chirp the beat's phase is added to the carrier's. The carrier's phase is `s q / lambda` turns a metre of distance (equation
+//! 3.1), the beat's at sample `n` of `N` another `2 n B / (N c)`. In the middle of the chirp, where windows weigh most, the array is
+//! therefore at `f + B / (s q)` in place of the carrier `f`.
+//!
+//! Under the thesis' convention (one-way carrier with minus, two-way beat with plus, `s q = -1`) that is `f - B`, and blobs of table 3.1
+//! stand 2.6 % nearer to broadside than their reflectors. No physical array has this convention. With consistent signs (`s q = 2`, the
+//! two-way carrier) it is `f + B / 2`, and blobs stand 1.3 % farther from broadside.
 
 use super::{Polar, Radar};
 

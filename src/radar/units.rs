@@ -26,6 +26,29 @@ impl fmt::Display for Decibels {
     }
 }
 
+/// A power in decibels over a milliwatt.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct DecibelMilliwatts(pub f64);
+
+impl DecibelMilliwatts {
+    /// The level of a power in watts: `10 log10(watts / 1 mW)`.
+    pub fn of_watts(watts: f64) -> Self {
+        DecibelMilliwatts(10.0 * watts.log10() + 30.0)
+    }
+
+    /// The power in watts.
+    pub fn watts(self) -> f64 {
+        10f64.powf((self.0 - 30.0) / 10.0)
+    }
+}
+
+impl fmt::Display for DecibelMilliwatts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} dBm", self.0)
+    }
+}
+
 /// An amount of memory in bytes, printed as a person reads it: "4.0 GiB".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Bytes(pub u64);
@@ -43,9 +66,30 @@ impl fmt::Display for Bytes {
     }
 }
 
+/// A number with the noun it counts: "1 scene", "12 scenes".
+pub fn counted<N: fmt::Display + PartialEq + From<u8>>(number: N, one: &str, many: &str) -> String {
+    let noun = if number == N::from(1) { one } else { many };
+    format!("{number} {noun}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        let told = [0u32, 1, 2].map(|n| counted(n, "step", "steps"));
+        assert_eq!(told, ["0 steps", "1 step", "2 steps"]);
+        assert_eq!(counted(1usize, "try", "tries"), "1 try");
+    }
+
+    #[test]
+    fn zero_decibel_milliwatts_are_a_milliwatt() {
+        assert!((DecibelMilliwatts(0.0).watts() / 1e-3 - 1.0).abs() < 1e-12);
+        assert!((DecibelMilliwatts::of_watts(1.0).0 - 30.0).abs() < 1e-12);
+        assert!((DecibelMilliwatts::of_watts(DecibelMilliwatts(-73.5).watts()).0 + 73.5).abs() < 1e-12);
+        assert_eq!(DecibelMilliwatts(-20.0).to_string(), "-20 dBm");
+    }
 
     #[test]
     fn amounts_of_memory_are_readable() {

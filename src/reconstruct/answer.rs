@@ -44,8 +44,15 @@ pub struct Reconstruction {
     pub lambda: RangeAngleMap,
     /// The reflectors it believes in, where the method finds any.
     pub reflectors: Vec<Reflector>,
+    /// How far each of `reflectors` is needed, 0 to 1 ([`Detection::confidence`]); empty where the method does not say.
+    pub confidences: Vec<f64>,
     /// The threshold that fits this very answer, where the method reads one off what it measured.
     pub eta: Option<f32>,
+    /// Lambda that noise alone does not exceed in this map, where the method knows it: no threshold lies lower. [`reconstruct`] has raised
+    /// `eta` to it already.
+    ///
+    /// [`reconstruct`]: super::Reconstructor::reconstruct
+    pub least_eta: Option<f32>,
 }
 
 /// A reflector as the array's centre hears it.
@@ -57,6 +64,11 @@ pub struct Detection {
     pub range_metres: f64,
     /// Power of its echo, relative to the strongest one found.
     pub relative_power: Decibels,
+    /// `w / (w + r)`, 0 to 1: the part of the energy around its range, unexplained without it, that it explains. `w` is by how much
+    /// the unexplained energy grows where the echo is taken away and the gains of all others are fitted anew; `r` is the energy that
+    /// all echoes together leave unexplained within two range bins of it, or that noise leaves there where that is more. Low where the
+    /// other echoes, noise or what is left of side lobes would do as well. `None` where the method does not say.
+    pub confidence: Option<f64>,
 }
 
 impl Detection {
@@ -72,7 +84,7 @@ impl Reconstruction {
     /// The answer to silence: Lambda 0 everywhere, no reflector.
     pub fn silence(radar: &Radar) -> Self {
         let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
-        Reconstruction { lambda, reflectors: Vec::new(), eta: None }
+        Reconstruction { lambda, reflectors: Vec::new(), confidences: Vec::new(), eta: None, least_eta: None }
     }
 
     /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.
@@ -89,18 +101,25 @@ impl Reconstruction {
     /// The reflectors as the array's centre hears them, strongest first; those that reflect nothing are left out.
     pub fn detections(&self, radar: &Radar) -> Vec<Detection> {
         let amplitude = |r: &Reflector| r.reflectivity.abs() / (r.x_metres.powi(2) + r.y_metres.powi(2));
-        let mut heard: Vec<(f64, &Reflector)> =
-            self.reflectors.iter().map(|r| (amplitude(r), r)).filter(|(a, _)| a.is_finite() && *a > 0.0).collect();
+        let with_amplitude = |(i, r)| (amplitude(r), r, self.confidences.get(i).copied());
+        let mut heard: Vec<(f64, &Reflector, Option<f64>)> = self
+            .reflectors
+            .iter()
+            .enumerate()
+            .map(with_amplitude)
+            .filter(|(a, ..)| a.is_finite() && *a > 0.0)
+            .collect();
         heard.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let strongest = heard.first().map_or(1.0, |(a, _)| *a);
+        let strongest = heard.first().map_or(1.0, |(a, ..)| *a);
         heard
             .into_iter()
-            .map(|(amplitude, r)| {
+            .map(|(amplitude, r, confidence)| {
                 let polar = radar.polar_of(r.x_metres, r.y_metres);
                 Detection {
                     cos_theta: polar.cos_theta,
                     range_metres: polar.range_metres,
                     relative_power: Decibels(20.0 * (amplitude / strongest).log10()),
+                    confidence,
                 }
             })
             .collect()
@@ -116,11 +135,14 @@ mod tests {
         let radar = Radar::default();
         let reflector = |x_metres, y_metres, reflectivity| Reflector { x_metres, y_metres, reflectivity };
         let reflectors = vec![reflector(0.0, 20.0, -2.0), reflector(6.0, 8.0, 1.0), reflector(1.0, 1.0, 0.0)];
-        let detections = Reconstruction { reflectors, ..Reconstruction::silence(&radar) }.detections(&radar);
+        let confidences = vec![0.25, 0.75, 1.0];
+        let detections =
+            Reconstruction { reflectors, confidences, ..Reconstruction::silence(&radar) }.detections(&radar);
         assert_eq!(detections.len(), 2, "nothing is heard of the third");
         let [near, far] = [detections[0], detections[1]];
         assert_eq!((near.cos_theta, near.range_metres, near.relative_power.0), (0.6, 10.0, 0.0));
         assert_eq!((far.cos_theta, far.range_metres), (0.0, 20.0));
+        assert_eq!((near.confidence, far.confidence), (Some(0.75), Some(0.25)), "each keeps its own");
         assert!((far.relative_power.0 - 20.0 * 0.5f64.log10()).abs() < 1e-12, "twice the size at twice the distance");
     }
 

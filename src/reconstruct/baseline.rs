@@ -21,12 +21,22 @@ impl Reconstructor for Baseline {
         }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn check_hearing(&self, _: &TwoEnds) -> Result<(), ReconstructError> {
         Ok(())
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let log = channels_map(radar, ends.first.view()).log_magnitude();
-        Ok(Reconstruction { lambda: log.normalise(request.normalisation), reflectors: Vec::new(), eta: None })
+        Ok(Reconstruction {
+            lambda: log.normalise(request.normalisation),
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: None,
+            least_eta: None,
+        })
     }
 }

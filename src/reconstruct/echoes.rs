@@ -1,14 +1,15 @@
 //! Sparse answers as maps: the exact map of a few reflectors with complex gains.
 
 use super::answer::{Reconstruction, Request};
+use super::confidence::confidences;
 use super::power::lambda_of_power;
 use crate::maps::{Aperture, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scene::Reflector;
-use crate::signal::BeatSignal;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
+use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::Axis;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -23,8 +24,14 @@ pub(super) struct Gained {
     pub gain: Complex64,
 }
 
-/// The whole array's map of `found` over the measured noise.
-pub(super) fn of_echoes(radar: &Radar, found: &[Gained], noise_variance: f64, request: &Request) -> Reconstruction {
+/// The whole array's map of `found` in `ends`, over the measured noise.
+pub(super) fn of_echoes(
+    radar: &Radar,
+    ends: &TwoEnds,
+    found: &[Gained],
+    noise_variance: f64,
+    request: &Request,
+) -> Reconstruction {
     let model = EchoModel::new(radar);
     let mut signal = BeatSignal::silence(radar);
     signal.samples.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each(|(block, mut rows)| {
@@ -40,7 +47,9 @@ pub(super) fn of_echoes(radar: &Radar, found: &[Gained], noise_variance: f64, re
     let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full);
     let power = map.cells.mapv(|v| v.norm_sqr());
     let reflectors = found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
-    Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors, eta: None }
+    let confidences = confidences(radar, ends, found, noise_variance);
+    let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
+    Reconstruction { lambda, reflectors, confidences, eta: None, least_eta: Some(least) }
 }
 
 /// Echoes added up at neighbouring elements.

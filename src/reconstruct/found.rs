@@ -66,6 +66,7 @@ fn found_in_map(radar: &Radar, answer: &Reconstruction) -> Vec<Detection> {
             cos_theta: place(p.column),
             range_metres: radar.range_of_bin_metres(p.range_bin.rem_euclid(radar.samples as f64)),
             relative_power: Decibels(p.value - strongest),
+            confidence: None,
         })
         .collect()
 }

@@ -9,7 +9,7 @@ use ndarray::{ArrayView1, ArrayView2};
 use num_complex::Complex64;
 
 /// Variance of the white complex noise of a sample of either end, over `floor`.
-pub(super) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -> f64 {
+pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -> f64 {
     Hearing::beneath(radar, ends, floor).ends_noise_variance(radar, ends)
 }
 
@@ -29,7 +29,7 @@ impl Hearing {
     /// Of what lies beneath the samples of `ends`: where that is rounding, the echoes themselves tell how much of it there is, even
     /// where they fill every range bin.
     pub fn beneath(radar: &Radar, ends: &TwoEnds, floor: Floor) -> Self {
-        if matches!(floor, Floor::Snr(_)) {
+        if floor.is_thermal() {
             return Hearing::any();
         }
         let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();

@@ -3,7 +3,7 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::nomp::{Found, Settings, find, find_from};
-use super::reconstructor::{About, Reconstructor};
+use super::reconstructor::{About, Reconstructor, Weights};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
@@ -39,13 +39,14 @@ impl Hybrid {
         let expected = found.expected(radar, request);
         // Nothing fills in on a radar that the fallback doesn't know.
         if found.complete || self.fallback.check_radar(radar).is_err() {
-            return Ok(found.as_drawn(expected.map));
+            return Ok(found.as_drawn(expected.map, Some(expected.least_eta)));
         }
-        let filled = self.fallback.reconstruct(radar, ends, request)?.lambda;
+        let filled = self.fallback.reconstruct(radar, ends, request)?;
+        let least_eta = filled.least_eta.unwrap_or(0.0).max(expected.least_eta);
         let unexplained = found.unexplained_cells(radar, ends, &expected);
         let left = found.energy_left() as f32;
-        let filled = on_one_scale(&expected.map, filled, &unexplained, left);
-        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, most_weight(left))))
+        let filled = on_one_scale(&expected.map, filled.lambda, &unexplained, left);
+        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, most_weight(left)), Some(least_eta)))
     }
 
     fn about_itself() -> About {
@@ -72,6 +73,10 @@ impl Reconstructor for Hybrid {
         self.filled_in(&found, radar, ends, request)
     }
 
+    fn weights(&self) -> Option<Weights> {
+        self.fallback.weights()
+    }
+
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
         Some(Arc::new(Following { hybrid: self.clone(), last: Mutex::new(None) }))
     }
@@ -91,6 +96,10 @@ impl Reconstructor for Following {
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         self.hybrid.check_radar(radar)
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        self.hybrid.weights()
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

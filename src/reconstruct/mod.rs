@@ -12,6 +12,7 @@
 mod answer;
 mod baseline;
 mod coherent;
+mod confidence;
 mod echoes;
 mod error;
 pub mod found;
@@ -19,18 +20,26 @@ mod grid;
 mod hearing;
 mod hybrid;
 mod noise;
+mod noise_test;
 pub mod nomp;
 mod power;
 mod profiles;
 mod reconstructor;
 mod rows;
 mod seen;
+mod trained;
 
 pub use answer::{Detection, Reconstruction, Request};
 pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
+pub(crate) use hearing::ends_noise_variance;
 pub use hybrid::{Hybrid, on_one_scale};
-pub use reconstructor::{About, Reconstructor, check_ends};
-pub use rows::{BARTLETT, CAPON, LINEAR_PREDICTION, MUSIC, ROOT_MUSIC, RowMethod};
+pub(crate) use noise_test::least_eta;
+pub use reconstructor::{About, Reconstructor, Weights, check_ends};
+pub use rows::{
+    BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
+    ROOT_MUSIC_PEAKS, RowMethod,
+};
+pub use trained::{TrainedNoise, untrained_noise};

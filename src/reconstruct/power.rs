@@ -1,6 +1,7 @@
 //! From an estimate of the whole array's power to Lambda, over the floor that lies beneath it.
 
 use super::answer::{Reconstruction, Request};
+use super::noise_test::least_eta;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
 use ndarray::{Array2, Zip};
@@ -12,7 +13,7 @@ pub(super) fn focused_gain(radar: &Radar) -> f64 {
 }
 
 /// Mean square of a noise cell of the whole array's map for noise of variance 1 a sample.
-fn cell_noise(radar: &Radar) -> f64 {
+pub(super) fn cell_noise(radar: &Radar) -> f64 {
     let mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
     mean(radar.samples) * mean(radar.elements)
 }
@@ -21,13 +22,16 @@ fn cell_noise(radar: &Radar) -> f64 {
 ///
 /// The noise that was measured in the samples is laid beneath: an estimate of zero shows as a typical noise cell, and with
 /// `MinMax` Lambda 0 is where the smallest of so many noise cells is to be expected. Without it a method's own dynamic range,
-/// which says nothing about the scene, would decide the squared error.
+/// which says nothing about the scene, would decide the squared error. Lambda 1 is no lower than where the largest of so many noise
+/// cells is to be expected: an estimate of zero everywhere is a typical noise cell everywhere, and not the peak.
+///
+/// Also says which Lambda noise alone does not exceed.
 pub(super) fn lambda_of_power(
     radar: &Radar,
     mut power: Array2<f64>,
     noise_variance: f64,
     request: &Request,
-) -> RangeAngleMap {
+) -> (RangeAngleMap, f32) {
     let mut peak = 0.0f64;
     for v in &mut power {
         *v = if v.is_finite() { v.max(0.0) } else { 0.0 };
@@ -39,13 +43,38 @@ pub(super) fn lambda_of_power(
     // The mean of log10|n| lies 0.125 decades below the root mean square of complex normal n.
     let typical = noise * 10f64.powf(-0.25);
     let floor = decades(noise) - 0.5 * (power.len() as f64).log10();
-    let scale = LambdaScale::new(floor, decades(peak + typical), request.normalisation);
+    let largest_noise = noise * ((power.len().max(1) as f64).ln() + EULER);
+    let top = decades(peak + typical).max(decades(largest_noise));
+    let scale = LambdaScale::new(floor, top, request.normalisation);
     let mut lambda = Array2::zeros(power.dim());
     Zip::from(&mut lambda).and(&power).par_for_each(|out, p| *out = scale.lambda(decades(p + typical)) as f32);
-    RangeAngleMap { lambda }
+    (RangeAngleMap { lambda }, least_eta(radar, noise_variance, scale))
 }
+
+/// The largest of n exponential powers of mean 1 is `ln n` and this on average.
+const EULER: f64 = 0.577_215_664_901_532_9;
 
 /// A reconstruction that knows no reflectors, only power.
 pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, request: &Request) -> Reconstruction {
-    Reconstruction { lambda: lambda_of_power(radar, power, noise_variance, request), reflectors: Vec::new(), eta: None }
+    let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
+    Reconstruction { lambda, reflectors: Vec::new(), confidences: Vec::new(), eta: None, least_eta: Some(least) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Normalisation;
+    use crate::radar::Decibels;
+
+    #[test]
+    fn a_power_of_zero_is_drawn_beneath_every_threshold() {
+        let radar = Radar::default();
+        for normalisation in [Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))] {
+            let request = Request { normalisation, ..Request::default() };
+            let nothing = Array2::zeros((radar.samples, radar.elements));
+            let found = of_power(&radar, nothing, 1e-5, &request);
+            let most = found.lambda.lambda.iter().copied().fold(0.0, f32::max);
+            assert!(most < 0.9 && found.least_eta == Some(1.0), "{normalisation}: {most}, {:?}", found.least_eta);
+        }
+    }
 }

@@ -1,11 +1,13 @@
 //! The TOML of a recording.
 //!
 //! ```toml
+//! format = 2                          # of this text; without it, signs and carrier are those of the thesis' formula
 //! name = "A post and a wall"
 //! notes = "Where it was measured, and what to look for."
 //!
 //! [radar]                             # all of these are needed; a recording borrows none of table 3.1
-//! carrier_hz = 77e9
+//! carrier_hz = 77e9                   # at the sample that carrier_at says
+//! carrier = "two-way"                 # or "one-way", if nothing is said
 //! bandwidth_hz = 3.07e9               # over the samples; not needed for a snapshot (samples = 1)
 //! element_spacing_metres = 0.001947
 //! elements = 8
@@ -20,7 +22,9 @@
 //! elements = "all"                    # or "ends": first the elements of the first end, then those of the last
 //! missing = [17]                      # elements of the whole array that measured nothing
 //! range_metres = 15.0                 # of a snapshot
-//! conjugate = false                   # the phase falls where the program's rises
+//! carrier_at = "first-sample"         # or "middle": where on the chirp carrier_hz lies
+//! beat_sign = "+"                     # echoes stand at positive frequencies, or "-"
+//! sweep = "up"                        # or "down"
 //! reverse_elements = false            # the file's first element is the array's last
 //!
 //! [recording.calibration]             # taken off the elements of the file
@@ -37,8 +41,11 @@
 //! ```
 
 use super::axes::arrange;
+use super::doubts::doubts;
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
+use super::said_radar::said_radar;
+use super::signs::{BeatSign, CarrierAt, Said, Signs, Sweep};
 use super::{AxisKind, Calibration, Capture, Chirp, Fault, RadarProfile, Recorded, Recording, RecordingError, matlab};
 use crate::radar::{End, Radar};
 use crate::scene::file::SceneTextError;
@@ -65,6 +72,8 @@ pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
+    #[serde(default = "oldest")]
+    format: u32,
     #[serde(default)]
     name: String,
     #[serde(default)]
@@ -87,13 +96,20 @@ struct Table {
     #[serde(default)]
     missing: Vec<usize>,
     range_metres: Option<f64>,
-    #[serde(default)]
-    conjugate: bool,
+    conjugate: Option<bool>,
+    carrier_at: Option<CarrierAt>,
+    beat_sign: Option<BeatSign>,
+    sweep: Option<Sweep>,
     #[serde(default)]
     reverse_elements: bool,
     #[serde(default)]
     calibration: Calibration,
     capture: Option<Capture>,
+}
+
+/// The format of a text that names none.
+fn oldest() -> u32 {
+    1
 }
 
 /// Whose samples a file holds.
@@ -173,54 +189,23 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
             Some(read().map_err(|fault| fault.of(&beside))?)
         }
     };
-    let radar = radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
+    let mut radar = said_radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
     table.check(&radar).map_err(|fault| fault.of(path))?;
+    let signs = table.signs(document.format, &radar, profile.is_some()).map_err(|fault| fault.of(path))?;
+    radar.carrier_hz = signs.carrier_hz;
+    radar.validate().map_err(|e| Fault::from(e).of(path))?;
     let data = folder.join(&table.file);
     // Keys stand in the TOML, whatever file they are about.
     let place = |fault: Fault| match fault {
         Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
         fault => fault.of(&data),
     };
-    let rows = table.read(open, profile.as_ref()).map_err(place)?;
+    let rows = table.read(open, profile.as_ref(), signs).map_err(place)?;
     let samples = table.sorted(&radar, rows).map_err(place)?;
     let Table { mut missing, range_metres, .. } = table;
     missing.sort_unstable();
-    Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres })
-}
-
-/// The radar of a recording, which must say what it is.
-fn radar(mut table: toml::Table, profile: Option<&RadarProfile>) -> Result<Radar, Fault> {
-    if let Some(profile) = profile {
-        for (key, value) in [("carrier_hz", profile.carrier_hz()), ("bandwidth_hz", profile.bandwidth_hz())] {
-            let said = table.entry(key).or_insert(value.into());
-            let number = said.as_float().or(said.as_integer().map(|v| v as f64));
-            if number.is_none_or(|n| ((n - value) / value).abs() > 1e-4) {
-                return Err(Fault::key(
-                    &format!("radar.{key}"),
-                    format!("is {said}"),
-                    format!("{value}, as the .cfg says, or no such key"),
-                ));
-            }
-        }
-        let said = table.entry("samples").or_insert((profile.samples as i64).into());
-        if said.as_integer() != Some(profile.samples as i64) {
-            return Err(Fault::key(
-                "radar.samples",
-                format!("is {said}"),
-                format!("{}, as the .cfg says, or no such key", profile.samples),
-            ));
-        }
-    }
-    let snapshot = table.get("samples").and_then(toml::Value::as_integer) == Some(1);
-    let needed = ["carrier_hz", "bandwidth_hz", "element_spacing_metres", "elements", "end_elements", "samples"];
-    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || snapshot && **key == "bandwidth_hz")) {
-        return Err(Fault::key(&format!("radar.{key}"), "is missing", "it: a recording says which radar measured it"));
-    }
-    let radar: Radar = table.try_into().map_err(|e: toml::de::Error| {
-        Fault::key("[radar]", format!("can't be read ({})", e.message().trim_end()), "the radar's numbers")
-    })?;
-    radar.validate()?;
-    Ok(radar)
+    let doubts = doubts(&radar, &samples, document.format > oldest());
+    Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres, doubts })
 }
 
 impl Table {
@@ -252,6 +237,20 @@ impl Table {
         Ok(())
     }
 
+    /// What is done about signs and the carrier; the carrier of a `.cfg` is that in the middle of the samples.
+    fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
+        let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
+        let carrier_at = match carrier_at {
+            Some(CarrierAt::FirstSample) if has_profile => {
+                let expected = "\"middle\", as the .cfg says, or no such key";
+                return Err(Fault::key("recording.carrier_at", "is \"first-sample\"", expected));
+            }
+            None if has_profile && format > oldest() && radar.samples > 1 => Some(CarrierAt::Middle),
+            said => said,
+        };
+        Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
+    }
+
     /// Elements of the whole array that the file is to hold, in its order.
     fn covered(&self, radar: &Radar) -> Vec<usize> {
         match self.covers() {
@@ -265,7 +264,7 @@ impl Table {
     }
 
     /// The file's samples as `[elements, samples]`, with all that was said of them done.
-    fn read(&self, open: Open<'_>, profile: Option<&RadarProfile>) -> Result<Array2<Complex64>, Fault> {
+    fn read(&self, open: Open<'_>, profile: Option<&RadarProfile>, signs: Signs) -> Result<Array2<Complex64>, Fault> {
         let mut rows = match profile.zip(self.capture.as_ref()) {
             Some((profile, capture)) => self.read_capture(open, capture, profile)?,
             None => self.read_arrays(open)?,
@@ -274,8 +273,11 @@ impl Table {
             return Err(Fault::NotFinite { element, sample });
         }
         self.calibration.take_off(&mut rows)?;
-        if self.conjugate {
+        if signs.conjugates {
             rows.mapv_inplace(|v| v.conj());
+        }
+        if signs.reverses_samples {
+            rows.invert_axis(Axis(1));
         }
         if self.reverse_elements {
             rows.invert_axis(Axis(0));

@@ -4,18 +4,21 @@
 //!
 //! | file | what it reads |
 //! |---|---|
-//! | [`file`] | the TOML: `[radar]` and `[recording]` |
+//! | [`file`], `said_radar` | the TOML: `[radar]` and `[recording]` |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `capture`, `profile` | int16 samples of a capture card, and the `.cfg` that set the radar up |
 //! | `axes` | an array of any shape to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
+//! | `signs` | which way phases turn, and where on the chirp the carrier lies |
+//! | `doubts` | what looks wrong and can't be known from the samples |
 //!
 //! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
 
 mod axes;
 mod calibration;
 mod capture;
+mod doubts;
 mod error;
 pub mod explain;
 pub mod file;
@@ -24,6 +27,8 @@ mod numbers;
 mod numpy;
 pub mod presets;
 mod profile;
+mod said_radar;
+mod signs;
 
 pub use axes::{AxesError, AxisKind, Chirp};
 pub use calibration::{Calibration, CalibrationError};
@@ -33,6 +38,7 @@ pub use matlab::MatError;
 pub use numbers::MAX_NUMBERS;
 pub use numpy::NumpyError;
 pub use profile::{ProfileError, RadarProfile};
+pub use signs::FORMAT;
 
 use crate::radar::{Decibels, End, Radar};
 use crate::signal::{BeatSignal, Floor, TwoEnds};
@@ -47,7 +53,8 @@ pub struct Recording {
     pub name: String,
     /// Where it comes from and what to look for.
     pub notes: String,
-    /// The radar that measured it.
+    /// The radar that measured it. Its carrier is the one that the maps' formula needs for these samples, which is not always the
+    /// one that the text says.
     pub radar: Radar,
     /// What its elements measured.
     pub samples: Recorded,
@@ -55,6 +62,8 @@ pub struct Recording {
     pub missing: Vec<usize>,
     /// Range of everything in a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
     pub range_metres: Option<f64>,
+    /// What looks wrong and can't be known from the samples, a sentence each.
+    pub doubts: Vec<String>,
 }
 
 /// Whose samples a recording holds.
@@ -104,6 +113,7 @@ impl Recording {
             samples: Recorded::All(signal),
             missing: Vec::new(),
             range_metres: None,
+            doubts: Vec::new(),
         }
     }
 

@@ -95,6 +95,7 @@ impl Generator {
                 objects.extend((2..count).map(|_| self.point_or_line(rng)));
                 objects
             }
+            Kind::Noise => Vec::new(),
             Kind::Points(count) => (0..count).map(|_| self.point(rng)).collect(),
             Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
             Kind::Clusters | Kind::Walls | Kind::Spacings | Kind::Corner | Kind::Crowd | Kind::Dynamic | Kind::Near => {
@@ -179,7 +180,7 @@ mod tests {
     fn every_scene_of_every_purpose_has_its_own_noise() {
         let mut seeds = std::collections::HashSet::new();
         for purpose in [Purpose::Training, Purpose::Validation, Purpose::Test] {
-            for kind in Kind::TEST_SETS.into_iter().chain([Kind::Points(2), Kind::Mixed(2)]) {
+            for kind in Kind::TEST_SETS.into_iter().chain([Kind::Noise, Kind::Points(2), Kind::Mixed(2)]) {
                 for number in 0..100 {
                     let seed = generator(purpose).noise_seed(kind, number);
                     assert!(seed < 1 << 53 && seeds.insert(seed), "{purpose:?} {kind:?} {number}");
@@ -188,6 +189,12 @@ mod tests {
         }
         let g = generator(Purpose::Test);
         assert_eq!(g.noise_seed(Kind::Set2, 9), g.noise_seed(Kind::Set2, 9));
+    }
+
+    #[test]
+    fn scenes_of_noise_are_empty_and_differ_in_their_noise() {
+        let [a, b] = [0, 1].map(|number| generator(Purpose::Test).scene(Kind::Noise, number));
+        assert!(a.objects.is_empty() && a.is_silent() && a.noise_seed != b.noise_seed);
     }
 
     #[test]

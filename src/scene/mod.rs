@@ -135,6 +135,11 @@ impl Scene {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
 
+    /// Whether nothing in it reflects: what a radar hears of it is noise, if anything.
+    pub fn is_silent(&self) -> bool {
+        self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.reflector_count() == 0)
+    }
+
     /// Every reflector, and what a mirror makes of each: all that echoes.
     pub fn echoing(&self, radar: &Radar) -> Vec<Reflector> {
         let mut all = self.reflectors();

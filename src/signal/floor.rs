@@ -1,10 +1,15 @@
 //! What lies beneath the reflectors of a map.
 //!
 //! A map normalised by its minimum shows its floor as much as its peaks, so the floor is always named: no function picks one silently.
+//!
+//! A level in dBm needs a convention for the power of a sample, and this is the program's: in the thesis' convention the sample `y` of one
+//! reflector has amplitude `P_out sigma / R^2`, with `P_out` in watts, `R` in metres and no unit for sigma; its power `|y|^2` counts as
+//! watts, so its level is `10 log10(|y|^2 / 1 mW)`. A reflector of sigma 1 at 20 m before a radar of 100 W has amplitude 0.25, which is
+//! +18 dBm. The number says nothing of the watts in anybody's receiver; it makes noise the same for every scene.
 
 use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
-use crate::radar::{Decibels, Radar};
+use crate::radar::{DecibelMilliwatts, Decibels, Radar};
 use crate::scene::Reflector;
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -27,27 +32,61 @@ pub enum Floor {
     Exact,
     /// Thermal noise at this signal-to-noise ratio, measured per sample over the whole array.
     Snr(Decibels),
+    /// Thermal noise of this level a sample, whatever the scene: an empty scene over it is noise alone. The [module](self) says what a
+    /// sample's level is.
+    #[serde(rename = "dbm")]
+    Level(DecibelMilliwatts),
+}
+
+/// Signal-to-noise ratios that a floor may have, dB.
+pub const SNR_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
+/// Levels that a floor may have, dBm.
+pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200.0;
+
+impl Floor {
+    /// Whether it is white noise of a level that nobody but the samples tells.
+    pub fn is_thermal(self) -> bool {
+        matches!(self, Floor::Snr(_) | Floor::Level(_))
+    }
+
+    /// The signal-to-noise ratio of a scene over this floor, per sample over the whole array; `None` where the floor is not thermal
+    /// noise, or nothing reflects.
+    pub fn snr(self, radar: &Radar, reflectors: &[Reflector]) -> Option<Decibels> {
+        match self {
+            Floor::Thesis | Floor::Exact => None,
+            Floor::Snr(snr) => Some(snr).filter(|_| reflectors.iter().any(|r| r.reflectivity != 0.0)),
+            Floor::Level(level) => {
+                let ratio = mean_power(radar, reflectors) / level.watts();
+                (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))
+            }
+        }
+    }
 }
 
 /// A floor's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown floor \"{0}\"; expected thesis, exact or snr=DB with DB between -100 and 300")]
+#[error(
+    "unknown floor \"{0}\"; expected thesis, exact, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"
+)]
 pub struct FloorError(String);
 
 impl FromStr for Floor {
     type Err = FloorError;
 
     fn from_str(s: &str) -> Result<Self, FloorError> {
-        match s {
-            "thesis" => Ok(Floor::Thesis),
-            "exact" => Ok(Floor::Exact),
-            _ => s
-                .strip_prefix("snr=")
-                .and_then(|db| db.parse::<f64>().ok())
-                .filter(|db| (-100.0..=300.0).contains(db))
-                .map(|db| Floor::Snr(Decibels(db)))
-                .ok_or_else(|| FloorError(s.to_owned())),
-        }
+        let number = |text: &str, allowed: std::ops::RangeInclusive<f64>| {
+            text.parse::<f64>().ok().filter(|number| allowed.contains(number))
+        };
+        let floor = match (s, s.split_once('=')) {
+            ("thesis", _) => Some(Floor::Thesis),
+            ("exact", _) => Some(Floor::Exact),
+            (_, Some(("snr", db))) => number(db, SNR_DECIBELS).map(|db| Floor::Snr(Decibels(db))),
+            (_, Some(("dbm", level))) => {
+                number(level, LEVEL_DECIBEL_MILLIWATTS).map(|level| Floor::Level(DecibelMilliwatts(level)))
+            }
+            _ => None,
+        };
+        floor.ok_or_else(|| FloorError(s.to_owned()))
     }
 }
 
@@ -57,6 +96,7 @@ impl fmt::Display for Floor {
             Floor::Thesis => f.write_str("thesis"),
             Floor::Exact => f.write_str("exact"),
             Floor::Snr(db) => write!(f, "snr={}", db.0),
+            Floor::Level(level) => write!(f, "dbm={}", level.0),
         }
     }
 }
@@ -83,9 +123,28 @@ pub fn thesis_noise_of_echo(radar: &Radar, power: f64, range_metres: f64) -> f64
 /// Variance of thermal noise at `snr`, the same for every element: the reflectors' own powers, added up and averaged over the
 /// array, over the ratio. Whether their echoes happen to interfere does not change the noise; silence has none.
 pub fn snr_noise_variance(radar: &Radar, reflectors: &[Reflector], snr: Decibels) -> Vec<f64> {
+    vec![mean_power(radar, reflectors) / snr.power_ratio(); radar.elements]
+}
+
+/// Variance of thermal noise of `level` a sample, the same for every element and every scene: the level in watts.
+pub fn level_noise_variance(radar: &Radar, level: DecibelMilliwatts) -> Vec<f64> {
+    vec![level.watts(); radar.elements]
+}
+
+/// Variance of the noise that is `floor`, for each element, if there is any.
+pub fn noise_variance(radar: &Radar, reflectors: &[Reflector], floor: Floor) -> Option<Vec<f64>> {
+    match floor {
+        Floor::Exact => None,
+        Floor::Thesis => Some(thesis_noise_variance(radar, reflectors)),
+        Floor::Snr(snr) => Some(snr_noise_variance(radar, reflectors, snr)),
+        Floor::Level(level) => Some(level_noise_variance(radar, level)),
+    }
+}
+
+/// The reflectors' own powers, added up and averaged over the array: `|y|^2` of a sample where echoes don't interfere.
+fn mean_power(radar: &Radar, reflectors: &[Reflector]) -> f64 {
     let power = powers(radar, reflectors, 1.0, None);
-    let mean = power.iter().sum::<f64>() / radar.elements.max(1) as f64;
-    vec![mean / snr.power_ratio(); radar.elements]
+    power.iter().sum::<f64>() / radar.elements.max(1) as f64
 }
 
 /// For each element, the sum over reflectors of `factor * amplitude^2`, times `ulp(radians)^2` where radians per metre are given.
@@ -168,12 +227,47 @@ mod tests {
 
     #[test]
     fn names_round_trip_and_bad_names_are_told() {
-        for name in ["thesis", "exact", "snr=20", "snr=-3.5"] {
+        for name in ["thesis", "exact", "snr=20", "snr=-3.5", "dbm=-20", "dbm=17.96"] {
             assert_eq!(name.parse::<Floor>().unwrap().to_string(), name);
         }
-        for bad in ["", "snr", "snr=", "snr=nan", "snr=1e9", "Thesis"] {
-            assert!(bad.parse::<Floor>().is_err(), "{bad}");
+        for bad in
+            ["", "snr", "snr=", "snr=nan", "snr=1e9", "Thesis", "dbm=-301", "dbm=nan", "dbm", "level=3", "thesis="]
+        {
+            let told = bad.parse::<Floor>().unwrap_err().to_string();
+            assert!(told.contains("between -100 and 300") && told.contains("between -300 and 200"), "{told}");
         }
+        assert_eq!((SNR_DECIBELS, LEVEL_DECIBEL_MILLIWATTS), (-100.0..=300.0, -300.0..=200.0), "as the message says");
+    }
+
+    #[test]
+    fn a_reflector_at_20_metres_has_a_level_of_18_dbm() {
+        let radar = Radar::default();
+        let reflectors = [Reflector { x_metres: 0.0, y_metres: 20.0, reflectivity: 1.0 }];
+        assert_eq!(radar.transmit_power_watts, 100.0);
+        let level = Floor::Level(DecibelMilliwatts(-20.0));
+        // The array's outer elements are a little farther away.
+        let snr = level.snr(&radar, &reflectors).unwrap().0;
+        assert!((snr - 20.0 - 10.0 * (0.0625f64 / 1e-3).log10()).abs() < 0.02, "{snr}");
+        assert_eq!(Floor::Snr(Decibels(7.0)).snr(&radar, &reflectors), Some(Decibels(7.0)));
+        for floor in [level, Floor::Snr(Decibels(7.0))] {
+            assert_eq!(floor.snr(&radar, &[]), None, "{floor}: silence has no ratio");
+        }
+        assert_eq!(Floor::Thesis.snr(&radar, &reflectors), None);
+    }
+
+    #[test]
+    fn noise_of_a_level_is_the_same_beneath_every_scene() {
+        let radar = Radar::default();
+        let floor = Floor::Level(DecibelMilliwatts(-20.0));
+        let silence = super::super::simulate(&radar, &crate::scene::Scene::default(), floor, 3).unwrap().samples;
+        let power = silence.mapv(|v| v.norm_sqr()).mean().unwrap();
+        assert!((power / 1e-5 - 1.0).abs() < 0.01, "{power:e} W, expected -20 dBm");
+        let scene = crate::scene::Scene::of_points([(1.0, 20.0)]);
+        let heard = super::super::simulate(&radar, &scene, floor, 3).unwrap().samples;
+        let echo = super::super::simulate(&radar, &scene, Floor::Exact, 3).unwrap().samples;
+        let noise = heard - echo;
+        let most = noise.iter().zip(&silence).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(most < 1e-13, "{most:e}");
     }
 
     #[test]

@@ -24,19 +24,10 @@ pub(super) fn simulate_echoes(
     if task.is_cancelled() {
         return signal;
     }
-    if let Some(variance) = noise_variance(radar, reflectors, floor) {
+    if let Some(variance) = floor::noise_variance(radar, reflectors, floor) {
         floor::add_noise(&mut signal, &variance, seed);
     }
     signal
-}
-
-/// Variance of the noise that is the floor, for each element, if there is any.
-pub(super) fn noise_variance(radar: &Radar, reflectors: &[Reflector], floor: Floor) -> Option<Vec<f64>> {
-    match floor {
-        Floor::Exact => None,
-        Floor::Thesis => Some(floor::thesis_noise_variance(radar, reflectors)),
-        Floor::Snr(snr) => Some(floor::snr_noise_variance(radar, reflectors, snr)),
-    }
 }
 
 /// Samples are for any use and kept in f64: no error may show however they are normalised, over a loud floor none above 1e-12.
@@ -44,6 +35,6 @@ pub(super) fn tolerance(floor: Floor) -> f64 {
     match floor {
         Floor::Exact => BEST_TOLERANCE,
         Floor::Snr(snr) if snr.0 <= 40.0 => 1e-12,
-        Floor::Thesis | Floor::Snr(_) => FLOOR_TOLERANCE,
+        Floor::Thesis | Floor::Snr(_) | Floor::Level(_) => FLOOR_TOLERANCE,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::built::simulate_built_for;
 use super::floor::{self, Floor};
-use super::over_floor::{noise_variance, simulate_echoes, tolerance};
+use super::over_floor::{simulate_echoes, tolerance};
 use super::plan::{Plan, amplitude_bound};
 use super::run::samples_of;
 use super::samples::{BeatSignal, TwoEnds};
@@ -69,7 +69,7 @@ pub fn simulate_ends_for(
     scene.validate(radar)?;
     let reflectors = scene.reflectors();
     let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
-    let variance = noise_variance(radar, &reflectors, floor);
+    let variance = floor::noise_variance(radar, &reflectors, floor);
     let [first, last] = End::BOTH.map(|end| {
         let elements = radar.end_range(end);
         let mut samples = samples_of(radar, &reflectors, &plan, elements.clone(), task);

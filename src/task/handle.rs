@@ -31,6 +31,11 @@ impl Task {
         self.progress.store(part.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
     }
 
+    /// A part of the work: it stops where the whole does, and its own progress is nobody's.
+    pub fn quiet(&self) -> Task {
+        Task { cancelled: self.cancelled.clone(), progress: Arc::default() }
+    }
+
     /// The part that is done, 0 to 1.
     pub fn progress(&self) -> f32 {
         f32::from_bits(self.progress.load(Ordering::Relaxed))

@@ -14,6 +14,10 @@ const STEPS_PER_BIN: f64 = 4.0;
 /// Golden ratio's smaller part.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
+/// A ripple below this is told as no side lobe: it lies beneath every floor but the bare formula's. A blob that the near field draws out
+/// falls without a valley until far beyond it.
+pub const LEAST_LOBE: Decibels = Decibels(-100.0);
+
 /// What one reflector leaves on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
@@ -25,7 +29,7 @@ pub struct Blob {
     pub columns: [f64; 2],
     /// From the peak to nearer and farther ranges, the bins over which it stays above half power.
     pub bins: [f64; 2],
-    /// The first side lobe at lower and at higher columns in the peak's row, where there is one.
+    /// The first side lobe at lower and at higher columns in the peak's row, where there is one above [`LEAST_LOBE`].
     pub side_lobes: [Option<SideLobe>; 2],
 }
 
@@ -115,7 +119,8 @@ impl Blob {
         };
         let side_lobe = |upward: bool| {
             let (steps, height) = profile.side_lobe(upward)?;
-            Some(SideLobe { columns: steps * fine, level: Decibels(20.0 * (height / magnitude).log10()) })
+            let level = Decibels(20.0 * (height / magnitude).log10());
+            (level.0 > LEAST_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
         };
         Some(Blob {
             peak: Cell { bin: bin.rem_euclid(radar.samples as f64), column: column.rem_euclid(radar.elements as f64) },
@@ -369,6 +374,18 @@ pub(super) mod tests {
                 let blob = Blob::of(&radar, &r, aperture).unwrap();
                 let (bins, columns) = blob_cell(&radar, r.x_metres, r.y_metres, aperture).offset_to(&blob.peak, &radar);
                 assert!(bins.abs() < 0.5 && columns.abs() < 1.0, "{range} m, {cos}, {aperture:?}: {bins} {columns}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ripple_far_beneath_every_floor_is_no_side_lobe() {
+        let radar = Radar::default();
+        for (x_metres, y_metres) in [(0.0, 5.0), (0.0, 10.0), (0.0, 20.0), (4.0, 12.0), (-6.0, 18.0), (8.0, 30.0)] {
+            let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
+            let blob = Blob::of(&radar, &reflector, Aperture::Full).unwrap();
+            for lobe in blob.side_lobes.into_iter().flatten() {
+                assert!(lobe.level.0 > -100.0, "{lobe:?} at ({x_metres}, {y_metres})");
             }
         }
     }

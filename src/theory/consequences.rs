@@ -32,7 +32,7 @@ pub struct Consequences {
     /// The same for one end.
     pub end_far_field_metres: f64,
     /// By how much a range changes from one side of the whole array to the other, at most, in bins: beyond one, a blob off broadside
-    /// migrates through range bins.
+    /// migrates through range bins. Each element transmits for itself (the thesis' convention); with a common transmitter it is half.
     pub migration_bins: f64,
     /// Cosine at which a blob stands over the true one ([`squint_factor`]).
     pub squint_factor: f64,

@@ -9,7 +9,7 @@
 //! | [`streak`] | how far a near reflector is drawn out over columns and bins |
 //! | [`comb`] | the teeth of two ends that listen together |
 //! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
-//! | [`ellipse`] | the area that no estimator's error can stay below |
+//! | [`ellipse`] | the area that no unbiased estimator's error can stay below |
 //! | [`overlay`] | all of it for one reflector on one map, to be drawn over it |
 //! | [`consequences`] | what a radar's constants mean before it sees anything |
 //!

@@ -97,6 +97,38 @@ fn what_a_format_cannot_hold_is_asked_before_anything_is_written() {
     assert_eq!((title(&s).as_str(), points(&path), points(&whole)), ("points.toml", 2, 3));
 }
 
+/// Opens a scene with a line, saved as TOML, and writes it as points as well.
+fn save_as_points_too(s: &mut Session) {
+    s.ask(Command::Add(NewObject::Line, None));
+    s.ask(Command::Save);
+    s.ask(Command::SaveTo(s.folder.path().join("points.npz")));
+    s.app.get_by_label("Save anyway").click();
+    s.settle();
+}
+
+#[test]
+fn a_saved_scene_is_not_called_unsaved_when_a_second_format_is_written() {
+    let mut s = Session::start();
+    // The second format holds no other radar either.
+    save_as_points_too(&mut s);
+    assert_eq!(title(&s), "scene.toml");
+    assert!(s.app.query_by_label_contains("The scene itself is saved in").is_some());
+    assert!(s.app.query_by_label_contains("still unsaved").is_none());
+}
+
+#[test]
+fn an_unsaved_scene_is_called_unsaved_when_a_second_format_is_written() {
+    let mut s = Session::start();
+    save_as_points_too(&mut s);
+    s.ask(Command::CloseMessages);
+    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(Command::SaveTo(s.folder.path().join("again.npz")));
+    s.app.get_by_label("Save anyway").click();
+    s.settle();
+    assert_eq!(title(&s), "scene.toml •");
+    assert!(s.app.query_by_label_contains("still unsaved").is_some());
+}
+
 #[test]
 fn what_another_program_wrote_is_not_replaced_without_a_question() {
     let mut s = Session::start();

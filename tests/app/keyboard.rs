@@ -1,8 +1,10 @@
 //! Everything can be reached and done without a pointer.
 
 use crate::session::Session;
+use apertura::app::Command;
+use apertura::interact::SelectionMode;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
 
@@ -73,4 +75,104 @@ fn one_key_goes_from_object_to_object_and_arrows_move_what_it_found() {
     let [x, _] = s.place(1);
     s.press(Modifiers::NONE, Key::ArrowRight);
     assert!(s.place(1)[0] > x && canvas(&s));
+}
+
+fn selected(s: &Session) -> Option<usize> {
+    s.state().editor().selection().single()
+}
+
+/// A window whose first point is selected, with a menu open.
+fn with_a_menu() -> Session {
+    let mut s = Session::start();
+    s.ask(Command::Select(vec![0], SelectionMode::Replace));
+    s.app.get_by_label("File").click();
+    s.settle();
+    assert!(s.app.query_by_label("Unsaved scenes").is_some(), "the menu is open");
+    s
+}
+
+#[test]
+fn escape_closes_a_menu_before_anything_else() {
+    let mut s = with_a_menu();
+    s.press(Modifiers::NONE, Key::Escape);
+    assert!(s.app.query_by_label("Unsaved scenes").is_none() && selected(&s) == Some(0));
+    s.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(selected(&s), None, "the next one is the scene's");
+}
+
+#[test]
+fn keys_do_not_reach_the_scene_behind_a_menu() {
+    let mut s = with_a_menu();
+    let (scene, place) = (s.state().editor().scene().clone(), s.place(0));
+    for (modifiers, key) in [
+        (Modifiers::NONE, Key::Delete),
+        (Modifiers::NONE, Key::P),
+        (Modifiers::NONE, Key::O),
+        (Modifiers::COMMAND, Key::A),
+        (Modifiers::NONE, Key::ArrowRight),
+    ] {
+        s.press(modifiers, key);
+    }
+    assert_eq!((selected(&s), s.place(0)), (Some(0), place));
+    assert!(std::sync::Arc::ptr_eq(s.state().editor().scene(), &scene), "nothing was added or deleted");
+}
+
+/// Types into the field for x of what is selected, and ends the entry with Enter.
+fn enter_x(s: &mut Session, text: &str) {
+    s.app.get_by_role_and_label(Role::SpinButton, "x").focus();
+    s.settle();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.app.event(Event::Text(text.to_owned()));
+    s.settle();
+    s.press(Modifiers::NONE, Key::Enter);
+}
+
+#[test]
+fn what_is_no_number_moves_nothing() {
+    let mut s = Session::start();
+    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    let (place, depth) = (s.place(1), s.state().editor().history().depth());
+    for text in ["nan", "1e400", "abc", "1.234,5"] {
+        enter_x(&mut s, text);
+        assert_eq!((s.place(1), s.state().editor().history().depth()), (place, depth), "{text}");
+        let told = s.app.query_by_label_contains("Enter a number from −10000 to 10000 m.");
+        assert!(told.is_some(), "{text}");
+    }
+}
+
+#[test]
+fn keys_after_a_wrong_entry_stay_in_the_field() {
+    let mut s = Session::start();
+    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    enter_x(&mut s, "abc");
+    s.app.event(Event::Text("o".to_owned()));
+    s.press(Modifiers::NONE, Key::O);
+    assert_eq!(selected(&s), Some(1));
+    let field = s.app.get_by_role_and_label(Role::SpinButton, "x");
+    assert!(field.is_focused());
+    assert_eq!(field.value().as_deref(), Some("abco"));
+}
+
+#[test]
+fn escape_in_a_field_gives_the_entry_up() {
+    let mut s = Session::start();
+    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    enter_x(&mut s, "abc");
+    s.press(Modifiers::NONE, Key::Escape);
+    assert_eq!((selected(&s), s.place(1)), (Some(1), [8.0, 12.0]));
+    assert!(s.app.query_by_label_contains("Enter a number").is_none());
+}
+
+#[test]
+fn each_entry_is_one_undo_step() {
+    let mut s = Session::start();
+    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    for text in ["-3,5", "4"] {
+        enter_x(&mut s, text);
+    }
+    assert_eq!(s.place(1)[0], 4.0);
+    for x in [-3.5, 8.0] {
+        s.press(Modifiers::COMMAND, Key::Z);
+        assert_eq!(s.place(1)[0], x);
+    }
 }

@@ -1,10 +1,11 @@
-//! Every lesson taken in the whole app: answered right and wrong by pointer and keyboard, challenges met by the way that is shown.
+//! Every lesson taken in the whole app: answered right and wrong by pointer and keyboard, challenges met by the solution that is shown.
 
 use crate::session::{Session, step_until};
-use apertura::app::Command;
+use apertura::app::{Command, MapKind, Panel};
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
-use eframe::egui::pos2;
+use apertura::radar::Radar;
+use eframe::egui::{Event, Shape, pos2};
 use egui_kittest::kittest::Queryable;
 
 /// Whether a text stands somewhere on screen.
@@ -66,21 +67,24 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     s.ask(Command::LessonStep(number));
     assert!(s.state().editor().scene().notes.is_empty(), "{place}: notes tell what is asked for");
     if let Some(question) = &step.predict {
-        assert!(!shows(s, "Right: "), "{place}");
+        assert!(!shows(s, "Correct: "), "{place}");
         answer(s, step, question, guess(step, question, right));
-        let verdict = if right { "Right: " } else { "Not quite: " };
+        let verdict = if right { "Correct: " } else { "Not quite: " };
         step_until(s, &format!("{place}: {verdict}"), |s| shows(s, verdict));
         let sentence = if right { &question.right } else { &question.wrong };
         assert!(shows(s, sentence), "{place}: {sentence}");
     }
     if step.challenge.is_some() {
-        step_until(s, &format!("{place}: a way is offered"), |s| shows(s, "Show a way"));
+        step_until(s, &format!("{place}: a solution is offered"), |s| shows(s, "Show a solution"));
         step_until(s, &format!("{place}: it is measured"), |s| !shows(s, "measuring…"));
-        assert!(!shows(s, "Done. "), "{place}: met before anything is done");
-        s.app.get_by_label("Show a way").scroll_to_me();
+        assert!(!shows(s, "Solved. "), "{place}: met before anything is done");
+        s.app.get_by_label("Show a solution").scroll_to_me();
         (0..3).for_each(|_| s.app.step());
-        s.app.get_by_label("Show a way").click();
-        step_until(s, &format!("{place}: met"), |s| shows(s, "Done. "));
+        s.app.get_by_label("Show a solution").click();
+        step_until(s, &format!("{place}: it counts as unsolved"), |s| shows(s, "counts as unsolved"));
+        step_until(s, &format!("{place}: met"), |s| {
+            shows(s, "required ") && !shows(s, "not met yet") && !shows(s, "measuring…")
+        });
     }
 }
 
@@ -112,6 +116,169 @@ fn every_lesson_is_taken_with_right_and_wrong_answers_in_turn() {
 fn every_step_is_answered_right_and_wrong() {
     take_all(|_, _| true);
     take_all(|_, _| false);
+}
+
+/// Every text that is painted, those that no screen reader is told included.
+fn painted(s: &Session) -> Vec<String> {
+    fn gather(shape: &Shape, found: &mut Vec<String>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
+            Shape::Text(text) => found.push(text.galley.text().to_owned()),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    s.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
+    found
+}
+
+/// Begins the lesson called `id` at a step, counted from 1.
+fn begin(s: &mut Session, id: &str, step: usize) {
+    s.ask(Command::BeginLesson(shipped::ALL.iter().position(|file| file.id == id).unwrap()));
+    s.ask(Command::LessonStep(step - 1));
+}
+
+/// Predicts, and waits for the verdict.
+fn predict(s: &mut Session, guess: Guess, verdict: &str) {
+    s.ask(Command::Predict(guess));
+    step_until(s, verdict, |s| shows(s, verdict));
+    s.settle();
+}
+
+#[test]
+fn no_panel_answers_a_question_before_the_learner_does() {
+    let mut s = Session::start();
+    for panel in [Panel::Radar, Panel::Inspector] {
+        s.ask(Command::OpenPanel(panel));
+    }
+    begin(&mut s, "range-and-bandwidth", 3);
+    let tells = |s: &Session, text: &str| painted(s).iter().any(|t| t.contains(text));
+    for answer in ["range, m", "maximum range", "511", "500 m"] {
+        assert!(!tells(&s, answer), "{answer}: {:?}", painted(&s));
+    }
+    assert!(tells(&s, "Hidden until you have predicted."));
+    predict(&mut s, Guess::Number(512.0), "Correct: ");
+    for told in ["range, m", "maximum range"] {
+        assert!(tells(&s, told), "{told}: {:?}", painted(&s));
+    }
+}
+
+#[test]
+fn a_question_about_a_place_leaves_the_axes() {
+    let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 1);
+    assert!(painted(&s).iter().any(|t| t == "range, m"));
+}
+
+#[test]
+fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
+    let mut s = Session::start();
+    begin(&mut s, "what-a-network-can-know", 1);
+    s.ask(Command::Method("baseline"));
+    assert!(!shows(&s, " in the target, "));
+    predict(&mut s, Guess::Choice(1), "Correct: ");
+    step_until(&mut s, "figures come with the maps", |s| shows(s, " in the target, "));
+}
+
+#[test]
+fn previous_and_next_keep_the_verdict() {
+    let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 4);
+    predict(&mut s, Guess::Choice(1), "Not quite: the answer is “It stays”.");
+    s.app.get_by_label("Previous").click();
+    s.settle();
+    assert!(!shows(&s, "Not quite"));
+    s.app.get_by_label("Next").click();
+    s.settle();
+    assert!(shows(&s, "Not quite") && shows(&s, "the right answer"));
+}
+
+#[test]
+fn guess_and_truth_stay_drawn_on_the_map() {
+    let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 1);
+    let drawn = |s: &Session| ["your guess", "truth"].map(|text| painted(s).iter().any(|t| t == text));
+    assert_eq!(drawn(&s), [false, false]);
+    predict(&mut s, Guess::Place(Cell { bin: 100.0, column: 300.0 }), "Not quite: ");
+    assert_eq!(drawn(&s), [true, true]);
+    s.ask(Command::LessonStep(1));
+    assert_eq!(drawn(&s), [false, false]);
+    s.ask(Command::LessonStep(0));
+    assert_eq!(drawn(&s), [true, true]);
+}
+
+#[test]
+fn a_shown_solution_counts_as_unsolved_until_the_step_is_begun_again() {
+    let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 5);
+    let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;
+    let measured = |s: &Session| shows(s, "required ") && !shows(s, "not met yet");
+    s.ask(Command::ShowSolution);
+    step_until(&mut s, "the solution is measured", measured);
+    assert!(!is_met(&s) && shows(&s, "counts as unsolved"));
+    s.app.get_by_label("Start this step again").click();
+    s.settle();
+    step_until(&mut s, "the step is as it was", |s| shows(s, "not met yet"));
+    let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
+    s.ask(Command::SetRadar(Box::new(radar)));
+    step_until(&mut s, "it is solved", |s| shows(s, "Solved. "));
+    assert!(is_met(&s));
+}
+
+#[test]
+fn lessons_close_the_panels_that_they_do_not_use() {
+    let mut s = Session::start();
+    let is_open = |s: &Session, kind| s.state().arrangement().is_open(Panel::Map(kind));
+    let before = s.state().arrangement().shown().clone();
+    begin(&mut s, "range-and-bandwidth", 1);
+    for kind in [MapKind::Output, MapKind::TargetAbove, MapKind::OutputAbove, MapKind::Difference] {
+        assert!(!is_open(&s, kind), "{kind:?}");
+    }
+    assert!(!s.state().arrangement().is_open(Panel::Roc) && is_open(&s, MapKind::Target));
+    assert!(!shows(&s, "Reconstruction"));
+    begin(&mut s, "the-floor", 1);
+    assert!(is_open(&s, MapKind::TargetAbove) && !is_open(&s, MapKind::Output));
+    begin(&mut s, "what-a-network-can-know", 1);
+    assert!(is_open(&s, MapKind::Output) && !is_open(&s, MapKind::OutputAbove));
+    s.ask(Command::LeaveLesson);
+    s.ask(Command::ClosePanel(Panel::Lesson));
+    assert_eq!(*s.state().arrangement().shown(), before, "what was in sight is in sight again");
+}
+
+#[test]
+fn the_end_of_a_lesson_gives_the_zoom_back() {
+    let mut s = Session::start();
+    let over = s.app.get_by_label("Target map").rect().center();
+    s.app.hover_at(over);
+    s.app.step();
+    s.app.event(Event::Zoom(1.5));
+    s.app.run_steps(30);
+    s.settle();
+    let (views, zoom) = (s.state().views(), s.app.ctx.zoom_factor());
+    assert_ne!(views.1, Default::default(), "the maps are zoomed");
+    begin(&mut s, "range-and-bandwidth", 1);
+    assert_eq!(s.state().views().1, Default::default(), "a lesson shows whole maps");
+    s.ask(Command::ZoomIn);
+    assert!(s.app.ctx.zoom_factor() > zoom);
+    s.ask(Command::LeaveLesson);
+    assert_eq!(s.app.ctx.zoom_factor(), zoom);
+    s.ask(Command::ClosePanel(Panel::Lesson));
+    assert_eq!(s.state().views(), views);
+}
+
+#[test]
+fn a_lesson_file_whose_solution_fails_is_refused() {
+    let mut s = Session::start();
+    let good = shipped::ALL.iter().find(|file| file.id == "range-and-bandwidth").unwrap().toml;
+    let path = s.folder.path().join("lesson.toml");
+    std::fs::write(&path, good.replace("bandwidth_hz = 0.95e9", "bandwidth_hz = 0.21e9")).unwrap();
+    s.ask(Command::OpenLessonFile(path.clone()));
+    assert!(shows(&s, "the solution does not meet the challenge") && shows(&s, "lesson.toml: line "));
+    assert!(!shows(&s, "Step 1 of 5"));
+    s.ask(Command::CloseMessages);
+    std::fs::write(&path, good).unwrap();
+    s.ask(Command::OpenLessonFile(path));
+    assert!(shows(&s, "Step 1 of 5") && s.state().messages() == 0);
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use crate::session::Session;
 use apertura::app::{Command, MapKind, Panel, Units};
 use apertura::engine::Stage;
+use apertura::evaluate::Metrics;
 use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, Decibels, WindowFunction};
+use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Object;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -43,6 +44,24 @@ fn another_normalisation_computes_no_signal_and_no_map() {
     }
     s.ask(Command::SetFloor(Floor::Exact));
     assert_eq!(s.state().settings().floor, Floor::Exact);
+}
+
+#[test]
+fn an_empty_scene_without_noise_is_dark_and_nothing_is_missed() {
+    let mut s = Session::start();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.press(Modifiers::NONE, Key::Delete);
+    for floor in [Floor::Exact, Floor::Thesis] {
+        for normalisation in [Normalisation::DynamicRange(Decibels(100.0)), Normalisation::MinMax] {
+            s.ask(Command::SetFloor(floor));
+            s.ask(Command::Normalise(normalisation));
+            let silence = Metrics { squared_error: 0.0, detection: None, false_alarm: 0.0 };
+            assert_eq!(s.state().metrics(), Some(silence), "{floor} {normalisation}");
+        }
+    }
+    s.ask(Command::SetFloor(Floor::Level(DecibelMilliwatts(-20.0))));
+    let noise = s.state().metrics().unwrap();
+    assert_eq!((noise.detection, noise.false_alarm), (None, 0.0), "no cell of noise alone is an echo");
 }
 
 #[test]

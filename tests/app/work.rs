@@ -162,6 +162,37 @@ fn figures_are_of_one_pair_of_maps_and_a_slow_output_is_marked_as_old() {
     assert!(!s.state().output_is_outdated() && s.state().metrics() != Some(before));
 }
 
+/// The list and the crosses are of the recording before: nothing of them stands while the next is computed.
+#[test]
+fn nothing_found_in_one_recording_is_listed_over_the_next() {
+    let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
+    s.ask(Command::Recording(0));
+    assert!(s.state().found().is_some_and(|found| !found.is_empty()) && !s.state().marked_found().is_empty());
+    s.app.state_mut().ask(Command::Recording(1));
+    step_until(&mut s, "the next recording is on screen", |s| s.state().radar().samples == 128);
+    for _ in 0..5 {
+        assert_eq!((s.state().found(), s.state().marked_found().len()), (None, 0));
+        assert!(s.app.query_all_by_label("Nothing is listed yet.").next().is_some());
+        s.app.step();
+    }
+    s.settle();
+    assert!(s.state().found().is_some_and(|found| !found.is_empty()));
+}
+
+#[test]
+fn nothing_found_in_one_scene_is_marked_over_the_next() {
+    let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
+    s.ask(Command::ToggleFound);
+    s.ask(Command::OpenPanel(Panel::Found));
+    assert!(!s.state().marked_found().is_empty());
+    let before = s.state().editor().document().id();
+    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    step_until(&mut s, "another scene is on screen", |s| s.state().editor().document().id() != before);
+    assert!(s.state().marked_found().is_empty() && s.state().found().is_none());
+    s.settle();
+    assert!(!s.state().marked_found().is_empty());
+}
+
 #[test]
 fn a_drag_lets_a_slow_method_finish_now_and_then() {
     let finished = Arc::new(AtomicU32::new(0));

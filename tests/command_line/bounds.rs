@@ -1,6 +1,7 @@
 //! `apertura bounds`, `apertura layouts` and `apertura robustness` from outside.
 
 use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -14,6 +15,29 @@ fn json(arguments: &[&str]) -> Value {
     let output = apertura(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn a_gain_an_end_is_bounded_where_it_is_asked_for() {
+    let arguments = ["bounds", "--layout", "two-ends", "--at", "5,18", "--snr", "0", "--json"];
+    let row = |report: Value| report["layouts"][0]["bounds"][0].clone();
+    assert!(row(json(&arguments))["gain_per_end"].is_null());
+    let asked = row(json(&[arguments.as_slice(), &["--gain-per-end"]].concat()));
+    let of = |which: &str, what: &str| asked[which][what].as_f64().unwrap();
+    assert!(
+        (of("alone", "columns") / 0.0021 - 1.0).abs() < 0.04
+            && (of("gain_per_end", "columns") / 0.126 - 1.0).abs() < 0.02
+    );
+    assert!((of("gain_per_end", "position_millimetres") / 4.8 - 1.0).abs() < 0.02, "{asked}");
+    // 24 elements of 512 samples at 0 dB: 0.64 %.
+    assert!((of("alone", "amplitude_db") / 0.0554 - 1.0).abs() < 0.01, "{asked}");
+}
+
+#[test]
+fn the_table_names_the_gain_an_end() {
+    apertura(&["bounds", "--layout", "two-ends", "--snr", "0", "--gain-per-end"]).assert().success().stdout(
+        contains("one unknown complex gain").and(contains("amplitude, dB")).and(contains("No unbiased estimator")),
+    );
 }
 
 #[test]
@@ -34,6 +58,11 @@ fn pictures_are_written_where_asked() {
     let out = folder.path().join("new");
     let arguments = ["bounds", "--layout", "two-ends", "--snr", "20,40", "--monte-carlo", "2", "-o"];
     apertura(&arguments).arg(&out).assert().success().stdout(contains("error / bound"));
+    let written: Value = serde_json::from_slice(&std::fs::read(out.join("bounds.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&written["layouts"][0]["layout"], &written["monte_carlo"][1]["snr_db"]),
+        (&"two-ends".into(), &40.0.into())
+    );
     for name in ["bounds.svg", "bounds.png", "ambiguity.png", "monte-carlo.svg", "monte-carlo.png"] {
         let bytes = std::fs::read(out.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert!(bytes.starts_with(if name.ends_with("png") { b"\x89PNG" } else { b"<svg" }), "{name}");
@@ -55,7 +84,7 @@ fn layouts_are_compared_over_the_same_scenes() {
 fn what_is_wrong_is_named() {
     apertura(&["bounds", "--layout", "three-ends"]).assert().failure().stderr(contains("three-ends"));
     apertura(&["bounds", "--at", "5,-1"]).assert().failure().stderr(contains("Y above 0"));
-    apertura(&["bounds", "--apart", "1e6"]).assert().failure().stderr(contains("beyond the array's axis"));
+    apertura(&["bounds", "--apart", "1e6"]).assert().failure().stderr(contains("expected columns from -649 to 374"));
     apertura(&["bounds", "--layout", "random=2000"]).assert().failure().stderr(contains("1 to 1024"));
     apertura(&["layouts", "--layout", "mimo=3x3", "--count", "1"]).assert().failure().stderr(contains("own grid"));
 }
@@ -75,4 +104,46 @@ fn robustness_prints_a_line_for_each_method_and_scale() {
     assert_eq!(std::fs::read_to_string(folder.path().join("robustness.csv")).unwrap().trim_end(), text.trim_end());
     assert!(std::fs::read_to_string(folder.path().join("robustness.svg")).unwrap().contains("baseline"));
     apertura(&["robustness", "--phase-degrees", "200"]).assert().failure().stderr(contains("number from 0 to 180"));
+}
+
+/// The text of an SVG's elements.
+fn texts(svg: &str) -> Vec<&str> {
+    svg.split("</text>").filter_map(|part| Some(part.rsplit_once('>')?.1.trim())).collect()
+}
+
+#[test]
+fn robustness_prints_one_object_on_request() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let arguments = "robustness --method baseline --count 2 --scale 0,2 --json --output";
+    let arguments: Vec<&str> = arguments.split(' ').chain([path]).collect();
+    let report = json(&arguments);
+    assert_eq!(
+        (&report["count"], &report["floor"], &report["calibrated"]),
+        (&2.into(), &"thesis".into(), &false.into())
+    );
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &rows[1]["scale"], &rows[1]["phase_degrees"]), (2, &2.0.into(), &20.0.into()));
+    let error = &rows[1]["squared_error"];
+    assert!(error["mean"].as_f64().unwrap() > error["standard_error"].as_f64().unwrap());
+    let written: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("robustness.json")).unwrap()).unwrap();
+    assert_eq!(written, report);
+}
+
+#[test]
+fn numbers_beside_the_axes_of_the_charts_are_short() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    apertura(&["robustness", "--method", "baseline", "--count", "2", "--scale", "0,0.3", "-o", path])
+        .assert()
+        .success();
+    apertura(&["bounds", "--layout", "two-ends", "--snr", "0,40", "--monte-carlo", "1", "-o", path]).assert().success();
+    for name in ["robustness.svg", "bounds.svg", "monte-carlo.svg"] {
+        let svg = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        let numbers: Vec<&str> = texts(&svg).into_iter().filter(|t| t.parse::<f64>().is_ok()).collect();
+        assert!(numbers.len() > 5 && numbers.iter().all(|n| n.len() <= 7), "{name}: {numbers:?}");
+    }
+    let svg = std::fs::read_to_string(folder.path().join("robustness.svg")).unwrap();
+    assert!(texts(&svg).iter().any(|t| t.contains("standard error over 2 scenes")), "{svg}");
 }

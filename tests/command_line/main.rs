@@ -2,8 +2,11 @@
 
 mod bounds;
 mod cli;
+mod messages;
 #[cfg(feature = "network")]
 mod reconstruct;
 mod recordings;
 mod rows;
 mod same_bits;
+#[cfg(feature = "network")]
+mod training;

@@ -77,6 +77,7 @@ fn weights_from_a_file_are_used_or_refused() {
     });
     assert_eq!(maps[0], maps[1]);
     assert!(maps[0].iter().any(|v| (v - maps[0][[0, 0]]).abs() > 0.05), "the same value everywhere");
+    run("thesis", Path::new("training/checkpoints/thesis-1.pt")).success();
     run("live", Path::new("tests/data/thesis_reference_weights.pt")).failure().stderr(contains("add --method thesis"));
     let missing = folder.path().join("missing.pt");
     run("thesis", &missing).failure().stderr(contains("missing.pt"));

@@ -1,58 +1,85 @@
 //! The thesis' baseline column, reproduced on fewer scenes than `apertura evaluate --method baseline --count 100`.
 //!
-//! A cell passes when the printed value, rounding included, lies within 3.5 standard errors of the mean over our scenes. The printed
-//! values come from finitely many scenes themselves, so this is strict, and the control shows that it can fail.
+//! Bounds are relative to what is printed, not to our own standard errors: these grow where a result is wrong. Each is broken by a wrong
+//! reading of the thesis, which the controls try.
 
 use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::{PRINTED_BASELINE, Tally};
+use apertura::radar::{Radar, WindowFunction};
 use apertura::reconstruct::Baseline;
 use apertura::scene::generate::Kind;
 use apertura::signal::Floor;
 use apertura::task::Task;
 
-/// Standard errors between ours and the printed SE, P_D and P_FA.
-fn deviations(tally: &Tally, set: usize) -> [f64; 3] {
+/// How far a mean may lie from the printed one: SE as a part of it, P_D and P_FA in percentage points.
+#[derive(Debug, Clone, Copy)]
+struct Allowed {
+    squared_error: f64,
+    detection: f64,
+    false_alarm: f64,
+}
+
+/// SE as a part of the printed one, P_D and P_FA in percentage points: ours less the printed.
+fn differences(tally: &Tally, set: usize) -> [f64; 3] {
     let printed = PRINTED_BASELINE[set - 1];
-    let rounding = printed.rate_rounding();
     [
-        tally.squared_error().deviation_from(printed.squared_error, 0.005),
-        tally.detection().deviation_from(printed.detection, rounding),
-        tally.false_alarm().deviation_from(printed.false_alarm, rounding),
+        tally.squared_error().mean / printed.squared_error - 1.0,
+        100.0 * (tally.detection().mean - printed.detection),
+        100.0 * (tally.false_alarm().mean - printed.false_alarm),
     ]
 }
 
-fn tally(campaign: &Campaign, set: usize) -> Tally {
+fn reproduces(found: [f64; 3], allowed: Allowed) -> [bool; 3] {
+    let Allowed { squared_error, detection, false_alarm } = allowed;
+    std::array::from_fn(|i| found[i].abs() <= [squared_error, detection, false_alarm][i])
+}
+
+fn run(campaign: &Campaign, set: usize) -> Tally {
     let sets = [SceneSet::Generated(Kind::TEST_SETS[set - 1])];
     Tally::of(&campaign.run(&sets, &[&Baseline], &Task::default(), |_| ()).expect("test scenes are valid"))
 }
 
-fn run(floor: Floor, set: usize, count: u32) -> Tally {
-    let campaign = Campaign { floor, count, seed: 1, ..Campaign::default() };
-    tally(&campaign, set)
+/// On 40 scenes: SE scatters by 3 % and P_D of set 1 by 3 points from one draw of scenes to another.
+const ON_FORTY: Allowed = Allowed { squared_error: 0.08, detection: 6.0, false_alarm: 0.06 };
+
+fn forty() -> Campaign {
+    Campaign { count: 40, seed: 1, ..Campaign::default() }
 }
 
 #[test]
 fn sets_1_and_2_reproduce_the_printed_baseline() {
     for set in [1, 2] {
-        let found = deviations(&run(Floor::Thesis, set, 30), set);
-        assert!(found.iter().all(|d| d.abs() < 3.5), "set {set}: SE, P_D, P_FA off by {found:.2?} standard errors");
+        let found = differences(&run(&forty(), set), set);
+        assert_eq!(reproduces(found, ON_FORTY), [true; 3], "set {set}: SE, P_D, P_FA off by {found:.3?}");
     }
 }
 
 /// Without the thesis' rounding floor the squared error is far from the printed one.
 #[test]
-fn the_exact_floor_does_not_reproduce_them() {
-    let [squared_error, ..] = deviations(&run(Floor::Exact, 1, 30), 1);
-    assert!(squared_error < -10.0, "off by {squared_error:.2} standard errors");
+fn the_exact_floor_does_not_reproduce_the_squared_error() {
+    let found = differences(&run(&Campaign { floor: Floor::Exact, ..forty() }, 1), 1);
+    assert!(!reproduces(found, ON_FORTY)[0] && found[0] < -0.3, "SE, P_D, P_FA off by {found:.3?}");
 }
 
-/// All nine cells within 2.5 standard errors on 100 scenes a set; minutes long. `cargo test --release -- --ignored baseline`
+/// With another window the rates are far from the printed ones.
 #[test]
-#[ignore = "simulates 300 scenes with the plain formula"]
+fn a_rectangular_window_does_not_reproduce_the_rates() {
+    let radar = Radar { window: WindowFunction::Rectangular, ..Radar::default() };
+    let found = differences(&run(&Campaign { radar, ..forty() }, 2), 2);
+    assert_eq!(reproduces(found, ON_FORTY), [false; 3], "SE, P_D, P_FA off by {found:.3?}");
+}
+
+/// On the 100 scenes a set of README's table, whose greatest difference is that of set 3's SE. `cargo test --release -- --ignored baseline`
+#[test]
+#[ignore = "minutes: 300 scenes"]
 fn all_nine_baseline_cells() {
-    for set in [1, 2, 3] {
-        let found = deviations(&tally(&Campaign::default(), set), set);
-        assert!(found.iter().all(|d| d.abs() < 2.5), "set {set}: SE, P_D, P_FA off by {found:.2?} standard errors");
+    for (set, squared_error, detection, false_alarm) in
+        [(1, 0.03, 4.0, 0.05), (2, 0.05, 1.5, 0.05), (3, 0.09, 4.0, 0.6)]
+    {
+        let found = differences(&run(&Campaign::default(), set), set);
+        println!("set {set}: SE {:+.1} %, P_D {:+.2} points, P_FA {:+.3} points", 100.0 * found[0], found[1], found[2]);
+        let allowed = Allowed { squared_error, detection, false_alarm };
+        assert_eq!(reproduces(found, allowed), [true; 3], "set {set}: SE, P_D, P_FA off by {found:.3?}");
     }
 }

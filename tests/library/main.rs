@@ -7,10 +7,14 @@ mod damage;
 mod disturbances;
 mod failures;
 mod house;
+mod lessons;
 #[cfg(feature = "network")]
 mod live_network;
 mod memory;
 mod methods;
+#[cfg(feature = "network")]
+mod noise_alone;
+mod physical_captures;
 mod radars;
 mod snapshot;
 mod stress;

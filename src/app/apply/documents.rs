@@ -8,6 +8,7 @@ use crate::recording;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
 use crate::scene::presets;
+use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
 /// Does those commands, and hands others on.
@@ -41,16 +42,18 @@ fn open(state: &mut State, path: PathBuf) {
 
 /// Puts a document on screen, and where it is a recording, what recordings are looked at with.
 fn show(state: &mut State, label: &str, document: Document) {
-    let is_recording = document.recording().is_some();
+    let recording = document.recording().cloned();
     state.set_document(label, document);
-    if is_recording {
+    if let Some(recording) = recording {
         show_recording_panels(state);
+        recording.doubts.iter().for_each(|doubt| state.notices.error(doubt.clone()));
     }
 }
 
-/// The list of what was found in front, and what reflectors leave unexplained behind the output.
+/// The list of what was found in front, where the method finds anything, and what reflectors leave unexplained behind the output.
 pub fn show_recording_panels(state: &mut State) {
-    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output), Panel::Found] {
+    let lists = state.finds_reflectors().then_some(Panel::Found);
+    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
         state.arrangement.set_open(panel, true);
     }
 }
@@ -96,5 +99,9 @@ fn random_scene(state: &mut State, kind: Kind) {
     let scene = Generator::new(state.radar(), Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
     state.settings.random_number = number.wrapping_add(1);
     let file = SceneFile { scene, radar: state.radar().clone() };
+    if kind == Kind::Noise && !matches!(state.settings.floor, Floor::Level(_)) {
+        // No other floor has noise in an empty scene.
+        state.settings.floor = Floor::Level(state.settings.level);
+    }
     state.set_document("random scene", Document::made(file));
 }

@@ -74,14 +74,14 @@ fn open_row(state: &mut State, jobs: &Jobs, index: usize) {
         state.undo();
     }
     let before = state.setup();
-    state.settings.floor = conditions.floor;
+    state.settings.floor = SceneSet::by_name(&row.set).map_or(conditions.floor, |set| set.floor(conditions.floor));
     state.settings.normalisation = conditions.normalisation;
     match state.methods.all.iter().find(|m| m.name() == row.method) {
         Some(method) => {
             state.settings.method = row.method.clone();
-            // Its own threshold, or the one that the row was judged at.
+            // Its own threshold, raised to where noise does not reach, or the one that the row was judged at.
             let eta = &mut state.settings.method_eta;
-            match method.reads_eta() || method.eta() == row.eta {
+            match method.reads_eta() || method.eta() <= row.eta {
                 true => _ = eta.remove(&row.method),
                 false => _ = eta.insert(row.method.clone(), row.eta),
             }

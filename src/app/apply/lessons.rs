@@ -1,12 +1,12 @@
 //! Commands of lessons: begin, predict, go on, leave.
 
 use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{Command, LessonRun, Panel, State};
+use crate::app::state::{Arrangement, Before, Command, LessonRun, MapViews, Panel, State};
 use crate::interact::Document;
 use crate::lesson::{Guess, Lesson, shipped};
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
-use std::path::Path;
+use std::sync::Arc;
 
 /// Does a command of a lesson; hands any other on.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
@@ -14,12 +14,13 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Com
         Command::BeginLesson(index) => {
             let file = shipped::ALL.get(index)?;
             match file.load() {
-                Ok(lesson) => begin(state, file.id.to_owned(), lesson),
+                Ok(lesson) => begin(state, file.id.to_owned(), Arc::new(lesson)),
                 Err(error) => state.notices.error(format!("Lesson {}: {error}", file.id)),
             }
         }
         Command::OpenLesson => jobs.choose_file(state, Purpose::OpenLesson),
-        Command::OpenLessonFile(path) => open(state, &path),
+        Command::OpenLessonFile(path) => jobs.lessons.open(path),
+        Command::TakeLesson { id, lesson } => begin(state, id, lesson),
         Command::LessonStep(step) => {
             state.lesson.iter_mut().for_each(|run| run.go_to(step));
             set_up(state);
@@ -43,18 +44,13 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Com
     None
 }
 
-fn open(state: &mut State, path: &Path) {
-    match Lesson::load(path) {
-        Ok(lesson) => begin(state, path.display().to_string(), lesson),
-        Err(error) => state.notices.error(format!("{error}\nNo lesson was begun.")),
-    }
-}
-
-fn begin(state: &mut State, id: String, lesson: Lesson) {
+fn begin(state: &mut State, id: String, lesson: Arc<Lesson>) {
     leave(state);
-    let before = state.setup();
-    state.lesson = Some(LessonRun::new(id, lesson, before));
+    let (setup, scene_view, map_views) = (state.setup(), state.scene_view, state.map_views);
+    state.map_views = MapViews::default();
+    state.lesson = Some(LessonRun::new(id, lesson, Before { setup, scene_view, map_views }));
     state.arrangement.set_open(Panel::Lesson, true);
+    state.close_unused();
     set_up(state);
 }
 
@@ -68,6 +64,12 @@ fn set_up(state: &mut State) {
     // Name and notes of a scene tell what its maps show: that is asked for here.
     let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };
     state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar }));
+    let scene = state.editor.scene().clone();
+    let Some(run) = &mut state.lesson else { return };
+    run.set_up = Some(scene);
+    if let Some(Guess::Eta(eta)) = run.guess {
+        state.settings.target_eta = eta;
+    }
 }
 
 fn show_solution(state: &mut State) {
@@ -81,12 +83,19 @@ fn show_solution(state: &mut State) {
         file.radar = radar;
     }
     state.set_document("solution", Document::shipped(file));
+    state.lesson.iter_mut().for_each(|run| run.gave_up = true);
 }
 
-/// Ends the lesson: scene, radar and settings are again what they were before.
+/// Ends the lesson: scene, radar, settings, panels and what is visible of scene and maps are again what they were before.
 fn leave(state: &mut State) {
     let Some(run) = state.lesson.take() else { return };
     let after = state.settings.clone();
-    while state.editor.history().depth() > run.before.depth && state.editor.undo() {}
-    state.settings.take_back(&run.before.settings, &after);
+    let Before { setup, scene_view, map_views } = run.before;
+    while state.editor.history().depth() > setup.depth && state.editor.undo() {}
+    state.settings.take_back(&setup.settings, &after);
+    (state.scene_view, state.map_views) = (scene_view, map_views);
+    state.kept_arrangement().open_again(&run.closed);
+    if state.presents_lesson() {
+        state.arrangement = Arrangement::of_a_lesson();
+    }
 }

@@ -57,7 +57,11 @@ fn write(state: &mut State, path: PathBuf) {
         }
         Ok(Saved::Copy(losses)) => {
             let lost = losses.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-            let advice = "The scene itself is still unsaved: save it as .toml to keep everything.";
+            let document = state.editor.document();
+            let advice = match document.path().filter(|_| !document.is_modified()) {
+                Some(own) => format!("The scene itself is saved in {}.", own.display()),
+                None => "The scene itself is still unsaved: save it as .toml to keep everything.".to_owned(),
+            };
             state.notices.info(format!("{} holds a copy without {lost}. {advice}", path.display()));
         }
         Err(error) => {

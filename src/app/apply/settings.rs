@@ -26,8 +26,10 @@ pub fn apply(settings: &mut Settings, command: Command) -> Option<Command> {
         Command::Normalise(normalisation) => settings.normalisation = normalisation,
         Command::SetFloor(floor) => {
             settings.floor = floor;
-            if let Floor::Snr(snr) = floor {
-                settings.snr = snr;
+            match floor {
+                Floor::Snr(snr) => settings.snr = snr,
+                Floor::Level(level) => settings.level = level,
+                Floor::Thesis | Floor::Exact => {}
             }
         }
         Command::SetNextRandom { seed, number } => (settings.random_seed, settings.random_number) = (seed, number),

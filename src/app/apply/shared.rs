@@ -22,8 +22,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Com
 pub fn text(state: &mut State) -> Option<String> {
     match of(state) {
         Ok(text) => {
-            let letters = text.len();
-            state.notices.info(format!("Copied all of this as {letters} letters: paste them into another apertura."));
+            state.notices.info("Copied. Paste into another Apertura window.");
             Some(text)
         }
         Err(error) => {

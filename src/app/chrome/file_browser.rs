@@ -140,7 +140,7 @@ impl Browser {
                 }
             }
             if self.entries.is_empty() {
-                ui.weak("Nothing of this kind is here.");
+                ui.weak("No matching files.");
             }
         });
         into.into_iter().for_each(|folder| self.enter(folder));

@@ -1,15 +1,17 @@
 //! The menu bar and the buttons beside it.
 
 use super::unsaved;
-use crate::app::state::{Command, NewObject, Panel, Projection};
-use crate::app::widgets::entry::{arrange, button, entry, tooltip};
+use crate::app::state::{Command, MapKind, NewObject, Panel, Projection};
+use crate::app::widgets::entry::{arrange, button, entry, entry_called, tooltip};
+use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
 use crate::picture::ColourMap;
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
 use eframe::egui;
-use eframe::egui::Ui;
+use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
+use eframe::egui::{PopupCloseBehavior, Ui};
 use std::path::PathBuf;
 
 /// What the bar shows.
@@ -30,6 +32,10 @@ pub struct Input<'a> {
     pub random: (u64, u32),
     /// Files opened or saved lately, latest first.
     pub recent: &'a [PathBuf],
+    /// Whether the method in use finds places of echoes.
+    pub finds_reflectors: bool,
+    /// Whether a recording stands in the place of the scene.
+    pub has_recording: bool,
     /// Whether something is recorded that can be stopped.
     pub is_recording: bool,
     /// Unsaved scenes that another took the place of, the latest last.
@@ -72,7 +78,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             ui.menu_button("View", |ui| view(ui, &input, &mut asked));
             ui.menu_button("Tools", |ui| {
                 ui.set_min_width(240.0);
-                panels(ui, &Panel::TOOLS, input.is_open, &mut asked);
+                panels(ui, &Panel::TOOLS, &input, &mut asked);
             });
             ui.separator();
             for (kind, label) in
@@ -177,22 +183,32 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Comma
         entries(ui, (0..recordings::ALL.len()).map(Command::Recording), asked);
     });
     ui.separator();
-    entries(ui, Kind::all().map(Command::RandomScene), asked);
+    // A click into one of its fields must not close it.
+    let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    SubMenuButton::new("Random scene").config(stays).ui(ui, |ui| random_scenes(ui, random, asked));
+    ui.separator();
+    entry(ui, Command::FitScene, true, asked);
+}
+
+/// Every kind of random scene, and which one is next.
+fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
+    for kind in Kind::all() {
+        entry_called(ui, kind.description(), Command::RandomScene(kind), true, asked);
+    }
+    ui.separator();
     ui.horizontal(|ui| {
         let (mut seed, mut number) = random;
         let label = ui.label("Next: seed");
         let tip =
             "The same kind, seed and number always give the same scene: that of the tables and of the command line";
-        let seeds = ui.add(egui::DragValue::new(&mut seed).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        let seeds = ui.add(NumberField::new(&mut seed).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
         let label = ui.label("number");
         let tip = "It rises by one each time";
-        let numbers = ui.add(egui::DragValue::new(&mut number).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        let numbers = ui.add(NumberField::new(&mut number).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
         if seeds.changed() || numbers.changed() {
             asked.push(Command::SetNextRandom { seed, number });
         }
     });
-    ui.separator();
-    entry(ui, Command::FitScene, true, asked);
 }
 
 /// The presets on which a method fails, or the others.
@@ -206,9 +222,27 @@ fn presets_of(ui: &mut Ui, memory: &Memory, failures: bool, asked: &mut Vec<Comm
     }
 }
 
-fn panels(ui: &mut Ui, panels: &[Panel], is_open: &dyn Fn(Panel) -> bool, asked: &mut Vec<Command>) {
-    for &panel in panels {
-        let mut open = is_open(panel);
+/// Whether there is anything for a panel to show; what is open already can be closed.
+fn is_of_use(panel: Panel, input: &Input<'_>) -> bool {
+    let has_content = match panel {
+        Panel::Found => input.finds_reflectors,
+        Panel::Map(MapKind::Unexplained) => input.has_recording,
+        _ => true,
+    };
+    has_content || (input.is_open)(panel)
+}
+
+/// The panels that are of use, those for research in a menu of their own.
+fn panels(ui: &mut Ui, panels: &[Panel], input: &Input<'_>, asked: &mut Vec<Command>) {
+    let is_research = |panel: &&Panel| Panel::RESEARCH.contains(panel);
+    checkboxes(ui, panels.iter().filter(|panel| !is_research(panel)), input, asked);
+    ui.separator();
+    ui.menu_button("Research", |ui| checkboxes(ui, panels.iter().filter(is_research), input, asked));
+}
+
+fn checkboxes<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
+    for &panel in panels.filter(|panel| is_of_use(**panel, input)) {
+        let mut open = (input.is_open)(panel);
         if ui.checkbox(&mut open, panel.title()).on_hover_text(panel.describe()).clicked() {
             asked.push(if open { Command::OpenPanel(panel) } else { Command::ClosePanel(panel) });
             ui.close();
@@ -218,7 +252,7 @@ fn panels(ui: &mut Ui, panels: &[Panel], is_open: &dyn Fn(Panel) -> bool, asked:
 
 fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
-    ui.menu_button("Panels", |ui| panels(ui, &Panel::all(), input.is_open, asked));
+    ui.menu_button("Panels", |ui| panels(ui, &Panel::all(), input, asked));
     ui.menu_button("Colours", |ui| {
         for colours in ColourMap::ALL {
             if ui.radio(input.colours == colours, colours.name()).clicked() {
@@ -259,8 +293,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {
-        let draw = |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
+    fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<Command>)> {
+        let draw = move |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
             let input = Input {
                 presents: false,
                 can_undo: true,
@@ -270,6 +304,8 @@ mod tests {
                 colours: ColourMap::Grey,
                 random: (0, 0),
                 recent: &[],
+                finds_reflectors,
+                has_recording: finds_reflectors,
                 is_recording: false,
                 left: &[],
                 is_open: &|panel| panel == Panel::Scene,
@@ -278,6 +314,72 @@ mod tests {
             asked.1.extend(commands);
         };
         Harness::builder().with_size([width, 600.0]).build_ui_state(draw, (Memory::default(), vec![]))
+    }
+
+    fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {
+        bar_of(width, true)
+    }
+
+    fn open(menu: &mut Harness<'_, (Memory, Vec<Command>)>, labels: &[&str]) {
+        for label in labels {
+            menu.get_by_label(label).click();
+            menu.run();
+        }
+    }
+
+    #[test]
+    fn tools_for_research_have_a_menu_of_their_own() {
+        for menus in [&["Tools"][..], &["View", "Panels"]] {
+            let mut menu = bar(900.0);
+            open(&mut menu, menus);
+            let _tool = menu.get_by_label("Guide");
+            for panel in Panel::RESEARCH {
+                assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?} in {menus:?}");
+            }
+            open(&mut menu, &["Research", "Training"]);
+            assert_eq!(menu.state().1, [Command::OpenPanel(Panel::Training)]);
+        }
+    }
+
+    #[test]
+    fn random_scenes_have_a_menu_of_their_own() {
+        let mut menu = bar(900.0);
+        open(&mut menu, &["Scene"]);
+        let name = Kind::Walls.description();
+        assert!(menu.query_by_label_contains(name).is_none());
+        open(&mut menu, &["Random scene"]);
+        let is_listed = |kind: Kind| menu.query_all_by_label_contains(kind.description()).next().is_some();
+        assert!(Kind::all().all(is_listed));
+        menu.get_by_label_contains(name).click();
+        menu.run();
+        assert_eq!(menu.state().1, [Command::RandomScene(Kind::Walls)]);
+        assert!(menu.query_by_label("Fit scene").is_none(), "the menu has closed");
+    }
+
+    #[test]
+    fn the_seed_of_random_scenes_is_typed_in_the_menu() {
+        use egui::accesskit::Role;
+        let mut menu = bar(900.0);
+        open(&mut menu, &["Scene", "Random scene"]);
+        menu.get_by_role_and_label(Role::SpinButton, "Next: seed").click();
+        menu.run();
+        menu.event(egui::Event::Text("7".to_owned()));
+        menu.run();
+        menu.key_press(egui::Key::Enter);
+        menu.run();
+        assert_eq!(menu.state().1, [Command::SetNextRandom { seed: 7, number: 0 }]);
+    }
+
+    #[test]
+    fn panels_with_nothing_to_show_are_not_listed() {
+        for finds in [true, false] {
+            let mut menu = bar_of(900.0, finds);
+            open(&mut menu, &["Tools"]);
+            assert_eq!(menu.query_by_label("Found").is_some(), finds);
+            let mut menu = bar_of(900.0, finds);
+            open(&mut menu, &["View", "Panels"]);
+            assert_eq!(menu.query_by_label("Unexplained").is_some(), finds);
+        }
     }
 
     #[test]

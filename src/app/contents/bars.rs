@@ -16,6 +16,8 @@ pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) 
         colours: state.settings.colours,
         random: (state.settings.random_seed, state.settings.random_number),
         recent: &state.recent,
+        finds_reflectors: state.finds_reflectors(),
+        has_recording: state.editor.document().recording().is_some(),
         is_recording: jobs.recorder.is_at_work() || jobs.exports.is_waiting(),
         left: state.editor.left(),
         is_open,

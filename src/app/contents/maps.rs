@@ -5,6 +5,8 @@ use crate::app::jobs::{Jobs, TheoryResult};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
+use crate::lesson::Cell;
+use crate::reconstruct::untrained_noise;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
 
 impl Contents<'_> {
@@ -96,9 +98,20 @@ pub(super) fn map_input<'a>(
         over: None,
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
+        note: note(state, kind),
         error: error(state, jobs, kind),
         veil: veil(state, kind),
+        axes: state.shows_axes(),
+        places: places(state, kind),
     }
+}
+
+/// What is to be known of the method whose map it is: over how much noise it was trained, where the scene has another amount. Nobody knows
+/// that of a recording.
+fn note(state: &State, kind: MapKind) -> Option<String> {
+    let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
+    method.trained_noise()?;
+    untrained_noise(method.as_ref(), state.radar(), &state.editor.scene().reflectors(), state.settings.floor)
 }
 
 /// What became of every object, where that is to be marked: on the maps of the whole array.
@@ -166,6 +179,7 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
         _ => full,
     };
     Some(map::Theory {
+        name: &result.request.name,
         overlay: overlay.as_ref()?,
         reflector: result.request.reflector,
         ellipse: result.ellipse.filter(|_| !matches!(kind, MapKind::Input0 | MapKind::Input1)),
@@ -173,6 +187,12 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
         snr: result.request.snr,
         comb: kind.needs_output(),
     })
+}
+
+/// The place that was guessed in a lesson's step, and the true one.
+fn places(state: &State, kind: MapKind) -> Option<(Cell, Cell)> {
+    let scene = state.editor.scene();
+    state.lesson.as_ref().and_then(|run| run.places(kind, state.radar(), scene))
 }
 
 /// Why a map is hidden: a lesson asks for a prediction first.

@@ -86,6 +86,7 @@ impl<'a> Contents<'a> {
 impl Draw for Contents<'_> {
     fn draw(&mut self, ui: &mut Ui, panel: Panel) {
         let commands = match panel {
+            _ if tells_answers(panel) && self.state.is_predicting() => hidden(ui),
             Panel::Scene => self.scene(ui),
             Panel::Controls => self.controls(ui),
             Panel::Radar => self.radar(ui),
@@ -120,8 +121,20 @@ impl Draw for Contents<'_> {
     }
 }
 
+/// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far
+/// the axes reach.
+fn tells_answers(panel: Panel) -> bool {
+    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts)
+}
+
+/// In the place of a panel that would answer the question.
+fn hidden(ui: &mut Ui) -> Vec<Command> {
+    ui.centered_and_justified(|ui| ui.weak("Hidden until you have predicted."));
+    Vec::new()
+}
+
 /// Where the method found something, if that is to be drawn: over a recording always.
-fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
+pub(super) fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
     let drawn = state.settings.show_found || state.editor.document().recording().is_some();
-    pipeline.output().filter(|_| drawn && !state.is_predicting()).map_or(&[], |output| &output.reflectors)
+    pipeline.output_of(state).filter(|_| drawn && !state.is_predicting()).map_or(&[], |output| &output.reflectors)
 }

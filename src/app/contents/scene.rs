@@ -2,7 +2,7 @@
 
 use super::{Contents, shown_found};
 use crate::app::panels::{disturbances, elements, inspector, objects, radar, scene};
-use crate::app::state::Command;
+use crate::app::state::{Command, MapKind};
 use eframe::egui::Ui;
 
 impl Contents<'_> {
@@ -16,10 +16,11 @@ impl Contents<'_> {
             snap: state.settings.snap,
             fields_of_view: state.settings.show_fields_of_view,
             found,
+            found_stale: pipeline.is_stale(MapKind::Output),
             trails: self.jobs.failures.search.trails(state.editor.document().id()),
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
-            numbers: true,
+            numbers: state.shows_axes(),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }

@@ -2,7 +2,7 @@
 
 use super::Contents;
 use crate::app::panels::{bounds, controls, evaluation, found, lesson, run_time, several, timing, training};
-use crate::app::state::{Command, MethodSlot};
+use crate::app::state::{Command, MapKind, MethodSlot};
 use eframe::egui::{TextureOptions, Ui};
 
 impl Contents<'_> {
@@ -12,7 +12,8 @@ impl Contents<'_> {
             progress: pipeline.method_progress(),
             refusal: pipeline.refusal(),
             output: pipeline.output().map(|o| (o.method, o.took)),
-            scores: pipeline.scores(),
+            // How many blobs there are answers many a question.
+            scores: pipeline.scores().filter(|_| !state.is_predicting()),
             outdated: pipeline.output_is_outdated(),
             wanted: pipeline.wants_output(),
         };
@@ -26,18 +27,21 @@ impl Contents<'_> {
             eta: pipeline.eta(state, MethodSlot::First),
             range_db: pipeline.range_db(),
             run,
+            uses: state.uses(),
         };
         controls::show(ui, input)
     }
 
     pub(super) fn found(&mut self, ui: &mut Ui) -> Vec<Command> {
         let pipeline = &self.jobs.pipeline;
-        let output = pipeline.output();
+        let output = pipeline.output_of(self.state);
         let recording = self.state.editor.document().recording();
         let input = found::Input {
+            draws_only: self.state.method().map(|m| m.name()).filter(|_| !self.state.finds_reflectors()),
             method: output.map(|o| o.method),
             found: output.filter(|_| !self.state.is_predicting()).and_then(|o| o.found.as_deref()),
             refusal: pipeline.refusal().map(|r| r.reason.as_str()),
+            stale: pipeline.is_stale(MapKind::Output),
             has_ranges: self.state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),
         };
         found::show(ui, input)

@@ -1,8 +1,10 @@
-//! Bounds of one reflector, computed off the UI thread: how well any estimator could place it, and what looks like it.
+//! Bounds of one reflector, computed off the UI thread: how well any unbiased estimator could place it, and what looks like it.
 
 use crate::app::state::{BoundsSettings, Elements, State};
 use crate::app::widgets::textures::colour_table;
-use crate::bounds::{Ambiguity, BoundsError, PositionBound, ambiguity, cramer_rao, noise_variance};
+use crate::bounds::{
+    Ambiguity, BoundsError, Gains, PositionBound, ambiguity, cramer_rao, cramer_rao_of, noise_variance,
+};
 use crate::interact::Editor;
 use crate::picture::ColourMap;
 use crate::radar::{Decibels, Layout, LayoutError, Polar, Radar};
@@ -66,6 +68,8 @@ pub struct BoundsResult {
     pub centre: Polar,
     /// How well its position can be known.
     pub bound: Result<PositionBound, BoundsError>,
+    /// How well, with one unknown complex gain for either half of the elements.
+    pub gain_per_end: Option<PositionBound>,
     /// What looks like it.
     pub ambiguity: Ambiguity,
     /// The picture of that.
@@ -85,6 +89,8 @@ pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
     let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
     let variance = noise_variance(radar, &layout, reflector, *snr);
     let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);
+    let per_end = cramer_rao_of(radar, &layout, std::slice::from_ref(reflector), variance, Gains::PerEnd);
+    let gain_per_end = per_end.ok().and_then(|bounds| bounds.first().copied());
     let cells = (BUDGET / layout.len().max(1) as f64).clamp(1e3, 8e4);
     // Odd numbers, so that the reflector itself is a cell.
     let across = 2 * ((cells * 2.0).sqrt() / 2.0) as i32 + 1;
@@ -111,7 +117,7 @@ pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
     // The top row is the farthest.
     let pixels = found.likeness.rows().into_iter().rev().flat_map(|row| row.into_iter().map(paint).collect::<Vec<_>>());
     let image = Arc::new(ColorImage::new([across as usize, up as usize], pixels.collect()));
-    Ok(BoundsResult { layout, centre, bound, ambiguity: found, image, request })
+    Ok(BoundsResult { layout, centre, bound, gain_per_end, ambiguity: found, image, request })
 }
 
 /// The worker, what it was asked last, and what it found last.

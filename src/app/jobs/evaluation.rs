@@ -18,8 +18,12 @@ pub struct EvaluationRow {
     pub set: usize,
     /// Name of the method.
     pub method: &'static str,
-    /// The threshold it was judged at.
+    /// The optimisers that trained the method's weights; empty without weights.
+    pub optimiser: String,
+    /// The threshold it was judged at; the mean where each answer has its own.
     pub eta: f32,
+    /// Whether every answer was judged at `eta`.
+    pub one_eta: bool,
     /// Scenes of the set.
     pub scenes: usize,
     /// SE.
@@ -29,7 +33,7 @@ pub struct EvaluationRow {
     /// P_FA.
     pub false_alarm: Estimate,
     /// P_D where every scene's P_FA is held to the printed one of experiment 2.
-    pub detection_at_printed: Option<f64>,
+    pub detection_at_printed: Option<Estimate>,
     /// Time of a map.
     pub median_milliseconds: f64,
 }
@@ -105,14 +109,15 @@ impl Evaluation {
     pub fn to_csv(&self) -> String {
         let mut text = String::from(
             "set,method,eta,scenes,squared_error,squared_error_se,detection,detection_se,false_alarm,false_alarm_se,\
-             detection_at_printed_false_alarm,median_milliseconds\n",
+             detection_at_printed_false_alarm,median_milliseconds,optimiser,squared_error_median,detection_median,\
+             false_alarm_median\n",
         );
         for r in self.rows() {
-            let at = r.detection_at_printed.map_or_else(String::new, |d| d.to_string());
+            let at = r.detection_at_printed.map_or_else(String::new, |d| d.mean.to_string());
             // Writing to a string can't fail.
             let _ = writeln!(
                 text,
-                "{},{},{},{},{},{},{},{},{},{},{at},{:.3}",
+                "{},{},{},{},{},{},{},{},{},{},{at},{:.3},\"{}\",{},{},{}",
                 r.set,
                 r.method,
                 r.eta,
@@ -123,7 +128,11 @@ impl Evaluation {
                 r.detection.standard_error,
                 r.false_alarm.mean,
                 r.false_alarm.standard_error,
-                r.median_milliseconds
+                r.median_milliseconds,
+                r.optimiser,
+                r.squared_error.median,
+                r.detection.median,
+                r.false_alarm.median
             );
         }
         text
@@ -150,12 +159,14 @@ fn run(plan: &Plan, teller: &Teller<'_, EvaluationRow>) -> Result<(), Stopped> {
             teller.row(EvaluationRow {
                 set,
                 method: method.name(),
+                optimiser: tally.optimiser().to_owned(),
                 eta: tally.eta(),
+                one_eta: tally.has_one_eta(),
                 scenes: tally.scenes(),
                 squared_error: tally.squared_error(),
                 detection: tally.detection(),
                 false_alarm: tally.false_alarm(),
-                detection_at_printed: Some(tally.detection_at_printed().mean).filter(|d| d.is_finite()),
+                detection_at_printed: Some(tally.detection_at_printed()).filter(|d| d.mean.is_finite()),
                 median_milliseconds: tally.median_milliseconds(),
             });
         }

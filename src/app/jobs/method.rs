@@ -50,6 +50,8 @@ impl Basis {
 /// What a method is asked for.
 #[derive(Clone)]
 pub struct MethodRequest {
+    /// Which document it is of.
+    pub document: u64,
     /// What it works on.
     pub basis: Basis,
     /// What it aims for; `None` where a recording has the two ends alone.
@@ -78,6 +80,8 @@ impl MethodRequest {
 pub struct MethodResult {
     /// Its name.
     pub method: &'static str,
+    /// Which document its samples are of.
+    pub document: u64,
     /// Its map, and the one it aimed for.
     pub pair: Pair,
     /// The threshold that fits it, where the method read one off the samples.
@@ -192,15 +196,16 @@ impl MethodJob {
         took: Duration,
         latest: Option<&MapsResult>,
     ) {
-        let MethodRequest { basis, target, method, .. } = request;
-        let Reconstruction { lambda, mut reflectors, eta } = answer;
+        let MethodRequest { document, basis, target, method, .. } = request;
+        let Reconstruction { lambda, mut reflectors, eta, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }
         let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
+        let document = latest.map_or(document, |r| r.request.document);
         let pair = Pair { target: latest.and_then(MapsResult::target).or(target), output: Arc::new(lambda) };
         self.refusal = None;
-        self.output = Some(MethodResult { method: method.name(), pair, eta, found, reflectors, took, basis });
+        self.output = Some(MethodResult { method: method.name(), document, pair, eta, found, reflectors, took, basis });
     }
 
     /// There is no output, and the last one is not its own: nothing of it stays.
@@ -209,12 +214,13 @@ impl MethodJob {
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// New maps of the same samples, as when a scene comes to rest: the output stays, and aims for their target.
+    /// New maps of the same samples, as when a scene comes to rest: the output stays, is theirs, and aims for their target.
     pub fn aim(&mut self, maps: &MapsResult) {
-        if let (Some(target), Some(output)) = (maps.target(), &mut self.output)
+        if let Some(output) = &mut self.output
             && Basis::of(maps).is_some_and(|basis| basis.same(&output.basis))
         {
-            output.pair.target = Some(target);
+            output.document = maps.request.document;
+            output.pair.target = maps.target().or(output.pair.target.take());
         }
     }
 

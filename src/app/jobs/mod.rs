@@ -142,6 +142,8 @@ impl Jobs {
         errors.extend(self.kinds.poll());
         errors.extend(self.theory.poll());
         errors.extend(self.lessons.poll(state));
+        let (begun, failed) = self.lessons.poll_files();
+        errors.extend(failed);
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.finished() {
             tell(state, export.message());
@@ -151,6 +153,7 @@ impl Jobs {
         }
         let (mut chosen, told) = self.dialogs.poll();
         told.into_iter().for_each(|t| state.notices.info(t));
+        chosen.extend(begun);
         // What was found takes the place of what it was looked for near, but not of what somebody made of that meanwhile.
         if found && self.failures.search.is_about(state.editor.scene()) {
             chosen.push(Command::TakeFinding);
@@ -211,6 +214,7 @@ impl Jobs {
             || self.theory.is_busy()
             || self.several.is_busy()
             || self.kinds.is_busy()
+            || self.lessons.is_reading()
             || self.calibration.is_busy()
     }
 

@@ -160,6 +160,7 @@ impl Pipeline {
             output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
         };
         let mut request = MapsRequest {
+            document: state.editor.document().id(),
             radar: state.radar().clone(),
             scene: scene.clone(),
             wanted,
@@ -210,12 +211,14 @@ impl Pipeline {
     /// Asks for an output of the latest maps, unless it was asked for just that.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.result.as_ref().and_then(|r| {
-            let (target, at_rest) = (r.target(), r.request.at_rest);
+            let (target, about) = (r.target(), (r.request.at_rest, r.request.document));
             // A recording of the two ends has none; a scene has one as soon as somebody wants it.
-            (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target, at_rest))
+            (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target, about))
         });
-        let Some(((basis, target, at_rest), method)) = latest.zip(state.method_in(slot).cloned()) else { return };
-        let request = MethodRequest { basis, target, method, listed, at_rest };
+        let Some(((basis, target, (at_rest, document)), method)) = latest.zip(state.method_in(slot).cloned()) else {
+            return;
+        };
+        let request = MethodRequest { document, basis, target, method, listed, at_rest };
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
@@ -237,6 +240,12 @@ impl Pipeline {
     /// The latest output of the first method.
     pub fn output(&self) -> Option<&MethodResult> {
         self.method(MethodSlot::First).output()
+    }
+
+    /// The latest output of the first method, where it was made for the document that is on screen: what it found in another is nothing
+    /// of this one.
+    pub fn output_of(&self, state: &State) -> Option<&MethodResult> {
+        self.output().filter(|output| output.document == state.editor.document().id())
     }
 
     /// The scene of the latest maps and its target, where it is one of reflectors and not a recording.

@@ -6,6 +6,7 @@ use crate::files::write_bytes;
 use crate::lesson::Lesson;
 use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose};
+use crate::radar::counted;
 use crate::scene::Scene;
 use crate::signal;
 use crate::task::{Reply, Task, Worker, panic_message};
@@ -119,9 +120,9 @@ impl Recorder {
     /// # Errors
     /// When no lesson is taken.
     pub fn draw_lesson(&self, state: &State, mut path: PathBuf) -> Result<String, String> {
-        let run = state.lesson.as_ref().ok_or("Begin a lesson first: its steps are what is drawn.")?;
+        let run = state.lesson.as_ref().ok_or("Open a lesson before exporting its steps.")?;
         path.set_extension("png");
-        let said = format!("Drawing {} steps…", run.lesson.steps.len());
+        let said = format!("Drawing {}…", counted(run.lesson.steps.len(), "step", "steps"));
         self.steps.request(Steps { lesson: run.lesson.clone(), path, colours: state.settings.colours });
         Ok(said)
     }

@@ -43,6 +43,8 @@ fn same_target(a: &Option<Arc<RangeAngleMap>>, b: &Option<Arc<RangeAngleMap>>) -
 /// What the maps worker is asked for.
 #[derive(Clone)]
 pub struct MapsRequest {
+    /// Which document all of it is of.
+    pub document: u64,
     /// The radar.
     pub radar: Radar,
     /// What stands before it, or is laid over the recording.
@@ -194,12 +196,14 @@ impl MapsState {
             }
         }
         self.painter.keep(|kind| request.pictures.contains(&kind));
+        // What stands in the place of a recording's echoes says nothing of them.
+        let is_silent = request.recording.is_none() && request.scene.is_silent();
         let mut scores = [None, None];
         for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
             let etas = [request.target_eta, request.etas[slot]];
-            scores[slot] = pair.as_ref().and_then(|pair| scored(&mut self.scores[slot], pair, etas));
+            scores[slot] = pair.as_ref().and_then(|pair| scored(&mut self.scores[slot], is_silent, pair, etas));
         }
-        let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(pair));
+        let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
         let painted = self.painter.painted;
         Ok(MapsResult { request, frame, unexplained, pictures, scores, roc, painted, took: Duration::ZERO })
     }
@@ -234,25 +238,26 @@ impl MapsState {
         Ok((frame, None))
     }
 
-    fn roc(&mut self, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {
+    fn roc(&mut self, is_silent: bool, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {
         if let Some(last) = self.roc.as_ref().filter(|r| r.pair.same(pair)) {
             return Some(last.points.clone());
         }
-        let points: Arc<Vec<RocPoint>> = Arc::new(Roc::of(pair.target.as_ref()?, &pair.output).points().collect());
+        let points: Arc<Vec<RocPoint>> =
+            Arc::new(Roc::of_echoes(!is_silent, pair.target.as_ref()?, &pair.output).points().collect());
         self.roc = Some(RocOf { pair: pair.clone(), points: points.clone() });
         Some(points)
     }
 }
 
 /// Figures of a pair, which are kept; `None` where there is nothing to compare the output with.
-fn scored(kept: &mut Option<ScoresOf>, pair: &Pair, etas: [f32; 2]) -> Option<Scores> {
+fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, etas: [f32; 2]) -> Option<Scores> {
     if let Some(last) = kept.as_ref().filter(|s| s.pair.same(pair) && s.etas == etas) {
         return Some(last.scores);
     }
     let target = pair.target.as_ref()?;
     let [target_eta, output_eta] = etas;
     let scores = Scores {
-        metrics: Metrics::of(target, &pair.output, output_eta),
+        metrics: Metrics::of_echoes(!is_silent, target, &pair.output, output_eta),
         target_blobs: blobs(target, target_eta),
         output_blobs: blobs(&pair.output, output_eta),
     };

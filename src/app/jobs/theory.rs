@@ -14,6 +14,8 @@ use crate::theory::{Ellipse, Overlay};
 pub struct TheoryRequest {
     /// The radar.
     pub radar: Radar,
+    /// What the reflector is called.
+    pub name: String,
     /// The reflector.
     pub reflector: Reflector,
     /// Which elements listen for the bound.
@@ -35,7 +37,7 @@ pub struct TheoryResult {
 }
 
 fn work(request: TheoryRequest) -> TheoryResult {
-    let TheoryRequest { radar, reflector, elements, seed, snr } = &request;
+    let TheoryRequest { radar, reflector, elements, seed, snr, .. } = &request;
     let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
     let overlays = apertures.map(|aperture| Overlay::of(radar, reflector, aperture));
     let ellipse = elements.layout(radar, *seed).ok().and_then(|layout| {
@@ -64,13 +66,14 @@ impl Theory {
     pub fn ask(&mut self, state: &State) {
         let looked_at = state.arrangement.shown().iter().any(|panel| matches!(panel, Panel::Map(_)));
         let subject = subject(&state.editor).filter(|_| state.settings.show_theory && looked_at);
-        let Some((_, reflector)) = subject else {
+        let Some((name, reflector)) = subject else {
             (self.asked, self.result) = (None, None);
             return;
         };
         let bounds = state.settings.bounds;
         let request = TheoryRequest {
             radar: state.radar().clone(),
+            name,
             reflector,
             elements: bounds.elements,
             seed: bounds.seed,
@@ -117,6 +120,7 @@ mod tests {
         let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
         let request = |y_metres| TheoryRequest {
             radar: radar.clone(),
+            name: "point 1".to_owned(),
             reflector: Reflector { x_metres: 1.5, y_metres, reflectivity: 1.0 },
             elements: Elements::TwoEnds,
             seed: 0,

@@ -1,4 +1,4 @@
-//! What no method can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
+//! What no unbiased estimator can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
 use crate::app::jobs::{BoundsRequest, BoundsResult};
 use crate::app::state::{BoundsSettings, Command, Elements};
@@ -6,6 +6,7 @@ use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{self, Chart};
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::direction::direction;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::significant;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
@@ -13,7 +14,7 @@ use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, DragValue, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{Color32, ComboBox, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
 use std::f64::consts::TAU;
 
 /// What is chosen, and what came of it.
@@ -85,16 +86,17 @@ fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
         });
         combo.response.labelled_by(label.id);
         if let Elements::Random(count) = &mut settings.elements {
-            ui.add(DragValue::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
+            ui.add(NumberField::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
             let label = ui.label("seed");
-            ui.add(DragValue::new(&mut settings.seed).speed(0.05)).labelled_by(label.id);
+            ui.add(NumberField::new(&mut settings.seed).speed(0.05)).labelled_by(label.id);
         }
         let label = ui.label("SNR").on_hover_text("Of one sample, averaged over the elements");
-        ui.add(DragValue::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB")).labelled_by(label.id);
-        let label = ui.label("±").on_hover_text("What the picture spans around the reflector");
-        ui.add(DragValue::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns"))
+        ui.add(NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB"))
             .labelled_by(label.id);
-        ui.add(DragValue::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins")).labelled_by(label.id);
+        let label = ui.label("±").on_hover_text("What the picture spans around the reflector");
+        ui.add(NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns"))
+            .labelled_by(label.id);
+        ui.add(NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins")).labelled_by(label.id);
     });
 }
 
@@ -165,27 +167,54 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
         }
     };
     let column = 2.0 / result.request.radar.elements as f64;
-    ui.strong(format!("Best possible for {name}"));
-    let columns = if ui.available_width() > 420.0 { 2 } else { 1 };
-    Grid::new("bound").num_columns(2 * columns).spacing([12.0, 3.0]).show(ui, |ui| {
-        for (i, (what, value)) in [
-            ("x", millimetres(bound.x_metres)),
-            ("y", millimetres(bound.y_metres)),
-            ("range", millimetres(bound.range_metres)),
-            ("column", significant(bound.cos_theta / column)),
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            ui.weak(format!("σ of {what}"));
-            ui.monospace(value);
-            if i % columns == columns - 1 {
-                ui.end_row();
-            }
-        }
-    });
+    ui.strong(format!("Least error for {name}")).on_hover_text(
+        "The Cramér–Rao bound: no unbiased estimator has smaller standard deviations. One that knows scenes beforehand may.",
+    );
+    numbers(ui, bound, result.gain_per_end.as_ref(), column);
     ellipse(ui, bound);
 }
+
+/// Least width that has room for both bounds, points.
+const BOTH: f32 = 250.0;
+
+/// The standard deviations of both bounds side by side; in a narrow panel the second is told where the pointer rests.
+fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, column_cos: f64) {
+    let rows = |b: &PositionBound| {
+        [
+            ("x", millimetres(b.x_metres)),
+            ("y", millimetres(b.y_metres)),
+            ("range", millimetres(b.range_metres)),
+            ("column", significant(b.cos_theta / column_cos)),
+            ("amplitude", format!("{} dB", significant(b.amplitude_db()))),
+        ]
+    };
+    let both = ui.available_width() > BOTH;
+    let second = per_end.map_or_else(|| std::array::from_fn(|_| "–".to_owned()), |b| rows(b).map(|r| r.1));
+    let grid = Grid::new("bound").num_columns(if both { 3 } else { 2 }).spacing([12.0, 3.0]);
+    grid.show(ui, |ui| {
+        if both {
+            ui.weak("σ of");
+            ui.weak("one gain").on_hover_text(
+                "All elements hear the reflector with one unknown gain: the phase between the ends is known",
+            );
+            ui.weak("a gain an end").on_hover_text(PER_END);
+            ui.end_row();
+        }
+        for ((what, value), second) in rows(bound).into_iter().zip(second) {
+            ui.weak(if both { what.to_owned() } else { format!("σ of {what}") });
+            let shown = ui.monospace(value);
+            match both {
+                true => _ = ui.monospace(second),
+                false => _ = shown.on_hover_text(format!("{second} with a gain an end. {PER_END}.")),
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// What the second bound is.
+const PER_END: &str =
+    "Either half of the elements has an unknown gain of its own: the phase between the ends is not known";
 
 fn millimetres(metres: f64) -> String {
     if metres.is_finite() { format!("{} mm", significant(metres * 1e3)) } else { "∞".to_owned() }
@@ -302,6 +331,15 @@ mod tests {
     }
 
     #[test]
+    fn the_bound_with_a_gain_an_end_stands_beside_the_other() {
+        let bounds = panel([460.0, 640.0]);
+        let texts = seen::texts(bounds.output());
+        for text in ["one gain", "a gain an end", "amplitude"] {
+            assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
+        }
+    }
+
+    #[test]
     fn a_narrow_panel_cuts_nothing_off() {
         let bounds = panel([410.0, 200.0]);
         seen::assert_readable(bounds.output());
@@ -317,6 +355,7 @@ mod tests {
             x_metres: 3e-3,
             y_metres: 1e-3,
             xy_covariance_metres2: -2e-6,
+            amplitude: 1e-3,
         };
         let outline = outline(&bound).unwrap();
         let most = |i: usize| outline.iter().map(|p| p[i]).fold(0.0, f64::max);
@@ -333,6 +372,7 @@ mod tests {
             x_metres,
             y_metres: f64::INFINITY,
             xy_covariance_metres2: 0.0,
+            amplitude: 1.0,
         })
     }
 }

@@ -4,16 +4,19 @@ use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
+use crate::evaluate::eta_text;
 use crate::interact::Snap;
+use crate::lesson::Uses;
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::{Carrier, Decibels, Radar, WindowFunction};
+use crate::radar::{Carrier, DecibelMilliwatts, Decibels, Radar, WindowFunction};
 use crate::reconstruct::Reconstructor;
-use crate::signal::Floor;
+use crate::signal::{self, Floor};
 use eframe::egui;
-use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Slider, SliderClamping, Ui};
+use eframe::egui::{ComboBox, Grid, ScrollArea, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -43,6 +46,8 @@ pub struct Input<'a> {
     pub range_db: Option<f64>,
     /// What it does.
     pub run: Run<'a>,
+    /// What the lesson being taken uses: the rest is not shown.
+    pub uses: Uses,
 }
 
 /// How the reconstruction goes.
@@ -68,9 +73,18 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let settings = input.settings;
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            heading(ui, "Reconstruction");
-            reconstruction(ui, &input, &mut asked);
-            ui.add_space(6.0);
+            if input.uses.output {
+                heading(ui, "Reconstruction");
+                reconstruction(ui, &input, &mut asked);
+                ui.add_space(6.0);
+            } else if input.uses.threshold {
+                heading(ui, "Threshold");
+                Grid::new("threshold")
+                    .num_columns(2)
+                    .spacing([12.0, 5.0])
+                    .show(ui, |ui| target_eta(ui, &input, &mut asked));
+                ui.add_space(6.0);
+            }
             heading(ui, "Maps");
             Grid::new("maps").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
                 normalisation(ui, settings, &mut asked);
@@ -83,7 +97,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             });
             ui.add_space(6.0);
             heading(ui, "Display");
-            Grid::new("display").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| display(ui, settings, &mut asked));
+            Grid::new("display")
+                .num_columns(2)
+                .spacing([12.0, 5.0])
+                .show(ui, |ui| display(ui, settings, input.uses, &mut asked));
         });
     });
     asked
@@ -140,16 +157,19 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             });
             listed.response
         });
+        if !input.uses.threshold {
+            return;
+        }
         row(ui, "η", "Cells of the output above this count as detections", |ui| {
             ui.horizontal(|ui| {
                 let mut eta = input.eta;
-                let slider = ui.add(threshold(&mut eta));
+                let slider = threshold(ui, "η in numbers", &mut eta);
                 asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
                 let own = input.settings.method_eta.contains_key(method.name());
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
                 let back = match method.reads_eta() {
                     true => "Back to the η that fits each output".to_owned(),
-                    false => format!("Back to the method's own η = {}", method.eta()),
+                    false => format!("Back to the method's own η = {}", eta_text(method.eta())),
                 };
                 if reset.on_hover_text(back).clicked() {
                     asked.push(Command::SetMethodEta(method.name(), None));
@@ -159,18 +179,23 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             })
             .inner
         });
-        row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
-            ui.horizontal(|ui| {
-                let mut eta = input.settings.target_eta;
-                let slider = ui.add(threshold(&mut eta));
-                asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
-                in_decibels(ui, input, input.settings.target_eta);
-                slider
-            })
-            .inner
-        });
+        target_eta(ui, input, asked);
     });
     figures(ui, method, &input.run, asked);
+}
+
+/// The threshold of the target.
+fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
+        ui.horizontal(|ui| {
+            let mut eta = input.settings.target_eta;
+            let slider = threshold(ui, "η' in numbers", &mut eta);
+            asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
+            in_decibels(ui, input, input.settings.target_eta);
+            slider
+        })
+        .inner
+    });
 }
 
 /// A threshold in decibels relative to the target's peak, where these are chosen and known.
@@ -180,15 +205,20 @@ fn in_decibels(ui: &mut Ui, input: &Input<'_>, eta: f32) {
     }
 }
 
-/// The new eta, if it looks any different: the field writes back what it shows when the focus only passes through.
+/// The new eta, if it is another.
 fn moved(before: f32, after: f32) -> Option<f32> {
-    let shown = |eta: f32| (100.0 * eta).round();
-    (shown(before) != shown(after)).then_some(after)
+    (before != after).then_some(after)
 }
 
-/// A slider that shows two decimals; what nobody moves keeps all of its own.
-fn threshold(eta: &mut f32) -> Slider<'_> {
-    Slider::new(eta, 0.0..=1.0).fixed_decimals(2).clamping(SliderClamping::Edits)
+/// A slider, and beside it a field called `name` that shows every digit: P_FA is of what is shown.
+fn threshold(ui: &mut Ui, name: &str, eta: &mut f32) -> egui::Response {
+    let slider = Slider::new(eta, 0.0..=1.0).clamping(SliderClamping::Edits).show_value(false);
+    let slider = ui.add(slider);
+    let text = eta_text(*eta);
+    let field = NumberField::new(eta).range(0.0..=1.0).clamp_existing_to_range(false).speed(0.005).standing_for(&text);
+    let field = ui.add(field);
+    ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));
+    slider
 }
 
 /// P_D, P_FA and SE, or why there are none.
@@ -251,7 +281,7 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         ];
         choices(ui, settings.normalisation, of, Command::Normalise, asked);
         if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
-            let drag = ui.add(DragValue::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
+            let drag = ui.add(NumberField::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
             if drag.on_hover_text("Any other dynamic range").changed() {
                 asked.push(Command::Normalise(Normalisation::DynamicRange(Decibels(range))));
             }
@@ -259,24 +289,40 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
+/// What a floor of a level of its own is.
+const LEVEL: &str = "Thermal noise of this level in every sample, whatever the scene: an empty scene is noise alone. A reflector of σ 1 at \
+    20 m has +18 dBm";
+
 fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<Command>) {
     row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
         let of = [
             (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
             (Floor::Exact, "Exact", "No noise at all"),
-            (Floor::Snr(settings.snr), "SNR", "Thermal noise at a signal-to-noise ratio"),
+            (
+                Floor::Snr(settings.snr),
+                "SNR",
+                "Thermal noise at a signal-to-noise ratio: it is louder where the scene is",
+            ),
+            (Floor::Level(settings.level), "dBm", LEVEL),
         ];
         choices(ui, settings.floor, of, Command::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {
-            let drag = ui.add(DragValue::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
+            let drag = ui.add(NumberField::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
             if drag.changed() {
                 asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
+            }
+        }
+        if let Floor::Level(DecibelMilliwatts(mut level)) = settings.floor {
+            let drag =
+                DragValue::new(&mut level).range(signal::floor::LEVEL_DECIBEL_MILLIWATTS).speed(0.5).suffix(" dBm");
+            if ui.add(drag).on_hover_text(LEVEL).changed() {
+                asked.push(Command::SetFloor(Floor::Level(DecibelMilliwatts(level))));
             }
         }
     });
     if settings.floor != Floor::Exact {
         row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
-            let drag = ui.add(DragValue::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
+            let drag = ui.add(NumberField::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
             if drag.changed() {
                 asked.push(Command::SetNoiseSeed(noise_seed));
             }
@@ -286,7 +332,8 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
 }
 
 fn carrier(ui: &mut Ui, carrier: Carrier, asked: &mut Vec<Command>) {
-    row_of(ui, "Carrier", "One-way is unambiguous; two-way (as equation 3.1 is printed) folds cos θ twice", |ui| {
+    let tooltip = "One-way: the thesis' convention, unambiguous. Two-way: as equation 3.1 is printed; each column stands for two directions";
+    row_of(ui, "Carrier", tooltip, |ui| {
         let of = [(Carrier::OneWay, "One-way", ""), (Carrier::TwoWay, "Two-way", "")];
         choices(ui, carrier, of, Command::SetCarrier, asked);
     });
@@ -303,7 +350,7 @@ fn window(ui: &mut Ui, window: WindowFunction, asked: &mut Vec<Command>) {
     });
 }
 
-fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+fn display(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
         let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
         choices(ui, settings.projection, of, Command::SetProjection, asked);
@@ -312,6 +359,25 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, Command::SetUnits, asked);
     });
+    if uses.output {
+        difference(ui, settings, asked);
+    }
+    row_of(ui, "Colours", "Colours of Λ", |ui| {
+        let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
+        choices(ui, settings.colours, of, Command::Colours, asked);
+    });
+    marks(ui, settings, uses, asked);
+    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
+        let of = [
+            (Snap::Off, "Off", ""),
+            (Snap::Metres(0.5), "0.5 m", ""),
+            (Snap::Cells, "Cells", "Whole range bins and columns"),
+        ];
+        choices(ui, settings.snap, of, Command::SetSnap, asked);
+    });
+}
+
+fn difference(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Difference", "How the panel Difference is drawn", |ui| {
         let DifferenceView { mut absolute, whole } = settings.difference;
         let tip = "Its absolute value, or output minus target";
@@ -324,10 +390,10 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
             asked.push(Command::ToggleWholeDifference);
         }
     });
-    row_of(ui, "Colours", "Colours of Λ", |ui| {
-        let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
-        choices(ui, settings.colours, of, Command::Colours, asked);
-    });
+}
+
+/// What is drawn over maps and scene.
+fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Mark", "What is drawn over maps and scene", |ui| {
         let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: Command| {
             if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
@@ -336,26 +402,23 @@ fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         };
         let tooltip = "The scene's own reflectors, over every map (R)";
         mark(ui, settings.show_reflectors, "reflectors", tooltip, Command::ToggleReflectors);
-        mark(ui, settings.show_found, "found", "Reflectors that the method believes in", Command::ToggleFound);
+        if uses.output {
+            mark(ui, settings.show_found, "found", "Reflectors that the method found", Command::ToggleFound);
+        }
         let tooltip = "What each end can see, in the scene (V)";
         mark(ui, settings.show_fields_of_view, "views", tooltip, Command::ToggleFieldsOfView);
         let tooltip = "What the formulas say of the selected reflector, over every map (T)";
         mark(ui, settings.show_theory, "theory", tooltip, Command::ToggleTheory);
     });
+    if !uses.output {
+        return;
+    }
     row_of(ui, "Failures", "Kinds of failure", |ui| {
         let mut marked = settings.show_kinds;
         let tip = "What became of every object: found, missed, merged, on the wrong tooth; and ghosts (H)";
         if ui.checkbox(&mut marked, "mark").on_hover_text(tip).changed() {
             asked.push(Command::ToggleKinds);
         }
-    });
-    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
-        let of = [
-            (Snap::Off, "Off", ""),
-            (Snap::Metres(0.5), "0.5 m", ""),
-            (Snap::Cells, "Cells", "Whole range bins and columns"),
-        ];
-        choices(ui, settings.snap, of, Command::SetSnap, asked);
     });
 }
 

@@ -1,10 +1,11 @@
 //! What disturbs the scene: somebody else's radar, and a wall that mirrors.
 
 use crate::app::state::Command;
+use crate::app::widgets::number_field::NumberField;
 use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
 use eframe::egui;
-use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, ScrollArea, Ui};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -52,10 +53,9 @@ const fn metres(name: &'static str, tooltip: &'static str) -> Field {
 fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
     let label = ui.label(field.name).on_hover_text(field.tooltip);
     let mut shown = *value * field.scale;
-    let drag = DragValue::new(&mut shown)
+    let drag = NumberField::new(&mut shown)
         .range(field.low..=field.high)
         .clamp_existing_to_range(false)
-        .update_while_editing(false)
         .speed(field.speed)
         .max_decimals(4)
         .suffix(field.unit);
@@ -70,7 +70,7 @@ fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
 fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let now = input.disturbances.interferer;
     let mut on = now.is_some();
-    let tooltip = "Another radar whose chirps are not synchronised: heard while its frequency crosses ours";
+    let tooltip = "Another radar whose chirps are not synchronised: received while its frequency crosses ours";
     if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
         asked.push(Command::SetInterferer(on.then(|| Interferer::before(input.radar))));
         return;
@@ -85,9 +85,9 @@ fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         let field = Field { name: "strength", tooltip, unit: "", scale: 1.0, low: 0.0, high: 1e3, speed: 0.005 };
         number(ui, &field, &mut edited.strength);
         let tooltip = "When its frequency crosses ours, as a part of the chirp";
-        number(ui, &percent("crosses at", tooltip, -100.0), &mut edited.crossing);
-        let tooltip = "For which part of the chirp it is heard: less, the steeper its chirp against ours";
-        number(ui, &percent("heard for", tooltip, 0.1), &mut edited.duration);
+        number(ui, &percent("crossing time (% of chirp)", tooltip, -100.0), &mut edited.crossing);
+        let tooltip = "For which part of the chirp it is received: the steeper its chirp relative to ours, the shorter";
+        number(ui, &percent("duration (% of chirp)", tooltip, 0.1), &mut edited.duration);
     });
     if edited != now {
         asked.push(Command::SetInterferer(Some(edited)));
@@ -153,8 +153,9 @@ mod tests {
         }
         assert_eq!(panel.state().interferer, Some(Interferer::default()), "as it stands before the radar of table 3.1");
         assert_eq!(panel.state().mirror, Some(Mirror::default()));
-        let field = panel
-            .get_by(|n| n.label().as_deref() == Some("crosses at") && n.role() == egui::accesskit::Role::SpinButton);
+        let field = panel.get_by(|n| {
+            n.label().as_deref() == Some("crossing time (% of chirp)") && n.role() == egui::accesskit::Role::SpinButton
+        });
         field.focus();
         panel.run();
         panel.event(egui::Event::Text("25".to_owned()));

@@ -2,12 +2,11 @@
 
 use crate::app::jobs::Calibrated;
 use crate::app::state::Command;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{BuiltArray, Decibels, ElementError, End, Radar, Tolerances};
 use eframe::egui;
-use eframe::egui::{
-    DragValue, EventFilter, Grid, Key, Modifiers, PointerButton, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
-};
+use eframe::egui::{EventFilter, Grid, Key, Modifiers, PointerButton, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use std::sync::Arc;
 
 /// What is shown.
@@ -64,11 +63,12 @@ fn with(input: &Input<'_>, n: usize, change: impl FnOnce(&mut ElementError)) -> 
 fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if input.elements.is_ideal() {
-            ui.weak("Every element is as it should be. Click one to silence it.");
+            ui.weak("No element errors. Click an element to disable it.");
             return;
         }
-        ui.label(told(input.elements));
-        let tooltip = "Every element as it should be; undo brings the errors back";
+        let living = input.elements.elements.len() - input.elements.dead();
+        ui.label(told(input.elements)).on_hover_text(spread_tooltip(living));
+        let tooltip = "Remove all element errors; undo brings them back";
         if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
             asked.push(Command::SetElements(Arc::default()));
         }
@@ -82,7 +82,16 @@ fn told(elements: &BuiltArray) -> String {
         0 => String::new(),
         n => format!("{n} dead, "),
     };
-    format!("{dead}gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
+    format!("{dead}as drawn: gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
+}
+
+/// Why what was drawn differs from what was asked for.
+fn spread_tooltip(living: usize) -> String {
+    let percent = 100.0 / (2.0 * living.max(1) as f64).sqrt();
+    format!(
+        "Root mean square over the {living} elements that hear. Errors are drawn from normal distributions: over so many elements it \
+         differs from the standard deviation asked for by about {percent:.0} % from draw to draw."
+    )
 }
 
 /// Phase from which on a dot is drawn: rounding leaves less after a calibration.
@@ -152,10 +161,9 @@ fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Co
 fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64) -> Option<f64> {
     let label = ui.label(name);
     let mut edited = value;
-    let drag = DragValue::new(&mut edited)
+    let drag = NumberField::new(&mut edited)
         .range(-most..=most)
         .clamp_existing_to_range(false)
-        .update_while_editing(false)
         .speed(speed)
         .max_decimals(3)
         .suffix(unit);
@@ -170,7 +178,7 @@ fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
     ui.horizontal_wrapped(|ui| {
         let label = ui.label("element");
         let most = input.radar.elements - 1;
-        ui.add(DragValue::new(&mut memory.chosen).range(0..=most).speed(0.2)).labelled_by(label.id);
+        ui.add(NumberField::new(&mut memory.chosen).range(0..=most).speed(0.2)).labelled_by(label.id);
         let mut dead = error.dead;
         if ui.checkbox(&mut dead, "dead").changed() {
             asked.push(with(input, n, |e| e.dead = dead));
@@ -197,11 +205,11 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &m
             ("places ±", position_millimetres, " mm", 100.0),
         ] {
             let label = ui.label(name).on_hover_text("Standard deviation");
-            ui.add(DragValue::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit))
+            ui.add(NumberField::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit))
                 .labelled_by(label.id);
         }
         let label = ui.label("seed");
-        ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+        ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
         let tooltip = "Give every element an error of its own; the dead stay dead";
         if ui.button("Draw").on_hover_text(tooltip).clicked() {
             let mut drawn = memory.tolerances.build(input.radar, memory.seed);
@@ -214,7 +222,7 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &m
 fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let found = match &input.calibration {
         None => {
-            ui.weak("Select a point of the scene: what is heard of it calibrates the elements.");
+            ui.weak("Select a point to calibrate the elements on its echo.");
             return;
         }
         Some(Err(reason)) => {
@@ -225,11 +233,11 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     };
     ui.strong(format!("Calibration on {}", found.name));
     Grid::new("calibration").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-        let unexplained = format!("{:.1} % of the power is not its echo", 100.0 * found.calibration.unexplained);
+        let unexplained = format!("{:.1} % of the power comes from elsewhere", 100.0 * found.calibration.unexplained);
         let rows = [
             ("found", told(&found.calibration.array), "Gain and phase that the reflector's echo tells of each element"),
             ("left", told(&found.left), "What is wrong with the elements once that is taken off: places can't be"),
-            ("besides", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
+            ("residual", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
         ];
         for (name, text, tooltip) in rows {
             ui.weak(name).on_hover_text(tooltip);
@@ -333,8 +341,10 @@ mod tests {
         let left = array.corrected(&calibration.array);
         let calibrated = Calibrated { name: "point 1".to_owned(), calibration, left };
         let mut panel = panel(array, Some(calibrated));
-        let _told =
-            (panel.get_by_label("Calibration on point 1"), panel.get_by_label("0.0 % of the power is not its echo"));
+        let _told = (
+            panel.get_by_label("Calibration on point 1"),
+            panel.get_by_label("0.0 % of the power comes from elsewhere"),
+        );
         panel.get_by_label("Calibrate on this reflector").click();
         panel.run();
         let left = panel.state().elements.spread();

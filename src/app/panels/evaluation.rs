@@ -3,12 +3,14 @@
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice};
 use crate::app::widgets::method_menu::method_menu;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::progress;
+use crate::evaluate::eta_text;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
-use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, ScrollArea, Ui};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -100,9 +102,9 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
                 ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
             }
             let label = ui.label("scenes a set");
-            ui.add(DragValue::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
+            ui.add(NumberField::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
             let label = ui.label("seed");
-            ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+            ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
         });
     });
 }
@@ -138,10 +140,15 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
         }
         ui.strong(format!("Table 4.{set}: {}", SETS[set - 1]));
         Grid::new(("table", set)).num_columns(6).striped(true).spacing([8.0, 3.0]).show(ui, |ui| {
-            let at = format!("P_D % at\nP_FA {:.2} %", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
-            for title in ["", "SE", "P_D %", "P_FA %", &at, "ms"] {
+            let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
+            for title in ["", "SE", "P_D %", "P_FA %"] {
                 ui.weak(title);
             }
+            ui.weak(&at).on_hover_text(
+                "Every scene has a threshold of its own here, which holds its P_FA to the printed one.\n\
+                 The printed P_D is at one threshold for all scenes: it belongs to the column P_D %.",
+            );
+            ui.weak("ms");
             ui.end_row();
             for (name, columns) in PRINTED {
                 let printed = columns[set - 1];
@@ -152,12 +159,12 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
                 ui.end_row();
             }
             for row in rows.iter().filter(|r| r.set == set) {
-                ui.strong(format!("{}\nη = {:.2}", row.method, row.eta))
-                    .on_hover_text(format!("{} scenes; mean ± standard error", row.scenes));
+                let scenes = counted(row.scenes, "scene", "scenes");
+                ui.strong(label(row)).on_hover_text(format!("{scenes}; mean ± standard error, median"));
                 ui.monospace(with_error(row.squared_error, 1.0, 0));
                 ui.monospace(with_error(row.detection, 100.0, 2));
                 ui.monospace(with_error(row.false_alarm, 100.0, 2));
-                ui.monospace(row.detection_at_printed.map_or("–".to_owned(), |d| format!("{:.2}", 100.0 * d)));
+                ui.monospace(row.detection_at_printed.map_or("–".to_owned(), |d| with_error(d, 100.0, 2)));
                 ui.monospace(format!("{:.1}", row.median_milliseconds));
                 ui.end_row();
             }
@@ -166,9 +173,17 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
     }
 }
 
-/// A mean, and beneath it its standard error: beside it there would be no room for the other columns.
-fn with_error(estimate: Estimate, scale: f64, digits: usize) -> String {
-    format!("{:.digits$}\n± {:.digits$}", scale * estimate.mean, scale * estimate.standard_error)
+/// A method's name, its threshold, and the optimisers of its weights.
+fn label(row: &EvaluationRow) -> String {
+    let eta = if row.one_eta { eta_text(row.eta) } else { format!("{:.4}, mean", row.eta) };
+    let optimiser = if row.optimiser.is_empty() { String::new() } else { format!("\n{}", row.optimiser) };
+    format!("{}\nη = {eta}{optimiser}", row.method)
+}
+
+/// A mean, and beneath it its standard error and the median: beside it there would be no room for the other columns.
+fn with_error(Estimate { mean, standard_error, median }: Estimate, scale: f64, digits: usize) -> String {
+    let [mean, standard_error, median] = [mean, standard_error, median].map(|v| format!("{:.digits$}", scale * v));
+    format!("{mean}\n± {standard_error}\nmed {median}")
 }
 
 #[cfg(test)]
@@ -202,16 +217,18 @@ mod tests {
 
     #[test]
     fn a_panel_of_the_window_has_room_for_every_column() {
-        let estimate = |mean, standard_error| Estimate { mean, standard_error };
+        let estimate = |mean, standard_error| Estimate { mean, standard_error, median: mean };
         let row = EvaluationRow {
             set: 3,
             method: "linear-prediction",
-            eta: 0.851,
+            optimiser: "AdamW, then Muon".into(),
+            eta: 0.851_234_5,
+            one_eta: true,
             scenes: 100,
             squared_error: estimate(12_345.6, 1234.5),
             detection: estimate(0.99351, 0.10123),
             false_alarm: estimate(0.10163, 0.10012),
-            detection_at_printed: Some(1.0),
+            detection_at_printed: Some(estimate(1.0, 0.0)),
             median_milliseconds: 1234.5,
         };
         let radar = Radar::default();

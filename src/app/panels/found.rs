@@ -10,14 +10,25 @@ use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 /// Most lines that are shown.
 const LINES: usize = 200;
 
+/// How strong a list is drawn that belongs to an earlier scene.
+const OLD_OPACITY: f32 = 0.45;
+
+/// What the last column says.
+const NEEDED: &str = "How far the samples need this echo: of the energy around its range that the other echoes leave unexplained, the part \
+    that it explains. Low: the other echoes, noise or side lobes would do without it. – where the method does not say";
+
 /// What is listed.
 pub struct Input<'a> {
+    /// The method in use, where it draws a map and finds nothing that could be listed.
+    pub draws_only: Option<&'static str>,
     /// The method whose output is shown.
     pub method: Option<&'static str>,
     /// What it found, the strongest first; `None` until the list is there.
     pub found: Option<&'a [Detection]>,
     /// Why there is no output.
     pub refusal: Option<&'a str>,
+    /// Whether it is of an earlier scene, and has been for long enough to be told.
+    pub stale: bool,
     /// Whether a range was measured: one sample tells none.
     pub has_ranges: bool,
 }
@@ -25,6 +36,10 @@ pub struct Input<'a> {
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+        if let Some(method) = input.draws_only {
+            ui.weak(format!("{method} draws a map and finds no echoes to list. Choose another method in Settings."));
+            return;
+        }
         let Some((method, found)) = input.method.zip(input.found).filter(|_| input.refusal.is_none()) else {
             match input.refusal {
                 Some(reason) => _ = ui.colored_label(ui.visuals().error_fg_color, reason),
@@ -32,6 +47,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             }
             return;
         };
+        if input.stale {
+            ui.weak("of an earlier scene; updating…");
+            ui.set_opacity(OLD_OPACITY);
+        }
         let more = found.len().saturating_sub(LINES);
         ui.weak(match found.len() {
             0 => format!("{method} found nothing."),
@@ -47,6 +66,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                         ("cos θ", "Cosine of the angle to the array's axis, as the maps count directions"),
                         ("range", "From the centre of the array"),
                         ("dB", "Power of the echo, relative to the strongest"),
+                        ("needed", NEEDED),
                     ] {
                         ui.strong(heading).on_hover_text(tooltip);
                     }
@@ -69,8 +89,9 @@ fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
     for text in [angle, signed(found.cos_theta, 4), range] {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
     }
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(plain(found.relative_power.0, 1)));
     // The last column takes all the room that is left: nothing is aligned to its end.
-    ui.monospace(plain(found.relative_power.0, 1));
+    ui.monospace(found.confidence.map_or("–".to_owned(), |c| format!("{:.0} %", 100.0 * c)));
     ui.end_row();
 }
 
@@ -83,7 +104,8 @@ mod tests {
 
     fn panel(found: Option<Vec<Detection>>, refusal: Option<&'static str>, has_ranges: bool) -> Harness<'static> {
         let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
-            let asked = show(ui, Input { method: Some("iaa"), found: found.as_deref(), refusal, has_ranges });
+            let (method, found) = (Some("iaa"), found.as_deref());
+            let asked = show(ui, Input { draws_only: None, method, found, refusal, stale: false, has_ranges });
             assert!(asked.is_empty());
         });
         panel.run();
@@ -91,18 +113,50 @@ mod tests {
     }
 
     fn detection(degrees: f64, range_metres: f64, db: f64) -> Detection {
-        Detection { cos_theta: degrees.to_radians().sin(), range_metres, relative_power: Decibels(db) }
+        let relative_power = Decibels(db);
+        Detection {
+            cos_theta: degrees.to_radians().sin(),
+            range_metres,
+            relative_power,
+            confidence: Some(0.4 + 0.1 * db),
+        }
     }
 
     #[test]
     fn angles_ranges_and_decibels_are_listed() {
         let list = vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)];
         let shown = panel(Some(list.clone()), None, true);
-        let _told =
-            ["iaa found 2 echoes, the strongest first", "+6.96°", "+0.1212", "15.00 m", "−3.50°", "7.25 m", "−2.0"]
-                .map(|text| shown.get_by_label(text));
+        let _told = [
+            "iaa found 2 echoes, the strongest first",
+            "+6.96°",
+            "+0.1212",
+            "15.00 m",
+            "40 %",
+            "−3.50°",
+            "7.25 m",
+            "−2.0",
+            "20 %",
+        ]
+        .map(|text| shown.get_by_label(text));
         let snapshot = panel(Some(list), None, false);
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
+    }
+
+    #[test]
+    fn a_method_that_only_draws_has_no_list() {
+        let panel = Harness::new_ui(|ui| {
+            let list = [detection(6.96, 15.0, 0.0)];
+            let input = Input {
+                draws_only: Some("live"),
+                method: Some("iaa"),
+                found: Some(&list),
+                refusal: None,
+                has_ranges: true,
+            };
+            show(ui, input);
+        });
+        let _told = panel.get_by_label_contains("live draws a map");
+        assert!(panel.query_by_label("15.00 m").is_none());
     }
 
     #[test]

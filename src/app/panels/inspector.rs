@@ -3,12 +3,13 @@
 use crate::app::state::{Command, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::signed;
 use crate::interact::{Change, Coordinates, Editor, Field, Shared};
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::scene::Scene;
 use eframe::egui;
-use eframe::egui::{DragValue, Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, ScrollArea, Ui};
 
 /// What the numbers are of, and turned into.
 pub struct Input<'a> {
@@ -63,10 +64,10 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.strong(match (object, single) {
             (Some(object), Some(index)) => format!("{} {}", capital(object.kind()), index + 1),
-            _ => format!("{} objects", editor.selection().len()),
+            _ => counted(editor.selection().len(), "object", "objects"),
         });
         if object.is_none() {
-            ui.weak(format!("{} reflectors", editor.selected_reflectors()));
+            ui.weak(counted(editor.selected_reflectors(), "reflector", "reflectors"));
         }
         toggle(ui, coordinates, asked);
     });
@@ -199,7 +200,7 @@ fn number(ui: &mut Ui, shared: &Shared) -> Option<Change> {
         asked = new.or(asked);
         asked.unwrap_or(base)
     };
-    let mut drag = DragValue::from_get_set(get_set)
+    let mut drag = NumberField::from_get_set(get_set)
         .range(look.low..=look.high)
         .clamp_existing_to_range(false)
         .speed(look.speed)
@@ -207,7 +208,7 @@ fn number(ui: &mut Ui, shared: &Shared) -> Option<Change> {
         .min_decimals(look.digits)
         .suffix(look.unit);
     if !shared.is_same {
-        drag = drag.custom_formatter(|_, _| "various".to_owned()).suffix("");
+        drag = drag.standing_for("various");
     }
     let response = ui.add(drag).labelled_by(label.id).on_hover_text(look.tooltip);
     ui.end_row();

@@ -3,11 +3,12 @@
 use crate::app::state::{Command, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
-use crate::lesson::question::Answer;
+use crate::lesson::question::{Answer, number_text};
 use crate::lesson::shipped::Shipped;
-use crate::lesson::{Challenge, Guess, Lesson, Progress, Question};
+use crate::lesson::{Challenge, Guess, Judgement, Lesson, Progress, Question, Truth};
+use crate::radar::counted;
 use eframe::egui;
-use eframe::egui::{RichText, ScrollArea, Slider, TextEdit, TextureId, Ui};
+use eframe::egui::{Color32, RichText, ScrollArea, Sense, Slider, Stroke, TextEdit, TextureId, Ui, pos2, vec2};
 use std::sync::OnceLock;
 
 /// What is shown.
@@ -74,7 +75,9 @@ fn shipped() -> &'static [(&'static Shipped, Lesson)] {
 }
 
 fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<Command>) {
-    ui.label("Each step asks before it shows. Guess: a wrong guess teaches as much as a right one.");
+    ui.label(
+        "Each step asks a question before it shows the maps. Guess: a wrong guess teaches as much as a right one.",
+    );
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Learner");
         let field =
@@ -115,7 +118,7 @@ fn done(progress: &Progress, id: &str, lesson: &Lesson) -> String {
         (step.predict.is_none() || record.first_guess_right.is_some())
             && (step.challenge.is_none() || record.challenge_met)
     });
-    format!("{} of {} steps", done.count(), lesson.steps.len())
+    format!("{} of {}", done.count(), counted(lesson.steps.len(), "step", "steps"))
 }
 
 fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
@@ -129,7 +132,10 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
         ui.label(large(ui, &question.ask).strong());
         match run.guess {
             None => answer(ui, question, memory, asked),
-            Some(_) => judgement(ui, run, &mut memory.told),
+            Some(guess) => {
+                answered(ui, question, guess, run.judgement.as_ref().and_then(|j| j.as_ref().ok()));
+                judgement(ui, run, &mut memory.told);
+            }
         }
     }
     if let Some(challenge) = step.challenge.as_ref().filter(|_| !run.is_predicting()) {
@@ -148,8 +154,8 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         if !is_last && ui.button("Next").clicked() {
             asked.push(Command::LessonStep(run.step + 1));
         }
-        let leave = if is_last { "Finish" } else { "Leave" };
-        if ui.button(leave).on_hover_text("Your scene and your settings come back").clicked() {
+        let leave = if is_last { "Finish" } else { "Exit lesson" };
+        if ui.button(leave).on_hover_text("Your scene, settings, panels and zoom come back").clicked() {
             asked.push(Command::LeaveLesson);
         }
         whole_screen(ui, presenting, asked);
@@ -207,13 +213,62 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
     }
 }
 
+/// The guess beside the truth: places are drawn on their map instead.
+fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&Judgement>) {
+    let truth = judged.map(|j| j.truth);
+    match (&question.answer, guess) {
+        (Answer::Choice { options, .. }, Guess::Choice(chosen)) => {
+            let right = if let Some(Truth::Choice(right)) = truth { Some(right) } else { None };
+            for (option, number) in options.iter().zip(1..) {
+                let said = match (number == chosen, right == Some(number)) {
+                    (true, true) => "your answer, right",
+                    (true, false) if right.is_some() => "your answer, wrong",
+                    (true, false) => "your answer",
+                    (false, true) => "the right answer",
+                    (false, false) => "",
+                };
+                ui.horizontal(|ui| {
+                    ui.add_enabled(false, egui::Button::new(option));
+                    ui.label(said);
+                });
+            }
+        }
+        (Answer::Number { unit, .. }, Guess::Number(number)) => {
+            let exact =
+                if let Some(Truth::Number(exact)) = truth { number_text(exact, unit) } else { "…".to_owned() };
+            ui.label(format!("Your answer: {}. Exact: {exact}.", number_text(number, unit)));
+        }
+        (Answer::Threshold { .. }, Guess::Eta(eta)) => {
+            let right = if let Some(Truth::Etas { low, high }) = truth { Some((low, high)) } else { None };
+            threshold(ui, eta, right);
+        }
+        _ => {}
+    }
+}
+
+/// The threshold that was chosen on a scale from 0 to 1, and those that are right.
+fn threshold(ui: &mut Ui, eta: f32, right: Option<(f32, f32)>) {
+    let (scale, _) = ui.allocate_exact_size(vec2(ui.available_width().min(300.0), 14.0), Sense::hover());
+    let at = |value: f32| scale.left() + value.clamp(0.0, 1.0) * scale.width();
+    let painter = ui.painter();
+    painter.rect_filled(scale, 2.0, ui.visuals().extreme_bg_color);
+    if let Some((low, high)) = right.filter(|(low, high)| low < high) {
+        let band = egui::Rect::from_x_y_ranges(at(low)..=at(high), scale.y_range());
+        painter.rect_filled(band, 2.0, Color32::from_rgb(60, 140, 80));
+    }
+    let guess = [pos2(at(eta), scale.top()), pos2(at(eta), scale.bottom())];
+    painter.line_segment(guess, Stroke::new(3.0, Color32::from_rgb(255, 170, 60)));
+    let told = right.map_or_else(String::new, |_| " The green part of the scale is right.".to_owned());
+    ui.label(format!("Your answer: {eta:.2}.{told}"));
+}
+
 fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
     match &run.judgement {
-        None => _ = ui.weak("looking…"),
+        None => _ = ui.weak("computing…"),
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
-            let verdict = if judged.is_right { "Right" } else { "Not quite" };
-            ui.label(large(ui, format!("{verdict}: {}", judged.distance)).strong());
+            let verdict = if judged.is_right { "Correct" } else { "Not quite" };
+            ui.label(large(ui, format!("{verdict}: {}.", judged.distance)).strong());
             let sentence = ui.label(inline(ui, &judged.sentence, LARGE));
             if !std::mem::replace(told, true) {
                 sentence.scroll_to_me(None);
@@ -231,7 +286,7 @@ fn requirements(
 ) {
     ui.label(large(ui, &challenge.ask).strong());
     if let Some(texture) = hidden {
-        ui.label("The map to be explained:");
+        ui.label("The map to reproduce:");
         let width = ui.available_width().min(420.0);
         ui.image((texture, egui::vec2(width, width / 2.0)));
     }
@@ -240,96 +295,25 @@ fn requirements(
         Some(Err(reason)) => _ = ui.label(reason),
         Some(Ok(measured)) => {
             for m in measured {
-                let verdict = if m.holds { "holds" } else { "not yet" };
-                ui.label(format!("{}: {:.3}, {} — {verdict}", m.name, m.value, m.bound));
+                let verdict = if m.holds { "met" } else { "not met yet" };
+                ui.label(format!("{}: {:.3}, required {}: {verdict}", m.name, m.value, m.bound));
             }
         }
     }
-    if run.is_met() {
-        ui.label(large(ui, "Done. Change more, or go on.").strong());
-    } else if ui.button("Show a way").on_hover_text("Puts a scene and a radar on screen that meet it").clicked() {
-        asked.push(Command::ShowSolution);
+    if run.gave_up {
+        ui.label("The solution was shown: the challenge counts as unsolved.");
+        if ui.button("Start this step again").on_hover_text("Puts the step's scene and radar back").clicked() {
+            asked.push(Command::LessonStep(run.step));
+        }
+    } else if run.is_met() {
+        ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
+    } else {
+        let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
+        if ui.button("Show a solution").on_hover_text(tip).clicked() {
+            asked.push(Command::ShowSolution);
+        }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::state::{Settings, Setup};
-    use crate::radar::Radar;
-    use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
-
-    fn run(lesson: &str, step: usize) -> LessonRun {
-        let shipped = crate::lesson::shipped::ALL.iter().find(|s| s.id == lesson).unwrap();
-        let before = Setup {
-            settings: Settings::default(),
-            radar: Radar::default(),
-            scene: Arc::new(Scene::default()),
-            depth: 0,
-        };
-        let mut run = LessonRun::new(lesson.to_owned(), shipped.load().unwrap(), before);
-        run.go_to(step);
-        run
-    }
-
-    type Drawn = (Option<LessonRun>, Memory, Vec<Command>);
-
-    fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
-        let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
-            asked.extend(show(
-                ui,
-                Input { run: run.as_ref(), progress: &Progress::default(), hidden: None, presenting: false },
-                memory,
-            ));
-        };
-        Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (run, Memory::default(), Vec::new()))
-    }
-
-    #[test]
-    fn a_lesson_is_begun_from_the_list() {
-        let mut panel = harness(None);
-        panel.get_by_label("Range and bandwidth").click();
-        panel.step();
-        assert_eq!(panel.state().2, [Command::BeginLesson(0)]);
-    }
-
-    #[test]
-    fn lessons_ask_for_the_whole_screen() {
-        let mut panel = harness(Some(run("range-and-bandwidth", 0)));
-        panel.get_by_label("Whole screen").click();
-        panel.step();
-        assert_eq!(panel.state().2, [Command::PresentLesson]);
-    }
-
-    #[test]
-    fn options_are_predictions_and_results_stay_hidden_before() {
-        let mut panel = harness(Some(run("range-and-bandwidth", 3)));
-        assert!(panel.query_by_label_contains("Right").is_none());
-        panel.get_by_label("It stays").click();
-        panel.step();
-        assert_eq!(panel.state().2, [Command::Predict(Guess::Choice(3))]);
-    }
-
-    #[test]
-    fn a_number_is_typed_and_answered() {
-        let mut panel = harness(Some(run("range-and-bandwidth", 1)));
-        panel.get_by_label("Your number").focus();
-        panel.step();
-        panel.get_by_label("Your number").type_text("0,075");
-        panel.step();
-        panel.get_by_label("Answer").click();
-        panel.step();
-        assert_eq!(panel.state().2, [Command::Predict(Guess::Number(0.075))]);
-    }
-
-    #[test]
-    fn a_challenge_offers_a_way_until_it_is_met() {
-        let mut panel = harness(Some(run("range-and-bandwidth", 4)));
-        panel.get_by_label("Show a way").click();
-        panel.step();
-        assert_eq!(panel.state().2, [Command::ShowSolution]);
-    }
-}
+mod tests;

@@ -1,10 +1,11 @@
 //! The radar: every constant of it, and what follows from each.
 
 use crate::app::state::Command;
+use crate::app::widgets::number_field::NumberField;
 use crate::radar::{Carrier, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 use eframe::egui;
-use eframe::egui::{ComboBox, DragValue, Grid, ScrollArea, Ui};
+use eframe::egui::{Align, Color32, ComboBox, Grid, Id, Label, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -24,8 +25,8 @@ pub struct Measured {
 impl Measured {
     fn told(self) -> &'static str {
         match self.by_all_elements {
-            true => "Measured with this radar: how many elements an end has, and the windows, are yours to choose.",
-            false => "Measured with this radar by its two ends: the windows are yours to choose.",
+            true => "Recorded radar: only the size of the ends and the windows can be changed.",
+            false => "Recorded radar, two ends alone: only the windows can be changed.",
         }
     }
 }
@@ -51,13 +52,19 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             let follows = Consequences::of(&radar);
             let constants = input.measured.is_none();
             let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
-            Grid::new("radar").num_columns(3).spacing([12.0, 5.0]).striped(true).show(ui, |ui| {
-                for heading in ["Constant", "Value", "Consequence"] {
-                    ui.strong(heading);
+            let table = Table::that_fits(ui);
+            match table.consequence_width {
+                Some(_) => {
+                    _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
+                        for heading in ["Constant", "Value", "Consequence"] {
+                            ui.strong(heading);
+                        }
+                        ui.end_row();
+                        rows(ui, table, &mut radar, &follows, free);
+                    })
                 }
-                ui.end_row();
-                rows(ui, &mut radar, &follows, free);
-            });
+                None => rows(ui, table, &mut radar, &follows, free),
+            }
             radar.end_elements = radar.end_elements.min(radar.elements / 2);
             if radar != *input.radar {
                 asked.push(Command::SetRadar(Box::new(radar)));
@@ -65,6 +72,63 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         });
     });
     asked
+}
+
+/// Between two columns, points.
+const GAP: f32 = 12.0;
+
+/// Width of the widest value, two names of windows beside each other, points.
+const VALUE_WIDTH: f32 = 170.0;
+
+/// The least width of a column of consequences, points: in less, a sentence is torn into single words.
+const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
+
+/// How the constants stand in the panel.
+#[derive(Clone, Copy)]
+struct Table {
+    /// Width of the longest name of a constant, points.
+    name_width: f32,
+    /// Width of the column of consequences; `None` where there is no room for one: then each stands below its constant.
+    consequence_width: Option<f32>,
+}
+
+impl Table {
+    fn that_fits(ui: &Ui) -> Table {
+        let font = TextStyle::Body.resolve(ui.style());
+        let width =
+            |name: &str| ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
+        let name_width = NAMES.into_iter().map(width).fold(0.0, f32::max);
+        let left = ui.available_width() - name_width - VALUE_WIDTH - 2.0 * GAP;
+        Table { name_width, consequence_width: Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH) }
+    }
+
+    /// A row: the name, what `value` draws, what follows.
+    fn row<T>(
+        self,
+        ui: &mut Ui,
+        (name, tooltip): (&str, &str),
+        consequence: &str,
+        value: impl FnOnce(&mut Ui, Id) -> T,
+    ) -> T {
+        let consequence = Label::new(consequence).wrap();
+        let Some(width) = self.consequence_width else {
+            let value = ui.horizontal(|ui| {
+                let label = ui.label(name).on_hover_text(tooltip);
+                ui.add_space((self.name_width - label.rect.width()).max(0.0) + GAP);
+                value(ui, label.id)
+            });
+            ui.indent(("consequence", name), |ui| ui.add(consequence));
+            return value.inner;
+        };
+        let label = ui.label(name).on_hover_text(tooltip);
+        let value = value(ui, label.id);
+        ui.vertical(|ui| {
+            ui.set_max_width(width);
+            ui.add(consequence);
+        });
+        ui.end_row();
+        value
+    }
 }
 
 /// Radars to start from.
@@ -84,9 +148,21 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
         });
         combo.response.labelled_by(label.id);
     });
-    if let Some(preset) = chosen {
-        ui.weak(preset.about);
-    }
+    about(ui, chosen.map_or(OF_YOUR_OWN, |preset| preset.about));
+}
+
+/// What is told of a radar that is no preset.
+const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
+
+/// What a radar is, in as much room as the longest of these texts takes: whichever it is, the table below stays where it is.
+fn about(ui: &mut Ui, text: &str) {
+    let (font, width) = (TextStyle::Body.resolve(ui.style()), ui.available_width());
+    let height = |text: &str| ui.painter().layout(text.to_owned(), font.clone(), Color32::PLACEHOLDER, width).size().y;
+    let most = presets::ALL.iter().map(|preset| height(preset.about)).fold(0.0, f32::max);
+    ui.allocate_ui_with_layout(vec2(width, most), Layout::top_down(Align::Min), |ui| {
+        ui.set_min_height(most);
+        ui.add(Label::new(RichText::new(text).weak()).wrap());
+    });
 }
 
 /// A number of the radar.
@@ -101,30 +177,19 @@ struct Number {
 }
 
 /// A row: name, the number in its unit, what follows. The number as it is after an edit, where there was one.
-fn number(ui: &mut Ui, field: &Number, value: f64, consequence: &str, is_free: bool) -> Option<f64> {
-    let label = ui.label(field.name).on_hover_text(field.tooltip);
+fn number(ui: &mut Ui, table: Table, field: &Number, value: f64, consequence: &str, is_free: bool) -> Option<f64> {
     let mut edited = value;
-    let drag = DragValue::new(&mut edited)
-        .range(field.low..=field.high)
-        .clamp_existing_to_range(false)
-        .update_while_editing(false)
-        .speed(field.speed)
-        .max_decimals(field.decimals)
-        .suffix(field.unit);
-    let changed = ui.add_enabled(is_free, drag).labelled_by(label.id).on_hover_text(field.tooltip).changed();
-    last_cell(ui, consequence);
-    // A field that the focus only passes through writes back what it shows, rounded.
+    let changed = table.row(ui, (field.name, field.tooltip), consequence, |ui, label| {
+        let number = NumberField::new(&mut edited)
+            .range(field.low..=field.high)
+            .clamp_existing_to_range(false)
+            .speed(field.speed)
+            .max_decimals(field.decimals)
+            .suffix(field.unit);
+        ui.add_enabled(is_free, number).labelled_by(label).on_hover_text(field.tooltip).changed()
+    });
     let step = 10f64.powi(-(field.decimals as i32));
     (changed && (edited - value).abs() >= 0.5 * step).then_some(edited)
-}
-
-/// The last cell of a row, as wide as what is left of the panel.
-fn last_cell(ui: &mut Ui, consequence: &str) {
-    ui.vertical(|ui| {
-        ui.set_max_width(ui.available_width().max(100.0));
-        ui.add(egui::Label::new(consequence).wrap());
-    });
-    ui.end_row();
 }
 
 const CARRIER: Number = Number {
@@ -138,7 +203,7 @@ const CARRIER: Number = Number {
 };
 const BANDWIDTH: Number = Number {
     name: "bandwidth",
-    tooltip: "How far a chirp sweeps: a range bin is the speed of light over twice of it",
+    tooltip: "How far a chirp sweeps. A range bin is the speed of light over twice the bandwidth",
     unit: " MHz",
     speed: 2.0,
     low: 1.0,
@@ -182,7 +247,7 @@ const SPACING_MILLIMETRES: Number = Number {
     decimals: 3,
 };
 const SPACING_WAVELENGTHS: Number = Number {
-    name: "the same in wavelengths",
+    name: "spacing / λ",
     tooltip: "Above half a wavelength (a quarter, for the two-way carrier) a direction has grating lobes",
     unit: " λ",
     speed: 0.005,
@@ -200,25 +265,38 @@ const POWER: Number = Number {
     decimals: 3,
 };
 
-/// What follows from the bandwidth of a snapshot.
-const NO_RANGES: &str = "one sample tells no range from another";
+/// Names of the constants, as they stand in the first column.
+const NAMES: [&str; 11] = [
+    CARRIER.name,
+    BANDWIDTH.name,
+    SAMPLES.name,
+    ELEMENTS.name,
+    END_ELEMENTS.name,
+    SPACING_MILLIMETRES.name,
+    SPACING_WAVELENGTHS.name,
+    POWER.name,
+    "phase",
+    "windows",
+    "range migration",
+];
 
-fn rows(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, free: Free) {
+/// What follows from the bandwidth of a snapshot.
+const NO_RANGES: &str = "one sample has no range resolution";
+
+fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, free: Free) {
     let is_free = free.constants;
     let wavelength = radar.wavelength_metres();
     let text = format!("wavelength {:.3} mm", wavelength * 1e3);
-    if let Some(ghz) = number(ui, &CARRIER, radar.carrier_hz * 1e-9, &text, is_free) {
+    if let Some(ghz) = number(ui, table, &CARRIER, radar.carrier_hz * 1e-9, &text, is_free) {
         radar.carrier_hz = ghz * 1e9;
     }
     let is_snapshot = radar.samples == 1;
     if is_snapshot && !is_free {
-        ui.label(BANDWIDTH.name).on_hover_text(BANDWIDTH.tooltip);
-        ui.weak("not known");
-        last_cell(ui, NO_RANGES);
+        table.row(ui, (BANDWIDTH.name, BANDWIDTH.tooltip), NO_RANGES, |ui, _| ui.weak("not known"));
     } else {
         let bin = format!("range bin {}", metres(follows.range_bin_metres));
         let text = if is_snapshot { NO_RANGES } else { &bin };
-        if let Some(mhz) = number(ui, &BANDWIDTH, radar.bandwidth_hz * 1e-6, text, is_free) {
+        if let Some(mhz) = number(ui, table, &BANDWIDTH, radar.bandwidth_hz * 1e-6, text, is_free) {
             radar.bandwidth_hz = mhz * 1e6;
         }
     }
@@ -226,33 +304,33 @@ fn rows(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, free: Free) {
         true => "a snapshot: one range bin".to_owned(),
         false => format!("maximum range {}", metres(follows.max_range_metres)),
     };
-    if let Some(samples) = number(ui, &SAMPLES, radar.samples as f64, &text, is_free) {
+    if let Some(samples) = number(ui, table, &SAMPLES, radar.samples as f64, &text, is_free) {
         radar.samples = samples as usize;
     }
     let beam = follows.full_beam;
     let text = format!("beam {:.2}°, {:.2} columns", beam.radians.to_degrees(), beam.columns);
-    if let Some(elements) = number(ui, &ELEMENTS, radar.elements as f64, &text, is_free) {
+    if let Some(elements) = number(ui, table, &ELEMENTS, radar.elements as f64, &text, is_free) {
         radar.elements = elements as usize;
     }
     let beam = follows.end_beam;
     let text = format!("beam of an end {:.1}°, {:.0} columns", beam.radians.to_degrees(), beam.columns);
-    if let Some(elements) = number(ui, &END_ELEMENTS, radar.end_elements as f64, &text, free.ends) {
+    if let Some(elements) = number(ui, table, &END_ELEMENTS, radar.end_elements as f64, &text, free.ends) {
         radar.end_elements = elements as usize;
     }
     let far = metres(follows.full_far_field_metres);
     let text = format!("far field beyond {far}; of an end, {}", metres(follows.end_far_field_metres));
-    if let Some(mm) = number(ui, &SPACING_MILLIMETRES, radar.element_spacing_metres * 1e3, &text, is_free) {
+    if let Some(mm) = number(ui, table, &SPACING_MILLIMETRES, radar.element_spacing_metres * 1e3, &text, is_free) {
         radar.element_spacing_metres = mm * 1e-3;
     }
     let spacing = radar.element_spacing_metres / wavelength;
-    if let Some(wavelengths) = number(ui, &SPACING_WAVELENGTHS, spacing, &grating(follows), is_free) {
+    if let Some(wavelengths) = number(ui, table, &SPACING_WAVELENGTHS, spacing, &grating(follows), is_free) {
         radar.element_spacing_metres = wavelengths * wavelength;
     }
     let text = format!("an echo from 10 m has amplitude {:.3}", radar.transmit_power_watts / 100.0);
-    if let Some(watts) = number(ui, &POWER, radar.transmit_power_watts, &text, is_free) {
+    if let Some(watts) = number(ui, table, &POWER, radar.transmit_power_watts, &text, is_free) {
         radar.transmit_power_watts = watts;
     }
-    choices(ui, radar, follows, is_free);
+    choices(ui, table, radar, follows, is_free);
 }
 
 /// How many columns lie between a blob and its first grating lobe, and whether that is within sight.
@@ -260,49 +338,50 @@ fn grating(follows: &Consequences) -> String {
     let columns = follows.grating_columns;
     if follows.grating_cos < 2.0 {
         let cos = follows.grating_cos;
-        format!("{columns:.0} columns, cos θ {cos:.2}, to the first grating lobe: some directions look alike")
+        format!("first grating lobe {columns:.0} columns away, cos θ {cos:.2}: some directions are indistinguishable")
     } else {
         "the first grating lobe is outside the visible directions".to_owned()
     }
 }
 
-fn choices(ui: &mut Ui, radar: &mut Radar, follows: &Consequences, is_free: bool) {
-    let label = ui.label("phase").on_hover_text("How the carrier's phase follows the distance");
-    ui.add_enabled_ui(is_free, |ui| {
-        ui.horizontal(|ui| {
-            let first = ui.selectable_value(&mut radar.carrier, Carrier::OneWay, "one-way");
-            first.labelled_by(label.id);
-            ui.selectable_value(&mut radar.carrier, Carrier::TwoWay, "two-way");
+fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, is_free: bool) {
+    let text = match radar.carrier {
+        Carrier::OneWay => "one phase cycle per wavelength of range (the thesis' convention)".to_owned(),
+        Carrier::TwoWay => {
+            format!("two phase cycles per wavelength of range: cos θ repeats after {:.2}", follows.grating_cos)
+        }
+    };
+    table.row(ui, ("phase", "How the carrier's phase follows the distance"), &text, |ui, label| {
+        ui.add_enabled_ui(is_free, |ui| {
+            ui.horizontal(|ui| {
+                let first = ui.selectable_value(&mut radar.carrier, Carrier::OneWay, "one-way");
+                first.labelled_by(label);
+                ui.selectable_value(&mut radar.carrier, Carrier::TwoWay, "two-way");
+            });
         });
     });
-    let text = match radar.carrier {
-        Carrier::OneWay => "a turn for each wavelength of distance".to_owned(),
-        Carrier::TwoWay => format!("two turns for each wavelength: cos θ repeats after {:.2}", follows.grating_cos),
-    };
-    last_cell(ui, &text);
-    let label = ui.label("windows").on_hover_text("Weights of samples and elements in the two transforms");
-    // In pairs: all in one row would push the consequences out of a narrow panel.
-    ui.vertical(|ui| {
-        for pair in WindowFunction::ALL.chunks(2) {
-            ui.horizontal(|ui| {
-                for &window in pair {
-                    let choice = ui.selectable_value(&mut radar.window, window, window.name());
-                    if window == WindowFunction::ALL[0] {
-                        choice.labelled_by(label.id);
-                    }
-                }
-            });
-        }
-    });
     let text = match follows.range_width_metres {
-        Some(width) => format!("a blob is {} long", metres(width)),
-        None => "no range is told from another".to_owned(),
+        Some(width) => format!("range resolution (-3 dB): {}", metres(width)),
+        None => "no range resolution".to_owned(),
     };
-    last_cell(ui, &text);
-    let label =
-        ui.label("range migration").on_hover_text("How much a range differs between both sides of the array, at most");
-    ui.label("").labelled_by(label.id);
-    last_cell(ui, &format!("up to {:.1} bins from side to side", follows.migration_bins));
+    table.row(ui, ("windows", "Weights of samples and elements in the two transforms"), &text, |ui, label| {
+        // In pairs: all in one row would push the consequences out of a narrow panel.
+        ui.vertical(|ui| {
+            for pair in WindowFunction::ALL.chunks(2) {
+                ui.horizontal(|ui| {
+                    for &window in pair {
+                        let choice = ui.selectable_value(&mut radar.window, window, window.name());
+                        if window == WindowFunction::ALL[0] {
+                            choice.labelled_by(label);
+                        }
+                    }
+                });
+            }
+        });
+    });
+    let tooltip = "How much a range differs between both sides of the array, at most";
+    let text = format!("up to {:.1} bins from side to side; half with a common transmitter", follows.migration_bins);
+    table.row(ui, ("range migration", tooltip), &text, |ui, label| _ = ui.label("").labelled_by(label));
 }
 
 /// A length in the unit that reads best.

@@ -6,7 +6,7 @@ use crate::app::widgets::chart::Chart;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::theme::Inks;
-use crate::evaluate::{Metrics, RocPoint};
+use crate::evaluate::{Metrics, RocPoint, eta_text};
 use eframe::egui;
 use eframe::egui::{Sense, Stroke, Ui};
 
@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         let mut entries = vec![Entry { sign: Sign::Line, colour: line, name: input.method.to_owned() }];
         if let Some(now) = &now {
             let rates = format!("P_D {}, P_FA {}", percent(now.detection), percent(now.false_alarm));
-            let name = format!("η = {:.2}: {rates}", input.eta);
+            let name = format!("η = {}: {rates}", eta_text(input.eta));
             entries.push(Entry { sign: Sign::Circle { filled: true }, colour: mark, name });
         }
         legend::row(ui, &entries);
@@ -63,8 +63,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     if let Some(pos) = drawn.response.hover_pos() {
         let at = drawn.x_at(pos);
         let under = roc.iter().min_by(|a, b| (place(a)[0] - at).abs().total_cmp(&(place(b)[0] - at).abs()));
-        let say =
-            |p: &RocPoint| format!("η = {:.2}\nP_D {}\nP_FA {}", p.eta, percent(p.detection), percent(p.false_alarm));
+        let say = |p: &RocPoint| {
+            format!("η = {}\nP_D {}\nP_FA {}", eta_text(p.eta), percent(p.detection), percent(p.false_alarm))
+        };
         drawn.response.on_hover_text_at_pointer(under.map_or_else(String::new, say));
     }
     Vec::new()

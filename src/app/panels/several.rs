@@ -3,11 +3,12 @@
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, Several, Variant};
 use crate::app::widgets::method_menu::method_lines;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::textures::Texture;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
-use eframe::egui::{Align2, Color32, ComboBox, DragValue, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
+use eframe::egui::{Align2, Color32, ComboBox, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 use std::sync::Arc;
 
 /// What is shown.
@@ -100,13 +101,13 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
     let speed = ((several.high - several.low).abs() / 200.0).max(1e-3);
     let value = |ui: &mut Ui, name: &str, value: &mut f64| {
         let label = ui.label(name);
-        let field = DragValue::new(value).speed(speed).range(-100.0..=1e4).max_decimals(3).suffix(unit);
+        let field = NumberField::new(value).speed(speed).range(-100.0..=1e4).max_decimals(3).suffix(unit);
         ui.add(field).labelled_by(label.id);
     };
     value(ui, "from", &mut several.low);
     value(ui, "to", &mut several.high);
     let label = ui.label("maps");
-    ui.add(DragValue::new(&mut several.count).range(2..=crate::app::state::MOST_AT_ONCE).speed(0.05))
+    ui.add(NumberField::new(&mut several.count).range(2..=crate::app::state::MOST_AT_ONCE).speed(0.05))
         .labelled_by(label.id);
 }
 

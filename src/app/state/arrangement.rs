@@ -1,6 +1,7 @@
 //! Where the panels are: tiles that can be moved, resized, hidden and maximised.
 
 use super::panel::{MapKind, Panel};
+use crate::lesson::Uses;
 use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
@@ -74,7 +75,7 @@ fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<TileId>, share
 }
 
 impl Arrangement {
-    /// A lesson large, with the scene and the four maps that lessons ask about: for a projector.
+    /// A lesson large, with the scene, the four maps that lessons ask about, and the target above its threshold: for a projector.
     pub fn of_a_lesson() -> Self {
         let mut tiles = Tiles::default();
         let mut tab = |panel| {
@@ -82,8 +83,9 @@ impl Arrangement {
             tiles.insert_tab_tile(vec![pane])
         };
         let [lesson, scene] = [Panel::Lesson, Panel::Scene].map(&mut tab);
-        let [in0, in1, target, output] =
-            [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output].map(|kind| tab(Panel::Map(kind)));
+        let [in0, in1, target] = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tab(Panel::Map(kind)));
+        let output = [MapKind::Output, MapKind::TargetAbove].map(|kind| tiles.insert_pane(Panel::Map(kind))).to_vec();
+        let output = tiles.insert_tab_tile(output);
         let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
         let middle = column(&mut tiles, vec![target, in0], &[1.0, 1.0]);
         let right = column(&mut tiles, vec![output, in1], &[1.0, 1.0]);
@@ -182,6 +184,42 @@ impl Arrangement {
                 }
             }
             None => {}
+        }
+    }
+
+    /// Closes what a lesson doesn't use; each panel that was open, and whether its tab was in front.
+    pub fn close_unused(&mut self, uses: Uses) -> Vec<(Panel, bool)> {
+        let unused = |panel: &Panel| match panel {
+            Panel::Map(MapKind::TargetAbove) => !uses.threshold,
+            Panel::Map(MapKind::OutputAbove) => !(uses.output && uses.threshold),
+            Panel::Map(kind) => kind.needs_output() && !uses.output,
+            Panel::Found | Panel::Roc | Panel::Compare => !uses.output,
+            _ => false,
+        };
+        let open = Panel::all().into_iter().filter(|p| unused(p) && self.is_open(*p));
+        let closed: Vec<(Panel, bool)> = open.map(|panel| (panel, self.is_in_front(panel))).collect();
+        closed.iter().for_each(|(panel, _)| self.set_open(*panel, false));
+        closed
+    }
+
+    /// Whether no other tab is over a panel's.
+    fn is_in_front(&self, panel: Panel) -> bool {
+        let tiles = &self.tree.tiles;
+        let Some(id) = tiles.find_pane(&panel) else { return false };
+        match tiles.parent_of(id).and_then(|parent| tiles.get(parent)) {
+            Some(Tile::Container(Container::Tabs(tabs))) => tabs.active == Some(id),
+            _ => true,
+        }
+    }
+
+    /// Opens again what [`Arrangement::close_unused`] closed; what was in front is in front again.
+    pub fn open_again(&mut self, closed: &[(Panel, bool)]) {
+        for (panel, was_in_front) in closed {
+            let Some(id) = self.tree.tiles.find_pane(panel) else { continue };
+            self.tree.tiles.set_visible(id, true);
+            if *was_in_front {
+                self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if p == panel));
+            }
         }
     }
 

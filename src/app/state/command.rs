@@ -10,7 +10,7 @@ use super::several::Several;
 use super::view::Cursor;
 use crate::interact::blob::BlobHit;
 use crate::interact::{Alignment, Along, Change, Coordinates, Field, Place, SelectionMode, Snap};
-use crate::lesson::Guess;
+use crate::lesson::{Guess, Lesson};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Carrier, Radar, WindowFunction};
@@ -312,11 +312,18 @@ pub enum Command {
     OpenLesson,
     /// Begin the lesson in this file.
     OpenLessonFile(PathBuf),
+    /// Begin a lesson that was read from a file and tried out.
+    TakeLesson {
+        /// What its progress is kept under.
+        id: String,
+        /// The lesson.
+        lesson: Arc<Lesson>,
+    },
     /// Go to a step of the lesson, from 0.
     LessonStep(usize),
     /// Predict.
     Predict(Guess),
-    /// Put a way to meet the challenge on screen.
+    /// Put a solution of the challenge on screen; the challenge then counts as unsolved.
     ShowSolution,
     /// Give lessons the whole screen, for a projector, or end that.
     PresentLesson,

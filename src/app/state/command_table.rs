@@ -7,7 +7,7 @@ use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::presets::{self as radar_presets, RadarPreset};
-use crate::radar::{Carrier, Decibels, WindowFunction};
+use crate::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
@@ -116,7 +116,7 @@ const TABLE: &[Entry] = {
             "Lesson, scene and maps on the whole screen, in large type",
             shift(Key::F11),
         ),
-        entry(LeaveLesson, "Leave lesson", "End the lesson; your scene and settings come back", None),
+        entry(LeaveLesson, "Exit lesson", "End the lesson; your scene and settings come back", None),
         entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
         entry(
             ToggleProjection,
@@ -185,8 +185,24 @@ const TABLE: &[Entry] = {
             "White noise at a signal-to-noise ratio",
             None,
         ),
-        entry(SetCarrier(Carrier::OneWay), "Carrier: one-way", "Unambiguous over all of cos θ", None),
-        entry(SetCarrier(Carrier::TwoWay), "Carrier: two-way", "As equation 3.1 is printed: cos θ folds twice", None),
+        entry(
+            SetFloor(Floor::Level(DecibelMilliwatts(-20.0))),
+            "Floor: thermal noise of a level",
+            "White noise of -20 dBm in every sample, whatever the scene: an empty scene is noise alone",
+            None,
+        ),
+        entry(
+            SetCarrier(Carrier::OneWay),
+            "Carrier: one-way",
+            "The thesis' convention: unambiguous over all of cos θ",
+            None,
+        ),
+        entry(
+            SetCarrier(Carrier::TwoWay),
+            "Carrier: two-way",
+            "As equation 3.1 is printed: each column stands for two directions",
+            None,
+        ),
         entry(SetWindow(WindowFunction::Hann), "Window: Hann", "Side lobes that fall fast (the thesis)", None),
         entry(
             SetWindow(WindowFunction::Hamming),
@@ -213,7 +229,7 @@ const TABLE: &[Entry] = {
         entry(Colours(ColourMap::Diverging), "Colours: diverging", "Blue below the middle, red above", None),
         entry(Colours(ColourMap::Inferno), "Colours: inferno", "Dark to bright through red", None),
         entry(ToggleReflectors, "Mark true reflectors", "Draw the scene's reflectors over the maps", key(Key::R)),
-        entry(ToggleFound, "Mark found reflectors", "Draw the reflectors that the method believes in", None),
+        entry(ToggleFound, "Mark found reflectors", "Draw the reflectors that the method found", None),
         entry(ToggleFieldsOfView, "Fields of view", "Draw what each end can see in the scene", key(Key::V)),
         entry(
             ToggleTheory,
@@ -297,6 +313,7 @@ pub fn listed() -> &'static [Entry] {
             let keys = [Key::Num1, Key::Num2, Key::Num3];
             let (tooltip, key) = match kind.test_set() {
                 Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
+                None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
                 None => ("A scene of a kind that the thesis' sets leave out", None),
             };
             named(Command::RandomScene(kind), format!("Random scene: {}", kind.description()), tooltip, key)

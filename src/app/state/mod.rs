@@ -26,7 +26,7 @@ pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, Pins};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
 pub use guided::{Guided, Setup};
-pub use lesson_run::LessonRun;
+pub use lesson_run::{Before, LessonRun};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
@@ -36,7 +36,7 @@ pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
-use crate::lesson::Progress;
+use crate::lesson::{Progress, Uses};
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use std::collections::BTreeSet;
@@ -101,6 +101,38 @@ impl State {
         self.lesson.as_ref().is_some_and(LessonRun::is_predicting)
     }
 
+    /// Whether axes and rings tell ranges and directions: while a prediction is asked for only where a place is asked for, since they
+    /// tell some of the answers otherwise.
+    pub fn shows_axes(&self) -> bool {
+        !self.is_predicting() || self.lesson.as_ref().is_some_and(|run| run.clicked_map().is_some())
+    }
+
+    /// What the lesson being taken uses of the window; everything without one.
+    pub fn uses(&self) -> Uses {
+        self.lesson.as_ref().map_or(Uses::ALL, |run| run.lesson.uses())
+    }
+
+    /// Whether a lesson has the whole screen, as against a presentation of the scene.
+    pub fn presents_lesson(&self) -> bool {
+        self.is_presenting() && self.arrangement.is_open(Panel::Lesson)
+    }
+
+    /// Closes the panels that the lesson doesn't use.
+    pub fn close_unused(&mut self) {
+        let uses = self.uses();
+        let presents_lesson = self.presents_lesson();
+        let Some(run) = &mut self.lesson else { return };
+        if let Some(before) = &mut self.before_presenting {
+            run.closed.extend(before.close_unused(uses));
+            if presents_lesson {
+                self.arrangement = Arrangement::of_a_lesson();
+                self.arrangement.close_unused(uses);
+            }
+        } else {
+            run.closed.extend(self.arrangement.close_unused(uses));
+        }
+    }
+
     /// Where the pointer is, as every panel shows it: none does while a prediction is asked for, since what is under it in one is the
     /// answer in another.
     pub fn shown_cursor(&self) -> Option<Cursor> {
@@ -117,7 +149,9 @@ impl State {
         match self.is_presenting() {
             true => self.stop_presenting(),
             false => {
+                let uses = self.uses();
                 let before = std::mem::replace(&mut self.arrangement, Arrangement::of_a_lesson());
+                self.arrangement.close_unused(uses);
                 self.before_presenting = Some(before);
             }
         }
@@ -202,6 +236,11 @@ impl State {
     /// The method in use.
     pub fn method(&self) -> Option<&Arc<dyn Reconstructor>> {
         self.methods.named(&self.settings.method)
+    }
+
+    /// Whether the method in use finds places of echoes; some only draw a map.
+    pub fn finds_reflectors(&self) -> bool {
+        self.method().is_some_and(|method| method.finds_reflectors())
     }
 
     /// The method that the panel "Compare" sets beside it: the one that was chosen, or a plain one, or any other.

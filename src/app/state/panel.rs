@@ -71,6 +71,9 @@ impl Panel {
         Panel::Values,
     ];
 
+    /// Tools for whoever develops methods: menus list them apart.
+    pub const RESEARCH: [Panel; 3] = [Panel::Evaluation, Panel::RunTime, Panel::Training];
+
     /// All panels, in the order menus list them.
     pub fn all() -> Vec<Panel> {
         let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects];
@@ -102,7 +105,7 @@ impl Panel {
             Panel::Training => "Training",
             Panel::Guide => "Guide",
             Panel::Lesson => "Lessons",
-            Panel::Several => "Several at once",
+            Panel::Several => "Compare settings",
             Panel::Compare => "Compare",
             Panel::Values => "Values",
         }

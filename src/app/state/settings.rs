@@ -6,7 +6,7 @@ use super::several::Several;
 use crate::interact::{Coordinates, Snap};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
-use crate::radar::Decibels;
+use crate::radar::{DecibelMilliwatts, Decibels};
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -64,6 +64,8 @@ pub struct Settings {
     pub normalisation: Normalisation,
     /// The ratio last used with [`Floor::Snr`].
     pub snr: Decibels,
+    /// The level last used with [`Floor::Level`].
+    pub level: DecibelMilliwatts,
     /// Colours of the maps.
     pub colours: ColourMap,
     /// Coordinates of the maps.
@@ -118,7 +120,8 @@ impl Settings {
                 })*
             };
         }
-        take_back!(floor, target_eta, method_eta, normalisation, snr, projection, method, show_reflectors, show_kinds);
+        take_back!(floor, snr, level, target_eta, method_eta, normalisation, projection, method);
+        take_back!(show_reflectors, show_kinds);
     }
 }
 
@@ -128,6 +131,7 @@ impl Default for Settings {
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             snr: Decibels(20.0),
+            level: DecibelMilliwatts(-20.0),
             colours: ColourMap::default(),
             projection: Projection::default(),
             units: Units::default(),

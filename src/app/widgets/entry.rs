@@ -6,8 +6,14 @@ use eframe::egui::{Button, Ui};
 
 /// A menu entry; a click asks for the command and closes the menu.
 pub fn entry(ui: &mut Ui, command: Command, enabled: bool, asked: &mut Vec<Command>) {
+    let name = command.entry().map_or("", |listed| listed.name.as_ref());
+    entry_called(ui, name, command, enabled, asked);
+}
+
+/// A menu entry with a name of its own, where the menu's title says the rest.
+pub fn entry_called(ui: &mut Ui, name: &str, command: Command, enabled: bool, asked: &mut Vec<Command>) {
     let Some(listed) = command.entry() else { return };
-    let mut button = Button::new(listed.name.as_ref());
+    let mut button = Button::new(name);
     if let Some(key) = &listed.key {
         button = button.shortcut_text(ui.ctx().format_shortcut(key));
     }

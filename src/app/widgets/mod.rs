@@ -1,5 +1,5 @@
-//! What panels draw with: axes, charts, directions and levels as texts, colours of the interface, buttons of commands, small drawn buttons, bars of progress, the ring
-//! around what has the focus, pictures on the graphics card.
+//! What panels draw with: axes, charts, directions and levels as texts, colours of the interface, buttons of commands, small drawn
+//! buttons, fields for numbers, bars of progress, the ring around what has the focus, pictures on the graphics card.
 
 pub mod axes;
 pub mod chart;
@@ -14,6 +14,7 @@ pub mod levels;
 pub mod list_rows;
 pub mod method_menu;
 pub mod nudge;
+pub mod number_field;
 pub mod numbers;
 pub mod progress;
 #[cfg(test)]

@@ -270,15 +270,20 @@ mod tests {
     #[test]
     fn every_row_meets_the_tolerance_it_was_asked_for() {
         let mut parts = Vec::new();
+        let start = Instant::now();
         let front = measure(&small(), &request(), |part, _| parts.push(part), || false).unwrap();
+        let milliseconds = 1e3 * start.elapsed().as_secs_f64();
         assert_eq!(front.rows.len(), parts.len());
         assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
         for r in &front.rows {
             let floor = if r.algorithm == Entrant::Forced(Algorithm::Direct) { 1e-10 } else { 0.0 };
             assert!(r.signal_error <= r.tolerance.max(floor), "{r:?}");
-            assert!(r.median_ms > 0.0 && r.fastest_ms <= r.median_ms, "{r:?}");
+            assert!(r.fastest_ms <= r.median_ms && r.median_ms <= milliseconds, "{r:?}");
             assert_eq!(r.lambda.len(), 2);
         }
+        // What was timed is a part of all that passed, and not a thousandth of it, as seconds taken for milliseconds would be.
+        let timed: f64 = front.rows.iter().map(|r| r.fastest_ms * r.repeats as f64).sum();
+        assert!((milliseconds / 1e3..milliseconds).contains(&timed), "{timed} of {milliseconds} ms");
         let coarse = front.rows.iter().find(|r| r.tolerance == 1e-3 && r.chosen == Algorithm::Gridded).unwrap();
         assert!(coarse.signal_error > 1e-9, "an error that is never seen can't be believed: {coarse:?}");
         let text = serde_json::to_string(&front).unwrap();
@@ -286,6 +291,13 @@ mod tests {
         let key = |r: &FrontRow| (r.task, r.algorithm, r.chosen, r.precision, r.repeats);
         assert!(read.rows.iter().map(key).eq(front.rows.iter().map(key)));
         assert_eq!(read.rows[0].convention, front.rows[0].convention);
+    }
+
+    #[test]
+    fn the_quantiles_of_known_times_are_theirs() {
+        let mut times = [4.0, 1.0, 3.0, 2.0, 50.0];
+        assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0].map(|part| quantile(&mut times, part)), [1.0, 2.0, 3.0, 4.0, 50.0]);
+        assert_eq!(quantile(&mut [], 0.5), 0.0);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::maps::{Aperture, LogMaps, RangeAngleMap, channels_range_transform};
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::signal::plan::BEST_TOLERANCE;
-use crate::signal::{BeatSignal, Floor, Plan, beat_signal, exact, floor, judge};
+use crate::signal::{BeatSignal, Plan, beat_signal, exact, floor, judge};
 use ndarray::{Array2, ArrayView2};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -131,12 +131,7 @@ impl UnitNoise {
         signal: &BeatSignal,
         convention: Convention,
     ) -> [RangeAngleMap; 3] {
-        let variance = match convention.floor {
-            Floor::Exact => None,
-            Floor::Thesis => Some(floor::thesis_noise_variance(radar, reflectors)),
-            Floor::Snr(snr) => Some(floor::snr_noise_variance(radar, reflectors, snr)),
-        };
-        let maps = match variance {
+        let maps = match floor::noise_variance(radar, reflectors, convention.floor) {
             None => LogMaps::of_signal(radar, signal),
             Some(variance) => {
                 let mut samples = signal.samples.clone();

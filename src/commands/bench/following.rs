@@ -2,7 +2,7 @@
 
 use crate::commands::CommandError;
 use crate::methods;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::reconstruct::Request;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Object, Scene};
@@ -40,8 +40,12 @@ impl Followed {
     pub fn line(&self) -> String {
         let Followed { method, points, scenes, moves, .. } = self;
         format!(
-            "{method}, one of {points} points dragged: {:.0} ms a move, {:.0} ms in nine of ten, {:.0} ms at worst ({moves} moves, {scenes} scenes)",
-            self.median_milliseconds, self.most_milliseconds, self.worst_milliseconds
+            "{method}, one of {points} points dragged: {:.0} ms a move, {:.0} ms in nine of ten, {:.0} ms at worst ({}, {})",
+            self.median_milliseconds,
+            self.most_milliseconds,
+            self.worst_milliseconds,
+            counted(*moves, "move", "moves"),
+            counted(*scenes, "scene", "scenes")
         )
     }
 }

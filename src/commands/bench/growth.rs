@@ -2,9 +2,10 @@
 
 use super::measured::measured;
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow, FrontTask};
-use crate::commands::figure::{Drawn, Figure, save};
+use crate::commands::figure::{Drawn, Figure, save, tick};
 use crate::commands::{CommandError, print};
 use crate::files::write_bytes;
+use crate::radar::counted;
 use crate::signal::Precision;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -45,8 +46,8 @@ impl Growth {
 
     fn print(&self) -> Result<(), CommandError> {
         print(&format!(
-            "three maps from scratch on {} threads, {}; bare transform {:.3} ms\n{:>10} {:>9} {:11} {:4} {:>10} {:>14} {:>8}",
-            self.front.threads,
+            "three maps from scratch on {}, {}; bare transform {:.3} ms\n{:>10} {:>9} {:11} {:4} {:>10} {:>14} {:>8}",
+            counted(self.front.threads, "thread", "threads"),
             self.front.simd,
             self.front.bare_fft_ms,
             "reflectors",
@@ -80,7 +81,10 @@ impl Figure for Growth {
         let (low, high) = times.fold((f64::INFINITY, 0.0f64), |(a, b), t| (a.min(t), b.max(t)));
         let most = COUNTS[COUNTS.len() - 1] as f64;
         let mut chart = ChartBuilder::on(area)
-            .caption("Three Lambda maps from scratch: time over reflectors", ("sans-serif", 22))
+            .caption(
+                "Three Lambda maps from scratch: time over reflectors (rings: f32, discs: f64)",
+                ("sans-serif", 22),
+            )
             .margin(14)
             .x_label_area_size(46)
             .y_label_area_size(64)
@@ -88,9 +92,9 @@ impl Figure for Growth {
         chart
             .configure_mesh()
             .x_desc("reflectors")
-            .y_desc(format!("median time on {} threads, ms", self.front.threads))
-            .x_label_formatter(&|v| format!("{v}"))
-            .y_label_formatter(&|v| format!("{v}"))
+            .y_desc(format!("median time on {}, ms", counted(self.front.threads, "thread", "threads")))
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick)
             .draw()?;
         for (tolerance, colour) in TOLERANCES.into_iter().zip(COLOURS) {
             let rows = self.rows(tolerance);
@@ -102,7 +106,7 @@ impl Figure for Growth {
             // Rings are f32, discs f64.
             chart.draw_series(rows.iter().map(|r| {
                 let style = if r.precision == Precision::F32 { colour.stroke_width(2) } else { colour.filled() };
-                Circle::new(at(r), 4, style)
+                Circle::new(at(r), 6, style)
             }))?;
         }
         // What a straight line through the origin would look like, from the last point of the coarsest tolerance.

@@ -6,7 +6,7 @@ use crate::maps::{LambdaScale, Normalisation};
 use crate::network;
 use crate::network::live::LiveMethod;
 use crate::network::live::engine::Decades;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::reconstruct::Request;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use serde::Serialize;
@@ -32,13 +32,13 @@ impl LeftOut {
     /// A line of the table.
     pub fn line(&self) -> String {
         format!(
-            "live, {}: {:.0} % of side lobes in range computed, {:.1} ms for {:.1} with all of them, Lambda at most {:.0e} off ({} scenes)",
+            "live, {}: {:.0} % of side lobes in range computed, {:.1} ms for {:.1} with all of them, Lambda at most {:.0e} off ({})",
             self.kind,
             100.0 * self.computed,
             self.median_milliseconds,
             self.whole_median_milliseconds,
             self.largest_error,
-            self.scenes
+            counted(self.scenes, "scene", "scenes")
         )
     }
 }

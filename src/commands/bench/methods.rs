@@ -5,7 +5,7 @@ use super::following::{self, Followed};
 #[cfg(feature = "network")]
 use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
-use crate::commands::figure::{Drawn, Figure, save};
+use crate::commands::figure::{Drawn, Figure, save, save_numbers, tick};
 use crate::commands::print;
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
@@ -13,7 +13,7 @@ use crate::evaluate::sets::SceneSet;
 use crate::evaluate::tables::Tally;
 use crate::evaluate::trial::Trial;
 use crate::methods;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::task::Task;
@@ -94,13 +94,18 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
     bar.finish_and_clear();
     if let Some(folder) = output {
         save(&report, folder, "methods")?;
+        save_numbers(&report, folder, "methods")?;
     }
     if json {
         return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
     }
     print(&format!(
-        "{count} test scenes a set, {} threads\n{:26} {:>24} {:>24}",
-        report.threads, "method", "SE, set 1 / 2 / 3", "ms a map, set 1 / 2 / 3"
+        "{}, {}\n{:26} {:>24} {:>24}",
+        counted(count, "test scene a set", "test scenes a set"),
+        counted(report.threads, "thread", "threads"),
+        "method",
+        "SE, set 1 / 2 / 3",
+        "ms a map, set 1 / 2 / 3"
     ))?;
     for row in &report.methods {
         let [a, b, c] = row.squared_error.map(|e| e.mean);
@@ -110,7 +115,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
     }
     for c in &report.crowds {
         print(&format!(
-            "{}, {} reflectors ({}): {:.0} ms a map, {:.0} ms at worst, SE {:.0} ± {:.0} ({} scenes)",
+            "{}, {} reflectors ({}): {:.0} ms a map, {:.0} ms at worst, SE {:.0} ± {:.0} ({})",
             c.method,
             c.reflectors,
             c.what,
@@ -118,7 +123,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             c.worst_milliseconds,
             c.squared_error.mean,
             c.squared_error.standard_error,
-            c.scenes
+            counted(c.scenes, "scene", "scenes")
         ))?;
     }
     #[cfg(feature = "network")]
@@ -233,10 +238,10 @@ impl Figure for Report {
             .build_cartesian_2d((fast..slow * 3.0).log_scale(), (good..bad).log_scale())?;
         chart
             .configure_mesh()
-            .x_desc(format!("median time of a map on {} threads, ms", self.threads))
-            .y_desc(format!("SE, mean over the three test sets ({} scenes each)", self.scenes))
-            .x_label_formatter(&|v| format!("{v}"))
-            .y_label_formatter(&|v| format!("{v}"))
+            .x_desc(format!("median time of a map on {}, ms", counted(self.threads, "thread", "threads")))
+            .y_desc(format!("SE, mean over the three test sets ({} each)", counted(self.scenes, "scene", "scenes")))
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick)
             .draw()?;
         let rows: Vec<(&str, (f64, f64))> = self.methods.iter().map(|m| m.method).zip(dots).collect();
         let places: Vec<(i32, i32)> = rows.iter().map(|(_, dot)| chart.backend_coord(dot)).collect();

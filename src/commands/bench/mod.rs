@@ -6,14 +6,18 @@ mod growth;
 mod instructions;
 #[cfg(feature = "network")]
 mod left_out;
+#[cfg(feature = "network")]
+mod live;
 mod measured;
 mod methods;
 mod mouse;
 mod others;
 
+use super::arguments::whole;
 use super::{CommandError, print};
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
 use crate::files::write_bytes;
+use crate::radar::counted;
 use measured::measured;
 use others::Equal;
 use std::path::PathBuf;
@@ -21,6 +25,12 @@ use std::path::PathBuf;
 /// Measure run time against error of every algorithm
 ///
 /// Times are for three Lambda maps ready, on all threads; the bare two-dimensional transform they are compared with runs on one.
+///
+/// methods.json, and --methods --json, are one object: threads, scenes (of each set), methods, each with method (its name), squared_error
+/// (mean and standard_error) and median_milliseconds, both by set; crowds, each with method, reflectors, what, scenes, median_milliseconds,
+/// worst_milliseconds, squared_error; followed (method, points, scenes, moves, median_milliseconds, most_milliseconds, which nine of ten moves
+/// keep to, worst_milliseconds); and left_out, what the live network leaves out, by kind of scene: scenes, computed (part of the side lobes in
+/// range), largest_error (of Lambda), median_milliseconds, whole_median_milliseconds (with nothing left out).
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Print one JSON object instead of a table
@@ -33,7 +43,7 @@ pub struct Args {
 
     /// Numbers of reflectors
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "1,10,75,300,1000",
-          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+          value_parser = whole(1..=10_000u32))]
     reflectors: Vec<u32>,
 
     /// Who takes part: plan, or the name of an algorithm; everybody where nobody is named
@@ -41,7 +51,7 @@ pub struct Args {
     algorithms: Vec<Entrant>,
 
     /// Repeats of every measurement
-    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = whole(1..=1000u32))]
     repeats: u32,
 
     /// Our script of other tools (comparisons/maps.py), run beside on the same tasks, one thread on both sides; tools that are not
@@ -58,12 +68,18 @@ pub struct Args {
     growth: bool,
 
     /// Measure every reconstruction method instead, run time against squared error, and hybrid, iaa and sbl on 10 and on 300 reflectors;
-    /// draws methods.svg and methods.png
+    /// -o draws methods.svg and methods.png and writes methods.json
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
     methods: bool,
 
+    /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
+    /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
+    #[cfg(feature = "network")]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "every_simd", "output"])]
+    live: bool,
+
     /// Test scenes of each set, with --methods
-    #[arg(long, value_name = "N", default_value_t = 5, requires = "methods", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "methods", value_parser = whole(1..=1000u32))]
     count: u32,
 }
 
@@ -83,6 +99,10 @@ impl Args {
         let repeats = self.repeats as usize;
         if self.methods {
             return methods::run(self.count, self.json, self.output.as_deref());
+        }
+        #[cfg(feature = "network")]
+        if self.live {
+            return live::run(self.json);
         }
         if self.every_simd {
             return instructions::run(&self.reflectors, self.repeats, self.json);
@@ -120,14 +140,15 @@ impl Args {
 
 fn heading(front: &Front, repeats: u32) -> String {
     format!(
-        "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {} threads, {}; medians of at most {repeats} runs\n\
+        "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {}, {}; medians of at most {}\n\
          from scratch: nothing of the scene is known, the floor's noise is made beforehand and scaled inside the time, by all algorithms\n\
          signal: largest error of a range cell, relative to the peak; Lambda: largest and rms error of the maps, drawn over no floor\n\
          and 100 dB (exact db=100) and as the thesis does (thesis min-max); * marks the one that was timed\n\
          {:7} {:>10} {:11} {:4} {:>9} {:>9} {:>8} {:>7} {:>8} {:>18} {:>18}",
         front.bare_fft_ms,
-        front.threads,
+        counted(front.threads, "thread", "threads"),
         front.simd,
+        counted(repeats, "run", "runs"),
         "task",
         "reflectors",
         "algorithm",

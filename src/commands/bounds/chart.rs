@@ -2,10 +2,10 @@
 
 use super::report::{Bound, BoundRow, Report, columns_to_cos};
 use crate::bounds::Ambiguity;
-use crate::commands::figure::{Drawn, Figure};
+use crate::commands::figure::{Drawn, Figure, tick};
 use crate::evaluate::Placement;
 use crate::picture::ColourMap;
-use crate::radar::{Polar, Radar};
+use crate::radar::{Polar, Radar, counted};
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::drawing::DrawingAreaErrorKind;
@@ -49,7 +49,8 @@ impl ErrorAxes {
             .configure_mesh()
             .x_desc("signal-to-noise ratio of a sample, dB")
             .y_desc(self.vertical)
-            .y_label_formatter(&|v| format!("{v}"))
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick)
             .draw()?;
         Ok(chart)
     }
@@ -94,7 +95,7 @@ impl Figure for BoundsFigure<'_> {
             let colour = *colour;
             chart
                 .draw_series(LineSeries::new(line(|b| b.alone), colour.stroke_width(2)))?
-                .label(format!("{} ({} elements)", layout.layout, layout.elements))
+                .label(format!("{} ({})", layout.layout, counted(layout.elements, "element", "elements")))
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
         }
         legend(&mut chart)
@@ -129,7 +130,7 @@ impl Figure for PlacementFigure<'_> {
         let found = self.0.iter().filter(|p| p.error_metres.is_finite());
         chart
             .draw_series(found.map(|p| Circle::new((p.snr_db, 1e3 * p.error_metres), 5, hot.filled())))?
-            .label(format!("Newton search, {trials} draws of noise each"))
+            .label(format!("Newton search, {} each", counted(trials, "draw of noise", "draws of noise")))
             .legend(move |(x, y)| Circle::new((x + 9, y), 5, hot.filled()));
         legend(&mut chart)
     }

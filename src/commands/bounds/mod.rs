@@ -1,11 +1,12 @@
-//! `apertura bounds`: what no estimator can beat, for any element layout.
+//! `apertura bounds`: what no unbiased estimator can beat, for any element layout.
 
 mod chart;
 mod report;
 
-use super::figure::{save, save_bitmap};
+use super::arguments::whole;
+use super::figure::{save, save_bitmap, save_numbers};
 use super::{CommandError, print};
-use crate::bounds::{Ambiguity, PositionBound, ambiguity, cramer_rao, cut, lobes, noise_variance};
+use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
 use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::scene::Reflector;
@@ -14,12 +15,19 @@ use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
 use report::{Bound, BoundRow, LayoutReport, Report, columns_to_cos};
 use std::path::PathBuf;
 
-/// Bound the error of any position estimate, and show which places sound alike, for several element layouts
+/// Bound the error of any unbiased position estimate, and show which places sound alike, for several element layouts
 ///
-/// Prints the Cramer-Rao bound of one reflector, alone and with a second one beside it, and the lobes of the ambiguity function along
+/// Prints the Cramer-Rao bound of one reflector's place and amplitude, alone and with a second one beside it, and the lobes of the ambiguity function along
 /// cos(theta). Angles are in columns of the whole array's map, 1/512 of cos(theta). With -o DIR the bound is drawn to bounds.svg and
 /// the ambiguity function over range and cos(theta) to ambiguity.png; with --monte-carlo the errors that the Newton search makes to
-/// monte-carlo.svg.
+/// monte-carlo.svg; and all numbers are written to bounds.json.
+///
+/// That file and --json are one object: x_metres, y_metres (the reflector), apart_columns (from there to the second), layouts, each with
+/// layout (its name), elements, lobes (null where there are none; main_lobe_cos, highest_side_lobe and side_lobe_rms as parts of the
+/// reflector's own likeness, highest_side_lobe_offset in cos(theta)) and bounds, one a ratio: snr_db, alone and beside_another (null where
+/// the samples don't determine the positions; range_millimetres, columns, position_millimetres: standard deviations); and monte_carlo, one
+/// a ratio: snr_db, bound_metres, error_metres and near_error_metres (root mean square; the second without draws on another tooth; null where
+/// no draw counts), trials, miscounted, off_by_a_tooth (numbers of draws).
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Layouts: full, two-ends, one-end, random=N, random=N:SEED, mimo=TxR
@@ -44,15 +52,19 @@ pub struct Args {
           allow_hyphen_values = true)]
     snr: Vec<Decibels>,
 
+    /// Also bound it where the phase between the ends is unknown: one complex gain for the elements of either half of each layout
+    #[arg(long)]
+    gain_per_end: bool,
+
     /// Also let the Newton search place the reflector in this many draws of noise at every ratio
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=100_000u64))]
     monte_carlo: Option<u64>,
 
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
 
-    /// Folder for the pictures; made where it is missing
+    /// Folder for the pictures and bounds.json; made where it is missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
@@ -112,6 +124,7 @@ impl Args {
         };
         if let Some(folder) = &self.output {
             save(&BoundsFigure(&report), folder, "bounds")?;
+            save_numbers(&report, folder, "bounds")?;
             let patches: Vec<(String, Ambiguity)> =
                 layouts.iter().map(|(kind, layout)| (kind.to_string(), patch(&radar, layout, centre))).collect();
             save_bitmap(&AmbiguityFigure { radar: &radar, centre, patches: &patches }, folder, "ambiguity")?;
@@ -127,11 +140,13 @@ impl Args {
 
     /// The second reflector.
     fn neighbour(&self, radar: &Radar, centre: Polar) -> Result<Reflector, CommandError> {
-        let cos = centre.cos_theta + self.apart * columns_to_cos(radar);
+        let column = columns_to_cos(radar);
+        let cos = centre.cos_theta + self.apart * column;
         if cos.abs() >= 1.0 {
+            let [least, most] = [-1.0, 1.0].map(|end: f64| ((end - centre.cos_theta) / column).trunc());
             let columns = self.apart;
             return Err(CommandError::Usage(format!(
-                "--apart {columns} puts the second reflector beyond the array's axis"
+                "--apart {columns} puts the second reflector beyond the array's axis; expected columns from {least} to {most}"
             )));
         }
         Ok(Reflector {
@@ -150,15 +165,16 @@ impl Args {
         other: Reflector,
         centre: Polar,
     ) -> LayoutReport {
-        let bound = |reflectors: &[Reflector], snr| {
+        let bound = |reflectors: &[Reflector], snr, gains| {
             let variance = noise_variance(radar, layout, &reflector, snr);
             let of_first = |bounds: Vec<PositionBound>| bounds.first().map(|b| Bound::of(radar, b));
-            cramer_rao(radar, layout, reflectors, variance).ok().and_then(of_first)
+            cramer_rao_of(radar, layout, reflectors, variance, gains).ok().and_then(of_first)
         };
         let rows = self.snr.iter().map(|&snr| BoundRow {
             snr_db: snr.0,
-            alone: bound(&[reflector], snr),
-            beside_another: bound(&[reflector, other], snr),
+            alone: bound(&[reflector], snr, Gains::One),
+            beside_another: bound(&[reflector, other], snr, Gains::One),
+            gain_per_end: if self.gain_per_end { bound(&[reflector], snr, Gains::PerEnd) } else { None },
         });
         let (cosines, likeness) = cut(radar, layout, centre, 4);
         LayoutReport {

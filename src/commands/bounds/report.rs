@@ -3,7 +3,7 @@
 use crate::bounds::{Lobes, PositionBound};
 use crate::commands::{CommandError, print};
 use crate::evaluate::Placement;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use serde::Serialize;
 
 /// Everything the command says; its JSON.
@@ -32,6 +32,8 @@ pub struct BoundRow {
     pub snr_db: f64,
     pub alone: Option<Bound>,
     pub beside_another: Option<Bound>,
+    /// Alone, with one unknown complex gain for either half of the layout, where that was asked for.
+    pub gain_per_end: Option<Bound>,
 }
 
 /// Standard deviations that no unbiased estimate can stay below.
@@ -40,6 +42,8 @@ pub struct Bound {
     pub range_millimetres: f64,
     pub columns: f64,
     pub position_millimetres: f64,
+    /// Of the reflector's amplitude.
+    pub amplitude_db: f64,
 }
 
 /// cos(theta) from one column of the whole array's map to the next.
@@ -53,15 +57,32 @@ impl Bound {
             range_millimetres: 1e3 * bound.range_metres,
             columns: bound.cos_theta / columns_to_cos(radar),
             position_millimetres: 1e3 * bound.position_metres(),
+            amplitude_db: bound.amplitude_db(),
         }
+    }
+}
+
+/// What stands above [`cells`].
+const HEADINGS: &str = " range, mm    columns position, mm amplitude, dB";
+
+/// One bound as a part of a line.
+fn cells(bound: Option<Bound>) -> String {
+    match bound {
+        Some(b) => format!(
+            "{:>10.4} {:>10.5} {:>12.4} {:>13.4}",
+            b.range_millimetres, b.columns, b.position_millimetres, b.amplitude_db
+        ),
+        None => format!("{:>10} {:>10} {:>12} {:>13}", "-", "-", "-", "-"),
     }
 }
 
 impl Report {
     pub fn print(&self) -> Result<(), CommandError> {
         print(&format!(
-            "One reflector at ({}, {}) m, and another {} columns beside it",
-            self.x_metres, self.y_metres, self.apart_columns
+            "One reflector at ({}, {}) m, and another {} beside it",
+            self.x_metres,
+            self.y_metres,
+            counted(self.apart_columns, "column", "columns")
         ))?;
         print(&format!(
             "\n{:12} {:>8} {:>16} {:>18} {:>16} {:>16}",
@@ -82,19 +103,21 @@ impl Report {
                 db(lobes.side_lobe_rms)
             ))?;
         }
-        print(&format!(
-            "\n{:12} {:>7} | {:>10} {:>10} {:>11} | {:>10} {:>10} {:>11}",
-            "bound", "SNR, dB", "range, mm", "columns", "position, mm", "range, mm", "columns", "position, mm"
-        ))?;
-        let cells = |bound: Option<Bound>| match bound {
-            Some(b) => format!("{:>10.4} {:>10.5} {:>11.4}", b.range_millimetres, b.columns, b.position_millimetres),
-            None => format!("{:>10} {:>10} {:>11}", "-", "-", "-"),
-        };
+        print(&format!("\n{:12} {:>7} | {HEADINGS} | {HEADINGS}", "bound", "SNR, dB"))?;
         for l in &self.layouts {
             for b in &l.bounds {
                 print(&format!("{:12} {:>7} | {} | {}", l.layout, b.snr_db, cells(b.alone), cells(b.beside_another)))?;
             }
         }
+        let rows = || self.layouts.iter().flat_map(|l| l.bounds.iter().map(move |b| (&l.layout, b)));
+        if rows().any(|(_, b)| b.gain_per_end.is_some()) {
+            print("\nAlone, with one unknown complex gain for either half of the layout")?;
+            print(&format!("{:12} {:>7} | {HEADINGS}", "bound", "SNR, dB"))?;
+            for (layout, b) in rows() {
+                print(&format!("{layout:12} {:>7} | {}", b.snr_db, cells(b.gain_per_end)))?;
+            }
+        }
+        print("\nNo unbiased estimator has smaller standard deviations. One that knows scenes beforehand may.")?;
         if !self.monte_carlo.is_empty() {
             print(&format!(
                 "\n{:7} {:>9} {:>10} {:>10} {:>13} {:>11} {:>11}",

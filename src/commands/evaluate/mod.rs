@@ -1,61 +1,79 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values; row by row, in parts, and on scenes of one's own.
 
+mod kept;
+mod progress;
 mod report;
 
-use super::arguments::{self, FloorArgs};
+use super::arguments::{self, FloorArgs, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
-use crate::evaluate::rows::{Row, merge, read_rows, write_rows};
+use crate::evaluate::rows::{Lack, Row, lacks, merge, read_table};
 use crate::evaluate::sets::{Folder, SceneSet};
-use crate::files::write_atomically;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
 use crate::task::Task;
-use indicatif::{ProgressBar, ProgressStyle};
-use report::{Conventions, Report};
+use kept::{Key, RowFile, Wanted, key, write_merged};
+use progress::Progress;
+use report::Report;
+use std::collections::HashSet;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
 ///
 /// P_D and P_FA are at the threshold that each method ships with, chosen on validation scenes: what a user gets. Beside them stands
-/// P_D where every scene has a threshold of its own that holds its P_FA to the printed one. An object is missed when less than half of where
+/// P_D where every scene has a threshold of its own that holds its P_FA to the printed one; the thesis' own P_D, at one fixed threshold, is
+/// no figure of that column. Beneath each mean stands the median over the scenes. An object is missed when less than half of where
 /// the whole array sees it is above the threshold; a ghost is a blob where the whole array sees nothing. "Near best" is the part of the
-/// scenes on which the squared error is at most 1.2 times the least of the other methods'.
+/// scenes on which the squared error is at most 1.2 times the least of the other methods'. Behind the name of a method that has learned
+/// weights stand the optimisers that trained them.
 ///
-/// With --json one object is printed: count, seed, floor, carrier (floor and carrier null with --merge, as rows don't say), and sets,
+/// With --rows each row is appended as soon as it is found. A run that was stopped goes on where its rows end when the same command is given
+/// again; rows of anything else are refused. --merge joins the rows of several runs that were made alike, and fails where scenes lack of
+/// what these runs were to find.
+///
+/// With --json one object is printed: count, seed, floor, normalisation, carrier, reading and radar (what made the rows; null where older rows
+/// don't say, the last three also for the scenes of a folder; radar is empty for table 3.1's), missing (what lacks of the whole run: set,
+/// method, missing, of, first numbers, shard) and sets,
 /// each with its name (set: a number for the thesis' sets), what the thesis prints there (printed: baseline, experiment_1, experiment_2; null
-/// for other scenes), false_alarm (the printed rate, experiment 2's; 1 % for other scenes) and methods, each with name, eta, scenes,
-/// squared_error, detection, false_alarm, missed and ghosts (mean and standard_error), detection_at_printed_false_alarm (false_alarm,
-/// detection, standard_error), median_milliseconds and near_best (null with one method). Rates are fractions, not percent.
+/// for other scenes), false_alarm (the printed rate, experiment 2's; 1 % for other scenes) and methods, each with name, weights (the first 12
+/// digits of their SHA-256; null without weights), optimiser, eta (the mean where one_eta is false: then each answer has its own), one_eta,
+/// scenes, squared_error, detection, false_alarm, missed and ghosts (mean, standard_error and median; rates at the method's threshold),
+/// detection_at_printed_false_alarm (false_alarm, detection, standard_error, median; threshold says that each scene has its own),
+/// median_milliseconds and near_best (null with one method). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Methods, separated by commas
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
     method: Vec<String>,
 
-    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near), separated by commas
+    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, noise), separated by commas
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
 
     /// Scenes of each set
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = whole(1..=1_000_000u32))]
     count: u32,
 
     /// Seed of the scenes
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
     /// The scene files of this folder in place of random scenes
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["set", "count", "seed", "carrier", "thesis_text"])]
     scenes: Option<PathBuf>,
 
-    /// Write one row a scene and method to this CSV file; the figures printed are means of these rows
+    /// Append one row a scene and method to this CSV file, and go on where its rows end; the figures printed are means of these rows
     #[arg(long, value_name = "FILE.csv")]
     rows: Option<PathBuf>,
+
+    /// Write over the file of --rows, whatever it holds
+    #[arg(long, requires = "rows")]
+    overwrite: bool,
 
     /// Try every N-th scene only, from scene I on
     #[arg(long, value_name = "I/N", default_value_t)]
@@ -65,6 +83,14 @@ pub struct Args {
     #[arg(long, value_name = "FILE.csv", num_args = 1..,
           conflicts_with_all = ["method", "set", "count", "seed", "scenes", "shard", "floor", "carrier", "thesis_text"])]
     merge: Vec<PathBuf>,
+
+    /// Print the tables of --merge although scenes lack
+    #[arg(long, requires = "merge")]
+    partial: bool,
+
+    /// Seconds between lines of progress where standard error is no terminal
+    #[arg(long, value_name = "SECONDS", default_value_t = 30)]
+    progress: u32,
 
     #[command(flatten)]
     network: NetworkArgs,
@@ -88,11 +114,8 @@ pub struct Args {
 impl Args {
     /// Runs every method over every set, or reads what was found before, and prints the tables.
     pub fn run(self) -> Result<(), CommandError> {
-        let (rows, conventions) = if self.merge.is_empty() { self.measure()? } else { (self.merged()?, None) };
-        if let Some(path) = &self.rows {
-            write_atomically(path, |out| write_rows(out, &rows)).map_err(on_file(path))?;
-        }
-        let report = Report::of(&rows, conventions);
+        let (rows, missing) = if self.merge.is_empty() { (self.measure()?, Vec::new()) } else { self.merged()? };
+        let report = Report::of(&rows, missing);
         if self.json {
             print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?)
         } else {
@@ -107,10 +130,8 @@ impl Args {
         }
     }
 
-    fn measure(&self) -> Result<(Vec<Row>, Option<Conventions>), CommandError> {
-        let methods = self.network.methods(&self.method)?;
-        let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
-        let campaign = Campaign {
+    fn campaign(&self) -> Campaign {
+        Campaign {
             radar: Radar { carrier: self.carrier, ..Radar::default() },
             reading: if self.thesis_text { Reading::Text } else { Reading::Program },
             seed: self.seed,
@@ -118,41 +139,104 @@ impl Args {
             shard: self.shard,
             floor: self.floor.floor,
             ..Campaign::default()
-        };
-        let sets = self.sets()?;
-        let scenes: u32 = sets.iter().map(|set| campaign.scenes(set)).sum();
+        }
+    }
+
+    fn measure(&self) -> Result<Vec<Row>, CommandError> {
+        let methods = self.network.methods(&self.method)?;
+        let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
+        let (campaign, sets) = (self.campaign(), self.sets()?);
+        let origins = campaign.origins(&sets, &methods).map_err(CommandError::failed)?;
+        let scenes: u64 = sets.iter().map(|set| u64::from(campaign.scenes(set))).sum();
         if scenes == 0 {
             let message = format!("--shard {} has no scene; expected I below the number of scenes", self.shard);
             return Err(CommandError::Usage(message));
         }
-        // Drawn on a terminal only: indicatif hides itself where standard error is a file or a pipe.
-        let bar = ProgressBar::new(u64::from(scenes) * methods.len() as u64).with_style(bar_style());
-        let on_row = |row: &Row| {
-            bar.set_message(row.set.clone());
-            bar.inc(1);
+        for said in campaign.untrained(&sets, &methods).map_err(CommandError::failed)? {
+            eprintln!("apertura: {said}");
+        }
+        let named = sets.iter().zip(&origins).flat_map(|(set, origins)| {
+            let pair = |(method, origin): (&&dyn Reconstructor, &_)| {
+                ((set.to_string(), method.name().to_owned()), std::sync::Arc::clone(origin))
+            };
+            methods.iter().zip(origins).map(pair).collect::<Vec<_>>()
+        });
+        let wanted = Wanted { origins: named.collect(), seed: self.seed };
+        let open = |path: &PathBuf| RowFile::open(path, &wanted, self.overwrite);
+        let mut file = self.rows.as_ref().map(open).transpose()?;
+        let maps = scenes * methods.len() as u64;
+        let done = self.done(file.as_ref(), maps);
+        let mut progress = Progress::new(maps - done.len() as u64, Duration::from_secs(self.progress.into()));
+        let is_done = |set: &str, index: u32, method: &str| {
+            !done.is_empty() && done.contains(&(set.to_owned(), index, method.to_owned()))
         };
-        let rows = campaign.run(&sets, &methods, &Task::default(), on_row).map_err(CommandError::failed)?;
-        bar.finish_and_clear();
-        let conventions = Conventions { seed: self.seed, floor: self.floor.floor, carrier: self.carrier };
-        Ok((rows, self.scenes.is_none().then_some(conventions)))
+        let task = Task::default();
+        let found = campaign.run_rest(&sets, &methods, &origins, &is_done, &task, |row, _, _| {
+            progress.row(row);
+            if file.as_mut().is_some_and(|file| !file.append(row)) {
+                task.cancel();
+            }
+        });
+        progress.finish();
+        match file {
+            None => found.map_err(CommandError::failed),
+            Some(mut file) => match file.failure() {
+                Some(failure) => Err(failure),
+                None => found.map_err(CommandError::failed).and_then(|_| file.finish()),
+            },
+        }
     }
 
-    fn merged(&self) -> Result<Vec<Row>, CommandError> {
-        let read = |path: &PathBuf| {
+    /// The rows that were found before, which standard error tells of.
+    fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<Key> {
+        let done: HashSet<Key> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
+        if let (Some(path), false) = (&self.rows, done.is_empty()) {
+            let (path, there) = (path.display(), done.len());
+            match there as u64 == maps {
+                true => eprintln!("{path} holds all {maps} rows of this run already"),
+                false => eprintln!("{path} holds {there} of {maps} rows of this run already: going on with the rest"),
+            }
+        }
+        done
+    }
+
+    /// The rows of all files, and what lacks of their runs.
+    fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
+        let (mut tables, mut problems) = (Vec::new(), Vec::new());
+        for path in &self.merge {
             let file = File::open(path).map_err(on_file(path))?;
-            let rows = read_rows(file).map_err(CommandError::on(path))?;
-            Ok((path.display().to_string(), rows))
-        };
-        let tables: Vec<_> = self.merge.iter().map(read).collect::<Result<_, CommandError>>()?;
-        merge(tables).map_err(CommandError::failed)
+            let table = read_table(file).map_err(CommandError::on(path))?;
+            if table.is_cut {
+                problems.push(format!("{} ends within a line, which was left out", path.display()));
+            }
+            if table.rows.is_empty() {
+                problems.push(format!("{} holds no row", path.display()));
+            }
+            tables.push((path.display().to_string(), table.rows));
+        }
+        let rows = merge(tables).map_err(CommandError::failed)?;
+        let missing = lacks(&rows);
+        problems.extend(missing.iter().map(|lack| format!("missing: {lack}")));
+        if rows.is_empty() || !(problems.is_empty() || self.partial) {
+            let listed = problems.join("\n  ");
+            let message = format!(
+                "the rows are not those of a whole run:\n  {listed}\n--partial prints the tables of what there is"
+            );
+            return Err(CommandError::Usage(message));
+        }
+        problems.iter().for_each(|problem| eprintln!("note: {problem}"));
+        if rows.iter().any(|row| row.origin.is_none()) {
+            eprintln!(
+                "note: an older program wrote these rows; they don't say what made them, nor what the whole run was"
+            );
+        }
+        if let Some(path) = &self.rows {
+            write_merged(path, &rows, self.overwrite)?;
+        }
+        Ok((rows, missing))
     }
 }
 
 fn on_file(path: &Path) -> impl FnOnce(io::Error) -> CommandError {
     move |source| CommandError::File { path: path.to_owned(), source }
-}
-
-fn bar_style() -> ProgressStyle {
-    ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} maps, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar())
 }

@@ -1,24 +1,15 @@
 //! The tables of an evaluation, from its rows.
 
 use crate::evaluate::Estimate;
-use crate::evaluate::rows::Row;
-use crate::evaluate::sets::false_alarm;
+use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
+use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
 use crate::evaluate::tables::{
     PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally, part_near_best,
 };
-use crate::radar::Carrier;
-use crate::scene::generate::Kind;
-use crate::signal::Floor;
+use crate::radar::{Carrier, counted};
+use crate::scene::generate::{Kind, Reading};
 use serde::{Serialize, Serializer};
 use std::fmt::Write;
-
-/// What rows don't say of the run that made them.
-#[derive(Debug, Clone, Copy)]
-pub struct Conventions {
-    pub seed: u64,
-    pub floor: Floor,
-    pub carrier: Carrier,
-}
 
 /// What the command found; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
@@ -26,7 +17,11 @@ pub struct Report {
     count: usize,
     seed: Option<u64>,
     floor: Option<String>,
+    normalisation: Option<String>,
     carrier: Option<Carrier>,
+    reading: Option<Reading>,
+    radar: Option<String>,
+    missing: Vec<Lack>,
     sets: Vec<SetReport>,
 }
 
@@ -50,7 +45,11 @@ struct PrintedColumns {
 #[derive(Debug, Serialize)]
 struct MethodReport {
     name: String,
+    weights: Option<String>,
+    optimiser: String,
     eta: f32,
+    /// Whether every answer was judged at `eta`; it is the mean of theirs otherwise.
+    one_eta: bool,
     scenes: usize,
     squared_error: Estimate,
     detection: Estimate,
@@ -66,10 +65,16 @@ struct MethodReport {
 /// P_D where every scene's P_FA is held to a rate.
 #[derive(Debug, Serialize)]
 struct AtPrinted {
+    /// So that nobody takes it for the thesis' P_D, which is at one threshold.
+    threshold: &'static str,
     false_alarm: f64,
     detection: f64,
     standard_error: f64,
+    median: f64,
 }
+
+/// Width of a method's name and what stands behind it, characters; more where one needs more.
+const LABEL: usize = 26;
 
 fn number_or_name<S: Serializer>(set: &str, serializer: S) -> Result<S::Ok, S::Error> {
     match set.parse::<u32>() {
@@ -90,25 +95,36 @@ fn names<'a>(rows: &[&'a Row], name: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str
 }
 
 impl Report {
-    /// The tables of `rows`; `conventions` where they are of one run over generated scenes.
-    pub fn of(rows: &[Row], conventions: Option<Conventions>) -> Report {
+    /// The tables of `rows`, of whose whole run `missing` lacks.
+    pub fn of(rows: &[Row], missing: Vec<Lack>) -> Report {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)
             .into_iter()
             .map(|set| SetReport::of(set, &all.iter().copied().filter(|r| r.set == set).collect::<Vec<_>>()))
             .collect();
-        let seeds = rows.first().map(|row| row.seed).filter(|seed| rows.iter().all(|row| row.seed == *seed));
+        let seed = rows.first().map(|row| row.seed).filter(|seed| rows.iter().all(|row| row.seed == *seed));
+        // Merged rows are alike, and generated scenes come from one generator.
+        let origins = || rows.iter().filter_map(|row| row.origin.as_deref());
+        let generated = origins().find_map(|origin| match &origin.scenes {
+            Scenes::Generated { carrier, reading, radar, .. } => Some((*carrier, *reading, radar.clone())),
+            Scenes::Files { .. } => None,
+        });
+        let of_all = |text: fn(&Origin) -> String| origins().next().map(text);
         Report {
             count: sets.iter().flat_map(|s| &s.methods).map(|m| m.scenes).max().unwrap_or(0),
-            seed: conventions.map(|c| c.seed).or(seeds),
-            floor: conventions.map(|c| c.floor.to_string()),
-            carrier: conventions.map(|c| c.carrier),
+            seed,
+            floor: of_all(|origin| origin.floor.to_string()),
+            normalisation: of_all(|origin| origin.normalisation.to_string()),
+            carrier: generated.as_ref().map(|(carrier, _, _)| *carrier),
+            reading: generated.as_ref().map(|(_, reading, _)| *reading),
+            radar: generated.map(|(_, _, radar)| radar),
+            missing,
             sets,
         }
     }
 
     pub fn to_text(&self) -> String {
-        let mut text = format!("{} scenes a set", self.count);
+        let mut text = counted(self.count, "scene a set", "scenes a set");
         // Writing to a string can't fail.
         if let Some(seed) = self.seed {
             let _ = write!(text, ", seed {seed}");
@@ -116,14 +132,26 @@ impl Report {
         if let Some(floor) = &self.floor {
             let _ = write!(text, ", floor {floor}");
         }
+        if let Some(normalisation) = self.normalisation.as_ref().filter(|n| *n != "min-max") {
+            let _ = write!(text, ", normalisation {normalisation}");
+        }
         match self.carrier {
             Some(Carrier::OneWay) => text.push_str(", carrier one-way"),
             Some(Carrier::TwoWay) => text.push_str(", carrier two-way"),
             None => {}
         }
-        text.push_str("; mean \u{b1} standard error\n");
+        if self.reading == Some(Reading::Text) {
+            text.push_str(", scenes of the thesis' text");
+        }
+        if let Some(radar) = self.radar.as_ref().filter(|radar| !radar.is_empty()) {
+            let _ = write!(text, ", radar {radar}");
+        }
+        text.push_str("; mean \u{b1} standard error, and beneath it the median\n");
+        for lack in &self.missing {
+            let _ = writeln!(text, "missing: {lack}");
+        }
         for set in &self.sets {
-            set.write(&mut text);
+            set.write(self.count, &mut text);
         }
         text.truncate(text.trim_end().len());
         text
@@ -144,40 +172,52 @@ impl SetReport {
         SetReport { set: set.to_owned(), printed, false_alarm, methods }
     }
 
-    fn write(&self, text: &mut String) {
+    fn write(&self, count: usize, text: &mut String) {
         let kind = self.set.parse::<Kind>().ok();
         let what = kind.map_or("scenes of a folder", Kind::description);
         let _ = match kind.and_then(Kind::test_set) {
             Some(set) => writeln!(text, "\nTable 4.{set}: test set {set}, {what}"),
+            None if kind == Some(Kind::Noise) => {
+                let level = NOISE_LEVEL.0;
+                writeln!(
+                    text,
+                    "\n{}: {what}, of {level} dBm a sample unless --floor names another level; all alarms are false",
+                    self.set
+                )
+            }
             None => writeln!(text, "\n{}: {what}", self.set),
         };
+        let width = self.methods.iter().map(|m| m.label(count).chars().count()).fold(LABEL, usize::max);
         let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
+        let (fixed, own) = ("at the method's threshold", "at each scene's own");
+        let _ = writeln!(text, "{:<width$} {:>20} {fixed:>33} {own:>22}", "", "");
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>11} {:>9}",
+            "{:<width$} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>11} {:>9}",
             "", "SE", "P_D %", "P_FA %", rate, "missed", "ghosts", "near best %", "ms a map"
         );
         if let Some(printed) = &self.printed {
-            printed.write(text);
+            printed.write(width, text);
         }
         for method in &self.methods {
-            method.write(text);
+            method.write(count, width, text);
             if let ("baseline", Some(printed)) = (method.name.as_str(), &self.printed) {
-                method.write_deviation(&printed.baseline, text);
+                method.write_deviation(width, &printed.baseline, text);
             }
         }
     }
 }
 
 impl PrintedColumns {
-    fn write(&self, text: &mut String) {
+    fn write(&self, width: usize, text: &mut String) {
         for (name, printed) in [
             ("printed: baseline", &self.baseline),
             ("printed: experiment 1", &self.experiment_1),
             ("printed: experiment 2", &self.experiment_2),
         ] {
             let (detection, false_alarm) = (100.0 * printed.detection, 100.0 * printed.false_alarm);
-            let _ = writeln!(text, "{name:<26} {:>20.2} {detection:>16.2} {false_alarm:>16.2}", printed.squared_error);
+            let _ =
+                writeln!(text, "{name:<width$} {:>20.2} {detection:>16.2} {false_alarm:>16.2}", printed.squared_error);
         }
     }
 }
@@ -188,15 +228,20 @@ impl MethodReport {
         let at = tally.detection_at_printed();
         MethodReport {
             name: name.to_owned(),
+            weights: tally.weights().map(str::to_owned),
+            optimiser: tally.optimiser().to_owned(),
             eta: tally.eta(),
+            one_eta: tally.has_one_eta(),
             scenes: tally.scenes(),
             squared_error: tally.squared_error(),
             detection: tally.detection(),
             false_alarm: tally.false_alarm(),
             detection_at_printed_false_alarm: AtPrinted {
+                threshold: "each scene's own",
                 false_alarm,
                 detection: at.mean,
                 standard_error: at.standard_error,
+                median: at.median,
             },
             missed: tally.missed(),
             ghosts: tally.ghosts(),
@@ -205,7 +250,19 @@ impl MethodReport {
         }
     }
 
-    fn write(&self, text: &mut String) {
+    /// The name, the optimisers of its weights, its threshold, and how many scenes it has where others have more.
+    fn label(&self, count: usize) -> String {
+        let eta = match self.one_eta {
+            true => format!("eta {}", self.eta),
+            false => format!("eta {:.4} on average", self.eta),
+        };
+        let optimiser = Some(self.optimiser.clone()).filter(|optimiser| !optimiser.is_empty());
+        let scenes = (self.scenes != count).then(|| format!("{} scenes", self.scenes));
+        let behind: Vec<String> = optimiser.into_iter().chain([eta]).chain(scenes).collect();
+        format!("{} ({})", self.name, behind.join("; "))
+    }
+
+    fn write(&self, count: usize, width: usize, text: &mut String) {
         let percent = |mean: f64, error: f64| match mean.is_nan() {
             true => "-".to_owned(),
             false => format!("{:.2} \u{b1} {:.3}", 100.0 * mean, 100.0 * error),
@@ -214,8 +271,8 @@ impl MethodReport {
         let at = &self.detection_at_printed_false_alarm;
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>11} {:>9.1}",
-            format!("{} (eta {})", self.name, self.eta),
+            "{:<width$} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>11} {:>9.1}",
+            self.label(count),
             format!("{:.1} \u{b1} {:.1}", self.squared_error.mean, self.squared_error.standard_error),
             rate(self.detection),
             rate(self.false_alarm),
@@ -225,9 +282,21 @@ impl MethodReport {
             self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part)),
             self.median_milliseconds
         );
+        let percent = |median: f64| if median.is_nan() { "-".to_owned() } else { format!("{:.2}", 100.0 * median) };
+        let _ = writeln!(
+            text,
+            "{:<width$} {:>20.1} {:>16} {:>16} {:>22} {:>7} {:>7}",
+            "  median",
+            self.squared_error.median,
+            percent(self.detection.median),
+            percent(self.false_alarm.median),
+            percent(at.median),
+            self.missed.median,
+            self.ghosts.median
+        );
     }
 
-    fn write_deviation(&self, printed: &Printed, text: &mut String) {
+    fn write_deviation(&self, width: usize, printed: &Printed, text: &mut String) {
         let off = |e: Estimate, printed: f64, rounding: f64| match e.standard_error {
             0.0 => "-".to_owned(),
             _ => format!("{:+.2} s.e.", e.deviation_from(printed, rounding)),
@@ -235,7 +304,7 @@ impl MethodReport {
         let rounding = printed.rate_rounding();
         let _ = writeln!(
             text,
-            "{:<26} {:>20} {:>16} {:>16}",
+            "{:<width$} {:>20} {:>16} {:>16}",
             "  off the printed by",
             off(self.squared_error, printed.squared_error, 0.005),
             off(self.detection, printed.detection, rounding),

@@ -1,7 +1,7 @@
 use super::super::Outcome;
 use super::*;
 use crate::maps::{Aperture, LogMaps, Normalisation, RangeAngleMap};
-use crate::radar::{Decibels, End};
+use crate::radar::{DecibelMilliwatts, Decibels, End};
 use crate::scene::{Object, Point};
 use crate::signal::{self, Floor};
 use proptest::prelude::*;
@@ -78,11 +78,21 @@ fn a_bad_scene_is_refused_and_the_engine_lives_on() {
 #[test]
 fn frames_agree_with_the_plain_path() {
     let radar = Radar::default();
-    let scene = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (8.0, 3.3)]);
-    for floor in [Floor::Thesis, Floor::Snr(Decibels(20.0))] {
+    let points = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (8.0, 3.3)]);
+    let mut weak = points.clone();
+    weak.objects.iter_mut().for_each(|o| o.set_reflectivity(1e-9));
+    let level = Floor::Level(DecibelMilliwatts(40.0));
+    for (floor, scene) in [
+        (Floor::Thesis, &points),
+        (Floor::Snr(Decibels(20.0)), &points),
+        (level, &points),
+        (level, &weak),
+        (Floor::Thesis, &weak),
+        (level, &Scene::default()),
+    ] {
         let wanted = Wanted { floor, seed: 5, ..Wanted::default() };
-        let frame = Engine::new(radar.clone()).update(&scene, &wanted).unwrap();
-        let signal = signal::simulate(&radar, &scene, floor, 5).unwrap();
+        let frame = Engine::new(radar.clone()).update(scene, &wanted).unwrap();
+        let signal = signal::simulate(&radar, scene, floor, 5).unwrap();
         let maps = LogMaps::of_signal(&radar, &signal);
         for (aperture, log) in [
             (Aperture::End(End::First), &maps.first),
@@ -98,6 +108,28 @@ fn frames_agree_with_the_plain_path() {
             assert!(rms < 1e-3 && worst < 2e-2, "{floor} {aperture:?}: rms {rms:e}, worst {worst}");
         }
         assert_eq!(*frame.ends.unwrap(), signal.two_ends(&radar), "not a bit off");
+    }
+}
+
+#[test]
+fn an_empty_scene_without_noise_is_dark_however_it_is_normalised() {
+    let radar = Radar::default();
+    let point = Scene::of_points([(1.0, 6.0)]);
+    for floor in [Floor::Thesis, Floor::Exact] {
+        for normalisation in [Normalisation::MinMax, Normalisation::DynamicRange(Decibels(100.0))] {
+            let wanted = Wanted { floor, normalisation, ..Wanted::default() };
+            let mut engine = Engine::new(radar.clone());
+            engine.update(&point, &wanted).unwrap();
+            // The reflector was taken away.
+            let moving = engine.update(&Scene::default(), &wanted).unwrap();
+            let settled = engine.settle(&Scene::default(), &wanted).unwrap();
+            for (frame, how) in [(moving, "in motion"), (settled, "at rest")] {
+                for map in [&frame.first, &frame.last, &frame.full] {
+                    let brightest = map.as_ref().unwrap().lambda.lambda.iter().copied().fold(0.0, f32::max);
+                    assert_eq!(brightest, 0.0, "{floor} {normalisation} {how}");
+                }
+            }
+        }
     }
 }
 

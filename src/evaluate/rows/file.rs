@@ -1,7 +1,10 @@
 //! Rows as CSV.
 
-use super::{Column, Row};
+use super::lines::{LongLine, MAX_LINE_BYTES, ShortLines};
+use super::origin::{Origin, Part};
+use super::{Column, MAX_ROWS, Row};
 use std::io::{self, Read, Write};
+use std::sync::Arc;
 
 impl Row {
     /// The cells as they are written: every figure with all its digits, so that it is read back as it was.
@@ -35,8 +38,8 @@ impl Row {
     }
 }
 
-/// Writes rows, a line each, under a line of names. The lines already written are whole at any time: [`RowWriter::flush`] after each scene
-/// keeps what a stopped run has found.
+/// Writes rows, a line each, under a line of names. [`RowWriter::flush`] after a row hands on whole lines, so that a run that is stopped
+/// keeps what it has found.
 pub struct RowWriter<W: Write> {
     out: csv::Writer<W>,
 }
@@ -48,8 +51,13 @@ impl<W: Write> RowWriter<W> {
     /// What `out` says.
     pub fn new(out: W) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
-        out.write_record(Column::ALL.map(Column::name))?;
+        out.write_record(Column::ALL.map(Column::name).into_iter().chain(Part::ALL.map(Part::name)))?;
         Ok(RowWriter { out })
+    }
+
+    /// Goes on beneath rows that [`RowWriter::new`] and [`RowWriter::add`] wrote.
+    pub fn beneath(out: W) -> Self {
+        RowWriter { out: csv::Writer::from_writer(out) }
     }
 
     /// Adds a row.
@@ -57,7 +65,9 @@ impl<W: Write> RowWriter<W> {
     /// # Errors
     /// What `out` says.
     pub fn add(&mut self, row: &Row) -> io::Result<()> {
-        Ok(self.out.write_record(row.cells())?)
+        let origin = row.origin.as_deref();
+        let parts = Part::ALL.map(|part| origin.map(|origin| origin.text(part)).unwrap_or_default());
+        Ok(self.out.write_record(row.cells().iter().chain(&parts))?)
     }
 
     /// Hands on what was added.
@@ -78,11 +88,6 @@ pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) 
     rows.into_iter().try_for_each(|row| writer.add(row))?;
     writer.flush()
 }
-
-/// Most rows that a file may have: they take some 600 MB.
-pub const MAX_ROWS: usize = 2_000_000;
-/// Most bytes that a line of a file may have.
-const MAX_LINE_BYTES: usize = 64 << 10;
 
 /// Why a file's rows can't be used.
 #[derive(Debug, thiserror::Error)]
@@ -108,6 +113,14 @@ pub enum RowError {
         /// What should.
         expected: &'static str,
     },
+    /// Rows are of a later format.
+    #[error("line {line}: the row is of format {found}; this program reads up to format {}", super::FORMAT)]
+    Later {
+        /// Line, from 1.
+        line: u64,
+        /// The format.
+        found: String,
+    },
     /// A line is no row.
     #[error("line {line}: {message}")]
     Line {
@@ -121,38 +134,69 @@ pub enum RowError {
     TooMany,
 }
 
+/// Rows as a file has them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Table {
+    /// The rows of whole lines.
+    pub rows: Vec<Row>,
+    /// Whether the file ends within a line: its writer was stopped, or the file was cut.
+    pub is_cut: bool,
+    /// How many bytes the whole lines have.
+    pub whole_bytes: u64,
+}
+
 /// Reads what [`write_rows`] wrote. Columns may stand in any order, and others beside them; those that are
-/// [optional](Column::is_optional) may be missing.
+/// [optional](Column::is_optional), and those that say what made a row, may be missing.
 ///
 /// # Errors
 /// [`RowError`] names the line and the column.
 pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
-    let lines = ShortLines { input, line: 1, bytes: 0 };
-    let mut reader = csv::Reader::from_reader(lines);
+    read(ShortLines::new(input, false)).map(|table| table.rows)
+}
+
+/// [`read_rows`] without a last line that has no end, which may hold half a row.
+///
+/// # Errors
+/// As [`read_rows`].
+pub fn read_table(input: impl Read) -> Result<Table, RowError> {
+    read(ShortLines::new(input, true))
+}
+
+fn read(mut lines: ShortLines<impl Read>) -> Result<Table, RowError> {
+    let mut reader = csv::Reader::from_reader(&mut lines);
     let header = reader.headers().map_err(of_csv)?;
-    let mut places = [None; Column::ALL.len()];
-    for (place, column) in places.iter_mut().zip(Column::ALL) {
-        *place = header.iter().position(|name| name.trim() == column.name());
-        if place.is_none() && !column.is_optional() {
-            return Err(RowError::Header { missing: column.name() });
-        }
+    let place = |name: &str| header.iter().position(|found| found.trim() == name);
+    let places = Column::ALL.map(|column| place(column.name()));
+    let parts = Part::ALL.map(|part| place(part.name()));
+    if let Some(column) = Column::ALL.into_iter().find(|c| places[*c as usize].is_none() && !c.is_optional()) {
+        return Err(RowError::Header { missing: column.name() });
     }
-    let mut rows = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     let mut record = csv::StringRecord::new();
+    let mut last: Option<Arc<Origin>> = None;
     while reader.read_record(&mut record).map_err(of_csv)? {
         if rows.len() == MAX_ROWS {
             return Err(RowError::TooMany);
         }
         let line = record.position().map_or(0, csv::Position::line);
-        rows.push(Cells { record: &record, places: &places, line }.row()?);
+        let cells = Cells { record: &record, places: &places, parts: &parts, line };
+        // Rows beneath each other are mostly of one run: they share what made them.
+        let origin = cells.origin()?.map(|origin| match &last {
+            Some(last) if **last == origin => last.clone(),
+            _ => Arc::new(origin),
+        });
+        last = origin.clone().or(last);
+        rows.push(Row { origin, ..cells.row()? });
     }
-    Ok(rows)
+    drop(reader);
+    Ok(Table { rows, is_cut: lines.is_cut, whole_bytes: lines.whole_bytes })
 }
 
 /// One line, and where its columns stand.
 struct Cells<'a> {
     record: &'a csv::StringRecord,
     places: &'a [Option<usize>; Column::ALL.len()],
+    parts: &'a [Option<usize>; Part::ALL.len()],
     line: u64,
 }
 
@@ -195,6 +239,22 @@ impl Cells<'_> {
         }
     }
 
+    fn part(&self, part: Part) -> &str {
+        self.parts[part as usize].and_then(|place| self.record.get(place)).unwrap_or_default().trim()
+    }
+
+    fn origin(&self) -> Result<Option<Origin>, RowError> {
+        Origin::read(|part| self.part(part)).map_err(|(part, expected)| {
+            let found: String = self.part(part).chars().take(40).collect();
+            match part {
+                Part::Version if found.parse::<u32>().is_ok_and(|v| v > super::FORMAT) => {
+                    RowError::Later { line: self.line, found }
+                }
+                _ => RowError::Cell { line: self.line, column: part.name(), found, expected },
+            }
+        })
+    }
+
     fn row(&self) -> Result<Row, RowError> {
         Ok(Row {
             set: self.name(Column::Set)?,
@@ -219,6 +279,7 @@ impl Cells<'_> {
             found: self.maybe_count(Column::Found)?,
             merged: self.maybe_count(Column::Merged)?,
             wrong_tooth: self.maybe_count(Column::WrongTooth)?,
+            origin: None,
         })
     }
 }
@@ -240,38 +301,9 @@ fn of_csv(error: csv::Error) -> RowError {
     }
 }
 
-/// A line that is too long.
-#[derive(Debug, thiserror::Error)]
-#[error("line {line} is too long")]
-struct LongLine {
-    line: u64,
-}
-
-/// Passes on what it reads as long as lines are short, so that no file can ask for more memory than a line may have.
-struct ShortLines<R> {
-    input: R,
-    line: u64,
-    bytes: usize,
-}
-
-impl<R: Read> Read for ShortLines<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.input.read(buffer)?;
-        for byte in &buffer[..read] {
-            self.bytes += 1;
-            if *byte == b'\n' {
-                (self.line, self.bytes) = (self.line + 1, 0);
-            }
-            if self.bytes > MAX_LINE_BYTES {
-                return Err(io::Error::other(LongLine { line: self.line }));
-            }
-        }
-        Ok(read)
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::origin::tests::origin;
     use super::super::tests::row;
     use super::*;
 
@@ -287,12 +319,18 @@ mod tests {
 
     #[test]
     fn rows_are_read_as_they_were_written() {
-        let rows = vec![row("1", 0, "live"), row("a \"folder\", with all", 1, "nomp")];
+        let origin = Some(Arc::new(origin()));
+        let rows = vec![
+            row("1", 0, "live"),
+            Row { origin: origin.clone(), ..row("a \"folder\", with all", 1, "nomp") },
+            Row { origin, ..row("1", 2, "live") },
+        ];
         assert_eq!(read_rows(text(&rows).as_bytes()).unwrap(), rows);
         assert!(text(&rows).starts_with(
             "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,\
              reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,\
-             found,merged,wrong_tooth\n"
+             found,merged,wrong_tooth,version,program,floor,normalisation,purpose,reading,carrier,radar,scenes,weights,optimiser,\
+             shard,whole,methods\n"
         ));
     }
 
@@ -308,12 +346,40 @@ mod tests {
 
     #[test]
     fn tables_from_before_the_kinds_were_counted_are_read() {
-        let old = |line: &str| line.rsplitn(4, ',').last().unwrap().to_owned();
+        let old = |line: &str| line.rsplitn(4 + Part::ALL.len(), ',').last().unwrap().to_owned();
         let table = text(&[row("1", 0, "live")]);
         let table: String = table.lines().map(|line| old(line) + "\n").collect();
         assert!(table.lines().next().unwrap().ends_with("strongest_over_weakest_db"));
         let without = Row { found: None, merged: None, ..row("1", 0, "live") };
         assert_eq!(read_rows(table.as_bytes()).unwrap(), [without]);
+    }
+
+    #[test]
+    fn a_last_line_without_an_end_is_left_out() {
+        let whole = text(&[row("1", 0, "live"), row("1", 1, "live")]);
+        let first = whole.lines().take(2).map(|line| line.len() + 1).sum::<usize>();
+        for cut in first + 1..whole.len() {
+            let table = read_table(whole[..cut].as_bytes()).unwrap();
+            assert_eq!((table.rows.len(), table.is_cut, table.whole_bytes), (1, true, first as u64), "{cut}");
+        }
+        let table = read_table(whole.as_bytes()).unwrap();
+        assert_eq!((table.rows.len(), table.is_cut, table.whole_bytes), (2, false, whole.len() as u64));
+        assert_eq!(
+            read_rows(&whole.as_bytes()[..whole.len() - 1]).unwrap().len(),
+            2,
+            "an editor may leave the end out"
+        );
+    }
+
+    #[test]
+    fn rows_of_a_later_format_are_refused() {
+        let origin = Some(Arc::new(origin()));
+        let table = text(&[Row { origin, ..row("1", 0, "live") }]);
+        assert_eq!(
+            error(&table.replace(",1,0.1.0,", ",2,0.1.0,")),
+            "line 2: the row is of format 2; this program reads up to format 1"
+        );
+        assert!(error(&table.replace(",thesis,", ",rock,")).starts_with("line 2, column floor: \"rock\""));
     }
 
     #[test]
@@ -325,11 +391,11 @@ mod tests {
         );
         assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\""));
         assert!(error(&good.replace("ghosts", "spirits")).contains("no column \"ghosts\""));
-        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 21"));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 35"));
         assert!(error("").contains("no column \"set\""));
         let long = format!("{good}{}", "x".repeat(1 << 20));
         assert_eq!(error(&long), "line 4: is longer than 65536 bytes; expected a row");
-        let binary = [good.as_bytes(), b"\xff\xfe,".repeat(18).as_slice()].concat();
+        let binary = [good.as_bytes(), b"\xff\xfe,".repeat(34).as_slice()].concat();
         assert!(read_rows(binary.as_slice()).is_err());
     }
 }

@@ -1,10 +1,21 @@
 //! One row a scene and method: what an evaluation found, kept as CSV so that it can be sorted, sliced, merged and reproduced.
 
 mod file;
+mod lacks;
+mod lines;
 mod order;
+mod origin;
 
-pub use file::{MAX_ROWS, RowError, RowWriter, read_rows, write_rows};
-pub use order::{Histogram, Twice, estimate, merge, sorted_by};
+pub use file::{RowError, RowWriter, Table, read_rows, read_table, write_rows};
+pub use lacks::{Lack, lacks};
+pub use order::{Histogram, MergeError, estimate, merge, sorted_by};
+pub use origin::{FORMAT, GivenTwice, Origin, Part, Scenes, Whole, radar_text};
+
+use crate::scene::generate::Kind;
+use std::sync::Arc;
+
+/// Most rows that a file may have: they take some 600 MB.
+pub const MAX_ROWS: usize = 2_000_000;
 
 /// What one method made of one scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +62,18 @@ pub struct Row {
     pub merged: Option<usize>,
     /// Objects on the wrong tooth of the comb.
     pub wrong_tooth: Option<usize>,
+    /// What made the row; `None` in tables that were written before this was kept.
+    pub origin: Option<Arc<Origin>>,
+}
+
+impl Row {
+    /// Whether a generator made its scene.
+    pub fn is_generated(&self) -> bool {
+        match &self.origin {
+            Some(origin) => matches!(origin.scenes, Scenes::Generated { .. }),
+            None => self.set.parse::<Kind>().is_ok(),
+        }
+    }
 }
 
 /// A column of the table.
@@ -212,6 +235,7 @@ pub(super) mod tests {
             found: Some(1),
             merged: Some(0),
             wrong_tooth: None,
+            origin: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Magnitudes to decades, in vectors, with the extremes noted on the way.
 
-use super::super::log_map::LOG_GUARD;
+use super::super::log_map::{LOG_GUARD, guard};
 use crate::signal::simd::{ComplexLanes, Lanes, Real};
 use num_complex::Complex;
 
@@ -10,16 +10,22 @@ pub(super) struct LogScale {
     factor: f64,
     guard: f32,
     decades: f32,
+    /// Decades of a magnitude of zero.
+    silence: f32,
 }
 
 impl LogScale {
     pub(super) fn new(bound: f64) -> Self {
-        // Far below the guard every cell is an exact zero, and the guard itself must stay within f32.
         let factor = if bound > 0.0 { 1e15 / bound.max(1e-35) } else { 1.0 };
-        LogScale { factor, guard: (LOG_GUARD * factor) as f32, decades: factor.log10() as f32 }
+        LogScale {
+            factor,
+            guard: (guard(bound) * factor) as f32,
+            decades: factor.log10() as f32,
+            silence: silence_decades(bound),
+        }
     }
 
-    /// `log10(|v| + 1e-20)`; exact zeros are -20.
+    /// `log10(|v| + guard)`.
     #[inline(always)]
     pub(super) fn decades<T: Real, const W: usize, const FMA: bool>(&self, v: ComplexLanes<T, W>) -> Lanes<f32, W> {
         let v = v.scaled(Lanes::splat(T::of(self.factor)));
@@ -28,10 +34,15 @@ impl LogScale {
         for i in 0..W {
             let magnitude = (power.0[i].wide() as f32).sqrt() + self.guard;
             let value = log10::<FMA>(magnitude) - self.decades;
-            out.0[i] = if magnitude > 0.0 { value } else { LOG_GUARD.log10() as f32 };
+            out.0[i] = if magnitude > 0.0 { value } else { self.silence };
         }
         out
     }
+}
+
+/// Decades of a magnitude of zero in a map none of whose cells is larger than `bound`.
+pub fn silence_decades(bound: f64) -> f32 {
+    if bound > 0.0 { guard(bound).log10() as f32 } else { LOG_GUARD.log10() as f32 }
 }
 
 /// log10 of a positive normal number, within 4e-6 for results below 32.

@@ -16,6 +16,7 @@ use crate::radar::{End, Radar};
 use crate::signal::Rows;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use crate::signal::synthesis::BlockProfiles;
+pub use log::silence_decades;
 use log::{Extremes, LogScale, log_rolled};
 use ndarray::Array2;
 use num_complex::Complex;
@@ -27,7 +28,10 @@ use std::sync::Arc;
 /// Rows that are gathered from the blocks at a time: neighbours share cache lines and pages.
 const ROWS: usize = 8;
 
-/// `log10(|Y| + 1e-20)`, `[range bins, columns]`, with its extremes.
+/// By how much the logarithms of equal cells differ at most, decades.
+const ROUNDING_DECADES: f32 = 1e-5;
+
+/// `log10(|Y| + guard)`, `[range bins, columns]`, with its extremes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FastLogMap {
     /// The cells.
@@ -54,7 +58,10 @@ impl FastLogMap {
 
     /// How the decades become Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
-        LambdaScale::new(f64::from(self.min), f64::from(self.max), normalisation)
+        // Cells that differ by the rounding of their logarithms alone are flat.
+        let is_flat = self.max - self.min < ROUNDING_DECADES;
+        let min = if is_flat { self.max } else { self.min };
+        LambdaScale::new(f64::from(min), f64::from(self.max), normalisation)
     }
 }
 
@@ -175,7 +182,7 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
         let sounding = std::array::from_fn(|i| rows.contains(first + i) && heard(first + i));
         gather::<T, W, FMA>(&sources, bins, first, &sounding, columns, &mut scratch.rows);
         let log = LogScale::new(sources.bound);
-        let silence = LOG_GUARD.log10() as f32;
+        let silence = silence_decades(sources.bound);
         for (i, (bin, row)) in here.zip(scratch.rows.chunks_mut(columns)).enumerate() {
             if !rows.contains(bin) {
                 continue;

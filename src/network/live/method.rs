@@ -6,8 +6,9 @@ use super::grid::{COLUMNS, ROWS};
 use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
-use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::radar::{Decibels, Radar};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use crate::reconstruct::{TrainedNoise, ends_noise_variance, least_eta};
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
 use ndarray::Array2;
@@ -29,6 +30,7 @@ pub struct LiveMethod {
     /// where rayon hands it another caller's work, take others.
     idle: Mutex<Vec<Scratch>>,
     eta: f32,
+    weights: Weights,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -44,8 +46,14 @@ impl LiveMethod {
             extractor: OnceLock::new(),
             idle: Mutex::default(),
             eta: file.provenance.eta().unwrap_or(0.8),
+            weights: file.weights(),
             provenance: file.provenance,
         })
+    }
+
+    /// The network without features and normalisation.
+    pub fn engine(&self) -> &LiveEngine {
+        &self.engine
     }
 
     /// The map in decades relative to the samples' own scale, before it is normalised.
@@ -96,6 +104,9 @@ impl LiveMethod {
     }
 }
 
+/// Signal-to-noise ratios of the third of its training scenes that lay over thermal noise, as the recipe `live` says.
+const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
+
 /// Cells this far below the strongest are no detections: 1 % of false alarms on average on validation scenes of every kind and over all floors,
 /// which no threshold in Lambda has (`choose_eta live`).
 const BELOW_PEAK_DECADES: f64 = 2.6;
@@ -105,13 +116,26 @@ impl Reconstructor for LiveMethod {
         About {
             name: NAME,
             description: "a small network that draws the whole array's map from matched filters of both ends",
-            told: "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise",
+            told: "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
+                at signal-to-noise ratios of 10 to 60 dB",
             eta: self.eta,
         }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn reads_eta(&self) -> bool {
         true
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        Some(self.weights.clone())
+    }
+
+    fn trained_noise(&self) -> Option<TrainedNoise> {
+        Some(TrainedNoise::Snr(TRAINED_DECIBELS[0], TRAINED_DECIBELS[1]))
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -126,6 +150,26 @@ impl Reconstructor for LiveMethod {
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
         let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
-        Ok(Reconstruction { lambda: RangeAngleMap { lambda }, reflectors: Vec::new(), eta: Some(eta) })
+        let noise_variance = ends_noise_variance(radar, ends, request.floor);
+        let least_eta = Some(least_eta(radar, noise_variance, scale));
+        Ok(Reconstruction {
+            lambda: RangeAngleMap { lambda },
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: Some(eta),
+            least_eta,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::recipe::Recipe;
+
+    #[test]
+    fn the_range_of_ratios_is_the_recipes() {
+        let thermal = Recipe::shipped(NAME).unwrap().unwrap().thermal.unwrap();
+        assert_eq!([thermal.from_decibels, thermal.to_decibels].map(Decibels), TRAINED_DECIBELS);
     }
 }

@@ -3,6 +3,7 @@
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::layers::{Block, WrapConv, blocks, small, through, zeroed};
+use crate::network::weights::WeightFile;
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{Linear, LinearConfig};
@@ -98,6 +99,11 @@ impl LiveBatch {
 }
 
 impl Live {
+    /// Whether the tensors of `file` are a live network's, by the name of one that no other network has.
+    pub fn is_in(file: &WeightFile) -> bool {
+        file.shape("row_kernel").is_some()
+    }
+
     /// A network with random weights.
     pub fn new(config: &LiveConfig, device: &Device) -> Self {
         let [c0, c1, c2, c3] = config.channels;

@@ -8,7 +8,7 @@ use super::sectors::Sectors;
 use super::settle::Settled;
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
-use crate::reconstruct::echoes::of_echoes;
+use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
@@ -66,17 +66,54 @@ impl Reconstructor for CoherentMethod {
             // A single sample tells no range to move reflectors along.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
         } else {
-            let mut settled = Settled::new(radar, ends, task);
-            for look in 0..LOOKS {
-                task.set_progress(0.9 * look as f32 / LOOKS as f32);
-                if !settled.take(&self.peaks(radar, &settled.left(), &hearing, task)?)? {
-                    break;
-                }
-            }
-            settled.found(ends)?
+            let look = |ends: &TwoEnds| self.peaks(radar, ends, &hearing, task);
+            explained(radar, ends, task, look)?
         };
-        Ok(of_echoes(radar, &found, hearing.ends_noise_variance(radar, ends), request))
+        Ok(of_echoes(radar, ends, &found, hearing.ends_noise_variance(radar, ends), request))
     }
+}
+
+/// Reflectors behind the peaks that `look` finds in `ends`, and in what those found so far leave of them.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`], and those of `look`.
+pub(in crate::reconstruct) fn explained(
+    radar: &Radar,
+    ends: &TwoEnds,
+    task: &Task,
+    look: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
+) -> Result<Vec<Gained>, ReconstructError> {
+    let mut first = None;
+    let mut settled = looked(Settled::new(radar, ends, task), &mut first, 0.0, &look)?;
+    if settled.is_doubtful() {
+        settled = settled.or(looked(Settled::new(radar, ends, task).trying_two(), &mut first, 0.45, &look)?);
+    }
+    settled.found(ends)
+}
+
+/// `settled` after all looks; `first` are the peaks of the first one, which are the same for whoever starts from the same samples. Progress
+/// goes on from `from`.
+fn looked<'a>(
+    mut settled: Settled<'a>,
+    first: &mut Option<Vec<Peak>>,
+    from: f32,
+    look: &impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
+) -> Result<Settled<'a>, ReconstructError> {
+    for round in 0..LOOKS {
+        settled.task.set_progress(from + 0.45 * round as f32 / LOOKS as f32);
+        let peaks = match first {
+            Some(peaks) if round == 0 => peaks.clone(),
+            _ => look(&settled.left())?,
+        };
+        let goes_on = settled.take(&peaks)?;
+        if round == 0 {
+            *first = Some(peaks);
+        }
+        if !goes_on {
+            break;
+        }
+    }
+    Ok(settled)
 }
 
 impl CoherentMethod {

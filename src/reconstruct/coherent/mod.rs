@@ -22,6 +22,7 @@
 //! | `linear` | that iteration's linear algebra, for wide vectors |
 //! | `peaks` | reflectors from powers, and their gains |
 //! | `settle` | those moved off the grid, and those that are needless taken away |
+//! | `split` | one echo found for two, and two for one |
 //! | `method` | all of these in order |
 
 mod ends;
@@ -34,7 +35,12 @@ mod places;
 mod sbl;
 mod sectors;
 mod settle;
+mod split;
+#[cfg(test)]
+mod split_tests;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;
+pub(super) use method::explained;
+pub(super) use peaks::{Peak, gains};
 pub use sbl::SBL;

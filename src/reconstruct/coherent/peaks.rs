@@ -29,7 +29,7 @@ const LEAST_ENERGY: f64 = 1e-6;
 
 /// A direction whose power stands out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Peak {
+pub(in crate::reconstruct) struct Peak {
     /// Distance from the array's centre, metres.
     pub range_metres: f64,
     /// Cosine of the angle to the array's axis.
@@ -81,7 +81,7 @@ pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, fringe_cos: f64) -> Vec
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn gains(
+pub(in crate::reconstruct) fn gains(
     radar: &Radar,
     peaks: &[Peak],
     ends: &TwoEnds,

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 /// Ranges that are listened to, for each range bin.
 const PER_BIN: usize = 4;
 
-/// Nearest range that is listened to, range bins.
-const NEAREST_BIN: usize = 1;
+/// Range bins beyond the last that are listened to: they wrap to the first, where next to nothing can stand.
+const BINS_BEYOND: usize = 1;
 
 /// Power by which a place must stand above the noise of one beam.
 const LEAST_OVER_NOISE: f64 = 10.0;
@@ -88,15 +88,20 @@ impl Kernel for Listen<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Vec<f64> {
-        let mut powers = vec![0.0; PER_BIN * self.radar.samples];
+        let mut powers = vec![0.0; ranges(self.radar)];
         let mut heard = vec![Complex64::default(); self.ends.len()];
-        for (i, power) in powers.iter_mut().enumerate().skip(NEAREST_BIN * PER_BIN) {
+        for (i, power) in powers.iter_mut().enumerate().skip(1) {
             let range = self.radar.range_of_bin_metres(i as f64 / PER_BIN as f64);
             self.ends.listen::<FMA>(range, self.middle_cos, &mut heard);
             *power = self.beams.power(&heard, self.ends.first_count);
         }
         powers
     }
+}
+
+/// How many ranges are listened to, the first of them 0.
+fn ranges(radar: &Radar) -> usize {
+    PER_BIN * (radar.samples + BINS_BEYOND)
 }
 
 /// Every place that is no side lobe of another and not too weak beside the strongest, strongest first. `noise_power` is that of one element's profile.
@@ -118,7 +123,7 @@ pub(super) fn places(
         return Ok(sectors.all.iter().map(|sector| Place { range_metres, sector: *sector, power: 1.0 }).collect());
     }
     let range = |i: f64| radar.range_of_bin_metres(i / PER_BIN as f64);
-    let count = PER_BIN * radar.samples;
+    let count = ranges(radar);
     let beams = Beams::new(radar, ends, sectors.all.first().map_or(1.0, |s| s.half_width_cos));
     let heard: Vec<Vec<f64>> = sectors
         .all
@@ -129,7 +134,7 @@ pub(super) fn places(
         })
         .collect::<Result<_, ReconstructError>>()?;
     let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
-    let least = side_lobes(&strongest);
+    let least = side_lobes(&strongest, PER_BIN * radar.samples);
     let noise = LEAST_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
     let mut found = Vec::new();
     for (sector, heard) in sectors.all.iter().zip(&heard) {
@@ -148,11 +153,11 @@ pub(super) fn places(
     Ok(found)
 }
 
-/// The least power of a place at every range that is not a side lobe of the `strongest` at all ranges. Ranges wrap: the last bin lies
-/// beside the first.
-fn side_lobes(strongest: &[f64]) -> Vec<f64> {
+/// The least power of a place at every range that is not a side lobe of the `strongest` at all ranges. Ranges wrap after `period` of
+/// them: the last bin lies beside the first.
+fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
     let count = strongest.len();
-    let envelope: Vec<f64> = (0..=count / 2)
+    let envelope: Vec<f64> = (0..=period / 2)
         .map(|i| {
             let bins = i as f64 / PER_BIN as f64;
             // Beyond the main lobe the highest of each side lobe, at half bins.
@@ -160,7 +165,10 @@ fn side_lobes(strongest: &[f64]) -> Vec<f64> {
             if bins < 2.0 { LEAST_BESIDE } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_BESIDE) }
         })
         .collect();
-    let apart = |i: usize, j: usize| i.abs_diff(j).min(count - i.abs_diff(j));
+    let apart = |i: usize, j: usize| {
+        let steps = i.abs_diff(j) % period;
+        steps.min(period - steps)
+    };
     (0..count)
         .into_par_iter()
         .map(|i| strongest.iter().enumerate().map(|(j, power)| power * envelope[apart(i, j)]).fold(0.0, f64::max))

@@ -4,6 +4,7 @@
 //! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of `nomp`.
 
 use super::peaks::{Peak, gains};
+use super::split::Trials;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
@@ -51,6 +52,9 @@ const WORTH_ANOTHER: f64 = 0.9;
 /// Part of the energy that may be left unexplained: 130 dB down, above what rounding leaves, which is no white noise.
 const AS_GOOD_AS_NOTHING: f64 = 1e-13;
 
+/// Reflectors that leave no more than this many times as much are in their places, wherever those are: a millionth of the energy.
+const CERTAIN: f64 = 1e7;
+
 /// Work granted: about ten microseconds a unit.
 const MOST_WORK: usize = 30_000;
 
@@ -64,15 +68,17 @@ struct Waiting {
 
 /// Reflectors found so far, and what they leave of the samples.
 pub(super) struct Settled<'a> {
-    radar: &'a Radar,
-    task: &'a Task,
-    bench: Workbench<'a>,
+    pub(super) radar: &'a Radar,
+    pub(super) task: &'a Task,
+    pub(super) bench: Workbench<'a>,
     detector: Arc<Detector>,
     settings: Settings,
     samples: Samples,
-    fit: Fit,
+    pub(super) fit: Fit,
     /// Energy that is as good as nothing.
-    enough: f64,
+    pub(super) enough: f64,
+    /// Echoes tried as two, where they are to be.
+    pub(super) trials: Option<Trials>,
 }
 
 impl<'a> Settled<'a> {
@@ -83,10 +89,15 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, bench, detector, settings, samples, fit, enough }
+        Settled { radar, task, bench, detector, settings, samples, fit, enough, trials: None }
     }
 
-    fn grower(&self) -> Grower<'_> {
+    /// The same, where echoes are to be tried as two.
+    pub fn trying_two(self) -> Self {
+        Settled { trials: Some(Trials::default()), ..self }
+    }
+
+    pub(super) fn grower(&self) -> Grower<'_> {
         let Settled { radar, task, bench, detector, settings, .. } = self;
         Grower { radar, bench, detector, settings, task }
     }
@@ -122,10 +133,12 @@ impl<'a> Settled<'a> {
             }
             let grower = self.grower();
             self.fit = grower.settled(grower.with_points(self.fit.clone(), &taken)?)?;
+            self.split()?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
         let grower = self.grower();
         self.fit = grower.pruned(self.fit.clone())?;
+        self.merge()?;
         let is_better = self.fit.cost() < WORTH_ANOTHER * before.cost();
         if self.fit.cost() > before.cost() {
             self.fit = before;
@@ -152,19 +165,20 @@ impl<'a> Settled<'a> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
-        let Settled { radar, task, bench, samples, mut fit, .. } = self;
+        let Settled { radar, task, bench, samples, mut fit, enough, .. } = self;
         if fit.atoms.len() <= MOST_TIED {
             let tied = bench.refine(&samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
             if tied.cost() <= TIED_COST * fit.cost() {
                 fit = tied;
             }
         }
+        let is_certain = fit.cost() <= enough * CERTAIN;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
             let place = radar.polar_of(x, y);
             let power = gains[0].norm_sqr();
             let peak = Peak { range_metres: place.range_metres, cos_theta: place.cos_theta, power };
-            is_heard_at_the_ends(radar, x, y).then_some(peak)
+            (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
         let peaks: Vec<Peak> = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
         gains(radar, &peaks, ends, task)

@@ -10,16 +10,18 @@ use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
 use crate::signal::{ArrayEcho, TwoEnds};
-use ndarray::Zip;
+use ndarray::{Array2, Zip};
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::collections::HashSet;
 
 /// Equation 1.1 of the thesis: the fewest reflectors that explain the samples, relaxed to
 /// `min 1/2 ||A x - y||^2 + penalty ||x||_1`.
 ///
 /// A. Beck and M. Teboulle, "A fast iterative shrinkage-thresholding algorithm for linear inverse problems", SIAM J. Imaging
-/// Sci. 2, 2009, in its monotone form. A holds exact near-field echoes of cells of the whole array's polar grid: only of those from
-/// which both ends together heard most, since the others' gains would be zero.
+/// Sci. 2, 2009, in its monotone form. A holds exact near-field echoes of cells of the whole array's polar grid: first of those from
+/// which both ends together heard most, then also of those that the answer leaves more of than the penalty, whose gains were wrongly
+/// taken for zero (R. Tibshirani et al., "Strong rules for discarding predictors in lasso-type problems", J. R. Stat. Soc. B 74, 2012).
 #[derive(Debug, Clone, Copy)]
 pub struct Fista {
     /// Penalty, as a part of the one that would leave no reflector at all. The default is by examples/choose_eta.rs.
@@ -39,6 +41,13 @@ impl Default for Fista {
 /// Most candidates: memory and time grow with their square.
 const MOST_CANDIDATES: usize = 4096;
 
+/// Rounds of adding cells, and most of them in a round.
+const ROUNDS: usize = 2;
+const MOST_ADDED: usize = 512;
+
+/// A cell is added where it is left more than this many times the penalty: so far the look-up of a cell may be wrong.
+const WRONGLY_ZERO: f64 = 1.1;
+
 /// Most reflectors that are drawn; the strongest of what the penalty left.
 const MOST_DRAWN: usize = 200;
 
@@ -53,16 +62,27 @@ struct Problem {
     penalty: f64,
 }
 
-/// The `count` cells from which both ends together heard most, in the order of the grid.
-fn candidates(radar: &Radar, cells: &Cells<'_>, ends: &TwoEnds, count: usize) -> Vec<Cell> {
-    let [first, last] = Backprojector::new(radar, cells, RangeWindow::None).amplitudes(ends);
+/// The `count` cells from which both ends together heard most, in the order of the grid; beside those `known`, and where more than
+/// `least` is heard, as the correlation with a unit echo.
+fn candidates(
+    radar: &Radar,
+    cells: &Cells<'_>,
+    heard_of: [Array2<Complex64>; 2],
+    count: usize,
+    known: &[Cell],
+    least: f64,
+) -> Vec<Cell> {
+    let [first, last] = heard_of;
     // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
-    let power = Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
+    let scale = 0.5 * (radar.samples * radar.end_elements) as f64;
+    let power = Zip::from(&first).and(&last).par_map_collect(|a, b| scale * (a + b).norm_sqr());
+    let known: HashSet<(usize, usize)> = known.iter().map(|cell| (cell.bin, cell.direction)).collect();
     let mut heard: Vec<(usize, Cell, f64)> = power
         .indexed_iter()
         .enumerate()
         .map(|(i, ((bin, direction), power))| (i, Cell { bin, direction }, *power))
-        .filter(|(_, cell, _)| cells.may_hold(*cell))
+        .filter(|(_, cell, power)| *power > least * least && cells.may_hold(*cell))
+        .filter(|(_, cell, _)| !known.contains(&(cell.bin, cell.direction)))
         .collect();
     let count = count.min(heard.len());
     if count > 0 {
@@ -74,13 +94,25 @@ fn candidates(radar: &Radar, cells: &Cells<'_>, ends: &TwoEnds, count: usize) ->
     heard.into_iter().map(|(_, cell, _)| cell).collect()
 }
 
+/// What a gain costs.
+#[derive(Debug, Clone, Copy)]
+enum Penalty {
+    /// This part of the one that would leave no reflector at all.
+    Part(f64),
+    /// As much.
+    Known(f64),
+}
+
 impl Problem {
-    fn new(radar: &Radar, ends: &TwoEnds, settings: &Fista, request: &Request) -> Result<Self, ReconstructError> {
-        let cells = Cells::heard_by(radar, ends);
-        let atoms: Vec<ArrayEcho> = candidates(radar, &cells, ends, settings.candidates.min(MOST_CANDIDATES))
-            .into_par_iter()
-            .filter_map(|cell| cells.echo(cell))
-            .collect();
+    /// Of the echoes of `chosen`; without a `penalty`, by that of `settings`.
+    fn new(
+        cells: &Cells<'_>,
+        chosen: &[Cell],
+        ends: &TwoEnds,
+        penalty: Penalty,
+        request: &Request,
+    ) -> Result<Self, ReconstructError> {
+        let atoms: Vec<ArrayEcho> = chosen.par_iter().filter_map(|cell| cells.echo(*cell)).collect();
         request.task.check()?;
         request.task.set_progress(0.1);
         let samples = ends.flat();
@@ -95,7 +127,20 @@ impl Problem {
             Ok::<(), ReconstructError>(())
         })?;
         let largest = heard.iter().fold(0.0, |m: f64, h| m.max(h.norm()));
-        Ok(Problem { atoms, gram, heard, penalty: settings.penalty * largest })
+        let penalty = match penalty {
+            Penalty::Part(part) => part * largest,
+            Penalty::Known(penalty) => penalty,
+        };
+        Ok(Problem { atoms, gram, heard, penalty })
+    }
+
+    /// What `x` leaves of `ends`.
+    fn left(&self, radar: &Radar, ends: &TwoEnds, x: &[Complex64]) -> TwoEnds {
+        let mut left = ends.flat();
+        for (atom, gain) in self.atoms.iter().zip(x).filter(|(_, gain)| gain.norm_sqr() > 0.0) {
+            left.iter_mut().zip(atom.unit_samples()).for_each(|(left, unit)| *left -= gain * unit);
+        }
+        TwoEnds::of_flat(radar, &left)
     }
 
     fn gram_times(&self, x: &[Complex64]) -> Vec<Complex64> {
@@ -185,8 +230,9 @@ impl Reconstructor for Fista {
     fn about(&self) -> About {
         About {
             name: "fista",
-            description: "sparse fit with an l1 penalty on the near-field polar grid, and its exact map",
-            told: "that a scene holds few reflectors; its penalty was chosen on scenes like the tables', the noise it measures itself",
+            description: "sparse fit with an l1 penalty on the near-field polar grid, among the cells heard most, and its exact map",
+            told: "that a scene holds few reflectors, each in one of the 1024 cells from which both ends heard most or of at most 1024 more that \
+                these leave unexplained; its penalty was chosen on scenes like the tables', the noise it measures itself",
             eta: 0.818, // by examples/choose_eta.rs
         }
     }
@@ -197,8 +243,23 @@ impl Reconstructor for Fista {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let problem = Problem::new(radar, ends, self, request)?;
-        let x = problem.solve(self.iterations, request, |_| {})?;
+        let cells = Cells::heard_by(radar, ends);
+        let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
+        let count = self.candidates.min(MOST_CANDIDATES);
+        let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
+        let mut problem = Problem::new(&cells, &chosen, ends, Penalty::Part(self.penalty), request)?;
+        let mut x = problem.solve(self.iterations, request, |_| {})?;
+        for _ in 0..ROUNDS {
+            let left = backprojector.amplitudes(&problem.left(radar, ends, &x));
+            let (penalty, room) = (problem.penalty, MOST_ADDED.min(MOST_CANDIDATES.saturating_sub(chosen.len())));
+            let more = candidates(radar, &cells, left, room, &chosen, WRONGLY_ZERO * penalty);
+            if more.is_empty() {
+                break;
+            }
+            chosen.extend(more);
+            problem = Problem::new(&cells, &chosen, ends, Penalty::Known(penalty), request)?;
+            x = problem.solve(self.iterations, request, |_| {})?;
+        }
         let mut found: Vec<Gained> = problem
             .atoms
             .iter()
@@ -208,7 +269,7 @@ impl Reconstructor for Fista {
             .collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
         found.truncate(MOST_DRAWN);
-        Ok(of_echoes(radar, &found, ends_noise_variance(radar, ends, request.floor), request))
+        Ok(of_echoes(radar, ends, &found, ends_noise_variance(radar, ends, request.floor), request))
     }
 }
 
@@ -225,13 +286,27 @@ mod tests {
     }
 
     #[test]
+    fn cells_that_were_not_chosen_at_first_are_added_where_they_are_needed() {
+        let radar = Radar::default();
+        // The near one fills all of the first few cells.
+        let scene = Scene::of_points([(3.0, 7.0), (-5.0, 16.0)]);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let few = Fista { candidates: 24, ..Fista::default() };
+        let found = few.reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;
+        let near = |r: &crate::scene::Reflector| (r.x_metres + 5.0).hypot(r.y_metres - 16.0) < 0.3;
+        assert!(found.iter().any(near), "{found:?}");
+    }
+
+    #[test]
     fn the_objective_only_falls_and_the_answer_is_sparse() {
         let radar = Radar::default();
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let settings = Fista { penalty: 0.02, candidates: 300, ..Fista::default() };
         let request = Request::default();
-        let problem = Problem::new(&radar, &ends, &settings, &request).unwrap();
+        let cells = Cells::heard_by(&radar, &ends);
+        let heard = Backprojector::new(&radar, &cells, RangeWindow::None).amplitudes(&ends);
+        let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
+        let problem = Problem::new(&cells, &chosen, &ends, Penalty::Part(0.02), &request).unwrap();
         let mut objectives = vec![0.0];
         let x = problem.solve(150, &request, |o| objectives.push(o)).unwrap();
         assert!(objectives.windows(2).all(|w| w[1] <= w[0]), "{objectives:?}");

@@ -60,7 +60,8 @@ pub fn layout_matched_filter(
         }
         Ok::<(), ReconstructError>(())
     })?;
-    Ok(lambda_of_power(radar, cells.folded(&power), noise_variance(radar, samples.outer_iter()), request))
+    let noise_variance = noise_variance(radar, samples.outer_iter());
+    Ok(lambda_of_power(radar, cells.folded(&power), noise_variance, request).0)
 }
 
 #[cfg(test)]

@@ -39,6 +39,10 @@ impl Reconstructor for MatchedFilter {
         About { name, description, told: "nothing about the scene or the floor; it measures the noise itself", eta }
     }
 
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))

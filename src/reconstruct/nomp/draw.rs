@@ -10,6 +10,7 @@ use crate::maps::tolerance::tolerance_for;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::reconstruct::Request;
+use crate::reconstruct::noise_test::decades_above_cells;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::thesis_noise_variance;
 use crate::signal::plan::amplitude_bound;
@@ -49,6 +50,8 @@ pub struct Expected {
     pub map: RangeAngleMap,
     /// Decades of amplitude from Lambda 0 to 1.
     pub decades: f64,
+    /// Lambda that noise alone does not exceed ([`Reconstruction::least_eta`](crate::reconstruct::Reconstruction::least_eta)).
+    pub least_eta: f32,
 }
 
 /// Expected Lambda of the whole array over `objects`, as accurate as the floor of `request` can show.
@@ -104,9 +107,11 @@ fn over_noise(mut map: FastLogMap, cell_noise: f64, normalisation: Normalisation
             if noisy { expected_range(peak, rate) } else { (peak - weakest).max(1e-3) }
         }
     };
+    let least_eta = 1.0 - (peak - decades_above_cells(cell_noise, map.cells.len())) / range;
+    let least_eta = least_eta.clamp(0.0, 1.0) as f32;
     let (peak, scale) = (peak as f32, range.recip() as f32);
     map.cells.par_mapv_inplace(|d| (1.0 - (peak - over.cell(d).decades) * scale).clamp(0.0, 1.0));
-    Expected { map: RangeAngleMap { lambda: map.cells }, decades: range }
+    Expected { map: RangeAngleMap { lambda: map.cells }, decades: range, least_eta }
 }
 
 /// Variances of all elements, scaled so that both ends have this one in the mean.

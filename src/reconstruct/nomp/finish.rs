@@ -99,7 +99,7 @@ pub(super) fn finish(
     let mut best = apart.clone();
     if complete && reflectors <= MOST_TIED {
         let mut tied = bench.refine(samples, apart.atoms.clone(), apart.gains.clone(), Tie::Both, TIED);
-        if matches!(request.floor, Floor::Snr(_)) && tied.atoms.len() <= MOST_COMBED {
+        if request.floor.is_thermal() && tied.atoms.len() <= MOST_COMBED {
             tied = combed(bench, samples, tied);
         }
         // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
@@ -136,7 +136,7 @@ const MOST_DISAGREED_IN_NOISE: f64 = 0.3;
 /// What `fit` leaves, with the echoes of those atoms that the ends don't agree on: a reflector sounds alike at both, what merely makes up
 /// for others that were not told apart seldom does.
 fn not_agreed(bench: &Workbench, fit: &Fit, floor: Floor) -> Vec<Complex64> {
-    let most = if matches!(floor, Floor::Snr(_)) { MOST_DISAGREED_IN_NOISE } else { MOST_DISAGREED };
+    let most = if floor.is_thermal() { MOST_DISAGREED_IN_NOISE } else { MOST_DISAGREED };
     let disagrees = |i: &usize| {
         let [a, b] = fit.gains[*i].map(|g| g.norm());
         (a - b).abs() > most * a.max(b)

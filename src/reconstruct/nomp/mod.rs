@@ -98,6 +98,7 @@ pub use finish::Found;
 pub(super) use groups::{Rows, distance_bins, rows_of};
 pub(super) use grow::Grower;
 pub(super) use peaks::Detector;
+pub(super) use profile::Profile;
 pub(super) use refine::{Fit, Limits, Tie, Workbench};
 pub use search::{find, find_from};
 pub use settings::Settings;
@@ -160,27 +161,28 @@ impl Reconstructor for Nomp {
 impl Found {
     /// The map of what was found, over the floor that `request` names.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
-        self.as_drawn(self.expected(radar, request).map)
+        let expected = self.expected(radar, request);
+        self.as_drawn(expected.map, Some(expected.least_eta))
     }
 
-    /// What was found with a map of it.
-    pub fn as_drawn(&self, lambda: RangeAngleMap) -> Reconstruction {
+    /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
+    pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors, eta: None }
+        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta }
     }
 
     /// The expected map of what was found, and its scale.
     pub fn expected(&self, radar: &Radar, request: &Request) -> Expected {
         if self.atoms.is_empty() {
-            return Expected { map: Reconstruction::silence(radar).lambda, decades: 1.0 };
+            return Expected { map: Reconstruction::silence(radar).lambda, decades: 1.0, least_eta: 0.0 };
         }
         let noise = match request.floor {
             Floor::Thesis if self.complete => Noise::Rounding,
             // What was found may be far from what rounds there.
             Floor::Thesis => Noise::RoundingHeard(self.noise_variance),
             Floor::Exact => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
-            Floor::Snr(_) if self.complete => Noise::Variance(self.residual_variance),
-            Floor::Snr(_) => Noise::Variance(self.noise_variance),
+            Floor::Snr(_) | Floor::Level(_) if self.complete => Noise::Variance(self.residual_variance),
+            Floor::Snr(_) | Floor::Level(_) => Noise::Variance(self.noise_variance),
         };
         expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
     }

@@ -13,6 +13,11 @@ fn ends_of(radar: &Radar, scene: &Scene) -> TwoEnds {
     simulate(radar, scene, Floor::Thesis, 0).unwrap().two_ends(radar)
 }
 
+fn target_of(radar: &Radar, scene: &Scene, seed: u64) -> RangeAngleMap {
+    let signal = simulate(radar, scene, Floor::Thesis, seed).unwrap();
+    LogMaps::of_signal(radar, &signal).full.normalise(Normalisation::MinMax)
+}
+
 /// Largest distance from a reflector of `scene` to the nearest one found, y and -y being the same.
 fn worst_error_metres(scene: &Scene, found: &Reconstruction) -> f64 {
     let nearest = |r: &crate::scene::Reflector| {
@@ -32,14 +37,16 @@ fn scenes_of_all_sets_are_found_to_rounding_and_drawn_to_the_floor() {
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 7);
     for kind in Kind::TEST_SETS {
         let scene = generator.scene(kind, 1);
-        let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
-        let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax);
-        let found = Nomp::default().reconstruct(&radar, &signal.two_ends(&radar), &Request::default()).unwrap();
+        let target = target_of(&radar, &scene, 0);
+        let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
         assert_eq!(found.reflectors.len(), scene.reflector_count(), "{kind:?}");
         assert!(worst_error_metres(&scene, &found) < 1e-8, "{kind:?}: {:e}", worst_error_metres(&scene, &found));
         let cells = || target.lambda.iter().zip(&found.lambda.lambda).map(|(t, o)| (*t, *o));
         let error = squared_error(&target, &found.lambda);
-        assert!(error < 800.0, "{kind:?}: SE {error}");
+        // The expected map is nearer to the target than another draw of the same rounding noise.
+        let draws: Vec<f64> = (1..5).map(|seed| squared_error(&target, &target_of(&radar, &scene, seed))).collect();
+        let mean = draws.iter().sum::<f64>() / draws.len() as f64;
+        assert!(error < mean, "{kind:?}: SE {error}, of other draws {draws:?}");
         let eta = Nomp::default().eta();
         let part = |bright: bool| {
             let (all, above) = cells()
@@ -183,7 +190,8 @@ fn an_array_too_small_to_see_curvature_puts_nothing_beyond_the_maximum_range() {
         let found = Nomp::default().reconstruct(&radar, &ends, &Request { floor, ..Request::default() }).unwrap();
         let ranges: Vec<f64> = found.reflectors.iter().map(|r| r.x_metres.hypot(r.y_metres)).collect();
         assert!(ranges.iter().all(|range| *range < radar.max_range_metres()), "{seed}: {ranges:?}");
-        assert!(worst_error_metres(&scene, &found) < 2.0, "{seed}: {:?}", found.reflectors);
+        // Two directions that the ends' fringes don't tell apart lie metres from each other.
+        assert!(worst_error_metres(&scene, &found) < 0.05, "{seed}: {:?}", found.reflectors);
     }
 }
 

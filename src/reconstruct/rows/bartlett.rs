@@ -1,6 +1,6 @@
 //! Bartlett beamforming of each end.
 
-use super::method::{RowMethod, TOLD};
+use super::method::{Render, RowMethod, TOLD};
 use crate::reconstruct::reconstructor::About;
 
 /// Each end's beams without an angle window, laid over each other on the centre's grid.
@@ -14,4 +14,5 @@ pub const BARTLETT: RowMethod = RowMethod {
         eta: 0.952, // by examples/choose_eta.rs
     },
     estimate: |row| Some(row.bartlett()),
+    render: Render::Spectrum,
 };

@@ -1,7 +1,7 @@
 //! Capon's minimum-variance beamformer.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len};
-use super::method::{RowMethod, TOLD};
+use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
 use super::row::Row;
 use crate::reconstruct::reconstructor::About;
 use faer::linalg::solvers::{DenseSolveCore, Llt};
@@ -11,7 +11,7 @@ use num_complex::Complex64;
 /// Beams that pass one direction unchanged and everything else as little as they can, per end and range row.
 ///
 /// J. Capon, "High-resolution frequency-wavenumber spectrum analysis", Proc. IEEE 57, 1969; with spatial smoothing and diagonal
-/// loading, since one row of one chirp gives one snapshot.
+/// loading by the noise, since one row of one chirp gives one snapshot.
 pub const CAPON: RowMethod = RowMethod {
     about: About {
         name: "capon",
@@ -20,17 +20,27 @@ pub const CAPON: RowMethod = RowMethod {
         eta: 0.851, // by examples/choose_eta.rs
     },
     estimate: spectrum,
+    render: Render::Spectrum,
 };
 
-/// Added to the covariance's diagonal, as a part of its mean: what the twelve elements' small departures from a plane wave need.
-const LOADING: f64 = 1e-6;
+/// The peaks of [`CAPON`], rendered.
+pub const CAPON_PEAKS: RowMethod = RowMethod {
+    about: About {
+        name: "capon-peaks",
+        description: "the peaks of capon, moved to where their echoes fit both ends best, and the exact map of them",
+        told: TOLD_PEAKS,
+        eta: 0.83, // by examples/choose_eta.rs
+    },
+    estimate: spectrum,
+    render: Render::Peaks,
+};
 
 /// Capon's power over angle for one row.
 fn spectrum(row: &Row) -> Option<Vec<f64>> {
     let n = subarray_len(row.own().len());
     let covariance = smoothed(&row.snapshots, n);
     let mean = (0..n).map(|i| covariance[(i, i)].re).sum::<f64>() / n as f64;
-    let loading = mean * LOADING + row.noise_variance;
+    let loading = mean * row.not_plane + row.noise_variance;
     let loaded = Mat::from_fn(n, n, |i, j| covariance[(i, j)] + Complex64::from(if i == j { loading } else { 0.0 }));
     let inverse = Llt::new(loaded.as_ref(), Side::Lower).ok()?.inverse();
     Some(quadratic_form(&inverse, row.spectrum).into_iter().map(|v| 1.0 / v.max(f64::MIN_POSITIVE)).collect())

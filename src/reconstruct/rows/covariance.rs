@@ -4,6 +4,7 @@ use faer::linalg::solvers::SelfAdjointEigen;
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
+use super::row::Row;
 use crate::maps::Spectrum;
 
 /// Longest sub-array: work grows with the cube of its elements.
@@ -38,30 +39,30 @@ pub(super) fn smoothed(snapshots: &[&[Complex64]], subarray: usize) -> Mat<Compl
     Mat::from_fn(subarray, subarray, |i, j| sum[(i, j)] / f64::max(count, 1.0))
 }
 
-/// Projector onto the noise subspace, `[n, n]`, and the number of signals it leaves out.
-pub(super) struct NoiseSubspace {
-    /// `E_n E_n^H`.
-    pub projector: Mat<Complex64>,
-    /// Eigenvectors left out, from 1 to n - 1.
-    pub signals: usize,
+/// Signals and noise of a covariance, told apart by its eigenvalues.
+pub(super) struct Subspaces {
+    /// Projector onto the noise subspace, `E_n E_n^H`, `[n, n]`.
+    pub noise: Mat<Complex64>,
+    /// Eigenvectors of the signals, `[n, signals]`; from 1 to n - 1 of them.
+    pub signals: Mat<Complex64>,
 }
 
-/// Smallest eigenvalue of a signal, as a part of the largest. Below it lie the curvature of the wave front and the change of
-/// range over the end, which no plane wave describes.
-const SIGNAL_PART: f64 = 1e-4;
+/// How often as strong as the noise an eigenvalue must be to be a signal's.
+const OVER_NOISE: f64 = 10.0;
 
-/// Splits `covariance` by its eigenvalues; `None` where the decomposition fails.
-pub(super) fn noise_subspace(covariance: &Mat<Complex64>, noise_variance: f64) -> Option<NoiseSubspace> {
+/// Splits `covariance` of `row` by its eigenvalues: signals are those above the noise that was measured, and above what one echo puts
+/// beside its own direction ([`Row::not_plane`]). `None` where the decomposition fails.
+pub(super) fn subspaces(covariance: &Mat<Complex64>, row: &Row<'_>) -> Option<Subspaces> {
     let n = covariance.nrows();
     let eigen = SelfAdjointEigen::new(covariance.as_ref(), Side::Lower).ok()?;
     let values: Vec<f64> = eigen.S().column_vector().iter().map(|v| v.re).collect();
     let vectors = eigen.U();
     let largest = values.iter().copied().fold(0.0, f64::max);
-    let threshold = (largest * SIGNAL_PART).max(10.0 * noise_variance);
-    let signals = values.iter().filter(|v| **v > threshold).count().clamp(1, n - 1);
+    let threshold = (largest * row.not_plane).max(OVER_NOISE * row.noise_variance);
+    let count = values.iter().filter(|v| **v > threshold).count().clamp(1, n - 1);
     // Eigenvalues rise, so that the noise subspace comes first.
-    let noise = vectors.subcols(0, n - signals);
-    Some(NoiseSubspace { projector: noise * noise.adjoint(), signals })
+    let noise = vectors.subcols(0, n - count);
+    Some(Subspaces { noise: noise * noise.adjoint(), signals: vectors.subcols(n - count, count).to_owned() })
 }
 
 /// Coefficients `c[m]`, m = 0..n, of `a^H Q a = c[0] + 2 Re sum_m c[m] exp(j w m)` for a plane wave a and Hermitian Q: the sums
@@ -106,13 +107,15 @@ mod tests {
     fn smoothing_restores_the_rank_of_coherent_waves() {
         let snapshot: Vec<Complex64> =
             wave(12, 0.1).into_iter().zip(wave(12, 0.16)).map(|(a, b)| a + 0.5 * b).collect();
-        let subspace = noise_subspace(&smoothed(&[&snapshot], 8), 1e-12).unwrap();
-        assert_eq!(subspace.signals, 2);
+        let plan = Spectrum::new(16);
+        let row = Row { snapshots: [&snapshot; 3], noise_variance: 1e-12, not_plane: 0.0, spectrum: &plan };
+        let subspaces = subspaces(&smoothed(&[&snapshot], 8), &row).unwrap();
+        assert_eq!(subspaces.signals.ncols(), 2);
         for turns in [0.1, 0.16] {
             let a = wave(8, turns);
             let left: Complex64 = (0..8)
                 .flat_map(|i| (0..8).map(move |j| (i, j)))
-                .map(|(i, j)| a[i].conj() * subspace.projector[(i, j)] * a[j])
+                .map(|(i, j)| a[i].conj() * subspaces.noise[(i, j)] * a[j])
                 .sum();
             assert!(left.norm() < 1e-9, "{turns} is orthogonal to the noise subspace: {left}");
         }

@@ -1,14 +1,14 @@
 //! Linear prediction: each element as a combination of its neighbours.
 
 use super::covariance::subarray_len;
-use super::method::{RowMethod, TOLD};
+use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
 use super::row::Row;
 use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
 
 /// The prediction error's nulls over angle, for each end and range row: forward and backward prediction of two thirds of the
-/// end's length, solved by a truncated singular value decomposition.
+/// end's length, solved by a singular value decomposition that is cut off at the noise.
 ///
 /// D. W. Tufts and R. Kumaresan, "Estimation of frequencies of multiple sinusoids: making linear prediction perform like maximum
 /// likelihood", Proc. IEEE 70, 1982.
@@ -20,13 +20,24 @@ pub const LINEAR_PREDICTION: RowMethod = RowMethod {
         eta: 0.863, // by examples/choose_eta.rs
     },
     estimate: spectrum,
+    render: Render::Spectrum,
 };
 
-/// Singular values below this part of the largest are no signals; amplitudes, so the root of MUSIC's part.
-const SIGNAL_PART: f64 = 1e-2;
+/// The peaks of [`LINEAR_PREDICTION`], rendered.
+pub const LINEAR_PREDICTION_PEAKS: RowMethod = RowMethod {
+    about: About {
+        name: "linear-prediction-peaks",
+        description: "the peaks of linear-prediction, moved to where their echoes fit both ends best, and the exact map of them",
+        told: TOLD_PEAKS,
+        eta: 0.83, // by examples/choose_eta.rs
+    },
+    estimate: spectrum,
+    render: Render::Peaks,
+};
 
 /// Coefficients `a` of `x[n] = sum_k a[k] x[n - 1 - k]`, and backward with their conjugates.
-fn predictor(samples: &[Complex64], noise_variance: f64) -> Option<Vec<Complex64>> {
+fn predictor(row: &Row) -> Option<Vec<Complex64>> {
+    let (samples, noise_variance) = (row.own(), row.noise_variance);
     let order = subarray_len(samples.len());
     let equations = samples.len() - order;
     let matrix = Mat::from_fn(2 * equations, order, |row, k| {
@@ -41,7 +52,7 @@ fn predictor(samples: &[Complex64], noise_variance: f64) -> Option<Vec<Complex64
     let noise = (10.0 * noise_variance * (2 * equations) as f64).sqrt();
     let mut solution = vec![Complex64::default(); order];
     for (i, value) in values.iter().enumerate() {
-        if *value <= (largest * SIGNAL_PART).max(noise) {
+        if *value <= (largest * row.not_plane.sqrt()).max(noise) {
             break;
         }
         let part: Complex64 =
@@ -55,7 +66,7 @@ fn predictor(samples: &[Complex64], noise_variance: f64) -> Option<Vec<Complex64
 
 /// The linear-prediction spectrum for one row, as power.
 fn spectrum(row: &Row) -> Option<Vec<f64>> {
-    let predictor = predictor(row.own(), row.noise_variance)?;
+    let predictor = predictor(row)?;
     let error_filter = std::iter::once(Complex64::from(1.0)).chain(predictor.into_iter().map(|a| -a));
     let nulls: Vec<f64> = row.spectrum.of(error_filter).into_iter().map(|v| v.norm_sqr()).collect();
     Some(row.power_of_nulls(&nulls))
@@ -71,12 +82,12 @@ mod tests {
     fn waves_are_predicted_and_stand_out() {
         let wave = |column: f64, n: usize| Complex64::cis(TAU * column * n as f64 / 1024.0);
         let own: Vec<Complex64> = (0..12).map(|n| wave(300.0, n) + wave(340.0, n)).collect();
-        let a = predictor(&own, 1e-20).unwrap();
+        let plan = Spectrum::new(1024);
+        let row = Row { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let a = predictor(&row).unwrap();
         let predicted: Complex64 = a.iter().enumerate().map(|(k, a)| a * own[10 - k]).sum();
         assert!((predicted - own[11]).norm() < 1e-9);
 
-        let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&own, &own, &own], noise_variance: 1e-20, spectrum: &plan };
         let power = spectrum(&row).unwrap();
         let largest = power.iter().copied().fold(0.0, f64::max);
         for column in [300, 340] {

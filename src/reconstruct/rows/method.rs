@@ -1,15 +1,19 @@
 //! A row method is one closure; everything around it is written here once.
 
+use super::covariance::subarray_len;
 use super::registered::joined;
 use super::row::Row;
+use crate::maps::peaks::{Peak as MapPeak, peaks as map_peaks};
 use crate::maps::{Spectrum, range_transform};
 use crate::radar::{End, Radar};
 use crate::reconstruct::answer::{Reconstruction, Request};
+use crate::reconstruct::coherent::{Peak, explained, gains};
+use crate::reconstruct::echoes::of_echoes;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::hearing::{Hearing, ends_noise_variance};
 use crate::reconstruct::power::of_power;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
-use crate::reconstruct::seen::{no_plane_waves, too_many_folds};
+use crate::reconstruct::seen::{Direction, directions, no_plane_waves, row_ranges_metres, too_many_folds};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -20,8 +24,34 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const ACTIVE_ROW: f64 = 1e-12;
 
 /// What every row method is told.
-pub(super) const TOLD: &str =
-    "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself";
+pub(super) const TOLD: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
+    It does not use the phase between the ends";
+
+/// What every row method whose peaks are rendered is told.
+pub(super) const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
+    scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
+    are then fitted to both ends together, as those of iaa and sbl are";
+
+/// How what a row method estimates becomes a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Render {
+    /// Power over angle, row by row, both ends laid over each other.
+    Spectrum,
+    /// The peaks of that, moved to where their echoes fit best; amplitudes by least squares; and the exact map of these echoes.
+    Peaks,
+}
+
+/// Peaks this far below the strongest are looked at, as decades of power: what the strongest leave shows in another look.
+const SPAN_DECADES: f64 = 4.0;
+
+/// Most peaks of one look.
+const MOST_PEAKS: usize = 256;
+
+/// Least part of an echo that counts as not plane: what rounding makes of a covariance.
+const LEAST_NOT_PLANE: f64 = 1e-12;
+
+/// Power by which a peak must stand above the noise of one beam.
+const LEAST_OVER_NOISE: f64 = 10.0;
 
 /// A method that estimates power over angle of one end and one range row at a time.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +59,7 @@ pub struct RowMethod {
     pub(super) about: About,
     /// Power over angle, one value a column in the order of the transform, or `None` to leave the row to plain beamforming.
     pub(super) estimate: fn(&Row<'_>) -> Option<Vec<f64>>,
+    pub(super) render: Render,
 }
 
 impl Reconstructor for RowMethod {
@@ -43,13 +74,77 @@ impl Reconstructor for RowMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let noise_variance = ends_noise_variance(radar, ends, request.floor);
-        let [first, last] = End::BOTH.map(|end| self.end_power(radar, ends, end, noise_variance, request));
-        let power = joined(radar, &[first?, last?]);
-        Ok(of_power(radar, power, noise_variance, request))
+        if self.render == Render::Spectrum {
+            return Ok(of_power(radar, self.power(radar, ends, noise_variance, request)?, noise_variance, request));
+        }
+        // What reports progress is the whole, not one look.
+        let quiet = Request { task: request.task.quiet(), ..request.clone() };
+        let hearing = Hearing::beneath(radar, ends, request.floor);
+        let look = |left: &TwoEnds| -> Result<Vec<Peak>, ReconstructError> {
+            let noise_variance = hearing.ends_noise_variance(radar, left);
+            Ok(self.peaks(radar, &self.power(radar, left, noise_variance, &quiet)?, noise_variance))
+        };
+        let found = if radar.samples == 1 {
+            gains(radar, &look(ends)?, ends, &request.task)?
+        } else {
+            explained(radar, ends, &request.task, look)?
+        };
+        Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }
 }
 
+/// [`Row::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude in a row
+/// in proportion; twice the direction takes up what is linear in that, and leaves its square.
+fn not_plane(radar: &Radar) -> f64 {
+    if let Ok(v) = std::env::var("CUT") {
+        return v.parse().unwrap();
+    }
+    let half_metres = 0.5 * (subarray_len(radar.end_elements) - 1) as f64 * radar.element_spacing_metres;
+    let bins = if radar.samples == 1 { 0.0 } else { half_metres / radar.range_resolution_metres() };
+    bins.min(1.0).powi(4).max(LEAST_NOT_PLANE)
+}
+
 impl RowMethod {
+    /// Power over range and angle on the grid of the array's centre, in the scale of the whole array's map.
+    fn power(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        noise_variance: f64,
+        request: &Request,
+    ) -> Result<Array2<f64>, ReconstructError> {
+        let [first, last] = End::BOTH.map(|end| self.end_power(radar, ends, end, noise_variance, request));
+        Ok(joined(radar, &[first?, last?]))
+    }
+
+    /// The peaks of `power` that stand above the noise, the strongest first. Where several directions share a column each may be meant.
+    fn peaks(&self, radar: &Radar, power: &Array2<f64>, noise_variance: f64) -> Vec<Peak> {
+        let square_mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
+        let angle_gain = (radar.window.weights(radar.elements).iter().sum::<f64>()).powi(2) / radar.elements as f64;
+        let of_beam = noise_variance * square_mean(radar.samples) * angle_gain / radar.end_elements as f64;
+        let least = LEAST_OVER_NOISE * of_beam;
+        let decades = power.mapv(|p| p.max(f64::MIN_POSITIVE).log10());
+        let found =
+            map_peaks(decades.view(), SPAN_DECADES, MOST_PEAKS).into_iter().filter(|p| 10f64.powf(p.value) > least);
+        let (directions, ranges) = (directions(radar), row_ranges_metres(radar));
+        let place = |p: MapPeak| {
+            let column = (p.column.round() as usize) % radar.elements;
+            let off_cos = radar.cos_of_column(p.column) - radar.cos_of_column(p.column.round());
+            let range_metres = if radar.samples == 1 {
+                ranges[0]
+            } else {
+                radar.range_of_bin_metres(p.range_bin.rem_euclid(radar.samples as f64))
+            };
+            let at = move |d: &Direction| Peak {
+                range_metres,
+                cos_theta: (d.cos_theta + off_cos).clamp(-1.0, 1.0),
+                power: 10f64.powf(p.value),
+            };
+            directions.iter().filter(move |d| d.column == column).map(at).collect::<Vec<_>>()
+        };
+        found.flat_map(place).collect()
+    }
+
     /// Power over range and angle of one end on its own grid, in the scale of the whole array's map.
     fn end_power(
         &self,
@@ -71,7 +166,7 @@ impl RowMethod {
         let noise_variance = sample_noise_variance * window_power;
         let quiet = (strongest * ACTIVE_ROW).max(2.0 * elements as f64 * noise_variance);
 
-        let spectrum = Spectrum::new(columns);
+        let (spectrum, not_plane) = (Spectrum::new(columns), not_plane(radar));
         let angle_gain = (radar.window.weights(columns).iter().sum::<f64>()).powi(2) / columns as f64;
         let done = AtomicUsize::new(0);
         let mut power = Array2::zeros((bins, columns));
@@ -80,6 +175,7 @@ impl RowMethod {
             let row = Row {
                 snapshots: [snapshot((bin + bins - 1) % bins), snapshot(bin), snapshot((bin + 1) % bins)],
                 noise_variance,
+                not_plane,
                 spectrum: &spectrum,
             };
             let estimated = if row_power(bin) > quiet { (self.estimate)(&row) } else { None };

@@ -1,7 +1,7 @@
 //! MUSIC: directions orthogonal to the noise subspace.
 
-use super::covariance::{noise_subspace, quadratic_form, smoothed, subarray_len};
-use super::method::{RowMethod, TOLD};
+use super::covariance::{quadratic_form, smoothed, subarray_len, subspaces};
+use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
 use super::row::Row;
 use crate::reconstruct::reconstructor::About;
 
@@ -16,13 +16,26 @@ pub const MUSIC: RowMethod = RowMethod {
         eta: 0.842, // by examples/choose_eta.rs
     },
     estimate: spectrum,
+    render: Render::Spectrum,
+};
+
+/// The peaks of [`MUSIC`], rendered.
+pub const MUSIC_PEAKS: RowMethod = RowMethod {
+    about: About {
+        name: "music-peaks",
+        description: "the peaks of music, moved to where their echoes fit both ends best, and the exact map of them",
+        told: TOLD_PEAKS,
+        eta: 0.83, // by examples/choose_eta.rs
+    },
+    estimate: spectrum,
+    render: Render::Peaks,
 };
 
 /// MUSIC's pseudo-spectrum for one row, as power.
 fn spectrum(row: &Row) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
-    let noise = noise_subspace(&covariance, row.noise_variance)?;
-    Some(row.power_of_nulls(&quadratic_form(&noise.projector, row.spectrum)))
+    let subspaces = subspaces(&covariance, row)?;
+    Some(row.power_of_nulls(&quadratic_form(&subspaces.noise, row.spectrum)))
 }
 
 #[cfg(test)]
@@ -50,7 +63,7 @@ mod tests {
         let own: Vec<Complex64> = (0..12).map(|n| wave(100.0, n) + wave(130.0, n)).collect();
         let silent = vec![Complex64::default(); 12];
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, spectrum: &plan };
+        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
         assert_eq!(peaks(&row.bartlett()).len(), 1, "plain beams see one");
         assert_eq!(peaks(&spectrum(&row).unwrap()), [100, 130]);
     }
@@ -59,7 +72,7 @@ mod tests {
     fn a_plain_beam_is_as_wide_as_twelve_elements_make_it() {
         let own: Vec<Complex64> = (0..12).map(|n| Complex64::cis(TAU * 0.25 * n as f64)).collect();
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&own, &own, &own], noise_variance: 0.0, spectrum: &plan };
+        let row = Row { snapshots: [&own, &own, &own], noise_variance: 0.0, not_plane: 1e-10, spectrum: &plan };
         let power = row.bartlett();
         assert!((power[256] - 1.0).abs() < 1e-12, "amplitude 1 at its column");
         // Half-power width of a uniform line: 0.886 / (N d / lambda) in cos, here 0.886 * 1024 / 12 columns.

@@ -1,12 +1,10 @@
 //! root-MUSIC: the directions as roots of a polynomial, then the array continued from them.
 
-use super::covariance::{diagonal_sums, noise_subspace, smoothed, subarray_len};
-use super::method::{RowMethod, TOLD};
+use super::covariance::{diagonal_sums, smoothed, subarray_len, subspaces};
+use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
 use super::row::Row;
-use crate::radar::hann;
 use crate::reconstruct::reconstructor::About;
 use faer::Mat;
-use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
 
 /// Directions of each end and range row from the roots of MUSIC's null polynomial; amplitudes by least squares; the row drawn
@@ -21,19 +19,32 @@ pub const ROOT_MUSIC: RowMethod = RowMethod {
         eta: 0.665, // by examples/choose_eta.rs
     },
     estimate: continued,
+    render: Render::Spectrum,
+};
+
+/// The peaks of [`ROOT_MUSIC`], rendered.
+pub const ROOT_MUSIC_PEAKS: RowMethod = RowMethod {
+    about: About {
+        name: "root-music-peaks",
+        description: "the directions of root-music, moved to where their echoes fit both ends best, and the exact map of them",
+        told: TOLD_PEAKS,
+        eta: 0.83, // by examples/choose_eta.rs
+    },
+    estimate: continued,
+    render: Render::Peaks,
 };
 
 /// Turns an element of each wave: the roots inside the unit circle that are nearest to it.
 fn directions(row: &Row) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
-    let noise = noise_subspace(&covariance, row.noise_variance)?;
-    let sums = diagonal_sums(&noise.projector);
+    let subspaces = subspaces(&covariance, row)?;
+    let sums = diagonal_sums(&subspaces.noise);
     // z^(n-1) a^H Q a as a polynomial in z = exp(j w), lowest power first.
     let coefficients: Vec<Complex64> =
         sums.iter().skip(1).rev().map(Complex64::conj).chain(sums.iter().copied()).collect();
     let mut inside: Vec<Complex64> = roots(&coefficients)?.into_iter().filter(|z| z.norm() <= 1.0).collect();
     inside.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-    Some(inside.iter().take(noise.signals).map(|z| z.arg() / std::f64::consts::TAU).collect())
+    Some(inside.iter().take(subspaces.signals.ncols()).map(|z| z.arg() / std::f64::consts::TAU).collect())
 }
 
 /// Roots of a polynomial, lowest power first: the eigenvalues of its companion matrix.
@@ -53,30 +64,7 @@ fn roots(coefficients: &[Complex64]) -> Option<Vec<Complex64>> {
 
 /// Power over angle of the whole array continued from one end's waves, in the order of the transform.
 fn continued(row: &Row) -> Option<Vec<f64>> {
-    let turns = directions(row)?;
-    let own = row.own();
-    if turns.is_empty() {
-        return None;
-    }
-    let wave = |turns: f64, n: f64| Complex64::cis(std::f64::consts::TAU * turns * n);
-    let waves = Mat::from_fn(own.len(), turns.len(), |n, i| wave(turns[i], n as f64));
-    let samples = Mat::from_fn(own.len(), 1, |n, _| own[n]);
-    let amplitudes = waves.qr().solve_lstsq(samples);
-
-    let columns = row.spectrum.len();
-    let window = hann(columns);
-    let mut array = vec![Complex64::default(); columns];
-    for (i, turns) in turns.iter().enumerate() {
-        let step = wave(*turns, 1.0);
-        let mut phasor = amplitudes[(i, 0)];
-        for value in &mut array {
-            *value += phasor;
-            phasor *= step;
-        }
-    }
-    let total: f64 = window.iter().sum();
-    let windowed = array.into_iter().zip(&window).map(|(v, w)| v * w / total);
-    Some(row.spectrum.of(windowed).into_iter().map(|v| v.norm_sqr()).collect())
+    row.continued(&directions(row)?)
 }
 
 #[cfg(test)]
@@ -101,7 +89,7 @@ mod tests {
         let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
         let silent = vec![Complex64::default(); 12];
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, spectrum: &plan };
+        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
         let mut found = directions(&row).unwrap();
         found.sort_by(f64::total_cmp);
         assert_eq!(found.len(), 2);

@@ -1,6 +1,9 @@
 //! What a row method sees.
 
 use crate::maps::Spectrum;
+use crate::radar::hann;
+use faer::Mat;
+use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
 
 /// One end's snapshot at one range row, and its surroundings.
@@ -9,6 +12,8 @@ pub struct Row<'a> {
     pub snapshots: [&'a [Complex64]; 3],
     /// Variance of the noise of each value.
     pub noise_variance: f64,
+    /// Part of the power of one echo that no plane wave describes: its range, and so its amplitude in a range row, changes over the end.
+    pub not_plane: f64,
     /// The transform from elements to columns.
     pub spectrum: &'a Spectrum,
 }
@@ -32,5 +37,33 @@ impl Row<'_> {
         let guard = nulls.iter().fold(0.0, |m: f64, v| m.max(*v)) * 1e-15 + f64::MIN_POSITIVE;
         let deepest = nulls.iter().fold(f64::INFINITY, |m, v| m.min(*v)).max(guard);
         nulls.iter().map(|v| strongest * deepest / v.max(deepest)).collect()
+    }
+
+    /// Power over angle, in the order of the transform, of the whole array continued from waves of so many `turns` an element; their
+    /// amplitudes by least squares.
+    pub fn continued(&self, turns: &[f64]) -> Option<Vec<f64>> {
+        let own = self.own();
+        if turns.is_empty() {
+            return None;
+        }
+        let wave = |turns: f64, n: f64| Complex64::cis(std::f64::consts::TAU * turns * n);
+        let waves = Mat::from_fn(own.len(), turns.len(), |n, i| wave(turns[i], n as f64));
+        let samples = Mat::from_fn(own.len(), 1, |n, _| own[n]);
+        let amplitudes = waves.qr().solve_lstsq(samples);
+
+        let columns = self.spectrum.len();
+        let window = hann(columns);
+        let mut array = vec![Complex64::default(); columns];
+        for (i, turns) in turns.iter().enumerate() {
+            let step = wave(*turns, 1.0);
+            let mut phasor = amplitudes[(i, 0)];
+            for value in &mut array {
+                *value += phasor;
+                phasor *= step;
+            }
+        }
+        let total: f64 = window.iter().sum();
+        let windowed = array.into_iter().zip(&window).map(|(v, w)| v * w / total);
+        Some(self.spectrum.of(windowed).into_iter().map(|v| v.norm_sqr()).collect())
     }
 }

@@ -32,6 +32,8 @@ pub enum Kind {
     Dynamic,
     /// 1 to 3 points near the array: ranges from 0.3 to 8 m, uniform in their logarithm, 15 degrees or more off the array's axis.
     Near,
+    /// Nothing: over thermal noise of a level of its own the samples are noise alone.
+    Noise,
     /// Experiment 1: this many points (1 to 4).
     Points(u8),
     /// Experiment 2: this many objects (1 to 4), each a point or a line with equal chance.
@@ -46,8 +48,13 @@ impl Kind {
     pub const BEYOND: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 
-    /// Every kind that has a name of its own: the test sets and what lies beyond them.
+    /// Every kind that has a name of its own: the test sets, what lies beyond them, and noise alone.
     pub fn all() -> impl Iterator<Item = Kind> {
+        Kind::with_echoes().chain([Kind::Noise])
+    }
+
+    /// The test sets and what lies beyond them: scenes with something to detect.
+    pub fn with_echoes() -> impl Iterator<Item = Kind> {
         Kind::TEST_SETS.into_iter().chain(Kind::BEYOND)
     }
 
@@ -69,6 +76,7 @@ impl Kind {
             Kind::Crowd => "12 to 40 points",
             Kind::Dynamic => "5 points up to 40 dB apart",
             Kind::Near => "points from 0.3 m",
+            Kind::Noise => "noise alone",
             Kind::Points(_) => "points of experiment 1",
             Kind::Mixed(_) => "points and lines of experiment 2",
         }
@@ -87,6 +95,7 @@ impl Kind {
             Kind::Crowd => 8,
             Kind::Dynamic => 9,
             Kind::Near => 10,
+            Kind::Noise => 11,
             Kind::Points(n) => 0x100 + u64::from(n),
             Kind::Mixed(n) => 0x200 + u64::from(n),
         }
@@ -107,6 +116,7 @@ impl fmt::Display for Kind {
             Kind::Crowd => "crowd",
             Kind::Dynamic => "dynamic",
             Kind::Near => "near",
+            Kind::Noise => "noise",
             Kind::Points(n) => return write!(f, "points-{n}"),
             Kind::Mixed(n) => return write!(f, "mixed-{n}"),
         };
@@ -121,7 +131,7 @@ impl FromStr for Kind {
     fn from_str(s: &str) -> Result<Self, String> {
         let wanted = s.trim();
         Kind::all().find(|k| k.to_string() == wanted).ok_or_else(|| {
-            let names: Vec<String> = Kind::BEYOND.iter().map(Kind::to_string).collect();
+            let names: Vec<String> = Kind::BEYOND.iter().chain(&[Kind::Noise]).map(Kind::to_string).collect();
             format!("there are no scenes called \"{s}\"; expected test set 1, 2 or 3, or {}", names.join(", "))
         })
     }

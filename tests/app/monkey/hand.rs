@@ -3,7 +3,7 @@
 use super::{FILES, Monkey};
 use apertura::app::{Command, MapKind, NewObject, Panel};
 use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, Decibels, WindowFunction};
+use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use apertura::signal::Floor;
 use eframe::egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2,
@@ -139,7 +139,12 @@ impl Monkey {
             12 => Command::SetCarrier(self.pick(&[Carrier::OneWay, Carrier::TwoWay])),
             13 => Command::SetWindow(self.pick(&[WindowFunction::Hann, WindowFunction::Hamming])),
             14 => Command::SetNoiseSeed(self.rng.random_range(0..9)),
-            15 => Command::SetFloor(self.pick(&[Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0))])),
+            15 => Command::SetFloor(self.pick(&[
+                Floor::Thesis,
+                Floor::Exact,
+                Floor::Snr(Decibels(20.0)),
+                Floor::Level(DecibelMilliwatts(-20.0)),
+            ])),
             16 => Command::Normalise(self.pick(&[Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))])),
             17 => {
                 let panels = Panel::all();

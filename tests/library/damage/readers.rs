@@ -1,11 +1,15 @@
 //! Everything that reads a file from outside, with valid files to start from.
 
+use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::rows::{Row, read_rows, write_rows};
+use apertura::evaluate::sets::SceneSet;
 use apertura::files::npz::{Npz, write_npz};
 use apertura::lesson::{Lesson, shipped};
 use apertura::radar::{Carrier, Radar};
+use apertura::reconstruct::{Baseline, Reconstructor};
 use apertura::recording::{self, RadarProfile};
 use apertura::scene::file::{self, SceneFile};
+use apertura::scene::generate::Kind;
 use apertura::scene::{GaussianCluster, Line, Object, Point, Scene, presets};
 use ndarray::{Array1, Array2, Ix1, Ix2, Ix3};
 use num_complex::Complex64;
@@ -262,9 +266,13 @@ fn tables_of_rows() -> Reader {
         found: figure.map(|_| 2),
         merged: None,
         wrong_tooth: figure.map(|_| 1),
+        origin: None,
     };
+    let campaign = Campaign::default();
+    let origins = campaign.origins(&[SceneSet::Generated(Kind::Set1)], &[&Baseline as &dyn Reconstructor]).unwrap();
+    let made = Row { origin: Some(origins[0][0].clone()), ..row(3, None) };
     let mut file = Vec::new();
-    write_rows(&mut file, &[row(0, None), row(1, Some(1e-3)), row(2, Some(0.75))]).unwrap();
+    write_rows(&mut file, &[row(0, None), row(1, Some(1e-3)), row(2, Some(0.75)), made]).unwrap();
     Reader {
         name: "rows",
         files: vec![file],

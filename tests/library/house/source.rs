@@ -1,161 +1,194 @@
-//! Rust as rustfmt leaves it, read as far as imports and lengths of functions need.
+//! What one Rust file imports, which paths its code names, and how long its functions are.
 
-/// A file's text without comments, strings and characters, cut into words and signs; knows which belong to tests.
+use proc_macro2::Span;
+use syn::punctuated::Punctuated;
+use syn::spanned::Spanned;
+use syn::visit::{self, Visit};
+use syn::{Attribute, Expr, ImplItem, Item, Signature, Token, UseTree, Visibility};
+
+/// A path as written, `crate`, `self` and `super` included, seen from the file's own module.
+pub type Path = Vec<String>;
+
+/// An imported name.
+#[derive(Debug, PartialEq)]
+pub struct Use {
+    /// Where it comes from.
+    pub path: Path,
+    /// The name it is known by here; "*" for a glob.
+    pub name: String,
+    /// Whether other files may import it from here.
+    pub public: bool,
+}
+
+/// One parsed file.
+#[derive(Debug, Default)]
 pub struct Source {
-    /// Code with everything else blanked; lines as in the file.
-    pub code: String,
+    /// Every import.
+    pub uses: Vec<Use>,
+    /// Every path of two or more segments outside of imports.
+    pub paths: Vec<Path>,
+    /// Name of every function with a body, and its lines from `fn` to the closing brace.
+    pub functions: Vec<(String, usize)>,
+    skips_tests: bool,
+    /// Inline modules around the place that is being visited.
+    inline_modules: usize,
 }
 
 impl Source {
-    pub fn new(text: &str) -> Source {
-        let mut code: Vec<char> = text.chars().collect();
-        let mut i = 0;
-        while i < code.len() {
-            let end = match code[i] {
-                '/' if code.get(i + 1) == Some(&'/') => until(&code, i, "\n"),
-                '/' if code.get(i + 1) == Some(&'*') => until(&code, i + 2, "*/"),
-                '"' => string_end(&code, i),
-                'r' if !word_before(&code, i) && raw_string(&code, i) => raw_string_end(&code, i),
-                '\'' => match character_end(&code, i) {
-                    Some(end) => end,
-                    None => i + 1, // a lifetime
-                },
-                _ => {
-                    i += 1;
-                    continue;
-                }
-            };
-            let end = end.min(code.len());
-            code[i..end].iter_mut().filter(|c| **c != '\n').for_each(|c| *c = ' ');
-            i = end;
-        }
-        Source { code: code.into_iter().collect() }
+    /// Parses a file. Items under `#[cfg(test)]` are left out unless `with_tests`.
+    pub fn parse(text: &str, with_tests: bool) -> syn::Result<Source> {
+        let mut source = Source { skips_tests: !with_tests, ..Source::default() };
+        source.visit_file(&syn::parse_file(text)?);
+        Ok(source)
     }
 
-    /// Lines of every function, signature included, with its name: from `fn` to the brace at the same depth.
-    pub fn functions(&self) -> Vec<(String, usize)> {
-        let lines: Vec<&str> = self.code.lines().collect();
-        let mut found = Vec::new();
-        for (start, line) in lines.iter().enumerate() {
-            let indent = line.len() - line.trim_start().len();
-            let words: Vec<&str> = line.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
-            let Some(at) = words.iter().position(|w| *w == "fn") else { continue };
-            let (Some(name), true) = (words.get(at + 1).filter(|n| !n.is_empty()), starts_item(line)) else { continue };
-            let closes =
-                |l: &&str| l.len() > indent && l.starts_with(&" ".repeat(indent)) && l[indent..].starts_with('}');
-            // Without a body, or all on one line.
-            let whole = lines[start..].iter().take_while(|l| !l.contains('{') && !l.contains(';')).count();
-            if lines.get(start + whole).is_none_or(|l| l.trim_end().ends_with([';', '}']) && !closes(l)) {
-                continue;
-            }
-            if let Some(length) = lines[start..].iter().position(closes) {
-                found.push(((*name).to_owned(), length + 1));
-            }
-        }
-        found
+    fn skips(&self, attributes: &[Attribute]) -> bool {
+        let is_test =
+            |a: &Attribute| a.path().is_ident("cfg") && a.parse_args::<syn::Path>().is_ok_and(|p| p.is_ident("test"));
+        self.skips_tests && attributes.iter().any(is_test)
     }
 
-    /// The code without modules that are compiled for tests only.
-    pub fn without_tests(&self) -> String {
-        let mut kept = String::new();
-        let mut lines = self.code.lines().peekable();
-        while let Some(line) = lines.next() {
-            let indent = line.len() - line.trim_start().len();
-            if line.trim() == "#[cfg(test)]" {
-                // An item ends where a line at its own depth closes it.
-                for inner in lines.by_ref() {
-                    let own = inner.len() - inner.trim_start().len() == indent && !inner.trim().is_empty();
-                    if own && inner.trim_end().ends_with([';', '}']) {
-                        break;
-                    }
-                }
-                continue;
+    fn add_function(&mut self, signature: &Signature, end: Span) {
+        let lines = end.end().line - signature.fn_token.span().start().line + 1;
+        self.functions.push((signature.ident.to_string(), lines));
+    }
+
+    /// Walks a tree of imports.
+    fn add_uses(&mut self, tree: &UseTree, before: &[String], public: bool) {
+        let joined = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Path>();
+        let whole = |name: &syn::Ident| if name == "self" { before.to_vec() } else { joined(name) };
+        let (path, name) = match tree {
+            UseTree::Path(tree) => return self.add_uses(&tree.tree, &joined(&tree.ident), public),
+            UseTree::Group(tree) => return tree.items.iter().for_each(|tree| self.add_uses(tree, before, public)),
+            UseTree::Name(tree) => {
+                let path = whole(&tree.ident);
+                let name = path.last().cloned().unwrap_or_default();
+                (path, name)
             }
-            kept.push_str(line);
-            kept.push('\n');
+            UseTree::Rename(tree) => (whole(&tree.ident), tree.rename.to_string()),
+            UseTree::Glob(_) => (before.to_vec(), "*".to_owned()),
+        };
+        let path = self.seen_from_the_file(path);
+        self.uses.push(Use { path, name, public });
+    }
+
+    /// Takes one `super` off a path for each inline module around it.
+    fn seen_from_the_file(&self, mut path: Path) -> Path {
+        for _ in 0..self.inline_modules {
+            match path.first().map(String::as_str) {
+                Some("super") if path.get(1).is_some_and(|p| p == "super") => drop(path.remove(0)),
+                Some("super") => path[0] = "self".into(),
+                _ => break,
+            }
         }
-        kept
+        path
     }
 }
 
-/// Words and signs of blanked code; `::` is one sign.
-pub fn tokens(code: &str) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    let mut rest = code.chars().peekable();
-    while let Some(c) = rest.next() {
-        if c.is_alphanumeric() || c == '_' {
-            let mut word = String::from(c);
-            while let Some(more) = rest.next_if(|c| c.is_alphanumeric() || *c == '_') {
-                word.push(more);
-            }
-            found.push(word);
-        } else if c == ':' && rest.next_if_eq(&':').is_some() {
-            found.push("::".into());
-        } else if !c.is_whitespace() {
-            found.push(c.into());
+impl<'ast> Visit<'ast> for Source {
+    fn visit_item(&mut self, item: &'ast Item) {
+        if !self.skips(attributes(item)) {
+            visit::visit_item(self, item);
         }
     }
-    found
-}
 
-fn starts_item(line: &str) -> bool {
-    let line = line.trim_start();
-    ["fn ", "pub", "const ", "unsafe ", "async ", "extern "].iter().any(|start| line.starts_with(start))
-}
-
-fn until(code: &[char], from: usize, sign: &str) -> usize {
-    let sign: Vec<char> = sign.chars().collect();
-    (from..code.len()).find(|i| code[*i..].starts_with(&sign)).map_or(code.len(), |i| i + sign.len())
-}
-
-fn string_end(code: &[char], start: usize) -> usize {
-    let mut i = start + 1;
-    while i < code.len() && code[i] != '"' {
-        i += if code[i] == '\\' { 2 } else { 1 };
+    fn visit_impl_item(&mut self, item: &'ast ImplItem) {
+        let attributes = match item {
+            ImplItem::Const(item) => item.attrs.as_slice(),
+            ImplItem::Fn(item) => &item.attrs,
+            ImplItem::Type(item) => &item.attrs,
+            _ => &[],
+        };
+        if !self.skips(attributes) {
+            visit::visit_impl_item(self, item);
+        }
     }
-    i + 1
-}
 
-fn word_before(code: &[char], i: usize) -> bool {
-    i > 0 && (code[i - 1].is_alphanumeric() && code[i - 1] != 'b' || code[i - 1] == '_')
-}
-
-fn raw_string(code: &[char], i: usize) -> bool {
-    let hashes = code[i + 1..].iter().take_while(|c| **c == '#').count();
-    code.get(i + 1 + hashes) == Some(&'"')
-}
-
-fn raw_string_end(code: &[char], i: usize) -> usize {
-    let hashes = code[i + 1..].iter().take_while(|c| **c == '#').count();
-    until(code, i + 2 + hashes, &format!("\"{}", "#".repeat(hashes)))
-}
-
-/// The end of a character, or `None` for a lifetime.
-fn character_end(code: &[char], i: usize) -> Option<usize> {
-    if code.get(i + 1) == Some(&'\\') {
-        return Some(until(code, i + 3, "'"));
+    fn visit_item_mod(&mut self, module: &'ast syn::ItemMod) {
+        self.inline_modules += 1;
+        visit::visit_item_mod(self, module);
+        self.inline_modules -= 1;
     }
-    (code.get(i + 2) == Some(&'\'')).then_some(i + 3)
+
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        self.add_uses(&item.tree, &[], !matches!(item.vis, Visibility::Inherited));
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        if path.segments.len() > 1 {
+            let path = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+            self.paths.push(self.seen_from_the_file(path));
+        }
+        visit::visit_path(self, path);
+    }
+
+    /// What stands in a macro's brackets counts where it reads as expressions, as that of `assert!` does.
+    fn visit_macro(&mut self, call: &'ast syn::Macro) {
+        visit::visit_macro(self, call);
+        if let Ok(arguments) = call.parse_body_with(Punctuated::<Expr, Token![,]>::parse_terminated) {
+            // The parsed expressions live no longer than this call.
+            let mut inner =
+                Source { skips_tests: self.skips_tests, inline_modules: self.inline_modules, ..Source::default() };
+            arguments.iter().for_each(|argument| inner.visit_expr(argument));
+            self.paths.append(&mut inner.paths);
+        }
+    }
+
+    fn visit_item_fn(&mut self, item: &'ast syn::ItemFn) {
+        self.add_function(&item.sig, item.block.span());
+        visit::visit_item_fn(self, item);
+    }
+
+    fn visit_impl_item_fn(&mut self, item: &'ast syn::ImplItemFn) {
+        self.add_function(&item.sig, item.block.span());
+        visit::visit_impl_item_fn(self, item);
+    }
+
+    fn visit_trait_item_fn(&mut self, item: &'ast syn::TraitItemFn) {
+        if let Some(block) = &item.default {
+            self.add_function(&item.sig, block.span());
+        }
+        visit::visit_trait_item_fn(self, item);
+    }
 }
 
-#[test]
-fn comments_strings_and_characters_are_blanked() {
-    let text =
-        "let a = \"fn b() {\"; // crate::c\nlet d = 'e'; let f: &'static str = r#\"crate::g\"#; /* crate::h */ i";
-    let words = tokens(&Source::new(text).code).join(" ");
-    assert_eq!(words, "let a = ; let d = ; let f : & static str = ; i");
+fn attributes(item: &Item) -> &[Attribute] {
+    match item {
+        Item::Const(item) => &item.attrs,
+        Item::Enum(item) => &item.attrs,
+        Item::Fn(item) => &item.attrs,
+        Item::Impl(item) => &item.attrs,
+        Item::Macro(item) => &item.attrs,
+        Item::Mod(item) => &item.attrs,
+        Item::Static(item) => &item.attrs,
+        Item::Struct(item) => &item.attrs,
+        Item::Trait(item) => &item.attrs,
+        Item::Type(item) => &item.attrs,
+        Item::Use(item) => &item.attrs,
+        _ => &[],
+    }
 }
 
 #[test]
 fn functions_are_measured() {
-    let text = "fn one() {\n    two();\n}\n\nimpl A {\n    pub fn three(\n        &self,\n    ) -> u8 {\n        fn four() {\n        }\n    }\n    fn five(&self);\n    fn six() {}\n}\n";
-    let found = Source::new(text).functions();
-    let expected = [("one", 3), ("three", 6), ("four", 2)];
+    let text = "fn one() {\n    two();\n}\n\nimpl A {\n    pub fn three(\n        &self,\n    ) -> u8 {\n        fn four() {\n        }\n    }\n}\ntrait B {\n    fn five(&self);\n    fn six() {}\n}\n";
+    let found = Source::parse(text, true).unwrap().functions;
+    let expected = [("one", 3), ("three", 6), ("four", 2), ("six", 1)];
     assert_eq!(found, expected.map(|(name, lines)| (name.to_owned(), lines)));
 }
 
 #[test]
-fn test_modules_are_left_out() {
-    let text = "use a;\n#[cfg(test)]\nmod tests {\n    use b;\n}\n#[cfg(test)]\nmod c;\nuse d;\n";
-    assert_eq!(tokens(&Source::new(text).without_tests()).join(" "), "use a ; use d ;");
+fn items_for_tests_are_left_out_on_request() {
+    let text = "use a;\n#[cfg(test)]\nmod tests {\n    use b;\n}\n#[cfg(test)]\nmod c;\nuse d as e;\n";
+    let names =
+        |with_tests| Source::parse(text, with_tests).unwrap().uses.into_iter().map(|u| u.name).collect::<Vec<_>>();
+    assert_eq!(names(false), ["a", "e"]);
+    assert_eq!(names(true), ["a", "b", "e"]);
+}
+
+#[test]
+fn paths_in_macros_are_found() {
+    let text = "fn f() {\n    // crate::comment\n    assert_eq!(crate::a::B, \"crate::c\", \"{}\", super::d());\n}\n";
+    let paths: Vec<String> = Source::parse(text, true).unwrap().paths.iter().map(|p| p.join("::")).collect();
+    assert_eq!(paths, ["crate::a::B", "super::d"]);
 }

@@ -1,8 +1,10 @@
 //! Rows on disk: as CSV, and beside it how they were made, where that isn't as the tables' scenes are.
 
 use crate::app::state::Conditions;
-use crate::evaluate::rows::{Column, Row, read_rows, write_rows};
+use crate::evaluate::rows::{Column, Row, Scenes, read_rows, write_rows};
 use crate::files::{read_bounded, write_atomically, write_bytes};
+use crate::radar::Radar;
+use crate::scene::generate::{Purpose, Reading};
 use crate::task::{Reply, Worker};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -50,10 +52,43 @@ pub fn read(path: &Path) -> Result<Kept, String> {
     let other = beside(path);
     let conditions = match read_bounded(&other, MAX_CONDITIONS_BYTES) {
         Ok(bytes) => read_conditions(&bytes).map_err(|e| format!("{}: {e}", other.display()))?,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Conditions::default(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            conditions_of(&rows).map_err(|e| format!("{}: {e}", path.display()))?
+        }
         Err(error) => return Err(format!("{}: {error}", other.display())),
     };
     Ok((rows, conditions))
+}
+
+/// How rows say that they were made; as the tables' scenes are where they don't say it.
+fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
+    let mut found: Option<Conditions> = None;
+    let mut radar = Radar::default();
+    for row in rows {
+        let Some(origin) = &row.origin else { continue };
+        if let Scenes::Generated { purpose, reading, carrier, radar: other } = &origin.scenes {
+            if (*purpose, *reading) != (Purpose::Test, Reading::Program) {
+                return Err(
+                    "these rows are not of the test scenes that the app makes; expected rows without --thesis-text"
+                        .into(),
+                );
+            }
+            if !other.is_empty() {
+                return Err(format!(
+                    "these rows are of another radar ({other}); expected its .conditions.toml beside them"
+                ));
+            }
+            radar.carrier = *carrier;
+        }
+        let own = Conditions { floor: origin.floor, normalisation: origin.normalisation, radar: radar.clone() };
+        if found.as_ref().is_some_and(|found| (found.floor, found.normalisation) != (own.floor, own.normalisation)) {
+            return Err(
+                "these rows were made over several floors or normalisations; expected rows that were made alike".into(),
+            );
+        }
+        found = Some(own);
+    }
+    Ok(found.unwrap_or_default())
 }
 
 /// Whether the first line of a file names the columns of rows. One that can't be read has none.
@@ -144,7 +179,7 @@ mod tests {
     use super::super::table::some_row;
     use super::*;
     use crate::maps::Normalisation;
-    use crate::radar::{Decibels, Radar};
+    use crate::radar::Decibels;
     use crate::signal::Floor;
 
     #[test]
@@ -175,5 +210,32 @@ mod tests {
         std::fs::write(beside(&path), "[radar]\nelements = 0\n").unwrap();
         let wrong = read(&path).unwrap_err();
         assert!(wrong.contains("conditions.toml") && wrong.contains("elements"), "{wrong}");
+    }
+
+    #[test]
+    fn rows_of_the_command_say_themselves_how_they_were_made() {
+        use crate::evaluate::campaign::Campaign;
+        use crate::evaluate::sets::SceneSet;
+        use crate::radar::Carrier;
+        use crate::reconstruct::{Baseline, Reconstructor};
+        use crate::scene::generate::Kind;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        let made = |campaign: &Campaign| {
+            let baseline: [&dyn Reconstructor; 1] = [&Baseline];
+            let origin = campaign.origins(&[SceneSet::Generated(Kind::Set1)], &baseline).unwrap()[0][0].clone();
+            Row { origin: Some(origin), ..some_row(0, "baseline") }
+        };
+        let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+        let campaign = Campaign { floor: Floor::Exact, radar: radar.clone(), ..Campaign::default() };
+        write_atomically(&path, |out| write_rows(out, &[made(&campaign)])).unwrap();
+        let (rows, conditions) = read(&path).unwrap();
+        assert_eq!(rows, [made(&campaign)]);
+        assert_eq!(conditions, Conditions { floor: Floor::Exact, radar, ..Conditions::default() });
+        let small = Campaign { radar: Radar { elements: 64, ..Radar::default() }, ..Campaign::default() };
+        write_atomically(&path, |out| write_rows(out, &[made(&small)])).unwrap();
+        assert!(read(&path).unwrap_err().contains("elements=64"));
+        write_atomically(&path, |out| write_rows(out, &[some_row(0, "live")])).unwrap();
+        assert_eq!(read(&path).unwrap().1, Conditions::default(), "older rows don't say it");
     }
 }

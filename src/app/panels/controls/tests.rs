@@ -6,6 +6,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
+    panel_for(Uses::ALL, run)
+}
+
+fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
     let (settings, radar) = (Settings::default(), Radar::default());
     let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
@@ -19,6 +23,7 @@ fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Comma
             eta: Baseline.eta(),
             range_db: None,
             run: run(),
+            uses,
         };
         asked.extend(show(ui, input));
     };
@@ -92,14 +97,15 @@ fn a_click_is_one_command_and_nothing_else_changes() {
 
 #[test]
 fn the_focus_passes_through_a_threshold_without_rounding_it() {
-    assert_eq!((moved(0.851, 0.85), moved(0.851, 0.86)), (None, Some(0.86)));
-    let settings = Settings { target_eta: 0.851, ..Settings::default() };
+    assert_eq!((moved(0.851, 0.851), moved(0.851, 0.85)), (None, Some(0.85)));
+    let settings = Settings { target_eta: 0.851_234_5, ..Settings::default() };
     let (radar, capon) = (Radar::default(), CAPON);
     let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let (eta, run) = (0.123, Run::default());
+        let (eta, run) = (0.763_194_2, Run::default());
         let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
         let (is_recorded, settings, radar) = (false, &settings, &radar);
-        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db: None, run };
+        let (range_db, uses) = (None, Uses::ALL);
+        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db, run, uses };
         asked.extend(show(ui, input));
     };
     let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
@@ -108,6 +114,8 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
         controls.run();
     }
     assert!(controls.state().is_empty(), "{:?}", controls.state());
+    let shown = seen::texts(controls.output());
+    assert!(shown.iter().any(|t| t.text == "0.7631942"), "every digit, so that P_FA can be had again: {shown:?}");
 }
 
 #[test]
@@ -131,6 +139,14 @@ fn figures_stand_still_when_the_bar_comes() {
 }
 
 #[test]
+fn the_level_of_the_noise_can_be_chosen() {
+    let mut controls = panel(Run::default);
+    controls.get_by_label("dBm").click();
+    controls.run();
+    assert_eq!(controls.state(), &[Command::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))]);
+}
+
+#[test]
 fn no_choice_leaves_a_narrow_panel() {
     let (radar, settings) = (Radar::default(), Settings::default());
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
@@ -145,11 +161,12 @@ fn no_choice_leaves_a_narrow_panel() {
             eta: 0.5,
             range_db: None,
             run,
+            uses: Uses::ALL,
         };
         asked.extend(show(ui, input));
     };
     let controls = Harness::builder().with_size([284.0, 900.0]).build_ui_state(draw, Vec::new());
-    for label in ["100 dB", "SNR", "Two-way", "rectangular", "inferno", "views", "Cells"] {
+    for label in ["100 dB", "SNR", "dBm", "Two-way", "rectangular", "inferno", "views", "Cells"] {
         assert!(controls.get_by_label(label).rect().right() <= 284.0, "{label}");
     }
     seen::assert_readable(controls.output());
@@ -165,4 +182,21 @@ fn figures_stand_beside_the_bar_that_cancels() {
     controls.get_by_label("Cancel").click();
     controls.step();
     assert_eq!(controls.state(), &[Command::CancelMethod]);
+}
+
+#[test]
+fn what_a_lesson_does_not_use_is_not_shown() {
+    let shown = |uses: Uses| {
+        let panel = panel_for(uses, Run::default);
+        ["Reconstruction", "Method", "η", "η'", "found", "hann", "Colours"]
+            .map(|text| panel.query_all_by_label(text).count() > 0)
+    };
+    let [reconstruction, method, eta, target_eta, found, ..] = shown(Uses::ALL);
+    assert!(reconstruction && method && eta && target_eta && found);
+    let [reconstruction, method, eta, target_eta, found, _, colours] = shown(Uses { output: false, threshold: false });
+    assert!(!reconstruction && !method && !eta && !target_eta && !found && colours);
+    let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: false, threshold: true });
+    assert!(!reconstruction && !method && !eta && target_eta);
+    let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: true, threshold: false });
+    assert!(reconstruction && method && !eta && !target_eta);
 }

@@ -10,10 +10,11 @@ use crate::app::widgets::chart::{Chart, Dash, Drawn, Span};
 use crate::app::widgets::direction::direction;
 use crate::app::widgets::entry::button;
 use crate::app::widgets::levels::lowest_db;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::Radar;
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, DragValue, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Color32, ComboBox, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
 use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};
 use trace::{Cut, Trace};
@@ -270,7 +271,7 @@ fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Marker
                     let Some(place) = place else { continue };
                     let label = ui.label(format!("{name}, {}", cut.unit()));
                     let step = (whole.high - whole.low) / 1000.0;
-                    let drag = DragValue::new(place).range(whole.low..=whole.high).speed(step).fixed_decimals(digits);
+                    let drag = NumberField::new(place).range(whole.low..=whole.high).speed(step).fixed_decimals(digits);
                     ui.add(drag).labelled_by(label.id);
                 }
             });

@@ -1,5 +1,6 @@
 //! What stands in the table: titles, widths, and figures with their digits.
 
+use crate::evaluate::eta_text;
 use crate::evaluate::rows::{Column, Row, Value};
 
 /// What stands in a cell.
@@ -14,7 +15,7 @@ pub fn text(row: &Row, column: Column) -> String {
 /// A number of a column, with as many digits as it deserves.
 pub fn number(column: Column, value: f64) -> String {
     let digits = match column {
-        Column::Eta => 3,
+        Column::Eta => return eta_text(value as f32),
         Column::Detection | Column::FalseAlarm | Column::DetectionAtPrinted => 4,
         Column::SquaredError | Column::Milliseconds | Column::StrongestOverWeakestDb => 1,
         Column::NearestPairColumns | Column::NearestPairBins => 1,
@@ -45,7 +46,7 @@ pub fn width(column: Column) -> f32 {
     match column {
         Column::Set => 74.0,
         Column::Method => 130.0,
-        Column::Index | Column::Seed | Column::Eta => 52.0,
+        Column::Index | Column::Seed => 52.0,
         Column::StrongestOverWeakestDb => 110.0,
         _ => 78.0,
     }

@@ -3,10 +3,12 @@
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice};
 use crate::app::widgets::method_menu::method_menu;
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::progress;
+use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui;
-use eframe::egui::{Button, DragValue, Ui};
+use eframe::egui::{Button, Ui};
 use std::collections::BTreeSet;
 
 /// What is chosen.
@@ -70,9 +72,9 @@ fn run(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
     });
     menu.response.on_hover_text("Kinds of scenes to try them on");
     let label = ui.label("of each");
-    ui.add(DragValue::new(&mut memory.count).range(1..=100_000)).labelled_by(label.id);
+    ui.add(NumberField::new(&mut memory.count).range(1..=100_000)).labelled_by(label.id);
     let label = ui.label("seed");
-    ui.add(DragValue::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+    ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
     let ready = !memory.methods.is_empty() && (memory.own || !memory.kinds.is_empty());
     let start = ui.add_enabled(ready, Button::new("Try"));
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
@@ -106,7 +108,7 @@ fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     button("Save…", "Save the rows as CSV", has_rows, Command::SaveRows);
     button("Clear", "Forget every row", has_rows, Command::ClearRows);
     if let Some(count) = input.before {
-        let name = format!("Bring back {count} rows");
+        let name = format!("Bring back {}", counted(count, "row", "rows"));
         button(&name, "The rows that others took the place of", true, Command::BringRowsBack);
     }
 }

@@ -13,6 +13,7 @@ mod table;
 pub use input::{Input, Live, Now, Searched};
 
 use crate::app::state::Command;
+use crate::radar::counted;
 use charts::View;
 use eframe::egui;
 use eframe::egui::{Frame, Margin, Ui, Vec2};
@@ -101,7 +102,8 @@ fn update(ui: &Ui, input: &Input<'_>, memory: &mut Memory) {
 fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
     ui.horizontal_wrapped(|ui| {
         let (shown, all) = (memory.order.shown().len(), input.table.rows().len());
-        ui.weak(if shown == all { format!("{all} rows") } else { format!("{shown} of {all} rows") });
+        let rows = counted(all, "row", "rows");
+        ui.weak(if shown == all { rows } else { format!("{shown} of {rows}") });
         if let Some(boxed) = &memory.boxed {
             let name = format!("× {} in the box", boxed.rows.len());
             if ui.small_button(name).on_hover_text("Show rows outside the box again").clicked() {

@@ -2,12 +2,13 @@
 
 use super::input::{Input, Live, Now, Searched};
 use crate::app::state::{Command, SearchChoice};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::{Aim, Measure, Search};
-use eframe::egui::{Button, ComboBox, DragValue, Grid, TextEdit, Ui};
+use eframe::egui::{Button, ComboBox, Grid, TextEdit, Ui};
 
 /// What is chosen, and what was written.
 pub struct Memory {
@@ -102,10 +103,10 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut
         });
         combo.response.labelled_by(label.id);
         let label = ui.label("within");
-        let within = DragValue::new(&mut memory.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
+        let within = NumberField::new(&mut memory.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
         ui.add(within).labelled_by(label.id);
         let label = ui.label("in");
-        let tries = DragValue::new(&mut memory.tries).range(1..=100_000).suffix(" tries");
+        let tries = NumberField::new(&mut memory.tries).range(1..=100_000).suffix(" tries");
         ui.add(tries).labelled_by(label.id);
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";

@@ -3,7 +3,7 @@
 use crate::app::state::{MapKind, Units};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::numbers::percent;
-use crate::evaluate::Metrics;
+use crate::evaluate::{Metrics, eta_text};
 
 /// Figures for a map's title bar.
 pub struct Caption {
@@ -56,7 +56,7 @@ pub fn caption(input: Caption) -> Option<String> {
 fn threshold(input: &Caption, eta: f32) -> String {
     match input.range_db.filter(|_| input.units == Units::Decibels) {
         Some(range_db) => with_unit(&level(range_db * (f64::from(eta) - 1.0), range_db)),
-        None => format!("{eta:.2}"),
+        None => eta_text(eta),
     }
 }
 

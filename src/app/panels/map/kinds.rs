@@ -4,8 +4,10 @@ use super::frame::Frame;
 use crate::app::jobs::{Fates, Verdict};
 use crate::app::widgets::axes;
 use crate::app::widgets::theme::MARK_EDGE;
+use crate::evaluate::eta_text;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
+use crate::radar::counted;
 use crate::scene::Reflector;
 use crate::theory::{Cell, blob_cell};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
@@ -186,16 +188,17 @@ impl Kinds<'_> {
     /// Which object it is, what became of it, and why that is said.
     fn why(&self, verdict: &Verdict) -> String {
         let Fates { scene, failures, eta, .. } = self.fates;
+        let eta = eta_text(*eta);
         let cells = verdict.cells;
         let Some(index) = verdict.object else {
-            return format!("ghost: {cells} cells above η = {eta:.2}\nwhere the scene has nothing");
+            return format!("ghost: {} above η = {eta}\nwhere the scene has nothing", counted(cells, "cell", "cells"));
         };
         let named = |index: usize| {
             let kind = scene.objects.get(index).map_or("object", |o| o.kind());
             format!("{kind} {}", index + 1)
         };
         let part = failures.covered.get(index).copied().unwrap_or(0.0);
-        let detected = format!("{:.0} % of its {cells} cells exceed η = {eta:.2}", 100.0 * part);
+        let detected = format!("{:.0} % of its {cells} cells exceed η = {eta}", 100.0 * part);
         let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
             Fate::Found => detected,
             Fate::Missed => format!("{detected}: less than half"),

@@ -1,5 +1,6 @@
 //! One map: picture, axes, colour bar, cursor, marks.
 
+mod answer;
 mod blank;
 mod caption;
 mod frame;
@@ -75,10 +76,16 @@ pub struct Input<'a> {
     pub theory: Option<Theory<'a>>,
     /// Where the pointer is, in whichever panel.
     pub cursor: Option<Cursor>,
+    /// What is to be known of the method that made it.
+    pub note: Option<String>,
     /// Why there is no picture.
     pub error: Option<Problem<'a>>,
     /// Hides the picture: a prediction is asked for.
     pub veil: Option<Veil>,
+    /// Whether the axes are told: not while they would answer a lesson's question.
+    pub axes: bool,
+    /// The place that was guessed in a lesson, and the true one.
+    pub places: Option<(crate::lesson::Cell, crate::lesson::Cell)>,
 }
 
 #[cfg(test)]
@@ -110,8 +117,11 @@ impl<'a> Input<'a> {
             over: None,
             theory: None,
             cursor: None,
+            note: None,
             error: None,
             veil: None,
+            axes: true,
+            places: None,
         }
     }
 }
@@ -121,7 +131,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let is_told = !input.kind.is_above() && area.width() > 200.0;
+    let is_told = !input.kind.is_above() && input.veil.is_none() && area.width() > 200.0;
     let bar = is_told.then(|| bar_of(&input));
     let legend = legend_of(ui.painter(), &input, area);
     let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection, legend.height());
@@ -145,7 +155,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(rect.intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
-    draw_axes(ui, &painter, frame);
+    if input.axes {
+        draw_axes(ui, &painter, frame);
+    }
     legend.draw(ui, &painter, rect.left_top() - vec2(0.0, legend.height() + 4.0));
     point(&input, frame, &response, &mut asked);
     draw_over(&inner, frame, &input, &response, is_drawn);
@@ -186,16 +198,21 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     }
     if input.veil.is_none() {
         let pointer = response.hover_pos();
-        overlay::marks(inner, frame, &input.marks, pointer);
+        overlay::marks(inner, frame, input.marks.objects, pointer);
+        overlay::found(inner, frame, input.marks.found, input.stale);
         overlay::selected(inner, frame, input.scene, input.selection);
-        input.theory.iter().for_each(|theory| theory.draw(inner, frame));
+        input.theory.iter().for_each(|theory| theory.draw(inner, frame, pointer));
+        if let Some((guess, truth)) = input.places {
+            answer::draw(inner, frame, guess, truth);
+        }
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }
     }
-    if is_old {
+    let said = if is_old { Some("Previous scene; updating…") } else { input.note.as_deref() };
+    if let Some(said) = said.filter(|_| input.veil.is_none() || is_old) {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, "of an earlier scene; updating…");
+        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, said);
     }
 }
 

@@ -1,6 +1,6 @@
 //! What is drawn over a map: true and found reflectors, the pointer's place and the value there.
 
-use super::frame::{Cells, Frame, Marked, Marks};
+use super::frame::{Cells, Frame, Marked};
 use super::outline::outline;
 use crate::app::state::{Cursor, Projection, Units};
 use crate::app::widgets::axes;
@@ -20,12 +20,22 @@ const RADIUS: f32 = 6.0;
 /// How near the pointer must be to a ring to be told the true direction.
 const NEAR: f32 = 9.0;
 
-/// True reflectors as rings or as outlines of lines, those the method found as crosses: where the map shows what stands there. The one
-/// under the `pointer` tells the direction in which it really stands.
-pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>, pointer: Option<Pos2>) {
+/// Those that the method found, as crosses; paler where they are those of an `old` scene.
+pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool) {
+    let strength = if old { 0.35 } else { 1.0 };
+    for r in found.iter().take(MARKS) {
+        for (width, colour) in [(2.6, MARK_EDGE), (1.3, Color32::from_rgb(120, 255, 150))] {
+            cross(painter, frame.blob(r), 4.0, Stroke::new(width, colour.gamma_multiply(strength)));
+        }
+    }
+}
+
+/// True reflectors as rings or as outlines of lines: where the map shows what stands there. The one under the `pointer` tells the
+/// direction in which it really stands.
+pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: Option<Pos2>) {
     let mut left = MARKS;
     let mut nearest: Option<(&Reflector, f32)> = None;
-    for object in marks.objects {
+    for object in objects {
         let reflectors = &object.reflectors[..object.reflectors.len().min(left)];
         left -= reflectors.len();
         let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
@@ -40,10 +50,6 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, marks: &Marks<'_>, pointer: Op
                 nearest = Some((reflector, distance));
             }
         }
-    }
-    for r in marks.found.iter().take(MARKS) {
-        cross(painter, frame.blob(r), 4.0, Stroke::new(2.6, MARK_EDGE));
-        cross(painter, frame.blob(r), 4.0, Stroke::new(1.3, Color32::from_rgb(120, 255, 150)));
     }
     if let Some((reflector, _)) = nearest {
         true_direction(painter, frame, reflector);
@@ -210,7 +216,7 @@ mod tests {
         let blob = frame.blob(&objects[0].reflectors[0]);
         let draw = |pointer| {
             let panel = Harness::builder().with_size(rect.size()).build_ui(|ui| {
-                marks(ui.painter(), frame, &Marks { objects: &objects, found: &[] }, pointer);
+                marks(ui.painter(), frame, &objects, pointer);
                 selected(ui.painter(), frame, &scene, &Selection::of([0]));
             });
             panel.output().clone()

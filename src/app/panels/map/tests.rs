@@ -103,7 +103,7 @@ fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
     });
     let texts = seen::texts(map.output());
     assert!(texts.iter().any(|t| t.text == "computing…"));
-    assert!(!texts.iter().any(|t| t.text.contains("earlier scene")), "{texts:?}");
+    assert!(!texts.iter().any(|t| t.text.contains("Previous scene")), "{texts:?}");
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn a_map_of_an_earlier_scene_says_so() {
             let input = Input { stale, texture: Some(TextureId::default()), ..input(&radar, None) };
             _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
         });
-        seen::texts(map.output()).iter().any(|t| t.text.contains("earlier scene"))
+        seen::texts(map.output()).iter().any(|t| t.text.contains("Previous scene"))
     };
     assert_eq!([true, false].map(says_so), [true, false]);
 }

@@ -13,6 +13,8 @@ use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec
 /// What is drawn.
 #[derive(Clone, Copy)]
 pub struct Theory<'a> {
+    /// What the reflector is called.
+    pub name: &'a str,
     /// What the formulas say of the reflector on this map.
     pub overlay: &'a Overlay,
     /// The reflector.
@@ -40,14 +42,16 @@ const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
 const TICK: f32 = 7.0;
 /// The ellipse is drawn larger than this, points.
 const ELLIPSE: f32 = 9.0;
-/// Points around a blob's peak that no number covers.
-const CLEAR: f32 = 18.0;
+/// Points around a blob that no number covers.
+const CLEAR: f32 = 8.0;
+/// Part of the map that the numbers cover at the most.
+const MOST_PART: f32 = 0.25;
 /// Least size of a map that has room for the numbers.
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
 impl Theory<'_> {
     /// Draws it.
-    pub fn draw(&self, painter: &Painter, frame: Frame<'_>) {
+    pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>) {
         let Overlay { blob, streak, teeth, .. } = self.overlay;
         let at =
             |bin: f64, column: f64| frame.cell(Cell { bin: blob.peak.bin + bin, column: blob.peak.column + column });
@@ -70,7 +74,13 @@ impl Theory<'_> {
         if let Some((outline, _)) = self.outline(frame) {
             line(painter, &outline, frame.rect, BOUND);
         }
-        self.tell(painter, frame);
+        self.tell(painter, frame, pointer);
+    }
+
+    /// Where the reflector's blob shows: its peak, its streak and the corners of its half-power box.
+    fn places(&self, frame: Frame<'_>) -> Vec<Pos2> {
+        let streak = self.overlay.streak.path.iter().map(|cell| frame.cell(*cell));
+        std::iter::once(frame.cell(self.overlay.blob.peak)).chain(streak).chain(self.half_power(frame)).collect()
     }
 
     /// The half-power widths as a box around the peak, closed.
@@ -108,6 +118,7 @@ impl Theory<'_> {
         let columns = blob.columns[0] + blob.columns[1];
         let column_cos = fold_period_cos(radar) / radar.elements as f64;
         let mut lines = vec![
+            (Color32::WHITE, format!("Theory of {}, as a point", self.name)),
             (BIN, format!("range bin c/2B {}", length(bin_metres))),
             (
                 BEAM,
@@ -122,7 +133,7 @@ impl Theory<'_> {
             lines.push((LOBE, format!("first side lobe {:.1} dB, {:.1} columns off", lobe.level.0, lobe.columns)));
         }
         let [across, along] = [streak.columns, streak.bins].map(|[low, high]| low + high + 1);
-        lines.push((DRAWN_OUT, format!("drawn out over {across} columns, {along} bins at −{:.0} dB", STREAK.0)));
+        lines.push((DRAWN_OUT, format!("smeared over {across} columns and {along} bins (at −{:.0} dB)", STREAK.0)));
         if self.comb {
             let spacing = crate::theory::comb::tooth_spacing_cos(radar, *place) / column_cos;
             lines.push((COMB, format!("comb of the two ends: a tooth every {spacing:.2} columns")));
@@ -153,8 +164,8 @@ impl Theory<'_> {
         format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
     }
 
-    /// Writes the numbers in the corner that is farthest from the blob.
-    fn tell(&self, painter: &Painter, frame: Frame<'_>) {
+    /// Writes the numbers in the corner that is farthest from the blob; under the `pointer` they make way for the map, but for the name.
+    fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>) {
         let rect = frame.rect;
         if rect.width() < ROOM.x || rect.height() < ROOM.y {
             return;
@@ -165,11 +176,13 @@ impl Theory<'_> {
             .into_iter()
             .map(|(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0))
             .collect();
-        let peak = frame.cell(self.overlay.blob.peak);
-        let Some((patch, count)) = clear_patch(rect, peak, &galleys.iter().map(|g| g.size()).collect::<Vec<_>>())
-        else {
-            return;
-        };
+        let sizes: Vec<Vec2> = galleys.iter().map(|g| g.size()).collect();
+        let (mut patch, mut count) = clear_patch(rect, &self.places(frame), &sizes);
+        if pointer.is_some_and(|p| patch.contains(p)) {
+            // The map beneath is what is pointed at.
+            count = 1;
+            patch.set_height(sizes[0].y + 6.0);
+        }
         painter.rect_filled(patch, 3.0, Color32::from_black_alpha(190));
         let mut at = patch.min + vec2(5.0, 3.0);
         for galley in galleys.into_iter().take(count) {
@@ -186,13 +199,19 @@ fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
     signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
 }
 
-/// Where as many of the lines fit as leave the blob at `peak` in sight, and how many; the larger the map, the more.
-fn clear_patch(rect: Rect, peak: Pos2, lines: &[Vec2]) -> Option<(Rect, usize)> {
+/// Where as many of the lines fit as leave the `blob`'s places in sight, the peak first, and cover no more than [`MOST_PART`] of the map,
+/// and how many; the larger the map, the more, and one always.
+fn clear_patch(rect: Rect, blob: &[Pos2], lines: &[Vec2]) -> (Rect, usize) {
+    let from = blob.first().copied().unwrap_or(rect.center());
     let patch = |count: usize| {
         let size = lines[..count].iter().fold(Vec2::ZERO, |s, g| vec2(s.x.max(g.x), s.y + g.y));
-        (free_corner(rect, peak, size + vec2(10.0, 6.0)), count)
+        (free_corner(rect, from, size + vec2(10.0, 6.0)), count)
     };
-    (1..=lines.len()).rev().map(patch).find(|(patch, _)| !patch.expand(CLEAR).contains(peak))
+    let fits = |(patch, count): &(Rect, usize)| {
+        let hides = blob.iter().any(|p| patch.expand(CLEAR).contains(*p));
+        *count == 1 || !hides && patch.area() <= MOST_PART * rect.area()
+    };
+    (1..=lines.len()).rev().map(patch).find(fits).unwrap_or_else(|| patch(lines.len().min(1)))
 }
 
 /// A box of `size` in the corner of `rect` that is farthest from `from`, clear of the value under the pointer at the top.
@@ -248,7 +267,15 @@ mod tests {
 
     fn theory<'a>(overlay: &'a Overlay, reflector: Reflector) -> Theory<'a> {
         let ellipse = Some(Ellipse { major_metres: 0.003, minor_metres: 0.0002, angle_radians: 0.3 });
-        Theory { overlay, reflector, ellipse, listening: "the two ends", snr: Decibels(20.0), comb: true }
+        Theory {
+            name: "middle of line 1",
+            overlay,
+            reflector,
+            ellipse,
+            listening: "the two ends",
+            snr: Decibels(20.0),
+            comb: true,
+        }
     }
 
     /// On screen, the box of the half-power widths holds the cells of the simulated map that are above half power in the peak's row and
@@ -315,6 +342,29 @@ mod tests {
     }
 
     #[test]
+    fn the_numbers_say_whose_they_are() {
+        let radar = Radar::default();
+        let reflector = Reflector { x_metres: 0.0, y_metres: 20.0, reflectivity: 1.0 };
+        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        assert_eq!(theory(&overlay, reflector).lines(frame(&radar))[0].1, "Theory of middle of line 1, as a point");
+    }
+
+    #[test]
+    fn the_numbers_leave_the_whole_blob_in_sight() {
+        let radar = Radar::default();
+        for (x_metres, y_metres) in [(0.0, 5.0), (-10.0, 5.0), (10.0, 25.0), (-20.0, 20.0)] {
+            let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
+            let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+            let (theory, frame) = (theory(&overlay, reflector), frame(&radar));
+            let lines = vec![vec2(330.0, 13.0); theory.lines(frame).len()];
+            let (patch, count) = clear_patch(RECT, &theory.places(frame), &lines);
+            assert!(count > 3, "{count} lines at ({x_metres}, {y_metres})");
+            let hidden = theory.places(frame).into_iter().find(|p| patch.contains(*p));
+            assert_eq!(hidden, None, "{patch:?} at ({x_metres}, {y_metres})");
+        }
+    }
+
+    #[test]
     fn the_ellipse_is_large_enough_to_be_seen_and_told_how_much() {
         let radar = Radar::default();
         let reflector = Reflector { x_metres: 3.0, y_metres: 20.0, reflectivity: 1.0 };
@@ -326,9 +376,10 @@ mod tests {
         assert!(times >= 10.0 && times.log10().fract() == 0.0, "{times}");
         let small = Rect::from_min_size(Pos2::ZERO, vec2(300.0, 180.0));
         let lines = [vec2(290.0, 14.0); 7];
-        let (patch, count) = clear_patch(small, small.center(), &lines).unwrap();
-        assert!(count < 7 && count > 2 && !patch.expand(CLEAR).contains(small.center()), "{count} lines at {patch:?}");
-        assert_eq!(clear_patch(RECT, RECT.center(), &lines).unwrap().1, 7);
+        let (patch, count) = clear_patch(small, &[small.center()], &lines);
+        assert!(count > 1 && patch.area() <= MOST_PART * small.area(), "{count} lines at {patch:?}");
+        assert!(!patch.expand(CLEAR).contains(small.center()));
+        assert_eq!(clear_patch(RECT, &[RECT.center()], &lines).1, 7);
         let corner = free_corner(RECT, outline[0], vec2(300.0, 90.0));
         assert!(RECT.contains_rect(corner) && !corner.contains(outline[0]));
     }

@@ -34,8 +34,42 @@ fn every_consequence_is_in_sight_in_a_panel_beside_the_maps() {
     let draw = |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None });
     let panel = Harness::builder().with_size([480.0, 700.0]).build_ui_state(draw, ());
     seen::assert_readable(panel.output());
-    for label in ["range bin 7.49 cm", "a turn for each wavelength of distance"] {
+    for label in ["range bin 7.49 cm", "one phase cycle per wavelength of range (the thesis' convention)"] {
         assert!(panel.get_by_label(label).rect().right() <= 480.0, "{label}");
+    }
+}
+
+/// Widths of the panel in a window of 1280 by 720 points: among the settings, and with the guide beside it.
+const NARROW: [f32; 2] = [438.0, 342.0];
+
+#[test]
+fn every_consequence_can_be_read_in_a_small_window() {
+    for width in NARROW.into_iter().chain([600.0]) {
+        let draw = |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None });
+        let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, ());
+        seen::assert_readable(panel.output());
+        for label in
+            ["wavelength", "range bin", "maximum range", "far field", "first grating lobe", "from side to side"]
+        {
+            let text = panel.get_by_label_contains(label).rect();
+            let lines = text.height() / panel.get_by_label("power").rect().height();
+            assert!(text.right() <= width && lines < 4.5, "{label} at {width}: {text}");
+        }
+    }
+}
+
+#[test]
+fn the_table_stays_where_it_is_when_the_preset_goes() {
+    for width in NARROW.into_iter().chain([640.0]) {
+        let place = |radar: Radar| {
+            let draw = |ui: &mut Ui, radar: &mut Radar| _ = show(ui, Input { radar, measured: None });
+            let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, radar);
+            panel.get_by_role_and_label(egui::accesskit::Role::SpinButton, "bandwidth").rect().top()
+        };
+        let own = place(Radar { bandwidth_hz: 123e6, ..Radar::default() });
+        for preset in presets::ALL {
+            assert_eq!(place(preset.radar.clone()), own, "{} at {width}", preset.name);
+        }
     }
 }
 
@@ -54,10 +88,10 @@ fn fewer_elements_take_their_ends_along_and_spacings_are_one_number() {
     let mut panel = panel(Radar::default(), None);
     type_into(&mut panel, "elements", "16");
     assert_eq!((panel.state().0.elements, panel.state().0.end_elements), (16, 8));
-    type_into(&mut panel, "the same in wavelengths", "1");
+    type_into(&mut panel, "spacing / λ", "1");
     let spacing = panel.state().0.element_spacing_metres;
     assert!((spacing - panel.state().0.wavelength_metres()).abs() < 1e-12);
-    let _told = panel.get_by_label_contains("some directions look alike");
+    let _told = panel.get_by_label_contains("some directions are indistinguishable");
     panel.state().0.validate().unwrap();
 }
 
@@ -99,7 +133,7 @@ fn a_snapshot_has_no_ranges_and_one_that_was_measured_no_bandwidth() {
     let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
     let free = panel(radar.clone(), None);
     let _told =
-        (free.get_by_label("one sample tells no range from another"), free.get_by_label("a snapshot: one range bin"));
+        (free.get_by_label("one sample has no range resolution"), free.get_by_label("a snapshot: one range bin"));
     let measured = panel(radar, Some(Measured { by_all_elements: true }));
     let _told = measured.get_by_label("not known");
     assert!(measured.query_by_label_contains("2000").is_none());

@@ -28,6 +28,8 @@ pub struct Input<'a> {
     pub fields_of_view: bool,
     /// Reflectors that the method found, where they are drawn.
     pub found: &'a [Reflector],
+    /// Whether they are those of what stood there before.
+    pub found_stale: bool,
     /// Where a search moved each object, from place to place in metres.
     pub trails: &'a [Vec<[f64; 2]>],
     /// Where the pointer is, in whichever panel.
@@ -36,6 +38,16 @@ pub struct Input<'a> {
     pub error: Option<&'a str>,
     /// Whether ranges, angles and the scale are told.
     pub numbers: bool,
+}
+
+/// How strong marks are drawn that belong to an earlier scene.
+const OLD_OPACITY: f32 = 0.35;
+
+/// `painter`, paler where what it draws is `old`.
+fn dimmed(painter: &egui::Painter, old: bool) -> egui::Painter {
+    let mut painter = painter.clone();
+    painter.set_opacity(if old { OLD_OPACITY } else { 1.0 });
+    painter
 }
 
 /// Draws the canvas. Drags and selections go straight to the editor: as commands they would lag a frame.
@@ -61,7 +73,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         let look = Look { selected: editor.selection().contains(index), hovered };
         canvas::object(&painter, canvas, object, look);
     }
-    canvas::found(&painter, canvas, input.found);
+    canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
     trail::draw(&painter, canvas, input.trails);
     label_handles(editor, *view, ui, rect);
     if let (Some(start), Some(pos)) = (view.box_start, ui.input(|i| i.pointer.interact_pos())) {

@@ -91,6 +91,7 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
                 snap,
                 fields_of_view,
                 found,
+                found_stale: false,
                 trails,
                 cursor,
                 error,
@@ -120,8 +121,18 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
         let (snap, fields_of_view) = (Snap::Off, false);
         let (radar, found, trails, cursor, error) = (&radar, &found, &[], None, None);
         let snapshot_range_metres = Some(15.0);
-        let input =
-            Input { radar, snapshot_range_metres, snap, fields_of_view, found, trails, cursor, error, numbers: true };
+        let input = Input {
+            radar,
+            snapshot_range_metres,
+            snap,
+            fields_of_view,
+            found,
+            found_stale: false,
+            trails,
+            cursor,
+            error,
+            numbers: true,
+        };
         _ = show(ui, input, editor, view);
     };
     let state = (Editor::new(Scene::default()), SceneView::default());

@@ -1,0 +1,132 @@
+//! Lessons as they are shown: what is asked with, and what stands there after an answer.
+
+use super::*;
+use crate::app::state::{Before, MapViews, SceneView, Settings, Setup};
+use crate::lesson::Stage;
+use crate::radar::Radar;
+use crate::scene::Scene;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+
+fn run(lesson: &str, step: usize) -> LessonRun {
+    let shipped = crate::lesson::shipped::ALL.iter().find(|s| s.id == lesson).unwrap();
+    let setup =
+        Setup { settings: Settings::default(), radar: Radar::default(), scene: Arc::new(Scene::default()), depth: 0 };
+    let before = Before { setup, scene_view: SceneView::default(), map_views: MapViews::default() };
+    let mut run = LessonRun::new(lesson.to_owned(), Arc::new(shipped.load().unwrap()), before);
+    run.go_to(step);
+    run
+}
+
+type Drawn = (Option<LessonRun>, Memory, Vec<Command>);
+
+fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
+    let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
+        asked.extend(show(
+            ui,
+            Input { run: run.as_ref(), progress: &Progress::default(), hidden: None, presenting: false },
+            memory,
+        ));
+    };
+    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (run, Memory::default(), Vec::new()))
+}
+
+#[test]
+fn a_lesson_is_begun_from_the_list() {
+    let mut panel = harness(None);
+    panel.get_by_label("Range and bandwidth").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::BeginLesson(0)]);
+}
+
+#[test]
+fn lessons_ask_for_the_whole_screen() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 0)));
+    panel.get_by_label("Whole screen").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::PresentLesson]);
+}
+
+#[test]
+fn options_are_predictions_and_results_stay_hidden_before() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 3)));
+    assert!(panel.query_by_label_contains("Correct").is_none());
+    panel.get_by_label("It stays").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::Predict(Guess::Choice(3))]);
+}
+
+#[test]
+fn a_number_is_typed_and_answered() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 1)));
+    panel.get_by_label("Your number").focus();
+    panel.step();
+    panel.get_by_label("Your number").type_text("0,075");
+    panel.step();
+    panel.get_by_label("Answer").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::Predict(Guess::Number(0.075))]);
+}
+
+#[test]
+fn a_challenge_offers_its_solution() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 4)));
+    panel.get_by_label("Show a solution").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::ShowSolution]);
+}
+
+/// A run in which a step was answered.
+fn answered_run(lesson: &str, step: usize, guess: Guess) -> LessonRun {
+    let mut run = run(lesson, step);
+    let current = run.current().unwrap();
+    let stage = Stage::new(&current.radar, &current.scene(), &current.view, false).unwrap();
+    let judged = current.predict.as_ref().unwrap().judge(&stage, guess);
+    (run.guess, run.judgement) = (Some(guess), Some(judged));
+    run
+}
+
+#[test]
+fn a_wrong_choice_leaves_the_options_and_marks_the_right_one() {
+    let panel = harness(Some(answered_run("range-and-bandwidth", 3, Guess::Choice(1))));
+    for text in ["It shrinks to a third", "your answer, wrong", "It stays", "the right answer"] {
+        assert_eq!(panel.query_all_by_label(text).count(), 1, "{text}");
+    }
+    let _verdict = panel.get_by_label("Not quite: the answer is “It stays”.");
+}
+
+#[test]
+fn a_number_stands_beside_the_exact_one() {
+    let panel = harness(Some(answered_run("range-and-bandwidth", 1, Guess::Number(0.075))));
+    let _both = (panel.get_by_label("Your answer: 0.075 m. Exact: 0.075 m."), panel.get_by_label("Correct: 0.075 m."));
+    let panel = harness(Some(answered_run("range-and-bandwidth", 1, Guess::Number(0.15))));
+    let _off = panel.get_by_label("Not quite: it is 0.075 m; you were 100 % off.");
+}
+
+#[test]
+fn a_threshold_stands_beside_those_that_are_right() {
+    let panel = harness(Some(answered_run("windows-and-side-lobes", 1, Guess::Eta(0.01))));
+    let _told = panel.get_by_label("Your answer: 0.01. The green part of the scale is right.");
+    assert!(panel.query_by_label_contains("Any threshold from").is_some());
+}
+
+#[test]
+fn a_shown_solution_counts_as_unsolved() {
+    let mut run = run("range-and-bandwidth", 4);
+    run.gave_up = true;
+    let mut panel = harness(Some(run));
+    assert!(panel.query_by_label_contains("Solved").is_none());
+    panel.get_by_label("Start this step again").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::LessonStep(4)]);
+}
+
+#[test]
+fn previous_keeps_the_verdict() {
+    let mut run = answered_run("range-and-bandwidth", 3, Guess::Choice(1));
+    run.go_to(2);
+    assert!(run.guess.is_none() && run.judgement.is_none() && run.is_predicting());
+    run.go_to(3);
+    assert!(!run.is_predicting() && run.judgement.is_some_and(|j| j.is_ok_and(|j| !j.is_right)));
+}

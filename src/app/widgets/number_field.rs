@@ -1,0 +1,295 @@
+//! A number to type or to drag. Every field of the window that takes a number is one.
+//!
+//! What is typed counts when Enter, Tab or a click elsewhere ends it, never before. A wrong entry changes nothing: it stays in the field, in
+//! red, and a message beside the field says what is wanted. After Enter the field keeps the focus, so that the next key goes to it.
+
+use eframe::egui::{self, DragValue, Id, Key, Popup, PopupKind, RectAlign, Response, RichText, Ui, Widget, emath};
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+use std::rc::Rc;
+
+/// Beyond this a bound of a range is no news to anybody, and is not told.
+const LARGEST_TOLD: f64 = 1e15;
+
+/// What a field takes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// From the smallest to the largest number.
+    pub range: RangeInclusive<f64>,
+    /// Whether only whole numbers are taken.
+    pub is_whole: bool,
+    /// The unit, as it stands behind the number.
+    pub unit: String,
+}
+
+impl Wanted {
+    /// Any number.
+    pub fn any() -> Self {
+        Wanted { range: f64::NEG_INFINITY..=f64::INFINITY, is_whole: false, unit: String::new() }
+    }
+
+    /// Reads what was typed. A comma may stand for the decimal point, and the unit may follow.
+    ///
+    /// # Errors
+    /// A sentence for the user: what is wrong with the entry, and what is wanted.
+    pub fn read(&self, text: &str) -> Result<f64, String> {
+        let wrong = |what: &str| format!("{} {what}. {}", shortened(text), self.told());
+        let letters: String =
+            text.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
+        let unit: String = self.unit.chars().filter(|c| !c.is_whitespace()).collect();
+        let number = letters.strip_suffix(unit.as_str()).unwrap_or(&letters);
+        let number = match number.matches(',').count() == 1 && !number.contains('.') {
+            true => number.replace(',', "."),
+            false => number.to_owned(),
+        };
+        // The standard library also reads "nan" and "infinity".
+        let is_number = number.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
+        let Some(value) = number.parse::<f64>().ok().filter(|_| is_number) else {
+            return Err(wrong("is not a number"));
+        };
+        if !value.is_finite() || !self.range.contains(&value) {
+            return Err(wrong("is out of range"));
+        }
+        match self.is_whole && value.fract() != 0.0 {
+            true => Err(wrong("is not a whole number")),
+            false => Ok(value),
+        }
+    }
+
+    /// What is wanted, as a sentence.
+    fn told(&self) -> String {
+        let number = if self.is_whole { "a whole number" } else { "a number" };
+        let bound =
+            |value: f64| Some(value).filter(|v| v.abs() < LARGEST_TOLD).map(|v| format!("{v}").replace('-', "−"));
+        let unit = self.unit.trim();
+        let unit = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
+        match (bound(*self.range.start()), bound(*self.range.end())) {
+            (Some(low), Some(high)) => format!("Enter {number} from {low} to {high}{unit}."),
+            (Some(low), None) => format!("Enter {number}, {low}{unit} or more."),
+            (None, Some(high)) => format!("Enter {number}, {high}{unit} or less."),
+            (None, None) => format!("Enter {number}."),
+        }
+    }
+}
+
+/// What was typed, in quotation marks, as much of it as fits a message.
+fn shortened(text: &str) -> String {
+    let text = text.trim();
+    match text.chars().count() > 24 {
+        true => format!("“{}…”", text.chars().take(24).collect::<String>()),
+        false if text.is_empty() => "Nothing".to_owned(),
+        false => format!("“{text}”"),
+    }
+}
+
+/// An entry that the field did not take.
+#[derive(Debug, Clone, PartialEq)]
+struct Wrong {
+    text: String,
+    message: String,
+    /// The value that the field kept: once it changes by other means, the entry is forgotten.
+    kept: f64,
+    /// The pass in which the field was drawn last: an entry of a field that went away is forgotten.
+    drawn: u64,
+}
+
+/// What the field showed, and what became of its text when it was read.
+#[derive(Default)]
+struct Reading {
+    shown: String,
+    wrong: Option<(String, String)>,
+    taken: bool,
+}
+
+/// A field for a number; a builder like [`DragValue`], which it draws.
+#[must_use = "ui.add(field)"]
+pub struct NumberField<'a> {
+    get_set: Box<dyn 'a + FnMut(Option<f64>) -> f64>,
+    wanted: Wanted,
+    clamps: bool,
+    speed: f64,
+    min_decimals: usize,
+    max_decimals: Option<usize>,
+    /// What stands in the place of the number.
+    standing_for: Option<&'a str>,
+}
+
+impl<'a> NumberField<'a> {
+    /// For `value`.
+    pub fn new<Num: emath::Numeric>(value: &'a mut Num) -> Self {
+        let field = Self::from_get_set(move |new| {
+            if let Some(new) = new {
+                *value = Num::from_f64(new);
+            }
+            value.to_f64()
+        });
+        match Num::INTEGRAL {
+            true => field.max_decimals(0).range(Num::MIN..=Num::MAX).speed(0.25),
+            false => field,
+        }
+    }
+
+    /// For a value that is read and written by a function.
+    pub fn from_get_set(get_set: impl 'a + FnMut(Option<f64>) -> f64) -> Self {
+        let (clamps, speed, min_decimals, max_decimals, standing_for) = (true, 1.0, 0, None, None);
+        let wanted = Wanted::any();
+        NumberField { get_set: Box::new(get_set), wanted, clamps, speed, min_decimals, max_decimals, standing_for }
+    }
+
+    /// Numbers that are taken; a drag stops at the ends.
+    pub fn range<Num: emath::Numeric>(mut self, range: RangeInclusive<Num>) -> Self {
+        self.wanted.range = range.start().to_f64()..=range.end().to_f64();
+        self
+    }
+
+    /// Whether a value out of range that is there already is moved into it.
+    pub fn clamp_existing_to_range(mut self, clamps: bool) -> Self {
+        self.clamps = clamps;
+        self
+    }
+
+    /// Change of the number for each point of a drag.
+    pub fn speed(mut self, speed: f64) -> Self {
+        self.speed = speed;
+        self
+    }
+
+    /// Decimals that are always shown.
+    pub fn min_decimals(mut self, decimals: usize) -> Self {
+        self.min_decimals = decimals;
+        self
+    }
+
+    /// Most decimals that are shown; with 0 only whole numbers are taken.
+    pub fn max_decimals(mut self, decimals: usize) -> Self {
+        (self.max_decimals, self.wanted.is_whole) = (Some(decimals), decimals == 0);
+        self
+    }
+
+    /// Decimals that are shown, no more and no fewer.
+    pub fn fixed_decimals(self, decimals: usize) -> Self {
+        self.min_decimals(decimals).max_decimals(decimals)
+    }
+
+    /// The unit, with the space before it.
+    pub fn suffix(mut self, unit: impl Into<String>) -> Self {
+        self.wanted.unit = unit.into();
+        self
+    }
+
+    /// Shows `text` in the place of the number, until another is entered.
+    pub fn standing_for(mut self, text: &'a str) -> Self {
+        self.standing_for = Some(text);
+        self
+    }
+}
+
+impl Widget for NumberField<'_> {
+    fn ui(mut self, ui: &mut Ui) -> Response {
+        let id = ui.next_auto_id();
+        let value = (self.get_set)(None);
+        let before = wrong_of(ui, id, value);
+        let reading = Rc::new(RefCell::new(Reading::default()));
+        let unit = if self.standing_for.is_some() || before.is_some() { "" } else { self.wanted.unit.as_str() };
+        let mut drag = DragValue::from_get_set(&mut self.get_set)
+            .range(self.wanted.range.clone())
+            .clamp_existing_to_range(self.clamps)
+            .update_while_editing(false)
+            .speed(self.speed)
+            .min_decimals(self.min_decimals)
+            .suffix(unit.to_owned());
+        if let Some(decimals) = self.max_decimals {
+            drag = drag.max_decimals(decimals);
+        }
+        let (shows, text, formatter) =
+            (reading.clone(), before.as_ref().map(|b| b.text.clone()), ui.style().number_formatter.clone());
+        drag = drag.custom_formatter(move |value, decimals| {
+            let shown = text.clone().or(self.standing_for.map(str::to_owned));
+            let shown = shown.unwrap_or_else(|| formatter.format(value, decimals));
+            shows.borrow_mut().shown.clone_from(&shown);
+            shown
+        });
+        let (reads, wanted, is_wrong) = (reading.clone(), self.wanted.clone(), before.is_some());
+        drag = drag.custom_parser(move |text| {
+            let mut reading = reads.borrow_mut();
+            if !is_wrong && text == reading.shown {
+                // Only looked at: it keeps the decimals that are not shown.
+                return None;
+            }
+            let read = wanted.read(text);
+            reading.taken |= read.is_ok();
+            reading.wrong = read.as_ref().err().map(|message| (text.to_owned(), message.clone()));
+            read.ok()
+        });
+        let ink = ui.visuals().override_text_color;
+        if before.is_some() {
+            ui.visuals_mut().override_text_color = Some(ui.visuals().error_fg_color);
+        }
+        let response = ui.add(drag);
+        if before.is_some() {
+            ui.visuals_mut().override_text_color = ink;
+        }
+        let reading = reading.take();
+        keep(ui, id, value, before, reading, &response);
+        if let Some(wrong) = wrong_of(ui, id, value) {
+            tell(ui, &response, &wrong);
+        }
+        response
+    }
+}
+
+/// Where the entry that a field did not take is kept.
+fn key(id: Id) -> Id {
+    id.with("wrong entry")
+}
+
+/// The entry that the field did not take, if it still stands there.
+fn wrong_of(ui: &Ui, id: Id, value: f64) -> Option<Wrong> {
+    let pass = ui.ctx().cumulative_pass_nr();
+    let wrong: Option<Wrong> = ui.data(|d| d.get_temp(key(id)));
+    wrong.filter(|w| w.kept == value && w.drawn + 1 >= pass)
+}
+
+/// Remembers what was not taken, for the next frame; forgets it where it was taken, given up by Escape, or dragged away.
+fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, response: &Response) {
+    let drawn = ui.ctx().cumulative_pass_nr();
+    let (escaped, entered) = ui.input(|i| (i.key_pressed(Key::Escape), i.key_pressed(Key::Enter)));
+    let given_up = escaped && response.lost_focus();
+    let is_over = reading.taken || given_up || response.changed();
+    let wrong = match reading.wrong {
+        Some((text, message)) => {
+            if entered {
+                // Whatever is typed next is meant for the field.
+                response.request_focus();
+            }
+            Some(Wrong { text, message, kept, drawn })
+        }
+        None => before.filter(|_| !is_over).map(|wrong| Wrong { drawn, ..wrong }),
+    };
+    ui.data_mut(|d| match wrong {
+        Some(wrong) => _ = d.insert_temp(key(id), wrong),
+        None => d.remove::<Wrong>(key(id)),
+    });
+}
+
+/// Says beside the field what is wanted; nothing moves for it.
+fn tell(ui: &Ui, response: &Response, wrong: &Wrong) {
+    if !ui.is_rect_visible(response.rect) {
+        return;
+    }
+    let text =
+        RichText::new(format!("{} Esc brings the number back.", wrong.message)).color(ui.visuals().error_fg_color);
+    Popup::from_response(response)
+        .id(response.id.with("what is wanted"))
+        .kind(PopupKind::Tooltip)
+        .open(true)
+        .interactable(false)
+        .align(RectAlign::RIGHT)
+        .align_alternatives(&[RectAlign::BOTTOM_START, RectAlign::TOP_START])
+        .close_behavior(egui::PopupCloseBehavior::IgnoreClicks)
+        .width(260.0)
+        .show(|ui| ui.add(egui::Label::new(text).wrap()));
+}
+
+#[cfg(test)]
+mod tests;

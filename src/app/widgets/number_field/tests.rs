@@ -1,0 +1,199 @@
+use super::*;
+use crate::app::widgets::seen;
+use eframe::egui::{Event, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+/// A field for x, one for a count, and how often the first asked for another x.
+struct Shown {
+    x_metres: f64,
+    count: u32,
+    changes: usize,
+}
+
+fn panel() -> Harness<'static, Shown> {
+    let draw = |ui: &mut Ui, shown: &mut Shown| {
+        let label = ui.label("x");
+        let field = NumberField::new(&mut shown.x_metres).range(-1e4..=1e4).suffix(" m").max_decimals(3);
+        shown.changes += usize::from(ui.add(field).labelled_by(label.id).changed());
+        let label = ui.label("count");
+        ui.add(NumberField::new(&mut shown.count).range(1..=9)).labelled_by(label.id);
+    };
+    let shown = Shown { x_metres: 1.0 / 3.0, count: 5, changes: 0 };
+    let mut panel = Harness::builder().with_size([420.0, 200.0]).build_ui_state(draw, shown);
+    panel.run();
+    panel
+}
+
+fn field<'h>(panel: &'h Harness<'_, Shown>, name: &'h str) -> egui_kittest::Node<'h> {
+    let is_field = |role| role == egui::accesskit::Role::SpinButton;
+    panel.get_by(move |n| n.label().as_deref() == Some(name) && is_field(n.role()))
+}
+
+fn write(panel: &mut Harness<'_, Shown>, name: &str, text: &str) {
+    field(panel, name).focus();
+    panel.run();
+    panel.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    panel.run();
+    panel.event(Event::Text(text.to_owned()));
+    panel.run();
+}
+
+fn enter(panel: &mut Harness<'_, Shown>, name: &str, text: &str) {
+    write(panel, name, text);
+    panel.key_press(Key::Enter);
+    panel.run();
+}
+
+fn says(panel: &Harness<'_, Shown>, what: &str) -> bool {
+    panel.query_by_label_contains(what).is_some()
+}
+
+#[test]
+fn a_decimal_comma_is_read() {
+    let metres = Wanted { range: -1e4..=1e4, is_whole: false, unit: " m".to_owned() };
+    for (text, value) in [("-3,5", -3.5), ("-3.5", -3.5), ("−3.5 m", -3.5), (" 1 000 ", 1000.0), ("+2e3", 2000.0)] {
+        assert_eq!(metres.read(text), Ok(value), "{text}");
+    }
+}
+
+#[test]
+fn a_wrong_entry_is_told_by_its_reason() {
+    let metres = Wanted { range: -1e4..=1e4, is_whole: false, unit: " m".to_owned() };
+    for (text, reason) in [
+        ("nan", "“nan” is not a number"),
+        ("inf", "is not a number"),
+        ("abc", "“abc” is not a number"),
+        ("1.234,5", "is not a number"),
+        ("", "Nothing is not a number"),
+        ("1e400", "“1e400” is out of range"),
+        ("20000", "“20000” is out of range. Enter a number from −10000 to 10000 m."),
+    ] {
+        let told = metres.read(text).unwrap_err();
+        assert!(told.contains(reason), "{told}");
+    }
+    let count = Wanted { range: 1.0..=u64::MAX as f64, is_whole: true, unit: String::new() };
+    assert_eq!(count.read("2.5"), Err("“2.5” is not a whole number. Enter a whole number, 1 or more.".to_owned()));
+}
+
+#[test]
+fn a_wrong_entry_changes_nothing() {
+    for text in ["nan", "1e400", "abc", "-3,5,1", "12345678"] {
+        let mut panel = panel();
+        enter(&mut panel, "x", text);
+        assert_eq!((panel.state().x_metres, panel.state().changes), (1.0 / 3.0, 0), "{text}");
+    }
+}
+
+#[test]
+fn a_wrong_entry_stays_in_the_field() {
+    let mut panel = panel();
+    enter(&mut panel, "x", "abc");
+    assert_eq!(field(&panel, "x").value().as_deref(), Some("abc"));
+    assert!(says(&panel, "Enter a number from −10000 to 10000 m."));
+    // A click elsewhere takes the focus away, not the entry.
+    panel.get_by_label("count").click();
+    panel.run();
+    assert_eq!(field(&panel, "x").value().as_deref(), Some("abc"));
+    assert!(says(&panel, "“abc” is not a number"));
+    assert!(seen::texts(panel.output()).iter().any(|t| t.text == "abc"));
+}
+
+#[test]
+fn the_field_keeps_the_focus_after_a_wrong_entry() {
+    let mut panel = panel();
+    enter(&mut panel, "x", "abc");
+    assert!(field(&panel, "x").is_focused() && panel.ctx.text_edit_focused());
+    enter(&mut panel, "x", "2.5");
+    assert!(!panel.ctx.text_edit_focused(), "a right entry gives the focus up");
+}
+
+#[test]
+fn a_right_entry_takes_the_place_of_a_wrong_one() {
+    let mut panel = panel();
+    enter(&mut panel, "x", "abc");
+    enter(&mut panel, "x", "-3,5");
+    assert_eq!((panel.state().x_metres, panel.state().changes), (-3.5, 1));
+    assert!(!says(&panel, "is not a number"));
+}
+
+#[test]
+fn escape_brings_the_number_back() {
+    let mut panel = panel();
+    enter(&mut panel, "x", "abc");
+    panel.key_press(Key::Escape);
+    panel.run();
+    assert_eq!(field(&panel, "x").value().as_deref(), Some("0.333 m"));
+    assert!(!says(&panel, "is not a number"));
+    assert_eq!(panel.state().x_metres, 1.0 / 3.0);
+}
+
+#[test]
+fn nothing_counts_before_the_entry_ends() {
+    let mut panel = panel();
+    write(&mut panel, "x", "12");
+    assert_eq!(panel.state().changes, 0);
+    panel.key_press(Key::Tab);
+    panel.run();
+    assert_eq!((panel.state().x_metres, panel.state().changes), (12.0, 1));
+}
+
+#[test]
+fn the_focus_passes_through_without_rounding() {
+    let mut panel = panel();
+    for _ in 0..3 {
+        panel.key_press(Key::Tab);
+        panel.run();
+    }
+    assert_eq!((panel.state().x_metres, panel.state().changes), (1.0 / 3.0, 0));
+}
+
+#[test]
+fn a_count_takes_whole_numbers_only() {
+    let mut panel = panel();
+    enter(&mut panel, "count", "2.5");
+    assert!(says(&panel, "Enter a whole number from 1 to 9.") && panel.state().count == 5);
+    enter(&mut panel, "count", "7");
+    assert_eq!(panel.state().count, 7);
+}
+
+#[test]
+fn a_change_from_elsewhere_ends_a_wrong_entry() {
+    let mut panel = panel();
+    enter(&mut panel, "x", "abc");
+    panel.state_mut().x_metres = 8.0;
+    panel.run();
+    assert!(!says(&panel, "is not a number"));
+}
+
+#[test]
+fn the_message_moves_nothing() {
+    let mut panel = panel();
+    let before = field(&panel, "count").rect();
+    enter(&mut panel, "x", "abc");
+    assert_eq!(field(&panel, "count").rect(), before);
+}
+
+/// The sources below a folder.
+fn sources(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut found = Vec::new();
+    for path in entries {
+        match path.is_dir() {
+            true => found.extend(sources(&path)),
+            false => found.push(path),
+        }
+    }
+    found
+}
+
+#[test]
+fn every_number_of_the_window_is_entered_here() {
+    let app = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
+    let here =
+        |path: &std::path::Path| path.to_string_lossy().contains("number_field") || path.ends_with("focus_ring.rs");
+    for path in sources(&app).into_iter().filter(|path| !here(path)) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(!text.contains("DragValue"), "{} has a field that takes what is no number", path.display());
+    }
+}

@@ -1,0 +1,88 @@
+//! `apertura bench --live`: the live network's forward pass, with and without what it leaves out, beside the features before it.
+
+use crate::commands::{CommandError, print};
+use crate::network;
+use crate::network::live::engine::Scratch;
+use crate::network::live::features::FeatureExtractor;
+use crate::radar::{Radar, counted};
+use crate::reconstruct::Request;
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::simulate;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Test scenes that are timed.
+const SCENES: u32 = 15;
+
+/// Median times over test scenes of set 2.
+#[derive(Debug, Serialize)]
+struct Pass {
+    threads: usize,
+    scenes: u32,
+    /// The matched filters that the network reads.
+    features_milliseconds: f64,
+    /// The network as it ships: what doesn't show in a scene's map is left out.
+    forward_milliseconds: f64,
+    /// The network with nothing left out: as much work as anything else that runs it does.
+    dense_forward_milliseconds: f64,
+}
+
+/// Measures and prints.
+pub fn run(json: bool) -> Result<(), CommandError> {
+    let pass = measure(SCENES)?;
+    if json {
+        return print(&serde_json::to_string_pretty(&pass).map_err(CommandError::failed)?);
+    }
+    let Pass { threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds } = pass;
+    print(&format!(
+        "live on {}, medians of {}: {features_milliseconds:.1} ms features; {forward_milliseconds:.1} ms the network, \
+         {dense_forward_milliseconds:.1} ms with nothing left out",
+        counted(threads, "thread", "threads"),
+        counted(scenes, "scene of set 2", "scenes of set 2")
+    ))
+}
+
+fn measure(scenes: u32) -> Result<Pass, CommandError> {
+    let live = network::live().ok_or_else(|| CommandError::Usage("the live network's weights can't be used".into()))?;
+    let (radar, request) = (Radar::default(), Request::default());
+    let extractor = FeatureExtractor::new(&radar).map_err(CommandError::failed)?;
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
+    let mut scratch = Scratch::default();
+    let mut times = [const { Vec::new() }; 3];
+    // The first scene warms up, and isn't counted.
+    for number in 0..=scenes {
+        let scene = generator.scene(Kind::Set2, number);
+        let signal = simulate(&radar, &scene, request.floor, scene.noise_seed).map_err(CommandError::failed)?;
+        let ends = signal.two_ends(&radar);
+        let start = Instant::now();
+        let input = extractor.extract(&ends).map_err(CommandError::failed)?;
+        let features = start.elapsed();
+        let start = Instant::now();
+        let _map = live.engine().forward(&input, &mut scratch);
+        let forward = start.elapsed();
+        let start = Instant::now();
+        let _map = live.engine().forward_whole(&input, &mut scratch);
+        let dense = start.elapsed();
+        if number > 0 {
+            times.iter_mut().zip([features, forward, dense]).for_each(|(t, d)| t.push(1e3 * d.as_secs_f64()));
+        }
+    }
+    let [features_milliseconds, forward_milliseconds, dense_forward_milliseconds] = times.map(|mut t| {
+        t.sort_by(f64::total_cmp);
+        t[t.len() / 2]
+    });
+    let threads = rayon::current_num_threads();
+    Ok(Pass { threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_of_a_pass_takes_time() {
+        let pass = measure(1).unwrap();
+        assert!(pass.features_milliseconds > 0.0 && pass.forward_milliseconds > 0.0, "{pass:?}");
+        assert!(pass.dense_forward_milliseconds > 0.0, "{pass:?}");
+    }
+}

@@ -1,0 +1,172 @@
+//! The file of rows that a run appends to, and goes on from when it was stopped.
+
+use super::super::CommandError;
+use super::on_file;
+use crate::evaluate::rows::{Column, Origin, Part, Row, RowWriter, Table, merge, read_table, write_rows};
+use crate::files::write_atomically;
+use std::collections::{HashMap, HashSet};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a user can do about a file that is not to be lost.
+const WAYS_OUT: &str = "name another file, or write over this one with --overwrite";
+
+/// The rows that a run makes.
+pub struct Wanted {
+    /// What makes the rows of a set and a method.
+    pub origins: HashMap<(String, String), Arc<Origin>>,
+    /// Seed of generated scenes.
+    pub seed: u64,
+}
+
+/// Scene and method of a row.
+pub type Key = (String, u32, String);
+
+/// What tells a row from the others of its run.
+pub fn key(row: &Row) -> Key {
+    (row.set.clone(), row.index, row.method.clone())
+}
+
+impl Wanted {
+    /// Why a row is not one of this run's.
+    fn foreign(&self, row: &Row) -> Option<String> {
+        let Some(origin) = &row.origin else {
+            return Some("its rows don't say what made them: an older program wrote them".to_owned());
+        };
+        let Some(own) = self.origins.get(&(row.set.clone(), row.method.clone())) else {
+            return Some(format!("it holds rows of set {} by {}, which this run doesn't make", row.set, row.method));
+        };
+        let differs = |what: &str, there: &str, here: &str| {
+            let named = |value: &str| if value.is_empty() { "nothing".to_owned() } else { value.to_owned() };
+            Some(format!("it holds rows of another run: {what} is {} there and {} here", named(there), named(here)))
+        };
+        if !Arc::ptr_eq(origin, own)
+            && let Some(part) = Part::ALL.into_iter().find(|part| origin.text(*part) != own.text(*part))
+        {
+            return differs(part.name(), &origin.text(part), &own.text(part));
+        }
+        let seed = if row.is_generated() { self.seed } else { 0 };
+        if row.seed != seed {
+            return differs(Column::Seed.name(), &row.seed.to_string(), &seed.to_string());
+        }
+        let count = own.whole.sets.iter().find(|(set, _)| *set == row.set).map_or(0, |(_, count)| *count);
+        let is_own = row.index < count && own.shard.contains(row.index);
+        (!is_own).then(|| format!("it holds scene {} of set {}, which this run doesn't have", row.index, row.set))
+    }
+}
+
+/// A file that rows are appended to, each a whole line as soon as it is found.
+pub struct RowFile {
+    path: PathBuf,
+    out: RowWriter<File>,
+    /// The rows that were there already.
+    pub present: Vec<Row>,
+    /// In the order of the file.
+    appended: Vec<Row>,
+    failed: Option<io::Error>,
+}
+
+impl RowFile {
+    /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew whatever is there.
+    ///
+    /// # Errors
+    /// [`CommandError`] for a file that holds anything else, and for one that another process writes.
+    pub fn open(path: &Path, wanted: &Wanted, overwrite: bool) -> Result<RowFile, CommandError> {
+        if path.exists() && !path.is_file() {
+            let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
+            return Err(on_file(path)(source));
+        }
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(on_file(path))?;
+        // Where the system has no locks the file is written all the same.
+        if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+            return Err(refused(path, "another run writes it", "wait for that run, or name another file"));
+        }
+        let table = if overwrite { Table::default() } else { present(path, &file, wanted)? };
+        file.set_len(table.whole_bytes).map_err(on_file(path))?;
+        file.seek(SeekFrom::End(0)).map_err(on_file(path))?;
+        let out = if table.whole_bytes == 0 {
+            let mut out = RowWriter::new(file).map_err(on_file(path))?;
+            out.flush().map_err(on_file(path))?;
+            out
+        } else {
+            RowWriter::beneath(file)
+        };
+        Ok(RowFile { path: path.to_owned(), out, present: table.rows, appended: Vec::new(), failed: None })
+    }
+
+    /// Appends a row. Whether that went well; [`RowFile::finish`] says why not.
+    pub fn append(&mut self, row: &Row) -> bool {
+        let wrote = self.out.add(row).and_then(|()| self.out.flush());
+        self.appended.push(row.clone());
+        self.failed = self.failed.take().or(wrote.err());
+        self.failed.is_none()
+    }
+
+    /// Why rows could not be appended, if so.
+    pub fn failure(&mut self) -> Option<CommandError> {
+        self.failed.take().map(on_file(&self.path))
+    }
+
+    /// All rows, sorted as a run that was never stopped has them; so is the file then.
+    pub fn finish(self) -> Result<Vec<Row>, CommandError> {
+        let RowFile { path, out, present, appended, .. } = self;
+        drop(out);
+        let all: Vec<Row> = present.into_iter().chain(appended).collect();
+        let sorted = merge(vec![(path.display().to_string(), all.clone())]).map_err(CommandError::failed)?;
+        if sorted != all {
+            write_atomically(&path, |out| write_rows(out, &sorted)).map_err(on_file(&path))?;
+        }
+        Ok(sorted)
+    }
+}
+
+fn refused(path: &Path, why: &str, ways_out: &str) -> CommandError {
+    CommandError::Usage(format!("{}: {why}; {ways_out}", path.display()))
+}
+
+/// The rows of this run that a file holds.
+fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, CommandError> {
+    let names = Column::ALL.map(Column::name).join(",");
+    let mut start = vec![0; names.len()];
+    let read = file.read(&mut start).and_then(|read| file.rewind().map(|()| read)).map_err(on_file(path))?;
+    // A run that was stopped before its first line was whole.
+    if start[..read] == names.as_bytes()[..read] && !is_line(file, path)? {
+        return Ok(Table::default());
+    }
+    let table = read_table(file).map_err(|e| refused(path, &e.to_string(), WAYS_OUT))?;
+    let mut seen = HashSet::new();
+    for row in &table.rows {
+        let twice = || format!("it holds scene {} of set {} by {} twice", row.index, row.set, row.method);
+        let wrong = wanted.foreign(row).or_else(|| (!seen.insert(key(row))).then(twice));
+        if let Some(why) = wrong {
+            return Err(refused(path, &why, WAYS_OUT));
+        }
+    }
+    Ok(table)
+}
+
+/// Whether the first line has an end; the file is rewound.
+fn is_line(mut file: &File, path: &Path) -> Result<bool, CommandError> {
+    let mut first = Vec::new();
+    file.take(64 << 10).read_to_end(&mut first).map_err(on_file(path))?;
+    file.rewind().map_err(on_file(path))?;
+    Ok(first.contains(&b'\n'))
+}
+
+/// Writes merged rows, unless a file is there whose rows are not among them.
+pub fn write_merged(path: &Path, rows: &[Row], overwrite: bool) -> Result<(), CommandError> {
+    if path.is_file() && !overwrite {
+        let file = File::open(path).map_err(on_file(path))?;
+        let table = read_table(file).map_err(|e| refused(path, &e.to_string(), WAYS_OUT))?;
+        let figures = |row: &Row| (key(row), row.seed, row.squared_error.to_bits());
+        let merged: HashSet<_> = rows.iter().map(figures).collect();
+        if let Some(row) = table.rows.iter().find(|row| !merged.contains(&figures(row))) {
+            let why = format!("it holds other rows, scene {} of set {} by {} first", row.index, row.set, row.method);
+            return Err(refused(path, &why, WAYS_OUT));
+        }
+    }
+    write_atomically(path, |out| write_rows(out, rows)).map_err(on_file(path))
+}

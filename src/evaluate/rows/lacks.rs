@@ -1,0 +1,171 @@
+//! What lacks of a whole run.
+
+use super::{Row, Whole};
+use crate::evaluate::shard::Shard;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::sync::Arc;
+
+/// Most scenes that a message numbers.
+const MOST_NAMED: usize = 8;
+/// Most shards of a run that are told apart.
+const MOST_SHARDS: u32 = 1000;
+
+/// Scenes of a set that no row of a method is of.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Lack {
+    /// Name of the set.
+    pub set: String,
+    /// Name of the method.
+    pub method: String,
+    /// How many scenes lack.
+    pub missing: u32,
+    /// How many the whole run has.
+    pub of: u32,
+    /// Numbers of the first few.
+    first: Vec<u32>,
+    /// The shard that they are, if they are one.
+    shard: Option<String>,
+}
+
+impl fmt::Display for Lack {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Lack { set, method, missing, of, first, shard } = self;
+        write!(f, "set {set}, {method}: {missing} of {of} scenes")?;
+        match shard {
+            Some(shard) => write!(f, " (shard {shard})"),
+            None if missing == of => Ok(()),
+            None => {
+                let numbers: Vec<String> = first.iter().map(u32::to_string).collect();
+                let more = if first.len() < *missing as usize { ", \u{2026}" } else { "" };
+                write!(f, " (number {}{more})", numbers.join(", "))
+            }
+        }
+    }
+}
+
+/// What lacks of the runs that `rows` are of, whichever run a row is of. Of rows that don't say what their whole run was, gaps are found
+/// between the scenes that are there.
+pub fn lacks(rows: &[Row]) -> Vec<Lack> {
+    let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();
+    let mut wholes: Vec<&Whole> = Vec::new();
+    let mut shards: Vec<Shard> = Vec::new();
+    let mut last = None;
+    let mut guessed: BTreeMap<&str, (u32, BTreeSet<&str>)> = BTreeMap::new();
+    for row in rows {
+        present.entry((&row.set, &row.method)).or_default().insert(row.index);
+        let Some(origin) = &row.origin else {
+            let (count, methods) = guessed.entry(&row.set).or_default();
+            *count = (*count).max(row.index.saturating_add(1));
+            methods.insert(&row.method);
+            continue;
+        };
+        if last.is_some_and(|last| Arc::ptr_eq(last, origin)) {
+            continue;
+        }
+        last = Some(origin);
+        if !wholes.contains(&&origin.whole) {
+            wholes.push(&origin.whole);
+        }
+        if !shards.contains(&origin.shard) {
+            shards.push(origin.shard);
+        }
+    }
+    let mut wanted: Vec<(&str, &str, u32)> = Vec::new();
+    for whole in wholes {
+        for (set, count) in &whole.sets {
+            wanted.extend(whole.methods.iter().map(|method| (set.as_str(), method.as_str(), *count)));
+        }
+    }
+    for (set, (count, methods)) in guessed {
+        wanted.extend(methods.into_iter().map(|method| (set, method, count)));
+    }
+    let empty = BTreeSet::new();
+    let mut found: Vec<Lack> = Vec::new();
+    for (set, method, of) in wanted {
+        let there = present.get(&(set, method)).unwrap_or(&empty);
+        let lack = Lack::of(set, method, of, there, &shards);
+        found.extend(lack.filter(|lack| !found.contains(lack)));
+    }
+    found
+}
+
+impl Lack {
+    fn of(set: &str, method: &str, of: u32, there: &BTreeSet<u32>, shards: &[Shard]) -> Option<Lack> {
+        let missing = of - there.range(..of).count() as u32;
+        if missing == 0 {
+            return None;
+        }
+        let is_whole = |shard: &Shard| {
+            missing < of && missing == shard.size(of) && !there.range(..of).any(|index| shard.contains(*index))
+        };
+        let shard = shards.iter().filter(|s| s.of() <= MOST_SHARDS).flat_map(|shard| shard.all()).find(is_whole);
+        let first = (0..of).filter(|index| !there.contains(index)).take(MOST_NAMED).collect();
+        let shard = shard.map(|shard| shard.to_string());
+        Some(Lack { set: set.to_owned(), method: method.to_owned(), missing, of, first, shard })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::origin::tests::origin;
+    use super::super::tests::row;
+    use super::*;
+    use crate::evaluate::rows::Origin;
+
+    fn rows(shard: &str) -> Vec<Row> {
+        let shard: Shard = shard.parse().unwrap();
+        let sets = vec![("1".to_owned(), 10), ("2".to_owned(), 10)];
+        let whole = Whole::new(sets, vec!["live".into(), "nomp".into()]).unwrap();
+        let origin = Arc::new(Origin { shard, whole, ..origin() });
+        let of = |set: &str, index, method: &str| Row { origin: Some(origin.clone()), ..row(set, index, method) };
+        let numbers: Vec<u32> = (0..10).filter(|n| shard.contains(*n)).collect();
+        ["1", "2"]
+            .iter()
+            .flat_map(|set| numbers.iter().flat_map(|n| ["live", "nomp"].map(|method| of(set, *n, method))))
+            .collect()
+    }
+
+    fn told(rows: &[Row]) -> Vec<String> {
+        lacks(rows).iter().map(Lack::to_string).collect()
+    }
+
+    #[test]
+    fn a_whole_run_lacks_nothing() {
+        assert_eq!(told(&rows("0/1")), [""; 0]);
+        assert_eq!(told(&[rows("1/2"), rows("0/2")].concat()), [""; 0]);
+        assert_eq!(told(&[]), [""; 0]);
+    }
+
+    #[test]
+    fn a_missing_shard_is_named() {
+        let told = told(&[rows("0/3"), rows("2/3")].concat());
+        assert_eq!(told.len(), 4);
+        assert_eq!(told[0], "set 1, live: 3 of 10 scenes (shard 1/3)");
+    }
+
+    #[test]
+    fn a_cut_end_is_found() {
+        let mut cut = rows("0/1");
+        cut.truncate(cut.len() - 3);
+        assert_eq!(told(&cut), ["set 2, live: 1 of 10 scenes (number 9)", "set 2, nomp: 2 of 10 scenes (number 8, 9)"]);
+    }
+
+    #[test]
+    fn a_method_without_rows_is_found() {
+        let one: Vec<Row> = rows("0/1").into_iter().filter(|r| r.method == "live").collect();
+        assert_eq!(told(&one), ["set 1, nomp: 10 of 10 scenes", "set 2, nomp: 10 of 10 scenes"]);
+    }
+
+    #[test]
+    fn many_missing_scenes_are_not_all_numbered() {
+        let first: Vec<Row> = rows("0/1").into_iter().filter(|r| r.index == 0 && r.set == "1").collect();
+        assert_eq!(told(&first)[0], "set 1, live: 9 of 10 scenes (number 1, 2, 3, 4, 5, 6, 7, 8, \u{2026})");
+    }
+
+    #[test]
+    fn gaps_between_older_rows_are_found() {
+        let older: Vec<Row> = [0, 2, 3].map(|n| row("1", n, "live")).to_vec();
+        assert_eq!(told(&older), ["set 1, live: 1 of 4 scenes (number 1)"]);
+    }
+}

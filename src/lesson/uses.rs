@@ -1,0 +1,34 @@
+//! What of the window a lesson needs.
+
+use super::file::Lesson;
+use super::question::Answer;
+use super::stage::View;
+
+/// What a lesson needs beside scene, radar and the maps of ends and whole array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Uses {
+    /// A method's output: a question or a challenge measures it, or a step names a method of its own.
+    pub output: bool,
+    /// A threshold: a question asks for one.
+    pub threshold: bool,
+}
+
+impl Uses {
+    /// What there is without a lesson.
+    pub const ALL: Uses = Uses { output: true, threshold: true };
+}
+
+impl Lesson {
+    /// What the lesson's steps need.
+    pub fn uses(&self) -> Uses {
+        let usual = View::default().method;
+        let output = self.steps.iter().any(|step| {
+            step.view.method != usual
+                || step.predict.as_ref().is_some_and(|question| question.needs_output())
+                || step.challenge.as_ref().is_some_and(|c| c.needs_output() || c.needs_hidden_output())
+        });
+        let mut questions = self.steps.iter().filter_map(|step| step.predict.as_ref());
+        let threshold = questions.any(|question| matches!(question.answer, Answer::Threshold { .. }));
+        Uses { output, threshold }
+    }
+}

@@ -1,0 +1,226 @@
+//! One echo found for two that stand close together, or two found for one.
+//!
+//! Two reflectors that stand closer than a beam of an end and a range bin look like one. Where one is put in their middle, what it leaves
+//! has maxima beside it, at which further echoes are taken: none of them is there, and none comes to where the two are. Where that may
+//! have happened, all is looked for once more, and each echo that leaves something at its own range is tried as two before others are
+//! taken beside it. What needs fewer echoes for as much, or explains more, is the answer.
+
+use super::settle::Settled;
+use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::nomp::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Where the two are looked for from: parts of an end's beam, and range bins, to either side of the one.
+const STARTS: [(f64, f64); 5] = [(0.1, 0.0), (0.1, 0.25), (0.1, -0.25), (0.02, 0.25), (0.3, 0.0)];
+
+/// Of the two while starts are compared.
+const TRYING: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 };
+
+/// Of the better ones.
+const TRIED: Limits = Limits { iterations: 40, least_gain: 1e-4, ridge: 0.0 };
+
+/// Two echoes stand for one where they leave this part at most of what the one leaves at its range.
+const WORTH_TWO: f64 = 0.2;
+
+/// Most echoes that are tried as two in one reconstruction, and that may fail so one after another.
+const MOST_TRIALS: usize = 24;
+const MOST_FAILURES: usize = 4;
+
+/// Echoes may be one that stand this near: parts of an end's beam, and range bins.
+const MAY_BE_ONE: (f64, f64) = (0.1, 0.5);
+
+/// What is left may grow by this part where one echo does for two.
+const AS_GOOD: f64 = 0.05;
+
+/// Most echoes among which doubtful ones are looked for: rows of reflectors leave something wherever they stand.
+const MOST_DOUBTFUL: usize = 24;
+
+/// An echo that is this much weaker in power than one this near, in parts of an end's beam and in range bins, may be what that one leaves.
+const WEAKER: f64 = 0.1;
+const BESIDE: (f64, f64) = (2.0, 2.0);
+
+/// Fewer echoes may leave this many times as much.
+const FEWER: f64 = 1.5;
+
+/// Another way to explain the samples must leave this part at most, if it doesn't need fewer echoes.
+const BETTER: f64 = 0.5;
+
+/// Where an echo stands.
+struct Spot {
+    /// Direction, in an end's beams.
+    beam: f64,
+    /// Range, in bins.
+    bin: f64,
+    /// What is heard of it.
+    energy: f64,
+}
+
+/// Trials so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Trials {
+    done: usize,
+    failed: usize,
+}
+
+impl Trials {
+    fn count(&mut self, was_worth_it: bool) {
+        self.done += 1;
+        self.failed = if was_worth_it { 0 } else { self.failed + 1 };
+    }
+
+    fn are_spent(&self) -> bool {
+        self.done >= MOST_TRIALS || self.failed >= MOST_FAILURES
+    }
+}
+
+impl Settled<'_> {
+    /// Width of an end's beam in cos(theta).
+    fn beam_cos(&self) -> f64 {
+        let end_metres = self.radar.end_elements as f64 * self.radar.element_spacing_metres;
+        self.radar.wavelength_metres() / (end_metres * self.radar.carrier.turns_per_wavelength().abs())
+    }
+
+    /// Whether something is left at the range of an echo, or a weak one stands beside a strong one: either may be two that were found as
+    /// one.
+    pub fn is_doubtful(&self) -> bool {
+        let count = self.fit.atoms.len();
+        (1..=MOST_DOUBTFUL).contains(&count)
+            && !self.bench.work.is_spent()
+            && (self.has_companions() || self.grower().in_need(&self.fit).contains(&true))
+    }
+
+    /// Whether a weak echo stands beside a strong one.
+    fn has_companions(&self) -> bool {
+        let places = self.places();
+        let beside = |a: &Spot, b: &Spot| {
+            a.energy < WEAKER * b.energy && (a.beam - b.beam).abs() < BESIDE.0 && (a.bin - b.bin).abs() < BESIDE.1
+        };
+        places.iter().any(|a| places.iter().any(|b| beside(a, b)))
+    }
+
+    /// This, or `other` where that needs fewer echoes for as much or leaves much less.
+    pub fn or(self, other: Self) -> Self {
+        let (own, others) = (self.fit.cost(), other.fit.cost());
+        let noise = self.bench.gain_noise(self.radar, &other.fit);
+        let [few, fewer] = [&self, &other].map(|s| s.fit.atoms.len());
+        let is_as_good = others <= FEWER * own + 4.0 * noise + self.enough;
+        if (fewer < few && is_as_good) || (fewer <= few && others < own) || others < BETTER * own {
+            other
+        } else {
+            self
+        }
+    }
+
+    /// Tries echoes that leave something at their own range as two, the strongest first.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn split(&mut self) -> Result<(), ReconstructError> {
+        let Some(mut trials) = self.trials else { return Ok(()) };
+        let in_need = self.grower().in_need(&self.fit);
+        let energy = |i: usize| self.fit.gains[i].iter().map(|g| g.norm_sqr()).sum::<f64>();
+        let mut order: Vec<usize> = (0..in_need.len()).filter(|i| in_need[*i]).collect();
+        order.sort_by(|a, b| energy(*b).total_cmp(&energy(*a)));
+        for i in order {
+            self.task.check()?;
+            if trials.are_spent() || self.bench.work.is_spent() {
+                break;
+            }
+            let two = self.as_two(i);
+            trials.count(two.is_some());
+            if let Some(fit) = two {
+                // Numbers are others now; what is left in need shows in the next round.
+                self.fit = fit;
+                break;
+            }
+        }
+        self.trials = Some(trials);
+        Ok(())
+    }
+
+    /// The fit with two echoes for the one numbered `i`, where that leaves much less at its range.
+    fn as_two(&self, i: usize) -> Option<Fit> {
+        let own = rows_of(self.radar, &self.fit.atoms[i]);
+        let left = |fit: &Fit| Profile::new(self.radar, &fit.residual.flat(&self.bench.sensor)).at(&own);
+        let without = self.bench.less(self.fit.clone(), &[i]);
+        let [x, y] = self.fit.atoms[i].position_metres(0.0);
+        let place = self.radar.polar_of(x, y);
+        let (beam_cos, bin_metres) = (self.beam_cos(), self.radar.range_resolution_metres());
+        let refined =
+            |atoms: Vec<Atom>, gains, limits| self.bench.refine(&without.residual, atoms, gains, Tie::PerEnd, limits);
+        let start = |(beams, bins): &(f64, f64)| {
+            let side = |sign: f64| {
+                let cos = (place.cos_theta + sign * beams * beam_cos).clamp(-1.0, 1.0);
+                let range = (place.range_metres + sign * bins * bin_metres).max(bin_metres);
+                Atom::Point { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt() }
+            };
+            refined(vec![side(1.0), side(-1.0)], vec![Default::default(); 2], TRYING)
+        };
+        let tried: Vec<Fit> = STARTS.par_iter().map(start).collect();
+        let best = tried.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
+        let two = refined(best.atoms, best.gains, TRIED);
+        let mut fit = without;
+        fit.atoms.extend(two.atoms);
+        fit.gains.extend(two.gains);
+        (fit.residual, fit.energy) = (two.residual, two.energy);
+        // Beyond the maximum range a place sounds like many.
+        let is_in_reach = |atom: &Atom| {
+            let [x, y] = atom.position_metres(0.0);
+            distance_bins(self.radar.samples, &own, &rows_of(self.radar, atom)) < 2.0
+                && x.hypot(y) < place.range_metres + 4.0 * bin_metres
+        };
+        let is_better = left(&fit) < WORTH_TWO * left(&self.fit) && fit.cost() < self.fit.cost();
+        (is_better && fit.atoms.iter().rev().take(2).all(is_in_reach)).then_some(fit)
+    }
+
+    /// Takes away echoes that stand right beside another which, moved, does as well without them.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn merge(&mut self) -> Result<(), ReconstructError> {
+        for _ in 0..MOST_TRIALS {
+            self.task.check()?;
+            if self.bench.work.is_spent() {
+                break;
+            }
+            let Some((gone, beside)) = self.closest() else { break };
+            let noise = self.bench.gain_noise(self.radar, &self.fit);
+            let less = self.bench.less(self.fit.clone(), &[gone]);
+            let beside = if beside > gone { beside - 1 } else { beside };
+            let marked: Vec<bool> = (0..less.atoms.len()).map(|i| i == beside).collect();
+            let fewer = self.grower().refined(less, &marked, 4.0, TRIED)?;
+            if fewer.cost() > (1.0 + AS_GOOD) * self.fit.cost() + 4.0 * noise + self.enough {
+                break;
+            }
+            self.fit = fewer;
+        }
+        Ok(())
+    }
+
+    /// Where all echoes stand.
+    fn places(&self) -> Vec<Spot> {
+        let spot = |(atom, gains): (&Atom, &[Complex64; 2])| {
+            let [x, y] = atom.position_metres(0.0);
+            let place = self.radar.polar_of(x, y);
+            Spot {
+                beam: place.cos_theta / self.beam_cos(),
+                bin: self.radar.bin_of_range(place.range_metres),
+                energy: gains.iter().map(Complex64::norm_sqr).sum::<f64>() / place.range_metres.max(1e-3).powi(4),
+            }
+        };
+        self.fit.atoms.iter().zip(&self.fit.gains).map(spot).collect()
+    }
+
+    /// The weaker and the stronger of the two echoes that stand closest together, where they may be one.
+    fn closest(&self) -> Option<(usize, usize)> {
+        let places = self.places();
+        let pairs = (0..places.len()).flat_map(|i| (0..places.len()).map(move |j| (i, j)));
+        let apart = |(i, j): (usize, usize)| {
+            let (a, b) = (&places[i], &places[j]);
+            let apart = ((a.beam - b.beam).abs() / MAY_BE_ONE.0).max((a.bin - b.bin).abs() / MAY_BE_ONE.1);
+            (i != j && a.energy <= b.energy && apart < 1.0).then_some((apart, (i, j)))
+        };
+        pairs.filter_map(apart).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pair)| pair)
+    }
+}

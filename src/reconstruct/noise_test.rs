@@ -1,0 +1,156 @@
+//! The absolute test of every threshold: what noise alone reaches is no detection.
+//!
+//! A threshold that lies a distance below the map's peak alarms on noise, whose peak is noise too. So every answer is held against the
+//! noise that is measured in the samples, in two ways, and both only raise the threshold:
+//!
+//! * Of the samples: where no cell of either end's own range-angle map exceeds what the largest of so many cells of white noise exceeds with
+//!   probability [`CHANCE`], they hold noise alone, and the answer's threshold is 1, which no cell exceeds. This needs nothing of the
+//!   method: it holds for pseudo-spectra and networks as for maps of power.
+//! * Of the map: where a method knows which of its cells are as strong as noise, it says where that level lies
+//!   ([`Reconstruction::least_eta`]), and no threshold lies lower.
+
+use super::answer::Reconstruction;
+use super::power::cell_noise;
+use crate::maps::{LambdaScale, channels_range_transform};
+use crate::radar::{End, Radar};
+use crate::signal::TwoEnds;
+use crate::signal::simd::Simd;
+use num_complex::Complex64;
+
+/// Probability that a map of noise alone has a cell above the level.
+const CHANCE: f64 = 1e-3;
+
+/// Threshold that no cell exceeds.
+pub(super) const NOTHING: f32 = 1.0;
+
+/// How often as strong as the mean the strongest of `cells` noise cells is at most, but with probability [`CHANCE`]: powers of complex normal
+/// noise are exponential.
+fn times_the_mean(cells: usize) -> f64 {
+    (cells.max(1) as f64 / CHANCE).ln()
+}
+
+/// Decades of amplitude that no cell of the whole array's map of noise of this variance a sample exceeds, but with probability [`CHANCE`].
+fn noise_decades(radar: &Radar, noise_variance: f64) -> f64 {
+    decades_above_cells(noise_variance * cell_noise(radar), radar.samples * radar.elements)
+}
+
+/// The same of a map whose noise cells have this power on average.
+pub(super) fn decades_above_cells(cell_noise: f64, cells: usize) -> f64 {
+    0.5 * (cell_noise * times_the_mean(cells)).max(f64::MIN_POSITIVE).log10()
+}
+
+/// [`Reconstruction::least_eta`] of a map of the whole array with this scale over noise of this variance a sample.
+pub(crate) fn least_eta(radar: &Radar, noise_variance: f64, scale: LambdaScale) -> f32 {
+    scale.lambda(noise_decades(radar, noise_variance)) as f32
+}
+
+/// Whether some cell of either end's range-angle map is stronger than noise of this variance a sample makes it.
+fn holds_echo(radar: &Radar, ends: &TwoEnds, noise_variance: f64) -> bool {
+    // Twice as many columns as elements: between two columns an echo loses little.
+    let columns = 2 * radar.end_elements.next_power_of_two();
+    let least = times_the_mean(2 * radar.samples * columns);
+    let fft = Simd::chosen().forward_fft(columns);
+    let window = radar.window.weights(radar.end_elements);
+    let mean_square = |weights: &[f64]| weights.iter().map(|w| w * w).sum::<f64>() / weights.len().max(1) as f64;
+    let profile_variance = noise_variance * mean_square(&radar.window.weights(radar.samples));
+    let mut row = vec![Complex64::default(); columns];
+    let mut scratch = vec![Complex64::default(); fft.get_inplace_scratch_len()];
+    for end in End::BOTH {
+        let channels = ends.end(end);
+        // Elements that measured nothing add no noise.
+        let heard = channels.outer_iter().map(|c| c.iter().any(|v| v.norm_sqr() > 0.0));
+        let gain: f64 = heard.zip(&window).filter(|(heard, _)| *heard).map(|(_, w)| w * w).sum();
+        let level = least * gain * profile_variance;
+        for snapshot in channels_range_transform(radar, channels.view()).profiles.columns() {
+            row.fill(Complex64::default());
+            row.iter_mut().zip(snapshot.iter().zip(&window)).for_each(|(v, (p, w))| *v = p * w);
+            fft.process_with_scratch(&mut row, &mut scratch);
+            if row.iter().any(|v| v.norm_sqr() > level) {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// `found` in `ends` with a threshold that knows the noise; `own_eta` is the method's own. An answer that is flat where the samples hold more
+/// than noise found nothing of it, and is drawn as silence: what lies at one level everywhere would be drawn at any level.
+pub(super) fn tested(
+    radar: &Radar,
+    ends: &TwoEnds,
+    noise_variance: f64,
+    own_eta: f32,
+    mut found: Reconstruction,
+) -> Reconstruction {
+    if !holds_echo(radar, ends, noise_variance) {
+        found.eta = Some(NOTHING);
+        return found;
+    }
+    if found.reflectors.is_empty() && is_flat(&found) {
+        found.lambda.lambda.fill(0.0);
+        found.eta = Some(NOTHING);
+        return found;
+    }
+    let eta = found.eta.unwrap_or(own_eta);
+    if let Some(least) = found.least_eta.filter(|least| *least > eta) {
+        found.eta = Some(least);
+    }
+    found
+}
+
+fn is_flat(found: &Reconstruction) -> bool {
+    let mut cells = found.lambda.lambda.iter();
+    let first = cells.next();
+    cells.all(|cell| Some(cell) == first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{DecibelMilliwatts, Decibels};
+    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    fn holds(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> bool {
+        let ends = simulate(radar, scene, floor, seed).unwrap().two_ends(radar);
+        holds_echo(radar, &ends, ends_noise_variance(radar, &ends, floor))
+    }
+
+    #[test]
+    fn noise_alone_holds_no_echo() {
+        let radar = Radar::default();
+        let small = Radar { elements: 64, samples: 128, end_elements: 4, ..Radar::default() };
+        for seed in 0..40 {
+            for (radar, dbm) in [(&radar, -20.0), (&small, 50.0)] {
+                let floor = Floor::Level(DecibelMilliwatts(dbm));
+                assert!(!holds(radar, &Scene::default(), floor, seed), "{floor}, seed {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_echo_is_held_down_to_15_decibels_beneath_the_noise() {
+        let radar = Radar::default();
+        for seed in 0..20 {
+            let angle = 0.3 + 0.12 * seed as f64;
+            let range = 5.0 + 1.5 * seed as f64;
+            let scene = Scene::of_points([(range * angle.cos(), range * angle.sin())]);
+            for floor in [Floor::Snr(Decibels(-15.0)), Floor::Snr(Decibels(40.0)), Floor::Thesis, Floor::Exact] {
+                assert!(holds(&radar, &scene, floor, seed), "{floor}, seed {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_strongest_of_all_noise_cells_lies_under_the_level() {
+        let radar = Radar::default();
+        let floor = Floor::Level(DecibelMilliwatts(-20.0));
+        for seed in 0..4 {
+            let signal = simulate(&radar, &Scene::default(), floor, seed).unwrap();
+            let strongest = crate::maps::LogMaps::of_signal(&radar, &signal).full.max();
+            let level = noise_decades(&radar, DecibelMilliwatts(-20.0).watts());
+            assert!((level - 0.2..level).contains(&strongest), "{strongest} of {level} decades");
+        }
+    }
+}

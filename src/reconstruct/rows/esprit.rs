@@ -1,0 +1,70 @@
+//! ESPRIT: directions from how the signal subspace turns from one element to the next.
+
+use super::covariance::{smoothed, subarray_len, subspaces};
+use super::method::{Render, RowMethod, TOLD_PEAKS};
+use super::row::Row;
+use crate::reconstruct::reconstructor::About;
+use faer::linalg::solvers::{SelfAdjointEigen, Solve};
+use faer::{Mat, Side};
+use num_complex::Complex64;
+
+/// Directions of each end and range row by total least squares, from a covariance that is averaged forward and backward; their peaks
+/// rendered.
+///
+/// R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", IEEE Trans. Acoust., Speech,
+/// Signal Process. 37, 1989.
+pub const ESPRIT: RowMethod = RowMethod {
+    about: About {
+        name: "esprit",
+        description: "directions from how the signals turn from element to element, moved to where their echoes fit both ends best, and \
+            the exact map of them",
+        told: TOLD_PEAKS,
+        eta: 0.83, // by examples/choose_eta.rs
+    },
+    estimate: |row| row.continued(&directions(row)?),
+    render: Render::Peaks,
+};
+
+/// Turns an element of each wave.
+fn directions(row: &Row) -> Option<Vec<f64>> {
+    let subspaces = subspaces(&smoothed(&row.snapshots, subarray_len(row.own().len())), row)?;
+    let signals = subspaces.signals;
+    let (n, count) = (signals.nrows(), signals.ncols());
+    // All elements but the last, beside all but the first: the same signals, one step on.
+    let both =
+        Mat::from_fn(n - 1, 2 * count, |i, j| if j < count { signals[(i, j)] } else { signals[(i + 1, j - count)] });
+    let product = both.adjoint() * &both;
+    let eigen = SelfAdjointEigen::new(product.as_ref(), Side::Lower).ok()?;
+    // Eigenvalues rise: the first vectors are those that both halves together don't hold.
+    let null = eigen.U().subcols(0, count);
+    let (upper, lower) = (null.subrows(0, count), null.subrows(count, count));
+    // -upper lower^-1, transposed: its eigenvalues are the same.
+    let turned = lower.transpose().to_owned().partial_piv_lu().solve(upper.transpose().to_owned());
+    let is_finite = |i: usize| (0..count).all(|j| turned[(i, j)].re.is_finite() && turned[(i, j)].im.is_finite());
+    if !(0..count).all(is_finite) {
+        return None;
+    }
+    let steps = turned.eigenvalues().ok()?;
+    let turns = |step: &Complex64| (-step).arg() / std::f64::consts::TAU;
+    Some(steps.iter().map(turns).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Spectrum;
+
+    #[test]
+    fn directions_of_two_waves_within_a_beamwidth_are_exact() {
+        let turns = [0.12345, 0.15]; // a third of a beamwidth apart
+        let wave = |t: f64, n: usize| Complex64::cis(std::f64::consts::TAU * t * n as f64);
+        let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
+        let silent = vec![Complex64::default(); 12];
+        let plan = Spectrum::new(1024);
+        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let mut found = directions(&row).unwrap();
+        found.sort_by(f64::total_cmp);
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().zip(turns).all(|(f, t)| (f - t).abs() < 1e-6), "{found:?}");
+    }
+}

@@ -1,0 +1,60 @@
+//! What looks wrong about a recording and can't be known from it.
+
+use super::Recorded;
+use crate::maps::channels_range_transform;
+use crate::radar::{Carrier, Radar};
+
+/// Part of the power in the far half of the range axis above which the beat's sign is doubted.
+const FAR_PART: f64 = 0.9;
+/// Least samples that tell one half of the range axis from the other.
+const LEAST_SAMPLES: usize = 8;
+
+/// Sentences on what the samples or the radar make unlikely; empty where nothing does. Only `physical` recordings are doubted: what an
+/// older text says is taken as it is.
+pub(super) fn doubts(radar: &Radar, samples: &Recorded, physical: bool) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if !physical {
+        return doubts;
+    }
+    let spacing = radar.element_spacing_metres / radar.wavelength_metres();
+    match radar.carrier {
+        Carrier::TwoWay if spacing > 0.4 => doubts.push(format!(
+            "Elements stand {spacing:.2} wavelengths apart, and the carrier is two-way: directions fold. In the two-way reading an \
+             element stands halfway between its transmitter and its receiver, so a filled array has a quarter of a wavelength."
+        )),
+        Carrier::OneWay if spacing < 0.3 => doubts.push(format!(
+            "Elements stand {spacing:.2} wavelengths apart, and the carrier is one-way. A filled array of virtual elements has half a \
+             wavelength; a quarter of one belongs to carrier = \"two-way\"."
+        )),
+        Carrier::OneWay | Carrier::TwoWay => {}
+    }
+    if let Some(part) = far_part(radar, samples).filter(|part| *part > FAR_PART) {
+        doubts.push(format!(
+            "{:.0} % of the power stands in the far half of the range axis. Where echoes were nearer, recording.beat_sign is the other one.",
+            100.0 * part
+        ));
+    }
+    doubts
+}
+
+/// Part of the power in the far half of the range axis, which holds the negative frequencies; `None` where few samples can't tell.
+fn far_part(radar: &Radar, samples: &Recorded) -> Option<f64> {
+    if radar.samples < LEAST_SAMPLES {
+        return None;
+    }
+    let arrays = match samples {
+        Recorded::All(signal) => vec![signal.samples.view()],
+        Recorded::Ends(ends) => vec![ends.first.view(), ends.last.view()],
+    };
+    let (mut far, mut all) = (0.0, 0.0);
+    for array in arrays {
+        for row in channels_range_transform(radar, array).profiles.outer_iter() {
+            // A constant stands in bin 0 and, by the window, beside it: it belongs to neither half.
+            for (bin, value) in row.iter().enumerate().take(radar.samples - 1).skip(2) {
+                all += value.norm_sqr();
+                far += if bin > radar.samples / 2 { value.norm_sqr() } else { 0.0 };
+            }
+        }
+    }
+    (all > 0.0).then(|| far / all)
+}

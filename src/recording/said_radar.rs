@@ -1,0 +1,39 @@
+//! The table `[radar]` of a recording's TOML.
+
+use super::{Fault, RadarProfile};
+use crate::radar::Radar;
+
+/// The radar of a recording, which must say what it is.
+pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>) -> Result<Radar, Fault> {
+    if let Some(profile) = profile {
+        for (key, value) in [("carrier_hz", profile.carrier_hz()), ("bandwidth_hz", profile.bandwidth_hz())] {
+            let said = table.entry(key).or_insert(value.into());
+            let number = said.as_float().or(said.as_integer().map(|v| v as f64));
+            if number.is_none_or(|n| ((n - value) / value).abs() > 1e-4) {
+                return Err(Fault::key(
+                    &format!("radar.{key}"),
+                    format!("is {said}"),
+                    format!("{value}, as the .cfg says, or no such key"),
+                ));
+            }
+        }
+        let said = table.entry("samples").or_insert((profile.samples as i64).into());
+        if said.as_integer() != Some(profile.samples as i64) {
+            return Err(Fault::key(
+                "radar.samples",
+                format!("is {said}"),
+                format!("{}, as the .cfg says, or no such key", profile.samples),
+            ));
+        }
+    }
+    let snapshot = table.get("samples").and_then(toml::Value::as_integer) == Some(1);
+    let needed = ["carrier_hz", "bandwidth_hz", "element_spacing_metres", "elements", "end_elements", "samples"];
+    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || snapshot && **key == "bandwidth_hz")) {
+        return Err(Fault::key(&format!("radar.{key}"), "is missing", "it: a recording says which radar measured it"));
+    }
+    let radar: Radar = table.try_into().map_err(|e: toml::de::Error| {
+        Fault::key("[radar]", format!("can't be read ({})", e.message().trim_end()), "the radar's numbers")
+    })?;
+    radar.validate()?;
+    Ok(radar)
+}

@@ -1,0 +1,207 @@
+//! Which way the phases of a recording turn, and at which sample its carrier was measured: from the samples of a physical radar to
+//! those that the maps' formula takes.
+//!
+//! A physical radar's sample `n` has the phase `s 2 pi f_n (R_t + R_r) / c`, where R_t and R_r are the distances from the transmitter
+//! and from the receiver. The sign `s` is one for all samples, and `f_n` rises or falls by `B / N` from sample to sample. The program's
+//! formula ([`crate::signal`]) at a distance R is
+//!
+//! * two-way: `+2 pi (f + B n / N) 2 R / c`. Conjugated, and put in the order of rising frequency, physical samples are exactly this
+//!   where `R_t = R_r = R`.
+//! * one-way: `-2 pi (f - 2 B n / N) R / c`. Conjugated, and put in the order of falling frequency, physical samples are
+//!   `-2 pi (F - B n / N) (R_t + R_r) / c`. For plane waves over virtual elements at the sum of both positions the phase from element
+//!   to element is the same in the middle of the chirp where `f - B = F - B / 2`. Beside the middle it is not: the program's changes
+//!   twice as fast, so that it expects echoes to migrate through twice as many range bins along the array.
+
+use super::Fault;
+use crate::radar::{Carrier, Radar};
+use serde::Deserialize;
+
+/// The format that is written down today; texts that name none are of format 1.
+pub const FORMAT: u32 = 2;
+
+/// Where on the chirp the frequency `radar.carrier_hz` lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum CarrierAt {
+    /// At the first sample of the file.
+    FirstSample,
+    /// In the middle of the samples.
+    Middle,
+}
+
+/// The sign of the beat's phase as samples go on, for an echo that is farther than the radar itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub(super) enum BeatSign {
+    /// Echoes stand at positive frequencies.
+    #[serde(rename = "+")]
+    Positive,
+    /// Echoes stand at negative frequencies.
+    #[serde(rename = "-")]
+    Negative,
+}
+
+/// Which way the frequency goes from sample to sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Sweep {
+    /// Upwards.
+    #[default]
+    Up,
+    /// Downwards.
+    Down,
+}
+
+/// What the text says of signs, as it stands there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Said {
+    /// The text's format.
+    pub format: u32,
+    pub carrier_at: Option<CarrierAt>,
+    pub beat_sign: Option<BeatSign>,
+    pub sweep: Option<Sweep>,
+    /// Whether the samples are conjugated: format 1 alone.
+    pub conjugate: Option<bool>,
+}
+
+/// What is done to the samples, and to the carrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Signs {
+    /// Every sample is conjugated.
+    pub conjugates: bool,
+    /// The last sample becomes the first.
+    pub reverses_samples: bool,
+    /// The carrier of the maps' formula, hertz.
+    pub carrier_hz: f64,
+}
+
+impl Said {
+    /// What follows for the samples of `radar`, whose carrier is as the text says it.
+    ///
+    /// # Errors
+    /// [`Fault::Key`] names the key that is missing, or that does not go with the others.
+    pub fn signs(self, radar: &Radar) -> Result<Signs, Fault> {
+        let key = |name: &str| format!("recording.{name}");
+        let is_there = |name: &str, expected: &str| Err(Fault::key(&key(name), "is there", expected));
+        match self.format {
+            1 => {
+                let named = [
+                    ("carrier_at", self.carrier_at.is_some()),
+                    ("beat_sign", self.beat_sign.is_some()),
+                    ("sweep", self.sweep.is_some()),
+                ];
+                if let Some((name, _)) = named.into_iter().find(|(_, said)| *said) {
+                    return is_there(name, "it only below format = 2, a line above [radar]");
+                }
+                let conjugates = self.conjugate.unwrap_or(false);
+                return Ok(Signs { conjugates, reverses_samples: false, carrier_hz: radar.carrier_hz });
+            }
+            FORMAT => {}
+            other => return Err(Fault::key("format", format!("is {other}"), "1 or 2")),
+        }
+        if self.conjugate.is_some() {
+            return is_there("conjugate", "beat_sign in its place: below format = 2 signs follow from it");
+        }
+        let Some(beat) = self.beat_sign else {
+            let expected = "\"+\" where echoes stand at positive frequencies of the beat, or \"-\"";
+            return Err(Fault::key(&key("beat_sign"), "is missing", expected));
+        };
+        let is_snapshot = radar.samples == 1;
+        let at = match self.carrier_at {
+            None if is_snapshot => CarrierAt::FirstSample,
+            Some(_) if is_snapshot => return is_there("carrier_at", "it only where radar.samples is above 1"),
+            Some(at) => at,
+            None => {
+                let expected = "\"first-sample\" or \"middle\": where on the chirp radar.carrier_hz lies";
+                return Err(Fault::key(&key("carrier_at"), "is missing", expected));
+            }
+        };
+        Ok(physical(radar, at, beat, self.sweep.unwrap_or_default()))
+    }
+}
+
+/// What is done to a physical radar's samples.
+fn physical(radar: &Radar, at: CarrierAt, beat: BeatSign, sweep: Sweep) -> Signs {
+    let rises = sweep == Sweep::Up;
+    // The beat's phase is the carrier's less what it was at the first sample: both signs are one where the frequency rises.
+    let phase_is_positive = (beat == BeatSign::Positive) == rises;
+    let wants_positive = radar.carrier == Carrier::TwoWay;
+    let conjugates = phase_is_positive != wants_positive;
+    // The program's beat turns forwards: its frequency rises where phases are positive, and falls where they are negative.
+    let reverses_samples = rises != wants_positive && radar.samples > 1;
+    let per_sample = radar.bandwidth_hz / radar.samples as f64;
+    let (last, way) = ((radar.samples - 1) as f64, if rises { 1.0 } else { -1.0 });
+    let first_hz = match at {
+        CarrierAt::FirstSample => radar.carrier_hz,
+        CarrierAt::Middle => radar.carrier_hz - way * radar.bandwidth_hz / 2.0,
+    };
+    let first_taken_hz = if reverses_samples { first_hz + way * per_sample * last } else { first_hz };
+    let carrier_hz = match radar.carrier {
+        _ if radar.samples == 1 => radar.carrier_hz,
+        Carrier::TwoWay => first_taken_hz,
+        // Halfway the program has taken off twice what the radar has.
+        Carrier::OneWay => first_taken_hz + per_sample * last / 2.0,
+    };
+    Signs { conjugates, reverses_samples, carrier_hz }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn radar(carrier: Carrier) -> Radar {
+        Radar { carrier, samples: 101, bandwidth_hz: 1.01e9, ..Radar::default() }
+    }
+
+    fn said() -> Said {
+        Said {
+            format: 2,
+            carrier_at: Some(CarrierAt::FirstSample),
+            beat_sign: Some(BeatSign::Positive),
+            sweep: None,
+            conjugate: None,
+        }
+    }
+
+    #[test]
+    fn a_two_way_sweep_upwards_is_taken_as_it_is() {
+        let signs = said().signs(&radar(Carrier::TwoWay)).unwrap();
+        assert_eq!(signs, Signs { conjugates: false, reverses_samples: false, carrier_hz: 77e9 });
+        let other = Said { beat_sign: Some(BeatSign::Negative), ..said() }.signs(&radar(Carrier::TwoWay)).unwrap();
+        assert_eq!(other, Signs { conjugates: true, ..signs });
+    }
+
+    #[test]
+    fn a_sweep_downwards_is_reversed_for_the_two_way_reading() {
+        // Its last frequency is the first one taken.
+        let down = Said { sweep: Some(Sweep::Down), ..said() }.signs(&radar(Carrier::TwoWay)).unwrap();
+        assert!(down.reverses_samples && down.conjugates && (down.carrier_hz - 76e9).abs() < 1.0, "{down:?}");
+    }
+
+    #[test]
+    fn the_one_way_reading_hears_the_middle_of_the_chirp() {
+        for (at, middle_hz) in [(CarrierAt::FirstSample, 77.5e9), (CarrierAt::Middle, 76.995e9)] {
+            let signs = Said { carrier_at: Some(at), ..said() }.signs(&radar(Carrier::OneWay)).unwrap();
+            assert!(signs.conjugates && signs.reverses_samples);
+            // Sample 50 of 0 to 100: twice 50 steps of 10 MHz are taken off.
+            assert!((signs.carrier_hz - 1e9 - middle_hz).abs() < 1.0, "{signs:?}");
+        }
+    }
+
+    #[test]
+    fn keys_that_do_not_go_together_are_told() {
+        for (said, part) in [
+            (Said { format: 1, ..said() }, "recording.carrier_at is there"),
+            (Said { format: 3, ..said() }, "format is 3; expected 1 or 2"),
+            (Said { conjugate: Some(true), ..said() }, "beat_sign in its place"),
+            (Said { beat_sign: None, ..said() }, "recording.beat_sign is missing"),
+            (Said { carrier_at: None, ..said() }, "recording.carrier_at is missing"),
+        ] {
+            let message = said.signs(&radar(Carrier::OneWay)).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+        let snapshot = Radar { samples: 1, ..Radar::default() };
+        assert!(said().signs(&snapshot).unwrap_err().to_string().contains("only where radar.samples is above 1"));
+        let signs = Said { carrier_at: None, ..said() }.signs(&snapshot).unwrap();
+        assert_eq!((signs.carrier_hz, signs.reverses_samples), (77e9, false));
+    }
+}

@@ -1,0 +1,109 @@
+//! What the program says to arguments and files that it can't use: what was found, what is allowed, and what to do.
+
+use super::cli::{apertura, folder};
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+
+#[test]
+fn numbers_out_of_range_say_what_is_allowed() {
+    let folder = folder();
+    for (arguments, allowed) in [
+        ("robustness --phase-degrees -5", "'--phase-degrees <DEGREES>': expected a number from 0 to 180"),
+        ("robustness --scale 1,x", "expected a number from 0 to 180"),
+        ("robustness --set 4", "expected a whole number from 1 to 3"),
+        ("robustness --count 0", "expected a whole number from 1 to 10000"),
+        ("evaluate --count 1e9", "'--count <N>': expected a whole number from 1 to 1000000"),
+        ("evaluate --seed -1", "expected a whole number from 0 to 18446744073709551615"),
+        ("evaluate --floor snr=9999", "snr=DB with DB between -100 and 300"),
+        ("evaluate --shard 4/4", "expected I/N with I from 0 to N - 1"),
+        ("scenes --set 1 --count -3 -o x", "expected a whole number from 1 to 1000000"),
+        ("scenes --set 1 --index -3 -o x.toml", "expected a whole number from 0 to 4294967295"),
+        ("layouts --count 1.5", "expected a whole number from 1 to 10000"),
+        ("bounds --monte-carlo 0", "expected a whole number from 1 to 100000"),
+        ("bounds --snr 500", "expected decibels between -200 and 200"),
+        ("bench --reflectors 10,20000", "expected a whole number from 1 to 10000"),
+        ("bench --repeats -1", "expected a whole number from 1 to 1000"),
+        ("bench --methods --count 2000", "expected a whole number from 1 to 1000"),
+        ("stress --edits 0", "expected a whole number from 1 to 1000000"),
+        ("worsen s.toml --method baseline --within -2 -o x.toml", "expected a number from 0.000001 to 1000"),
+        ("worsen s.toml --method baseline --tries 0 -o x.toml", "expected a whole number from 1 to 4294967295"),
+        ("worsen s.toml --method baseline --minutes -2 -o x.toml", "expected a number from 0.001 to 525600"),
+        ("maps s.toml -o x.npz --seed -2", "expected a whole number from 0"),
+        ("maps s.toml -o x.png --normalisation db=9999", "db=RANGE with RANGE between 1 and 400"),
+    ] {
+        let says = contains(allowed).and(contains("unexpected argument").not());
+        apertura(&folder).args(arguments.split(' ')).assert().failure().stderr(says);
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is written");
+}
+
+#[test]
+fn what_is_no_archive_of_samples_is_named() {
+    let folder = folder();
+    let run = |name: &str| {
+        let mut command = apertura(&folder);
+        command.args(["reconstruct", name, "-o", "out.npz", "--method", "baseline"]);
+        command.assert().failure()
+    };
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    apertura(&folder).args(["scenes", "--set", "2", "--index", "0", "-o", "s.toml"]).assert().success();
+    apertura(&folder).args(["scenes", "--set", "2", "--index", "0", "-o", "s.npz"]).assert().success();
+    for scene in ["s.toml", "s.npz"] {
+        let advice = format!("`apertura maps {scene} -o IN.npz` computes them");
+        run(scene).stderr(contains(format!("{scene} is a scene")).and(contains(advice)));
+    }
+    write("m.onnx", b"\x08\x08\x12\x07pytorch");
+    run("m.onnx").stderr(contains("m.onnx is an ONNX model; expected an archive (.npz) with sub0 and sub1"));
+    write("p.png", b"\x89PNG\r\n\x1a\n");
+    run("p.png").stderr(contains("p.png is a picture (.png)"));
+    write("half.npz", b"PK\x03\x04");
+    run("half.npz").stderr(contains("half.npz"));
+    run("missing.npz").stderr(contains("missing.npz").and(contains("No such file")));
+    // The advice is followed.
+    apertura(&folder).args(["maps", "s.toml", "-o", "in.npz"]).assert().success();
+    apertura(&folder).args(["reconstruct", "in.npz", "-o", "out.npz", "--method", "baseline"]).assert().success();
+}
+
+#[test]
+fn one_scene_is_no_plural() {
+    let folder = folder();
+    let run = |arguments: &str| apertura(&folder).args(arguments.split(' ')).assert().success();
+    run("scenes --set 1 --count 1 -o a").stdout(contains("wrote 1 scene of set 1 to a"));
+    run("scenes --set 1 --count 2 -o a").stdout(contains("wrote 2 scenes of set 1 to a"));
+    run("evaluate --set 1 --count 1").stdout(contains("1 scene a set,"));
+}
+
+#[test]
+fn the_folder_of_one_scene_is_made() {
+    let folder = folder();
+    let run = |output: &str| {
+        let mut command = apertura(&folder);
+        command.args(["scenes", "--set", "1", "--index", "4", "-o", output]);
+        command.assert()
+    };
+    run("new/deep/s.toml").success();
+    assert!(folder.path().join("new/deep/s.toml").exists());
+    run("other/s.png").failure().stderr(contains("s.png"));
+    assert!(!folder.path().join("other").exists(), "no folder for a file that can't be written");
+}
+
+#[cfg(feature = "network")]
+#[test]
+fn what_is_no_weight_file_is_named() {
+    let folder = folder();
+    let run = |name: &str| {
+        let mut command = apertura(&folder);
+        command.args(["evaluate", "--set", "1", "--count", "1", "--method", "thesis", "--weights", name]);
+        command.assert().failure()
+    };
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    write("m.onnx", b"\x08\x08\x12\x07pytorch");
+    run("m.onnx").stderr(contains("it is an ONNX model; expected weights as safetensors, or PyTorch's .pt"));
+    write("s.toml", b"[[object]]\nkind = \"point\"\n");
+    run("s.toml").stderr(contains("it is a scene (.toml)"));
+    write("e.pt", b"\x80\x02}X\x05\x00\x00\x00epochK\x03s.");
+    run("e.pt").stderr(contains("it holds no tensors; expected a state_dict"));
+    let header = br#"{"a.weight":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}}"#;
+    write("x.safetensors", &[&(header.len() as u64).to_le_bytes(), header.as_slice(), &[0; 4]].concat());
+    run("x.safetensors").stderr(contains("names no network, and none of ours has its tensors (1 in all): a.weight"));
+}

@@ -1,0 +1,67 @@
+//! What methods say of samples that hold noise alone, or an echo at the edge of what a radar sees.
+
+use apertura::evaluate::sets::NOISE_LEVEL;
+use apertura::evaluate::trial::Trial;
+use apertura::maps::Normalisation;
+use apertura::methods;
+use apertura::radar::{Decibels, Radar};
+use apertura::reconstruct::Request;
+use apertura::scene::Scene;
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::signal::Floor;
+
+/// A trial of `scene`, and what a method is told of it.
+fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {
+    let request = Request { floor, normalisation, ..Request::default() };
+    (Trial::new(&Radar::default(), scene, floor, normalisation).unwrap(), request)
+}
+
+fn generator() -> Generator {
+    Generator::new(&Radar::default(), Reading::Program, Purpose::Validation, 0)
+}
+
+#[test]
+fn no_method_alarms_on_noise_alone() {
+    for normalisation in [Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))] {
+        let scene = generator().scene(Kind::Noise, 0);
+        let (trial, request) = trial(&scene, Floor::Level(NOISE_LEVEL), normalisation);
+        for method in methods::all() {
+            let answer = trial.ask(method.as_ref(), &request).unwrap();
+            let name = method.name();
+            assert_eq!(answer.metrics.detection, None, "{name}: nothing is there to be detected");
+            assert!(answer.metrics.false_alarm <= 1e-3, "{name}: {}", answer.metrics.false_alarm);
+            assert!(trial.failures(&answer).ghosts.is_empty(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn live_hardly_alarms_on_noise_that_drowns_the_echoes() {
+    let live = methods::by_name("live").unwrap();
+    for (snr, at_most) in [(-10.0, 5e-3), (-20.0, 5e-3)] {
+        for kind in [Kind::Set1, Kind::Set2] {
+            let rates: Vec<f64> = (0..4)
+                .map(|number| {
+                    let floor = Floor::Snr(Decibels(snr));
+                    let (trial, request) = trial(&generator().scene(kind, number), floor, Normalisation::MinMax);
+                    trial.ask(live.as_ref(), &request).unwrap().metrics.false_alarm
+                })
+                .collect();
+            let mean = rates.iter().sum::<f64>() / rates.len() as f64;
+            assert!(mean <= at_most, "set {kind} at {snr} dB: {rates:?}");
+        }
+    }
+}
+
+#[test]
+fn one_echo_at_the_edge_of_what_is_seen_is_no_map_of_echoes() {
+    // Range bin 512, which wraps to bin 0; and beneath the first range bin.
+    for y in [38.4, 0.05] {
+        let (trial, request) = trial(&Scene::of_points([(0.0, y)]), Floor::Thesis, Normalisation::MinMax);
+        for name in ["iaa", "sbl", "omp", "nomp", "hybrid", "live"] {
+            let answer = trial.ask(methods::by_name(name).unwrap().as_ref(), &request).unwrap();
+            let (se, alarms) = (answer.metrics.squared_error, answer.metrics.false_alarm);
+            assert!(se < 30_000.0 && alarms < 0.03, "{name}, {y} m: SE {se:.0}, P_FA {alarms}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Captures of physical radars, written by formulas of their own, read as docs/recordings.md says: the directions found are the true ones.
+
+use apertura::files::npz::write_npz;
+use apertura::maps::{Aperture, angle_transform, range_transform};
+use apertura::methods;
+use apertura::reconstruct::Request;
+use apertura::reconstruct::found::reconstruct_and_find;
+use apertura::recording::{self, Recording, file};
+use ndarray::{Array2, Array3};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+const C: f64 = 299_792_458.0;
+/// Frequencies of the ramp at the first sample and their width, hertz.
+const FIRST_HZ: f64 = 77e9;
+const BANDWIDTH_HZ: f64 = 1e9;
+const SAMPLES: usize = 128;
+const ELEMENTS: usize = 64;
+const TRANSMITTERS: usize = 4;
+/// Range in metres and cos(theta) of the reflectors.
+const PLACES: [(f64, f64); 3] = [(6.0, -0.4), (9.0, 0.1), (12.0, 0.7)];
+/// Largest error of a direction that iaa finds, degrees.
+const DEGREES: f64 = 0.1;
+/// Largest error of the map's peak between two columns, columns.
+const COLUMNS: f64 = 0.25;
+
+/// How a capture was made.
+#[derive(Debug, Clone, Copy)]
+struct Made {
+    /// 1 or -1: all phases.
+    sign: f64,
+    /// 1 or -1: the ramp goes up or down.
+    sweep: f64,
+    in_middle: bool,
+}
+
+const UPWARDS: [Made; 4] = [
+    Made { sign: 1.0, sweep: 1.0, in_middle: false },
+    Made { sign: 1.0, sweep: 1.0, in_middle: true },
+    Made { sign: -1.0, sweep: 1.0, in_middle: false },
+    Made { sign: -1.0, sweep: 1.0, in_middle: true },
+];
+const DOWNWARDS: Made = Made { sign: 1.0, sweep: -1.0, in_middle: true };
+
+impl Made {
+    /// What an antenna pair at `transmitter` and `receiver`, metres along the array, hears in sample `n`.
+    fn sample(self, transmitter: f64, receiver: f64, n: usize) -> Complex64 {
+        let hz = FIRST_HZ + self.sweep * BANDWIDTH_HZ * n as f64 / SAMPLES as f64;
+        let echo = |(range, cos): (f64, f64)| {
+            let (x, y) = (range * cos, range * (1.0 - cos * cos).sqrt());
+            let path = (x - transmitter).hypot(y) + (x - receiver).hypot(y);
+            Complex64::from_polar(1.0, self.sign * TAU * (hz * path / C).fract())
+        };
+        PLACES.into_iter().map(echo).sum()
+    }
+
+    fn keys(self) -> String {
+        let beat = if self.sign * self.sweep > 0.0 { "+" } else { "-" };
+        let at = if self.in_middle { "middle" } else { "first-sample" };
+        let sweep = if self.sweep > 0.0 { "" } else { "sweep = \"down\"\n" };
+        format!("carrier_at = \"{at}\"\nbeat_sign = \"{beat}\"\n{sweep}")
+    }
+
+    fn carrier_hz(self) -> f64 {
+        if self.in_middle { FIRST_HZ + self.sweep * BANDWIDTH_HZ / 2.0 } else { FIRST_HZ }
+    }
+}
+
+fn wavelength() -> f64 {
+    C / (FIRST_HZ + BANDWIDTH_HZ / 2.0)
+}
+
+/// Every element sends and hears by itself, a quarter of a wavelength from the next.
+fn monostatic(made: Made, folder: &Path) -> Recording {
+    let spacing = wavelength() / 4.0;
+    let x = |n: usize| (n as f64 - (ELEMENTS as f64 - 1.0) / 2.0) * spacing;
+    let samples = Array2::from_shape_fn((ELEMENTS, SAMPLES), |(n, s)| made.sample(x(n), x(n), s));
+    write_npz(&folder.join("c.npz"), |out| out.add("cube", &samples)).unwrap();
+    read(made, folder, "two-way", spacing, "\"element\"")
+}
+
+/// Four transmitters far apart and sixteen receivers close together; the sums of their positions are half a wavelength apart.
+fn write_pairs(made: Made, folder: &Path) {
+    let virtual_spacing = wavelength() / 2.0;
+    let receivers = ELEMENTS / TRANSMITTERS;
+    let centred = |n: usize, count: usize| n as f64 - (count as f64 - 1.0) / 2.0;
+    let transmitter = |t: usize| centred(t, TRANSMITTERS) * receivers as f64 * virtual_spacing;
+    let receiver = |r: usize| centred(r, receivers) * virtual_spacing;
+    let shape = (TRANSMITTERS, receivers, SAMPLES);
+    let samples = Array3::from_shape_fn(shape, |(t, r, s)| made.sample(transmitter(t), receiver(r), s));
+    write_npz(&folder.join("c.npz"), |out| out.add("cube", &samples)).unwrap();
+}
+
+fn read(made: Made, folder: &Path, carrier: &str, spacing: f64, elements: &str) -> Recording {
+    let text = format!(
+        "format = 2\n[radar]\ncarrier = \"{carrier}\"\ncarrier_hz = {:?}\nbandwidth_hz = {BANDWIDTH_HZ:?}\n\
+         element_spacing_metres = {spacing:?}\nelements = {ELEMENTS}\nend_elements = 16\nsamples = {SAMPLES}\n\
+         [recording]\nfile = \"c.npz\"\narray = \"cube\"\naxes = [{elements}, \"sample\"]\n{}",
+        made.carrier_hz(),
+        made.keys()
+    );
+    std::fs::write(folder.join("c.toml"), text).unwrap();
+    file::load(&folder.join("c.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// cos(theta) of the map's peak at `range_metres`, between its columns by a parabola through the logarithms of three.
+fn peak_cos(recording: &Recording, range_metres: f64) -> f64 {
+    let radar = &recording.radar;
+    let map = angle_transform(radar, &range_transform(radar, recording.signal().unwrap()), Aperture::Full).cells;
+    let row = map.row(radar.bin_of_range(range_metres).round() as usize);
+    let level = |i: usize| row[i % ELEMENTS].norm().ln();
+    let top = (0..ELEMENTS).max_by(|a, b| level(*a).total_cmp(&level(*b))).unwrap();
+    let (before, here, after) = (level(top + ELEMENTS - 1), level(top), level(top + 1));
+    let off = 0.5 * (before - after) / (before - 2.0 * here + after);
+    radar.cos_of_blob(radar.cos_of_column(top as f64 + off))
+}
+
+/// The worst errors of the map's peaks in columns and of iaa's directions in degrees.
+fn errors(recording: &Recording) -> (f64, f64) {
+    let radar = &recording.radar;
+    let method = methods::by_name("iaa").unwrap_or_else(|e| panic!("{e}"));
+    let request = Request { floor: recording::FLOOR, ..Request::default() };
+    let (_, found) = reconstruct_and_find(method.as_ref(), radar, &recording.two_ends(), &request).unwrap();
+    let (mut columns, mut degrees) = (0.0f64, 0.0f64);
+    for (range, cos) in PLACES {
+        columns = columns.max((peak_cos(recording, range) - cos).abs() / (2.0 / ELEMENTS as f64));
+        let bin = radar.range_resolution_metres();
+        let near = found.iter().filter(|f| (f.range_metres - range).abs() < bin && f.relative_power.0 > -15.0);
+        let strongest = near.max_by(|a, b| a.relative_power.0.total_cmp(&b.relative_power.0));
+        let strongest = strongest.unwrap_or_else(|| panic!("nothing at {range} m in {found:?}"));
+        degrees = degrees.max((strongest.cos_theta.acos() - cos.acos()).abs().to_degrees());
+    }
+    (columns, degrees)
+}
+
+fn assert_true(what: &str, made: Made, recording: &Recording) {
+    let (columns, degrees) = errors(recording);
+    println!("{what}, {made:?}: {columns:.3} columns, {degrees:.4} degrees");
+    assert!(columns < COLUMNS && degrees < DEGREES, "{what}, {made:?}: {columns} columns, {degrees} degrees");
+    assert!(recording.doubts.is_empty(), "{:?}", recording.doubts);
+}
+
+#[test]
+fn a_monostatic_capture_gives_its_true_directions() {
+    let folder = tempfile::tempdir().unwrap();
+    for made in UPWARDS.into_iter().chain([DOWNWARDS]) {
+        assert_true("monostatic", made, &monostatic(made, folder.path()));
+    }
+}
+
+#[test]
+fn pairs_in_the_one_way_reading_give_their_true_directions() {
+    let folder = tempfile::tempdir().unwrap();
+    for made in UPWARDS.into_iter().chain([DOWNWARDS]) {
+        write_pairs(made, folder.path());
+        let pairs = "\"transmitter\", \"receiver\"";
+        assert_true("one-way", made, &read(made, folder.path(), "one-way", wavelength() / 2.0, pairs));
+    }
+}
+
+#[test]
+fn pairs_halfway_between_their_antennas_give_their_true_directions_two_way() {
+    let folder = tempfile::tempdir().unwrap();
+    for made in UPWARDS {
+        write_pairs(made, folder.path());
+        let pairs = "\"transmitter\", \"receiver\"";
+        assert_true("two-way pairs", made, &read(made, folder.path(), "two-way", wavelength() / 4.0, pairs));
+    }
+}
+
+/// One echo at 3 m, whose text says the wrong sign.
+#[test]
+fn the_wrong_beat_sign_is_doubted() {
+    let folder = tempfile::tempdir().unwrap();
+    let turn = |n: usize| Complex64::from_polar(1.0, TAU * 20.0 * n as f64 / SAMPLES as f64);
+    let samples = Array2::from_shape_fn((ELEMENTS, SAMPLES), |(_, n)| turn(n));
+    write_npz(&folder.path().join("c.npz"), |out| out.add("cube", &samples)).unwrap();
+    for (made, wrong) in [(UPWARDS[0], false), (UPWARDS[2], true)] {
+        let doubts = read(made, folder.path(), "two-way", wavelength() / 4.0, "\"element\"").doubts;
+        assert_eq!(doubts.iter().any(|d| d.contains("recording.beat_sign is the other one")), wrong, "{doubts:?}");
+    }
+}
+
+#[test]
+fn a_spacing_that_folds_directions_is_doubted() {
+    let folder = tempfile::tempdir().unwrap();
+    let _quarter = monostatic(UPWARDS[0], folder.path());
+    let half = read(UPWARDS[0], folder.path(), "two-way", wavelength() / 2.0, "\"element\"");
+    assert!(half.doubts.iter().any(|d| d.contains("directions fold")), "{:?}", half.doubts);
+}
