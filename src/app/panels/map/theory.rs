@@ -1,6 +1,8 @@
 //! What the formulas say of one reflector, drawn over a map with the numbers in it.
 
 use super::frame::Frame;
+use crate::app::widgets::direction::angle_degrees;
+use crate::app::widgets::numbers::signed;
 use crate::app::widgets::theme::MARK_EDGE;
 use crate::radar::Decibels;
 use crate::scene::Reflector;
@@ -152,11 +154,12 @@ impl Theory<'_> {
         let wrapped =
             if place.range_metres >= max { format!(" (stands at {:.1} m)", place.range_metres) } else { String::new() };
         let ranges: Vec<String> = wrap_partners_metres.iter().map(|r| format!("{r:.1}")).collect();
-        let folds: Vec<String> = fold_partners.iter().map(|cos| format!("{cos:+.2}")).collect();
+        let told = |cos: &f64| format!("{}° (cos θ {})", signed(angle_degrees(*cos), 0), signed(*cos, 2));
+        let folds: Vec<String> = fold_partners.iter().map(told).collect();
         let period = fold_period_cos(frame.radar);
         let folds = match folds.is_empty() {
             true => format!("no grating lobe (every {period:.2} in cos θ)"),
-            false => format!("grating lobes cos θ {} (every {period:.2})", folds.join(", ")),
+            false => format!("grating lobes at {}, every {period:.2} in cos θ", folds.join(", ")),
         };
         format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
     }
@@ -327,6 +330,15 @@ mod tests {
         ] {
             assert!(all.contains(part), "{part} in:\n{all}");
         }
+    }
+
+    #[test]
+    fn grating_lobes_are_told_in_degrees_from_straight_ahead() {
+        let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
+        let reflector = Reflector { x_metres: 10.0, y_metres: 17.32, reflectivity: 1.0 };
+        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        let told = theory(&overlay, reflector).aliases(frame(&radar));
+        assert!(told.contains("grating lobes at −") && told.contains("° (cos θ −0."), "{told}");
     }
 
     #[test]
