@@ -1,8 +1,8 @@
 //! How far each echo that was found is needed: the part of what is unexplained without it that it explains.
 
-use super::echoes::Gained;
 use super::hearing::range_energy;
 use crate::radar::{End, Radar};
+use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
@@ -20,10 +20,10 @@ const RIDGE: f64 = 1e-11;
 ///
 /// It is the coefficient of partial determination of linear regression (M. H. Kutner, C. J. Nachtsheim, J. Neter and W. Li, "Applied
 /// linear statistical models", section 7.4), the energy being that around the echo's range.
-pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Gained], noise_variance: f64) -> Vec<f64> {
+pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], noise_variance: f64) -> Vec<f64> {
     let (mut left, hears) = (ends.flat(), ends.hears());
-    let echo = |f: &Gained| {
-        let place = radar.polar_of(f.reflector.x_metres, f.reflector.y_metres);
+    let echo = |r: &Reflector| {
+        let place = radar.polar_of(r.x_metres, r.y_metres);
         ArrayEcho::at(radar, place.range_metres, place.cos_theta).where_heard(&hears)
     };
     let echoes: Vec<ArrayEcho> = found.par_iter().map(echo).collect();
@@ -97,9 +97,7 @@ mod tests {
         let scene = Scene::of_points(truth.iter().copied());
         let ends = simulate(&radar, &scene, Floor::Snr(Decibels(db)), 3).unwrap().two_ends(&radar);
         let variance = snr_noise_variance(&radar, &scene.reflectors(), Decibels(db))[0];
-        let gained = |r| Gained { reflector: r, gain: Complex64::from(1.0) };
-        let found: Vec<Gained> =
-            Scene::of_points(places.iter().copied()).reflectors().into_iter().map(gained).collect();
+        let found = Scene::of_points(places.iter().copied()).reflectors();
         confidences(&radar, &ends, &found, variance)
     }
 

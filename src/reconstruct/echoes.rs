@@ -46,8 +46,9 @@ pub(super) fn of_echoes(
     });
     let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full);
     let power = map.cells.mapv(|v| v.norm_sqr());
-    let reflectors = found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
-    let confidences = confidences(radar, ends, found, noise_variance);
+    let reflectors: Vec<Reflector> =
+        found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
+    let confidences = confidences(radar, ends, &reflectors, noise_variance);
     let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
     Reconstruction { lambda, reflectors, confidences, eta: None, least_eta: Some(least) }
 }

@@ -4,7 +4,6 @@
 //! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of `nomp`.
 
 use super::peaks::{Peak, gains};
-use super::split::Trials;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
@@ -58,12 +57,34 @@ const CERTAIN: f64 = 1e7;
 /// Work granted: about ten microseconds a unit.
 const MOST_WORK: usize = 30_000;
 
+/// Most echoes that are tried as two in one reconstruction, and that may fail so one after another.
+const MOST_TRIALS: usize = 24;
+const MOST_FAILURES: usize = 4;
+
 /// A peak that is not yet taken.
 struct Waiting {
     echo: ArrayEcho,
     rows: Rows,
     /// What it explained when it was found.
     energy: f64,
+}
+
+/// Echoes that were tried as two so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Trials {
+    done: usize,
+    failed: usize,
+}
+
+impl Trials {
+    pub fn count(&mut self, was_worth_it: bool) {
+        self.done += 1;
+        self.failed = if was_worth_it { 0 } else { self.failed + 1 };
+    }
+
+    pub fn are_spent(&self) -> bool {
+        self.done >= MOST_TRIALS || self.failed >= MOST_FAILURES
+    }
 }
 
 /// Reflectors found so far, and what they leave of the samples.

@@ -23,12 +23,11 @@ const TRIED: Limits = Limits { iterations: 40, least_gain: 1e-4, ridge: 0.0 };
 /// Two echoes stand for one where they leave this part at most of what the one leaves at its range.
 const WORTH_TWO: f64 = 0.2;
 
-/// Most echoes that are tried as two in one reconstruction, and that may fail so one after another.
-const MOST_TRIALS: usize = 24;
-const MOST_FAILURES: usize = 4;
-
 /// Echoes may be one that stand this near: parts of an end's beam, and range bins.
 const MAY_BE_ONE: (f64, f64) = (0.1, 0.5);
+
+/// Most echoes that are taken away so.
+const MOST_MERGED: usize = 24;
 
 /// What is left may grow by this part where one echo does for two.
 const AS_GOOD: f64 = 0.05;
@@ -54,24 +53,6 @@ struct Spot {
     bin: f64,
     /// What is heard of it.
     energy: f64,
-}
-
-/// Trials so far.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Trials {
-    done: usize,
-    failed: usize,
-}
-
-impl Trials {
-    fn count(&mut self, was_worth_it: bool) {
-        self.done += 1;
-        self.failed = if was_worth_it { 0 } else { self.failed + 1 };
-    }
-
-    fn are_spent(&self) -> bool {
-        self.done >= MOST_TRIALS || self.failed >= MOST_FAILURES
-    }
 }
 
 impl Settled<'_> {
@@ -179,7 +160,7 @@ impl Settled<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn merge(&mut self) -> Result<(), ReconstructError> {
-        for _ in 0..MOST_TRIALS {
+        for _ in 0..MOST_MERGED {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;

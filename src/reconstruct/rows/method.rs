@@ -96,9 +96,6 @@ impl Reconstructor for RowMethod {
 /// [`Row::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude in a row
 /// in proportion; twice the direction takes up what is linear in that, and leaves its square.
 fn not_plane(radar: &Radar) -> f64 {
-    if let Ok(v) = std::env::var("CUT") {
-        return v.parse().unwrap();
-    }
     let half_metres = 0.5 * (subarray_len(radar.end_elements) - 1) as f64 * radar.element_spacing_metres;
     let bins = if radar.samples == 1 { 0.0 } else { half_metres / radar.range_resolution_metres() };
     bins.min(1.0).powi(4).max(LEAST_NOT_PLANE)
