@@ -141,10 +141,11 @@ y_metres = 3.5
 
     #[test]
     fn a_question_without_a_right_threshold_is_refused_with_its_line() {
-        let message = refused(
-            "samples = 64 }",
-            "samples = 64, window = \"rectangular\" }\nview = { normalisation = { dynamic-range = 20.0 } }",
-        );
-        assert!(message.starts_with("line 18: step 1: no threshold is right"), "{message}");
+        // The weak point lies 60 dB below a strong one, whose main lobe exceeds any threshold that keeps it.
+        let weak =
+            "y_metres = 2.0\nreflectivity = 0.001\n[[step.object]]\nkind = \"point\"\nx_metres = 1.0\ny_metres = 2.0\n";
+        let text = TEXT.replace("y_metres = 2.0\n", weak).replace("at_most = 0.2", "at_most = 0.0");
+        let message = Lesson::from_toml(&text).unwrap().try_out(&text).unwrap_err().to_string();
+        assert!(message.starts_with("line 22: step 1: no threshold is right"), "{message}");
     }
 }

@@ -153,7 +153,7 @@ fn no_panel_answers_a_question_before_the_learner_does() {
     }
     begin(&mut s, "range-and-bandwidth", 3);
     let tells = |s: &Session, text: &str| painted(s).iter().any(|t| t.contains(text));
-    for answer in ["range, m", "maximum range", "511", "500 m"] {
+    for answer in ["range, m", "maximum range", "511.67 m", "500 m"] {
         assert!(!tells(&s, answer), "{answer}: {:?}", painted(&s));
     }
     assert!(tells(&s, "Hidden until you have predicted."));
