@@ -312,7 +312,7 @@ mod tests {
             let commands = show(ui, input, &mut asked.0);
             asked.1.extend(commands);
         };
-        Harness::builder().with_size([width, 600.0]).build_ui_state(draw, (Memory::default(), vec![]))
+        Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (Memory::default(), vec![]))
     }
 
     fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {

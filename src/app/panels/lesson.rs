@@ -3,6 +3,7 @@
 use crate::app::state::{Command, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
+use crate::app::widgets::number_field::{NumberField, Wanted};
 use crate::lesson::question::Answer;
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Challenge, Guess, Lesson, Progress, Question};
@@ -180,12 +181,19 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
                 let field = ui.add(TextEdit::singleline(&mut memory.number).desired_width(90.0).hint_text("a number"));
                 field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Your number"));
                 ui.label(unit);
-                let number: Option<f64> =
-                    memory.number.trim().replace(',', ".").parse().ok().filter(|v: &f64| v.is_finite());
+                let read = Wanted { unit: unit.clone(), ..Wanted::any() }.read(&memory.number);
                 let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-                let clicked = ui.add_enabled(number.is_some(), egui::Button::new("Answer")).clicked();
-                if let Some(number) = number.filter(|_| clicked || entered) {
-                    asked.push(Command::Predict(Guess::Number(number)));
+                let clicked = ui.add_enabled(read.is_ok(), egui::Button::new("Answer")).clicked();
+                match read {
+                    Ok(number) if clicked || entered => asked.push(Command::Predict(Guess::Number(number))),
+                    Ok(_) => {}
+                    Err(_) if memory.number.trim().is_empty() => {}
+                    Err(message) => {
+                        _ = ui.colored_label(ui.visuals().error_fg_color, message);
+                        if entered {
+                            field.request_focus();
+                        }
+                    }
                 }
             });
         }
@@ -198,7 +206,10 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
         }
         Answer::Threshold { .. } => {
             ui.horizontal(|ui| {
-                ui.add(Slider::new(&mut memory.eta, 0.0..=1.0).text("threshold"));
+                ui.add(Slider::new(&mut memory.eta, 0.0..=1.0).show_value(false).text("threshold"));
+                let field = NumberField::new(&mut memory.eta).range(0.0..=1.0).speed(0.005).max_decimals(2);
+                let field = ui.add(field);
+                ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
                 if ui.button("Answer").clicked() {
                     asked.push(Command::Predict(Guess::Eta(memory.eta)));
                 }
@@ -294,6 +305,19 @@ mod tests {
         panel.get_by_label("Range and bandwidth").click();
         panel.step();
         assert_eq!(panel.state().2, [Command::BeginLesson(0)]);
+    }
+
+    #[test]
+    fn what_is_no_number_is_no_answer() {
+        let mut panel = harness(Some(run("range-and-bandwidth", 1)));
+        panel.get_by_label("Your number").focus();
+        panel.step();
+        panel.get_by_label("Your number").type_text("abc");
+        panel.step();
+        panel.key_press(egui::Key::Enter);
+        panel.run_steps(3);
+        assert!(panel.query_by_label_contains("“abc” is not a number").is_some() && panel.state().2.is_empty());
+        assert!(panel.get_by_label("Your number").is_focused(), "the next key goes to the field");
     }
 
     #[test]
