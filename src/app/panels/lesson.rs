@@ -3,6 +3,7 @@
 use crate::app::state::{Command, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
+use crate::app::widgets::number_field::{NumberField, Wanted};
 use crate::lesson::question::{Answer, number_text};
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Challenge, Guess, Judgement, Lesson, Progress, Question, Truth};
@@ -186,12 +187,19 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
                 let field = ui.add(TextEdit::singleline(&mut memory.number).desired_width(90.0).hint_text("a number"));
                 field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Your number"));
                 ui.label(unit);
-                let number: Option<f64> =
-                    memory.number.trim().replace(',', ".").parse().ok().filter(|v: &f64| v.is_finite());
+                let read = Wanted { unit: unit.clone(), ..Wanted::any() }.read(&memory.number);
                 let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-                let clicked = ui.add_enabled(number.is_some(), egui::Button::new("Answer")).clicked();
-                if let Some(number) = number.filter(|_| clicked || entered) {
-                    asked.push(Command::Predict(Guess::Number(number)));
+                let clicked = ui.add_enabled(read.is_ok(), egui::Button::new("Answer")).clicked();
+                match read {
+                    Ok(number) if clicked || entered => asked.push(Command::Predict(Guess::Number(number))),
+                    Ok(_) => {}
+                    Err(_) if memory.number.trim().is_empty() => {}
+                    Err(message) => {
+                        _ = ui.colored_label(ui.visuals().error_fg_color, message);
+                        if entered {
+                            field.request_focus();
+                        }
+                    }
                 }
             });
         }
@@ -204,7 +212,10 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
         }
         Answer::Threshold { .. } => {
             ui.horizontal(|ui| {
-                ui.add(Slider::new(&mut memory.eta, 0.0..=1.0).text("threshold"));
+                ui.add(Slider::new(&mut memory.eta, 0.0..=1.0).show_value(false).text("threshold"));
+                let field = NumberField::new(&mut memory.eta).range(0.0..=1.0).speed(0.005).max_decimals(2);
+                let field = ui.add(field);
+                ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
                 if ui.button("Answer").clicked() {
                     asked.push(Command::Predict(Guess::Eta(memory.eta)));
                 }

@@ -264,8 +264,13 @@ fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, res
             }
             Some(Wrong { text, message, kept, drawn })
         }
-        None => before.filter(|_| !is_over).map(|wrong| Wrong { drawn, ..wrong }),
+        None => before.clone().filter(|_| !is_over).map(|wrong| Wrong { drawn, ..wrong }),
     };
+    let text = |wrong: &Option<Wrong>| wrong.as_ref().map(|w| w.text.clone());
+    if text(&wrong) != text(&before) {
+        // This frame still showed what was there before.
+        ui.request_repaint();
+    }
     ui.data_mut(|d| match wrong {
         Some(wrong) => _ = d.insert_temp(key(id), wrong),
         None => d.remove::<Wrong>(key(id)),

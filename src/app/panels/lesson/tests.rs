@@ -41,6 +41,19 @@ fn a_lesson_is_begun_from_the_list() {
 }
 
 #[test]
+fn what_is_no_number_is_no_answer() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 1)));
+    panel.get_by_label("Your number").focus();
+    panel.step();
+    panel.get_by_label("Your number").type_text("abc");
+    panel.step();
+    panel.key_press(egui::Key::Enter);
+    panel.run_steps(3);
+    assert!(panel.query_by_label_contains("“abc” is not a number").is_some() && panel.state().2.is_empty());
+    assert!(panel.get_by_label("Your number").is_focused(), "the next key goes to the field");
+}
+
+#[test]
 fn lessons_ask_for_the_whole_screen() {
     let mut panel = harness(Some(run("range-and-bandwidth", 0)));
     panel.get_by_label("Whole screen").click();

@@ -1,0 +1,123 @@
+use super::*;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<Command>)> {
+    let draw = move |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
+        let input = Input {
+            presents: false,
+            can_undo: true,
+            can_redo: false,
+            selected: false,
+            projection: Projection::RangeAngle,
+            colours: ColourMap::Grey,
+            random: (0, 0),
+            recent: &[],
+            finds_reflectors,
+            has_recording: finds_reflectors,
+            is_recording: false,
+            left: &[],
+            is_open: &|panel| panel == Panel::Scene,
+        };
+        let commands = show(ui, input, &mut asked.0);
+        asked.1.extend(commands);
+    };
+    Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (Memory::default(), vec![]))
+}
+
+fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {
+    bar_of(width, true)
+}
+
+fn open(menu: &mut Harness<'_, (Memory, Vec<Command>)>, labels: &[&str]) {
+    for label in labels {
+        menu.get_by_label(label).click();
+        menu.run();
+    }
+}
+
+#[test]
+fn tools_for_research_have_a_menu_of_their_own() {
+    for menus in [&["Tools"][..], &["View", "Panels"]] {
+        let mut menu = bar(900.0);
+        open(&mut menu, menus);
+        let _tool = menu.get_by_label("Guide");
+        for panel in Panel::RESEARCH {
+            assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?} in {menus:?}");
+        }
+        open(&mut menu, &["Research", "Training"]);
+        assert_eq!(menu.state().1, [Command::OpenPanel(Panel::Training)]);
+    }
+}
+
+#[test]
+fn random_scenes_have_a_menu_of_their_own() {
+    let mut menu = bar(900.0);
+    open(&mut menu, &["Scene"]);
+    let name = Kind::Walls.description();
+    assert!(menu.query_by_label_contains(name).is_none());
+    open(&mut menu, &["Random scene"]);
+    let is_listed = |kind: Kind| menu.query_all_by_label_contains(kind.description()).next().is_some();
+    assert!(Kind::all().all(is_listed));
+    menu.get_by_label_contains(name).click();
+    menu.run();
+    assert_eq!(menu.state().1, [Command::RandomScene(Kind::Walls)]);
+    assert!(menu.query_by_label("Fit scene").is_none(), "the menu has closed");
+}
+
+#[test]
+fn the_seed_of_random_scenes_is_typed_in_the_menu() {
+    use egui::accesskit::Role;
+    let mut menu = bar(900.0);
+    open(&mut menu, &["Scene", "Random scene"]);
+    menu.get_by_role_and_label(Role::SpinButton, "Next: seed").click();
+    menu.run();
+    menu.event(egui::Event::Text("7".to_owned()));
+    menu.run();
+    menu.key_press(egui::Key::Enter);
+    menu.run();
+    assert_eq!(menu.state().1, [Command::SetNextRandom { seed: 7, number: 0 }]);
+}
+
+#[test]
+fn panels_with_nothing_to_show_are_not_listed() {
+    for finds in [true, false] {
+        let mut menu = bar_of(900.0, finds);
+        open(&mut menu, &["Tools"]);
+        assert_eq!(menu.query_by_label("Found").is_some(), finds);
+        let mut menu = bar_of(900.0, finds);
+        open(&mut menu, &["View", "Panels"]);
+        assert_eq!(menu.query_by_label("Unexplained").is_some(), finds);
+    }
+}
+
+#[test]
+fn menus_ask_for_what_they_list() {
+    let mut menu = bar(900.0);
+    menu.get_by_label("+ Line").click();
+    menu.step();
+    menu.get_by_label("Cartesian").click();
+    menu.step();
+    menu.get_by_label("Scene").click();
+    menu.run();
+    menu.get_by_label("Presets").click();
+    menu.run();
+    menu.get_by_label("Four reflectors").click();
+    menu.run();
+    let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
+    let projection = Command::SetProjection(Projection::Cartesian);
+    assert_eq!(menu.state().1, [Command::Add(NewObject::Line, None), projection, Command::Preset(preset)]);
+}
+
+#[test]
+fn no_button_stands_over_another_at_any_width() {
+    for width in (520..1000).step_by(20) {
+        let menu = bar(width as f32);
+        let right = |label| menu.query_by_label(label).map(|node| node.rect().right());
+        let Some(lessons) = right("Lessons") else { panic!("no lessons at {width}") };
+        for label in ["Commands", "Cartesian", "Range–angle"] {
+            let Some(node) = menu.query_by_label(label) else { continue };
+            assert!(node.rect().left() >= lessons, "{label} at {width}");
+        }
+    }
+}
