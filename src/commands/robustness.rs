@@ -167,7 +167,7 @@ const LEAST: f64 = 1.0;
 
 /// Mean less and plus its standard error, with the mean between them; never below [`LEAST`].
 fn bar_of(row: &RobustnessRow) -> [f64; 3] {
-    let Estimate { mean, standard_error } = row.squared_error;
+    let Estimate { mean, standard_error, .. } = row.squared_error;
     [mean - standard_error, mean, mean + standard_error].map(|v| v.max(LEAST))
 }
 

@@ -314,7 +314,7 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
         }
         if let Floor::Level(DecibelMilliwatts(mut level)) = settings.floor {
             let drag =
-                DragValue::new(&mut level).range(signal::floor::LEVEL_DECIBEL_MILLIWATTS).speed(0.5).suffix(" dBm");
+                NumberField::new(&mut level).range(signal::floor::LEVEL_DECIBEL_MILLIWATTS).speed(0.5).suffix(" dBm");
             if ui.add(drag).on_hover_text(LEVEL).changed() {
                 asked.push(Command::SetFloor(Floor::Level(DecibelMilliwatts(level))));
             }

@@ -151,6 +151,7 @@ mod tests {
                 method: Some("iaa"),
                 found: Some(&list),
                 refusal: None,
+                stale: false,
                 has_ranges: true,
             };
             show(ui, input);

@@ -65,8 +65,8 @@ fn thresholds_are_told_in_decibels_where_these_are_chosen() {
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
         let (radar, method, noise_seed, run) =
             (&Radar::default(), Some(&Baseline as &dyn Reconstructor), 0, Run::default());
-        let (settings, range_db, is_recorded) = (&settings, Some(300.0), false);
-        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta: 0.8, range_db, run };
+        let (settings, range_db, is_recorded, eta, uses) = (&settings, Some(300.0), false, 0.8, Uses::ALL);
+        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db, run, uses };
         asked.extend(show(ui, input));
     };
     let controls = Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new());

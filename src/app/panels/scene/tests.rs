@@ -19,6 +19,7 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
             snap: Snap::Off,
             fields_of_view: false,
             found: &[],
+            found_stale: false,
             trails: &[],
             cursor: None,
             error: Some("too far"),
