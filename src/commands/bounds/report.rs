@@ -118,6 +118,10 @@ impl Report {
             }
         }
         print("\nNo unbiased estimator has smaller standard deviations. One that knows scenes beforehand may.")?;
+        self.print_monte_carlo()
+    }
+
+    fn print_monte_carlo(&self) -> Result<(), CommandError> {
         if !self.monte_carlo.is_empty() {
             print(&format!(
                 "\n{:7} {:>9} {:>10} {:>10} {:>13} {:>11} {:>11}",

@@ -1,7 +1,6 @@
 //! The file of rows that a run appends to, and goes on from when it was stopped.
 
 use super::super::CommandError;
-use super::on_file;
 use crate::evaluate::rows::{Column, Origin, Part, Row, RowWriter, Table, merge, read_table, write_rows};
 use crate::files::write_atomically;
 use std::collections::{HashMap, HashSet};
@@ -12,6 +11,11 @@ use std::sync::Arc;
 
 /// What a user can do about a file that is not to be lost.
 const WAYS_OUT: &str = "name another file, or write over this one with --overwrite";
+
+/// The error of a file that can't be read or written.
+pub fn on_file(path: &Path) -> impl FnOnce(io::Error) -> CommandError {
+    move |source| CommandError::File { path: path.to_owned(), source }
+}
 
 /// The rows that a run makes.
 pub struct Wanted {

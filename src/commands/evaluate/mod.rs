@@ -14,7 +14,7 @@ use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
 use crate::task::Task;
-use kept::{Key, RowFile, Wanted, key, write_merged};
+use kept::{Key, RowFile, Wanted, key, on_file, write_merged};
 use progress::Progress;
 use report::Report;
 use std::collections::HashSet;
@@ -235,8 +235,4 @@ impl Args {
         }
         Ok((rows, missing))
     }
-}
-
-fn on_file(path: &Path) -> impl FnOnce(io::Error) -> CommandError {
-    move |source| CommandError::File { path: path.to_owned(), source }
 }
