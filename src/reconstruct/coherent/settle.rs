@@ -54,6 +54,9 @@ const AS_GOOD_AS_NOTHING: f64 = 1e-13;
 /// Reflectors that leave no more than this many times as much are in their places, wherever those are: a millionth of the energy.
 const CERTAIN: f64 = 1e7;
 
+/// Echoes nearer than this are one, in parts of an end's beam and in range bins.
+const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
+
 /// Work granted: about ten microseconds a unit.
 const MOST_WORK: usize = 30_000;
 
@@ -168,7 +171,7 @@ impl<'a> Settled<'a> {
     }
 
     /// Whether nothing is left to be explained, or no work granted.
-    fn is_done(&self) -> bool {
+    pub(super) fn is_done(&self) -> bool {
         self.fit.cost() <= self.enough || self.bench.work.is_spent()
     }
 
@@ -202,8 +205,25 @@ impl<'a> Settled<'a> {
             (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
         let peaks: Vec<Peak> = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
-        gains(radar, &peaks, ends, task)
+        gains(radar, &once_each(radar, peaks), ends, task)
     }
+}
+
+/// `peaks` without those that stand where an earlier one does.
+fn once_each(radar: &Radar, peaks: Vec<Peak>) -> Vec<Peak> {
+    let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
+    let beam_cos = radar.wavelength_metres() / (end_metres * radar.carrier.turns_per_wavelength().abs());
+    let mut kept: Vec<Peak> = Vec::with_capacity(peaks.len());
+    for peak in peaks {
+        let is_same = |k: &Peak| {
+            (k.cos_theta - peak.cos_theta).abs() < SAME_PLACE.0 * beam_cos
+                && radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME_PLACE.1
+        };
+        if !kept.iter().any(is_same) {
+            kept.push(peak);
+        }
+    }
+    kept
 }
 
 /// Whether no element between the ends would hear a reflector there much louder than the ends do: such a one would fill the map, and

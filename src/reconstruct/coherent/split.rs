@@ -67,7 +67,7 @@ impl Settled<'_> {
     pub fn is_doubtful(&self) -> bool {
         let count = self.fit.atoms.len();
         (1..=MOST_DOUBTFUL).contains(&count)
-            && !self.bench.work.is_spent()
+            && !self.is_done()
             && (self.has_companions() || self.grower().in_need(&self.fit).contains(&true))
     }
 

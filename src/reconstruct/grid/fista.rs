@@ -104,7 +104,7 @@ enum Penalty {
 }
 
 impl Problem {
-    /// Of the echoes of `chosen`; without a `penalty`, by that of `settings`.
+    /// Of the echoes of the cells `chosen`.
     fn new(
         cells: &Cells<'_>,
         chosen: &[Cell],

@@ -53,7 +53,7 @@ const TOOTH_STEPS: usize = 12;
 const TEETH: i32 = 6;
 
 /// Most picks whose directions are compared, and that are all moved again after each new one.
-const MOST_RELAXED: usize = 4;
+const MOST_RELAXED: usize = 6;
 
 /// Part of the energy that rounding leaves unexplained where phases of 6e4 rad were evaluated in f64: about 1e-11 of each sample's
 /// amplitude. It is not white, so that the measured noise understates it.
@@ -64,6 +64,9 @@ const LEAST_NEW: f64 = 1e-7;
 
 /// Part of the residual's energy that a pick must at least explain.
 const LEAST_GAIN: f64 = 1e-3;
+
+/// Part of all energy that a pick must at least explain: 100 dB down. What a pick leaves where it has not quite come to its place is no scene.
+const LEAST_OF_ALL: f64 = 1e-10;
 
 /// A cell's echo, picked.
 struct Pick {
@@ -204,10 +207,13 @@ impl Omp {
 
     /// Takes the strongest of `heard`, and those that stand far from it in range; whether the strongest was worth it.
     fn pick(&self, pursuit: &mut Pursuit<'_>, mut heard: Array2<f64>, samples: &[Complex64], enough: f64) -> bool {
-        let mut least = 0.0;
+        let (mut least, of_all) = (0.0, LEAST_OF_ALL * energy(samples));
         while pursuit.picks.len() < self.max_atoms && energy(&pursuit.residual) > enough {
             let Some(pick) = pursuit.strongest(&heard) else { return least > 0.0 };
             let power = pick.atom.correlate(&pursuit.residual).norm_sqr();
+            if power < of_all {
+                return least > 0.0;
+            }
             if power < least {
                 return true;
             }
@@ -367,6 +373,8 @@ mod tests {
                 let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
                 let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
                 let first = Omp { max_atoms: 1 }.reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;
+                let all = Omp::default().reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;
+                assert!(all.len() < 12, "{} picks for one reflector", all.len());
                 left(&radar, &ends, &first)
             })
             .collect();
