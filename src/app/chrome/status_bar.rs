@@ -71,7 +71,8 @@ fn texts_of(cursor: Option<Cursor>) -> Vec<String> {
     let polar = format!("{range}   cos θ {:+.3}", c.cos_theta);
     let place = format!("x {:+7.2} m   y {:+7.2} m", c.place.x_metres, c.place.y_metres);
     let cell = format!("bin {:5.1}   column {:6.1}", c.bin, c.column);
-    let texts = [range, polar.clone(), format!("{place}   {polar}"), format!("{place}   {polar}   {cell}")];
+    let both = format!("{place}   {polar}");
+    let texts = [range.clone(), polar, format!("{place}   {range}"), both.clone(), format!("{both}   {cell}")];
     texts.map(|text| text.replace('-', "−")).to_vec()
 }
 

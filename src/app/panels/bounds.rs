@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
                 ui.vertical(|ui| bound(ui, result));
             });
         } else {
-            ui.allocate_ui(vec2(size.x, 0.5 * size.y), |ui| picture(ui, result, texture));
+            ui.allocate_ui(vec2(size.x, 0.44 * size.y), |ui| picture(ui, result, texture));
             bound(ui, result);
         }
     });
@@ -190,7 +190,8 @@ fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, 
     };
     let both = ui.available_width() > BOTH;
     let second = per_end.map_or_else(|| std::array::from_fn(|_| "–".to_owned()), |b| rows(b).map(|r| r.1));
-    let grid = Grid::new("bound").num_columns(if both { 3 } else { 2 }).spacing([12.0, 3.0]);
+    let (columns, gap) = if both { (3, 3.0) } else { (2, 1.0) };
+    let grid = Grid::new("bound").num_columns(columns).spacing([12.0, gap]);
     grid.show(ui, |ui| {
         if both {
             ui.weak("σ of");

@@ -210,8 +210,12 @@ impl Widget for NumberField<'_> {
             shown
         });
         let (reads, wanted, is_wrong) = (reading.clone(), self.wanted.clone(), before.is_some());
+        let gave_up = was_given_up(ui, id);
         drag = drag.custom_parser(move |text| {
             let mut reading = reads.borrow_mut();
+            if gave_up {
+                return None;
+            }
             if !is_wrong && text == reading.shown {
                 // Only looked at: it keeps the decimals that are not shown.
                 return None;
@@ -243,6 +247,12 @@ fn key(id: Id) -> Id {
     id.with("wrong entry")
 }
 
+/// Whether Escape ended the entry a moment ago: egui reads the text once more in the next pass, as if the focus had gone elsewhere.
+fn was_given_up(ui: &Ui, id: Id) -> bool {
+    let pass = ui.ctx().cumulative_pass_nr();
+    ui.data(|d| d.get_temp::<u64>(id.with("given up"))).is_some_and(|given_up| given_up + 2 >= pass)
+}
+
 /// The entry that the field did not take, if it still stands there.
 fn wrong_of(ui: &Ui, id: Id, value: f64) -> Option<Wrong> {
     let pass = ui.ctx().cumulative_pass_nr();
@@ -255,6 +265,9 @@ fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, res
     let drawn = ui.ctx().cumulative_pass_nr();
     let (escaped, entered) = ui.input(|i| (i.key_pressed(Key::Escape), i.key_pressed(Key::Enter)));
     let given_up = escaped && response.lost_focus();
+    if given_up {
+        ui.data_mut(|d| d.insert_temp(id.with("given up"), drawn));
+    }
     let is_over = reading.taken || given_up || response.changed();
     let wrong = match reading.wrong {
         Some((text, message)) => {
