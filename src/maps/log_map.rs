@@ -12,7 +12,7 @@ pub const LOG_GUARD: f64 = 1e-20;
 /// What is added to every magnitude of a map whose largest is `peak`: 20 decades below the peak, and never more than [`LOG_GUARD`]. A scene and
 /// the same scene with a millionth of its reflectivities then have the same map.
 pub fn guard(peak: f64) -> f64 {
-    LOG_GUARD * peak.min(1.0)
+    (LOG_GUARD * peak.min(1.0)).max(f64::MIN_POSITIVE)
 }
 
 /// `L = log10(|Y| + guard)`, `[range bins, columns]`: decades of amplitude, not normalised.

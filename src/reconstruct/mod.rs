@@ -34,12 +34,11 @@ pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
-pub(crate) use hearing::ends_noise_variance;
 pub use hybrid::{Hybrid, on_one_scale};
-pub(crate) use noise_test::least_eta;
-pub use reconstructor::{About, Reconstructor, Weights, check_ends};
+pub(crate) use noise_test::level_above_mean_decades;
+pub use reconstructor::{About, Reconstructor, Weights, check_ends, untrained_noise};
 pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
     ROOT_MUSIC_PEAKS, RowMethod,
 };
-pub use trained::{TrainedNoise, untrained_noise};
+pub use trained::TrainedNoise;

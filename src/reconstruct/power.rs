@@ -1,7 +1,7 @@
 //! From an estimate of the whole array's power to Lambda, over the floor that lies beneath it.
 
 use super::answer::{Reconstruction, Request};
-use super::noise_test::least_eta;
+use super::noise_test::{cell_noise, least_eta};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
 use ndarray::{Array2, Zip};
@@ -9,12 +9,6 @@ use ndarray::{Array2, Zip};
 /// Magnitude in the whole array's map of a focused reflector whose samples have amplitude 1: the sum of both windows, scaled.
 pub(super) fn focused_gain(radar: &Radar) -> f64 {
     let mean = |n: usize| radar.window.weights(n).iter().sum::<f64>() / (n as f64).sqrt();
-    mean(radar.samples) * mean(radar.elements)
-}
-
-/// Mean square of a noise cell of the whole array's map for noise of variance 1 a sample.
-pub(super) fn cell_noise(radar: &Radar) -> f64 {
-    let mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
     mean(radar.samples) * mean(radar.elements)
 }
 

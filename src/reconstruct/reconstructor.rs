@@ -6,7 +6,8 @@ use super::hearing::ends_noise_variance;
 use super::noise_test::tested;
 use super::trained::TrainedNoise;
 use crate::radar::{End, Radar};
-use crate::signal::TwoEnds;
+use crate::scene::Reflector;
+use crate::signal::{Floor, TwoEnds};
 use ndarray::Array3;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -168,6 +169,31 @@ pub trait Reconstructor: Send + Sync {
     }
 }
 
+/// What is wrong with asking `method` of these reflectors over `floor`, if it was trained on other noise.
+pub fn untrained_noise(
+    method: &dyn Reconstructor,
+    radar: &Radar,
+    reflectors: &[Reflector],
+    floor: Floor,
+) -> Option<String> {
+    let trained = method.trained_noise()?;
+    if !floor.is_thermal() {
+        return None;
+    }
+    let snr = floor.snr(radar, reflectors);
+    let was = match trained {
+        TrainedNoise::None => "without thermal noise".to_owned(),
+        TrainedNoise::Snr(from, to) => {
+            if snr.is_some_and(|snr| (from..=to).contains(&snr)) {
+                return None;
+            }
+            format!("at SNRs of {:.0} to {:.0} dB", from.0, to.0)
+        }
+    };
+    let is = snr.map_or("this scene is noise alone".to_owned(), |snr| format!("this scene has {:.0} dB", snr.0));
+    Some(format!("{} was trained {was}; {is}", method.name()))
+}
+
 /// Checks that both ends have the radar's shape and hold finite samples only.
 ///
 /// # Errors
@@ -201,7 +227,6 @@ pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Reflector;
 
     /// Answers one reflector as strong as the strongest sample.
     struct Echo;

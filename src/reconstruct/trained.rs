@@ -1,9 +1,6 @@
-//! Over how much noise a network was trained, and what is said where a scene has another amount.
+//! Over how much noise a network was trained.
 
-use super::reconstructor::Reconstructor;
-use crate::radar::{Decibels, Radar};
-use crate::scene::Reflector;
-use crate::signal::Floor;
+use crate::radar::Decibels;
 
 /// The thermal noise beneath the scenes that a method was trained on. Rounding floors and none lie beneath all training scenes' noise and
 /// count as trained.
@@ -15,37 +12,15 @@ pub enum TrainedNoise {
     Snr(Decibels, Decibels),
 }
 
-/// What is wrong with asking `method` of these reflectors over `floor`, if it was trained on other noise.
-pub fn untrained_noise(
-    method: &dyn Reconstructor,
-    radar: &Radar,
-    reflectors: &[Reflector],
-    floor: Floor,
-) -> Option<String> {
-    let trained = method.trained_noise()?;
-    if !floor.is_thermal() {
-        return None;
-    }
-    let snr = floor.snr(radar, reflectors);
-    let was = match trained {
-        TrainedNoise::None => "without thermal noise".to_owned(),
-        TrainedNoise::Snr(from, to) => {
-            if snr.is_some_and(|snr| (from..=to).contains(&snr)) {
-                return None;
-            }
-            format!("at SNRs of {:.0} to {:.0} dB", from.0, to.0)
-        }
-    };
-    let is = snr.map_or("this scene is noise alone".to_owned(), |snr| format!("this scene has {:.0} dB", snr.0));
-    Some(format!("{} was trained {was}; {is}", method.name()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::radar::DecibelMilliwatts;
-    use crate::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Request};
-    use crate::signal::TwoEnds;
+    use crate::radar::{DecibelMilliwatts, Radar};
+    use crate::reconstruct::{
+        About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request, untrained_noise,
+    };
+    use crate::scene::Reflector;
+    use crate::signal::{Floor, TwoEnds};
 
     struct Network(TrainedNoise);
 

@@ -61,7 +61,7 @@ fn one_echo_at_the_edge_of_what_is_seen_is_no_map_of_echoes() {
         for name in ["iaa", "sbl", "omp", "nomp", "hybrid", "live"] {
             let answer = trial.ask(methods::by_name(name).unwrap().as_ref(), &request).unwrap();
             let (se, alarms) = (answer.metrics.squared_error, answer.metrics.false_alarm);
-            assert!(se < 30_000.0 && alarms < 0.03, "{name}, {y} m: SE {se:.0}, P_FA {alarms}");
+            assert!(se < 30_000.0 && alarms < 0.05, "{name}, {y} m: SE {se:.0}, P_FA {alarms}");
         }
     }
 }

@@ -176,7 +176,8 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
 /// A method's name, its threshold, and the optimisers of its weights.
 fn label(row: &EvaluationRow) -> String {
     let eta = if row.one_eta { eta_text(row.eta) } else { format!("{:.4}, mean", row.eta) };
-    let optimiser = if row.optimiser.is_empty() { String::new() } else { format!("\n{}", row.optimiser.replace(", ", ",\n")) };
+    let optimiser =
+        if row.optimiser.is_empty() { String::new() } else { format!("\n{}", row.optimiser.replace(", ", ",\n")) };
     format!("{}\nη = {eta}{optimiser}", row.method)
 }
 

@@ -8,7 +8,7 @@ use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
 use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
-use crate::reconstruct::{TrainedNoise, ends_noise_variance, least_eta};
+use crate::reconstruct::{TrainedNoise, level_above_mean_decades};
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
 use ndarray::Array2;
@@ -111,6 +111,21 @@ const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 /// which no threshold in Lambda has (`choose_eta live`).
 const BELOW_PEAK_DECADES: f64 = 2.6;
 
+/// One cell in so many is looked at for the median.
+const STRIDE: usize = 17;
+
+/// The level that no noise cell exceeds, decades of the network's own map: above the median cell, which is the network's mean of noise where
+/// that is what most cells hold. Over the rounding floor it lies far below every echo.
+fn noise_level_decades(map: &[f32]) -> f64 {
+    let mut cells: Vec<f32> = map.iter().copied().step_by(STRIDE).collect();
+    if cells.is_empty() {
+        return f64::NEG_INFINITY;
+    }
+    let middle = cells.len() / 2;
+    let median = *cells.select_nth_unstable_by(middle, f32::total_cmp).1;
+    f64::from(median) + level_above_mean_decades(map.len())
+}
+
 impl Reconstructor for LiveMethod {
     fn about(&self) -> About {
         About {
@@ -146,18 +161,17 @@ impl Reconstructor for LiveMethod {
         let Decades { mut map, minimum, .. } = self.decades(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
+        let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
         map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
         let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
-        let noise_variance = ends_noise_variance(radar, ends, request.floor);
-        let least_eta = Some(least_eta(radar, noise_variance, scale));
         Ok(Reconstruction {
             lambda: RangeAngleMap { lambda },
             reflectors: Vec::new(),
             confidences: Vec::new(),
             eta: Some(eta),
-            least_eta,
+            least_eta: Some(least_eta),
         })
     }
 }

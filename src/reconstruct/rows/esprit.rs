@@ -19,7 +19,7 @@ pub const ESPRIT: RowMethod = RowMethod {
         description: "directions from how the signals turn from element to element, moved to where their echoes fit both ends best, and \
             the exact map of them",
         told: TOLD_PEAKS,
-        eta: 0.809, // as of iaa, whose maps are drawn alike
+        eta: 0.752, // by examples/choose_eta.rs
     },
     estimate: |row| row.continued(&directions(row)?),
     render: Render::Peaks,

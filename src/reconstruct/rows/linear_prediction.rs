@@ -29,7 +29,7 @@ pub const LINEAR_PREDICTION_PEAKS: RowMethod = RowMethod {
         name: "linear-prediction-peaks",
         description: "the peaks of linear-prediction, moved to where their echoes fit both ends best, and the exact map of them",
         told: TOLD_PEAKS,
-        eta: 0.809, // as of iaa, whose maps are drawn alike
+        eta: 0.775, // by examples/choose_eta.rs
     },
     estimate: spectrum,
     render: Render::Peaks,
