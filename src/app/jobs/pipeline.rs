@@ -15,7 +15,7 @@ use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
 use crate::app::state::{CutMap, MapKind, MethodSlot, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::evaluate::TARGET_ETA;
-use crate::signal::Unfinished;
+use crate::signal::{Floor, Unfinished};
 use crate::task::{Reply, Task, Worker};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -159,6 +159,8 @@ impl Pipeline {
             let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
             output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
         };
+        // An empty scene over noise has false alarms to count; one without noise has nothing.
+        let is_noise = matches!(settings.floor, Floor::Level(_));
         let mut request = MapsRequest {
             document: state.editor.document().id(),
             radar: state.radar().clone(),
@@ -173,7 +175,7 @@ impl Pipeline {
             dark: state.dark,
             target_eta: settings.target_eta,
             etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
-            scores: output && (recording.is_some() || !scene.objects.is_empty()),
+            scores: output && (recording.is_some() || !scene.objects.is_empty() || is_noise),
             roc: looked_at.roc,
             recording,
         };
