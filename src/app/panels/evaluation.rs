@@ -233,7 +233,7 @@ mod tests {
             median_milliseconds: 1234.5,
         };
         let radar = Radar::default();
-        let evaluation = Harness::builder().with_size([460.0, 400.0]).build_ui(move |ui| {
+        let evaluation = Harness::builder().with_size([460.0, 480.0]).build_ui(move |ui| {
             let rows = std::slice::from_ref(&row);
             let input = Input { methods: &[], method: None, radar: &radar, progress: None, rows, note: None };
             _ = show(ui, input, &mut Memory::default());
