@@ -111,7 +111,7 @@ fn thresholds(names: &[String]) -> Outcome {
         let point = f.roc.at_false_alarm(FALSE_ALARM).ok_or("no threshold keeps the false-alarm rate")?;
         let (name, own) = (f.method.name(), f.method.eta());
         let brings_its_own = f.method.reads_eta() || THE_THESIS_OWN.iter().any(|n| name.starts_with(n));
-        if !brings_its_own && (own - point.eta as f32).abs() > TOLERANCE {
+        if !brings_its_own && (own - point.eta).abs() > TOLERANCE {
             others.push(format!("{name} {:.3}, not {own:.3}", point.eta));
         }
         f.milliseconds.sort_by(f64::total_cmp);

@@ -160,7 +160,8 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
             }
             for row in rows.iter().filter(|r| r.set == set) {
                 let scenes = counted(row.scenes, "scene", "scenes");
-                ui.strong(label(row)).on_hover_text(format!("{scenes}; mean ± standard error, median"));
+                ui.strong(label(row))
+                    .on_hover_text(format!("{scenes}; mean ± standard error, and the median in brackets"));
                 ui.monospace(with_error(row.squared_error, 1.0, 0));
                 ui.monospace(with_error(row.detection, 100.0, 2));
                 ui.monospace(with_error(row.false_alarm, 100.0, 2));
@@ -184,7 +185,7 @@ fn label(row: &EvaluationRow) -> String {
 /// A mean, and beneath it its standard error and the median: beside it there would be no room for the other columns.
 fn with_error(Estimate { mean, standard_error, median }: Estimate, scale: f64, digits: usize) -> String {
     let [mean, standard_error, median] = [mean, standard_error, median].map(|v| format!("{:.digits$}", scale * v));
-    format!("{mean}\n± {standard_error}\nmed {median}")
+    format!("{mean}\n± {standard_error}\n({median})")
 }
 
 #[cfg(test)]

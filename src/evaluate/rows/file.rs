@@ -359,7 +359,7 @@ mod tests {
         let whole = text(&[row("1", 0, "live"), row("1", 1, "live")]);
         let first = whole.lines().take(2).map(|line| line.len() + 1).sum::<usize>();
         for cut in first + 1..whole.len() {
-            let table = read_table(whole[..cut].as_bytes()).unwrap();
+            let table = read_table(&whole.as_bytes()[..cut]).unwrap();
             assert_eq!((table.rows.len(), table.is_cut, table.whole_bytes), (1, true, first as u64), "{cut}");
         }
         let table = read_table(whole.as_bytes()).unwrap();

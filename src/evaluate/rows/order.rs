@@ -29,17 +29,17 @@ pub enum MergeError {
         /// What differs: the name of a column.
         what: &'static str,
         /// The one table.
-        first: String,
+        first: Box<str>,
         /// Its row.
-        first_row: String,
+        first_row: Box<str>,
         /// What it has.
-        first_value: String,
+        first_value: Box<str>,
         /// The other table.
-        second: String,
+        second: Box<str>,
         /// Its row.
-        second_row: String,
+        second_row: Box<str>,
         /// What that has.
-        second_value: String,
+        second_value: Box<str>,
     },
 }
 
@@ -111,12 +111,12 @@ fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), MergeError
                 let [first_row, second_row] = [other, row].map(|(_, row)| named(row));
                 return Err(MergeError::Unlike {
                     what,
-                    first,
-                    first_row,
-                    first_value,
-                    second,
-                    second_row,
-                    second_value,
+                    first: first.into(),
+                    first_row: first_row.into(),
+                    first_value: first_value.into(),
+                    second: second.into(),
+                    second_row: second_row.into(),
+                    second_value: second_value.into(),
                 });
             }
         }

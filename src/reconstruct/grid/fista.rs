@@ -7,6 +7,7 @@ use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -24,7 +25,8 @@ use std::collections::HashSet;
 /// taken for zero (R. Tibshirani et al., "Strong rules for discarding predictors in lasso-type problems", J. R. Stat. Soc. B 74, 2012).
 #[derive(Debug, Clone, Copy)]
 pub struct Fista {
-    /// Penalty, as a part of the one that would leave no reflector at all. The default is by examples/choose_eta.rs.
+    /// Penalty, as a part of the one that would leave no reflector at all, but no less than what keeps noise out. The default is by
+    /// examples/choose_eta.rs.
     pub penalty: f64,
     /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
@@ -97,8 +99,8 @@ fn candidates(
 /// What a gain costs.
 #[derive(Debug, Clone, Copy)]
 enum Penalty {
-    /// This part of the one that would leave no reflector at all.
-    Part(f64),
+    /// This part of the one that would leave no reflector at all, and no less than `least`.
+    Part { part: f64, least: f64 },
     /// As much.
     Known(f64),
 }
@@ -128,7 +130,7 @@ impl Problem {
         })?;
         let largest = heard.iter().fold(0.0, |m: f64, h| m.max(h.norm()));
         let penalty = match penalty {
-            Penalty::Part(part) => part * largest,
+            Penalty::Part { part, least } => f64::max(part * largest, least),
             Penalty::Known(penalty) => penalty,
         };
         Ok(Problem { atoms, gram, heard, penalty })
@@ -247,7 +249,13 @@ impl Reconstructor for Fista {
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
-        let mut problem = Problem::new(&cells, &chosen, ends, Penalty::Part(self.penalty), request)?;
+        let noise_variance = ends_noise_variance(radar, ends, request.floor);
+        // What noise alone explains in no cell is no price too high: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial
+        // adaptation by wavelet shrinkage", Biometrika 81, 1994, at the chance of the other thresholds.
+        let (bins, directions) = cells.dim();
+        let least = 10f64.powf(decades_above_cells(noise_variance, bins * directions));
+        let penalty = Penalty::Part { part: self.penalty, least };
+        let mut problem = Problem::new(&cells, &chosen, ends, penalty, request)?;
         let mut x = problem.solve(self.iterations, request, |_| {})?;
         for _ in 0..ROUNDS {
             let left = backprojector.amplitudes(&problem.left(radar, ends, &x));
@@ -269,7 +277,7 @@ impl Reconstructor for Fista {
             .collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
         found.truncate(MOST_DRAWN);
-        Ok(of_echoes(radar, ends, &found, ends_noise_variance(radar, ends, request.floor), request))
+        Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }
 }
 
@@ -306,7 +314,7 @@ mod tests {
         let cells = Cells::heard_by(&radar, &ends);
         let heard = Backprojector::new(&radar, &cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
-        let problem = Problem::new(&cells, &chosen, &ends, Penalty::Part(0.02), &request).unwrap();
+        let problem = Problem::new(&cells, &chosen, &ends, Penalty::Part { part: 0.02, least: 0.0 }, &request).unwrap();
         let mut objectives = vec![0.0];
         let x = problem.solve(150, &request, |o| objectives.push(o)).unwrap();
         assert!(objectives.windows(2).all(|w| w[1] <= w[0]), "{objectives:?}");

@@ -7,6 +7,7 @@ use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -34,9 +35,6 @@ impl Default for Omp {
     }
 }
 
-/// Cells around the strongest one that are tried with exact atoms: range bins and directions to each side.
-const NEIGHBOURHOOD: (isize, isize) = (2, 6);
-
 /// Picks of one look stand this far apart in range at least, and hear little of each other.
 const APART_BINS: usize = 40;
 
@@ -52,8 +50,22 @@ const TOOTH_STEPS: usize = 12;
 /// Directions to each side of a pick's that are compared: the phase between the ends is the same in all of them.
 const TEETH: i32 = 6;
 
-/// Most picks whose directions are compared, and that are all moved again after each new one.
+/// Most times that they are compared anew around the outermost of them, where that is the best.
+const WALKS: usize = 8;
+
+/// Most picks that are all moved again after each new one, their directions compared.
 const MOST_RELAXED: usize = 6;
+
+/// All picks, up to so many, are moved again once this part of the energy is left that was left the last time.
+const MOST_MOVED: usize = 64;
+const MOVED_AT: f64 = 0.1;
+
+/// They are moved until that leaves more than this part of what was left before, at most so often.
+const STILL_MOVING: f64 = 0.5;
+const MOST_ROUNDS: usize = 8;
+
+/// Steps of each of them.
+const MOVING_STEPS: usize = 24;
 
 /// Part of the energy that rounding leaves unexplained where phases of 6e4 rad were evaluated in f64: about 1e-11 of each sample's
 /// amplitude. It is not white, so that the measured noise understates it.
@@ -89,64 +101,77 @@ impl Pursuit<'_> {
         self.picks.iter().any(|p| p.cell == cell)
     }
 
-    /// The cell whose exact atom explains most of the residual, of those around the strongest of `heard`.
+    /// The free cell where most is `heard`.
     fn strongest(&self, heard: &Array2<f64>) -> Option<Pick> {
-        let free = |cell: Cell| !self.is_taken(cell) && self.cells.may_hold(cell);
-        let (start, _) = heard
+        let (cell, _) = heard
             .indexed_iter()
             .map(|((bin, direction), power)| (Cell { bin, direction }, power))
-            .filter(|(cell, _)| free(*cell))
+            .filter(|(cell, _)| !self.is_taken(*cell) && self.cells.may_hold(*cell))
             .max_by(|a, b| a.1.total_cmp(b.1))?;
-        let around: Vec<Cell> = (-NEIGHBOURHOOD.0..=NEIGHBOURHOOD.0)
-            .flat_map(|i| (-NEIGHBOURHOOD.1..=NEIGHBOURHOOD.1).map(move |j| (i, j)))
-            .filter_map(|(i, j)| {
-                Some(Cell { bin: start.bin.checked_add_signed(i)?, direction: start.direction.checked_add_signed(j)? })
-            })
-            .filter(|cell| free(*cell))
-            .collect();
-        around
-            .into_par_iter()
-            .filter_map(|cell| {
-                let atom = self.cells.echo(cell)?;
-                Some((atom.correlate(&self.residual).norm(), Pick { cell, atom }))
-            })
-            .reduce_with(|a, b| if b.0 > a.0 { b } else { a })
-            .map(|(_, pick)| pick)
+        Some(Pick { cell, atom: self.cells.echo(cell)? })
     }
 
     /// `atom` moved off the grid to where it explains most of `samples`, of all directions nearby between which only the phase between
     /// the ends tells.
-    fn refined(&self, atom: ArrayEcho, samples: &[Complex64]) -> ArrayEcho {
+    fn refined(&self, mut atom: ArrayEcho, samples: &[Complex64]) -> ArrayEcho {
         let (radar, cells) = (self.radar, &self.cells);
-        let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
         let apart_metres = (radar.elements - radar.end_elements) as f64 * radar.element_spacing_metres;
         let tooth_cos = 1.0 / (apart_metres * turns_per_metre(radar));
-        let best = (-TEETH..=TEETH)
-            .into_par_iter()
-            .filter_map(|tooth| cells.echo_at(place.range_metres, place.cos_theta + f64::from(tooth) * tooth_cos))
-            .map(|atom| climbed(cells, atom, samples, TOOTH_STEPS))
-            .reduce_with(|a, b| if b.0 > a.0 { b } else { a });
-        climbed(cells, best.map_or(atom, |(_, atom)| atom), samples, STEPS).1
+        for _ in 0..WALKS {
+            let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
+            let best = (-TEETH..=TEETH)
+                .into_par_iter()
+                .filter_map(|tooth| {
+                    let cos = place.cos_theta + f64::from(tooth) * tooth_cos;
+                    let (heard, atom) = climbed(cells, cells.echo_at(place.range_metres, cos)?, samples, TOOTH_STEPS);
+                    Some((heard, tooth, atom))
+                })
+                .reduce_with(|a, b| if b.0 > a.0 { b } else { a });
+            let Some((_, tooth, better)) = best else { break };
+            atom = better;
+            if tooth.abs() < TEETH {
+                break;
+            }
+        }
+        climbed(cells, atom, samples, STEPS).1
     }
 
     /// Moves every pick once more, now that the others' shares of `samples` are known: side lobes of an echo that was not yet picked
-    /// may have drawn it to a wrong direction.
+    /// may have drawn it to a wrong place.
     fn relax(&mut self, samples: &[Complex64]) {
-        for i in 0..self.picks.len() {
-            let gains = unit_gains(&self.picks, samples);
-            let mut own = samples.to_vec();
-            for (j, (pick, gain)) in self.picks.iter().zip(gains).enumerate() {
-                if j != i {
-                    subtract(&mut own, &pick.atom.unit_samples(), gain);
-                }
-            }
-            self.picks[i].atom = self.refined(self.picks[i].atom.clone(), &own);
+        let is_few = self.picks.len() <= MOST_RELAXED;
+        for (i, gain) in unit_gains(&self.picks, samples).into_iter().enumerate() {
+            let atom = self.picks[i].atom.clone();
+            let mut own = self.residual.clone();
+            subtract(&mut own, &atom.unit_samples(), -gain);
+            let atom = if is_few { self.refined(atom, &own) } else { climbed(&self.cells, atom, &own, MOVING_STEPS).1 };
+            let unit = atom.unit_samples();
+            let gain = inner(&unit, &own);
+            subtract(&mut own, &unit, gain);
+            self.residual = own;
+            self.picks[i].atom = atom;
         }
         self.basis.clear();
         self.residual = samples.to_vec();
         for pick in std::mem::take(&mut self.picks) {
             self.take(pick);
         }
+    }
+
+    /// Moves all picks until they stay where they are, or no more than `enough` is left.
+    fn settle(&mut self, samples: &[Complex64], enough: f64, request: &Request) -> Result<(), ReconstructError> {
+        for _ in 0..MOST_ROUNDS {
+            request.task.check()?;
+            let before = energy(&self.residual);
+            if before <= enough {
+                break;
+            }
+            self.relax(samples);
+            if energy(&self.residual) > STILL_MOVING * before {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Takes the pick's share off the residual; whether that was worth it.
@@ -184,43 +209,59 @@ impl Omp {
     ) -> Result<Vec<Gained>, ReconstructError> {
         let samples = ends.flat();
         let noise = noise_variance * samples.len() as f64 * 1.1;
-        let enough = noise.max(energy(&samples) * ROUNDING);
+        let all = energy(&samples);
+        let enough = noise.max(all * ROUNDING);
         let mut cells = Cells::heard_by(radar, ends);
         // Nothing stands at the centre: what is heard in bin 0 stands one range period beyond.
         if radar.samples > 1 {
             cells.range_metres[0] = radar.max_range_metres();
         }
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
+        let (bins, directions) = cells.dim();
+        let noise_level = 100f64.powf(decades_above_cells(noise_variance, bins * directions));
+        let worth = noise_level.max(all * LEAST_OF_ALL);
+        let mut settled = all;
         let (picks, basis) = (Vec::new(), Vec::new());
         let mut pursuit = Pursuit { radar, cells, picks, basis, residual: samples.clone() };
         while pursuit.picks.len() < self.max_atoms && energy(&pursuit.residual) > enough {
             request.task.check()?;
             request.task.set_progress(0.9 * pursuit.picks.len() as f32 / self.max_atoms as f32);
             let [first, last] = backprojector.amplitudes(&TwoEnds::of_flat(pursuit.radar, &pursuit.residual));
-            let heard: Array2<f64> = Zip::from(&first).and(&last).par_map_collect(|a, b| (a + b).norm_sqr());
-            if !self.pick(&mut pursuit, heard, &samples, enough) {
+            // Between the cells the ends' phases are others: each pick is moved to where they agree.
+            let heard: Array2<f64> = Zip::from(&first).and(&last).par_map_collect(|a, b| (a.norm() + b.norm()).powi(2));
+            if !self.pick(&mut pursuit, heard, &samples, enough, worth) {
                 break; // nothing on the grid explains what is left
+            }
+            let count = pursuit.picks.len();
+            if (2..=MOST_MOVED).contains(&count) && energy(&pursuit.residual) < MOVED_AT * settled {
+                pursuit.settle(&samples, enough, request)?;
+                settled = energy(&pursuit.residual);
             }
         }
         Ok(fit(&pursuit.picks, &samples))
     }
 
-    /// Takes the strongest of `heard`, and those that stand far from it in range; whether the strongest was worth it.
-    fn pick(&self, pursuit: &mut Pursuit<'_>, mut heard: Array2<f64>, samples: &[Complex64], enough: f64) -> bool {
-        let (mut least, of_all) = (0.0, LEAST_OF_ALL * energy(samples));
+    /// Takes the strongest of `heard`, and those that stand far from it in range; whether the strongest was worth it, which explains no
+    /// less than `worth`.
+    fn pick(
+        &self,
+        pursuit: &mut Pursuit<'_>,
+        mut heard: Array2<f64>,
+        samples: &[Complex64],
+        enough: f64,
+        worth: f64,
+    ) -> bool {
+        let mut least = 0.0;
         while pursuit.picks.len() < self.max_atoms && energy(&pursuit.residual) > enough {
             let Some(pick) = pursuit.strongest(&heard) else { return least > 0.0 };
-            let power = pick.atom.correlate(&pursuit.residual).norm_sqr();
-            if power < of_all {
+            let atom = pursuit.refined(pick.atom, &pursuit.residual);
+            let power = atom.correlate(&pursuit.residual).norm_sqr();
+            if power < worth {
                 return least > 0.0;
             }
             if power < least {
                 return true;
             }
-            let atom = match pursuit.picks.len() {
-                0..MOST_RELAXED => pursuit.refined(pick.atom, &pursuit.residual),
-                _ => climbed(&pursuit.cells, pick.atom, &pursuit.residual, STEPS).1,
-            };
             let bin = pick.cell.bin;
             if !pursuit.take(Pick { atom, ..pick }) {
                 return least > 0.0;
