@@ -250,8 +250,8 @@ impl Reconstructor for Fista {
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
         let noise_variance = ends_noise_variance(radar, ends, request.floor);
-        // What noise alone explains in no cell is no price too high: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial
-        // adaptation by wavelet shrinkage", Biometrika 81, 1994, at the chance of the other thresholds.
+        // At least what noise alone explains in no cell: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial adaptation
+        // by wavelet shrinkage", Biometrika 81, 1994, at the chance of the other thresholds.
         let (bins, directions) = cells.dim();
         let least = 10f64.powf(decades_above_cells(noise_variance, bins * directions));
         let penalty = Penalty::Part { part: self.penalty, least };

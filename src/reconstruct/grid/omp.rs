@@ -60,7 +60,8 @@ const MOST_RELAXED: usize = 6;
 const MOST_MOVED: usize = 64;
 const MOVED_AT: f64 = 0.1;
 
-/// They are moved until that leaves more than this part of what was left before, at most so often.
+/// They are moved until that leaves more than this part of what was left before, at most so often; their directions are compared every
+/// other time.
 const STILL_MOVING: f64 = 0.5;
 const MOST_ROUNDS: usize = 8;
 
@@ -137,14 +138,15 @@ impl Pursuit<'_> {
     }
 
     /// Moves every pick once more, now that the others' shares of `samples` are known: side lobes of an echo that was not yet picked
-    /// may have drawn it to a wrong place.
-    fn relax(&mut self, samples: &[Complex64]) {
-        let is_few = self.picks.len() <= MOST_RELAXED;
+    /// may have drawn it to a wrong place. `compares` says whether directions between which only the phase between the ends tells are
+    /// compared anew.
+    fn relax(&mut self, samples: &[Complex64], compares: bool) {
         for (i, gain) in unit_gains(&self.picks, samples).into_iter().enumerate() {
             let atom = self.picks[i].atom.clone();
             let mut own = self.residual.clone();
             subtract(&mut own, &atom.unit_samples(), -gain);
-            let atom = if is_few { self.refined(atom, &own) } else { climbed(&self.cells, atom, &own, MOVING_STEPS).1 };
+            let atom =
+                if compares { self.refined(atom, &own) } else { climbed(&self.cells, atom, &own, MOVING_STEPS).1 };
             let unit = atom.unit_samples();
             let gain = inner(&unit, &own);
             subtract(&mut own, &unit, gain);
@@ -160,13 +162,13 @@ impl Pursuit<'_> {
 
     /// Moves all picks until they stay where they are, or no more than `enough` is left.
     fn settle(&mut self, samples: &[Complex64], enough: f64, request: &Request) -> Result<(), ReconstructError> {
-        for _ in 0..MOST_ROUNDS {
+        for round in 0..MOST_ROUNDS {
             request.task.check()?;
             let before = energy(&self.residual);
             if before <= enough {
                 break;
             }
-            self.relax(samples);
+            self.relax(samples, round % 2 == 0 || self.picks.len() <= MOST_RELAXED);
             if energy(&self.residual) > STILL_MOVING * before {
                 break;
             }
@@ -267,7 +269,7 @@ impl Omp {
                 return least > 0.0;
             }
             if (2..=MOST_RELAXED).contains(&pursuit.picks.len()) {
-                pursuit.relax(samples);
+                pursuit.relax(samples, true);
             }
             least = f64::max(least, LEAST_BESIDE * power);
             let bins = heard.nrows();
@@ -414,16 +416,17 @@ mod tests {
                 let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
                 let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
                 let first = Omp { max_atoms: 1 }.reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;
+                let all = Omp::default().reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;
+                assert_eq!(all.len(), 1, "picks for one reflector at {range} m, {cos}");
                 left(&radar, &ends, &first)
             })
             .collect();
         parts.sort_by(f64::total_cmp);
-        // In a third of the scenes the first pick stands on another tooth of the comb.
-        assert!(parts[5] < 1e-6 && parts[8] < 0.05, "{parts:?}");
+        assert!(parts[8] < 1e-9, "{parts:?}");
     }
 
     #[test]
-    fn more_than_two_dozen_echoes_are_picked() {
+    fn more_than_two_dozen_reflectors_are_found() {
         let radar = Radar::default();
         let scene = Scene::of_points((0..30).map(|i| (f64::from(i * 7 % 11) - 5.0, 6.0 + f64::from(i))));
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
@@ -431,8 +434,7 @@ mod tests {
         let is_found =
             |r: &Reflector| found.iter().any(|f| (f.x_metres - r.x_metres).hypot(f.y_metres - r.y_metres) < 0.05);
         let count = scene.reflectors().iter().filter(|r| is_found(r)).count();
-        // A pick on another tooth is made up for by several others.
-        assert!(found.len() > 24 && count >= 10, "{count} of 30, {} picks", found.len());
+        assert!(count >= 29 && found.len() <= 40, "{count} of 30, {} picks", found.len());
     }
 
     #[test]
