@@ -195,8 +195,9 @@ impl Jobs {
 
     /// Takes the pictures of the window that are due.
     fn take_pictures(&mut self, state: &State, now: Instant) {
+        let is_outdated = state.pictured().into_iter().any(|kind| self.pipeline.is_outdated(kind));
         // Maps are computed once more when the scene comes to rest.
-        let is_whole = !self.draws_more() && self.pipeline.rests_in().is_none();
+        let is_whole = !self.draws_more() && self.pipeline.rests_in().is_none() && !is_outdated;
         self.exports.look(is_whole, now);
         let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
         self.recorder.look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, now);
