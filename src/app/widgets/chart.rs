@@ -76,9 +76,12 @@ impl Drawn<'_> {
         self.y.at((self.rect.bottom() - at.y) / self.rect.height())
     }
 
-    /// A line from point to point.
+    /// A line from point to point. Points far outside are drawn just outside: a dashed line that leads away by millions of points would be
+    /// made of as many dashes.
     pub fn line(&self, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke, dash: Dash) {
-        let points: Vec<Pos2> = points.into_iter().map(|p| self.at(p)).collect();
+        let around = self.rect.expand2(self.rect.size());
+        let points = points.into_iter().map(|p| self.at(p)).filter(|p| !p.any_nan());
+        let points: Vec<Pos2> = points.map(|p| p.clamp(around.min, around.max)).collect();
         match dash {
             None => _ = self.painter.add(Shape::line(points, stroke)),
             Some([long, gap]) => self.painter.extend(Shape::dashed_line(&points, stroke, long, gap)),
@@ -177,5 +180,17 @@ mod tests {
             assert!(["≤0.001 %", "100 %", "0", "100"].iter().all(|t| texts.iter().any(|s| s.text == *t)), "{texts:?}");
             seen::assert_readable(chart.output());
         }
+    }
+
+    #[test]
+    fn a_dashed_line_that_leads_far_away_takes_few_dashes() {
+        let chart = Harness::builder().with_size([300.0, 200.0]).build_ui(|ui| {
+            let (x, y) = (Axis::new(0.0, 1.0, "x"), Axis::new(-1.0, 0.0, "dB"));
+            let area = ui.available_rect_before_wrap();
+            let drawn = Chart { name: "far", x, y }.show(ui, area, Sense::hover());
+            let points = [[0.0, 0.0], [0.3, -1e7], [0.6, f64::NAN], [1.0, -0.5]];
+            drawn.line(points, Stroke::new(1.0, Color32::WHITE), Some([6.0, 4.0]));
+        });
+        assert!(chart.output().shapes.len() < 1000, "{} shapes", chart.output().shapes.len());
     }
 }
