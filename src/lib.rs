@@ -59,17 +59,18 @@
 pub mod app;
 pub mod benchmark;
 pub mod bounds;
+#[cfg(feature = "command-line")]
 pub mod commands;
 pub mod engine;
 pub mod evaluate;
-#[cfg(feature = "network")]
+#[cfg(all(feature = "network", feature = "pictures"))]
 pub mod figures;
 pub mod files;
 pub mod interact;
 pub mod lesson;
 pub mod maps;
 pub mod methods;
-#[cfg(feature = "network")]
+#[cfg(feature = "live")]
 pub mod network;
 pub mod picture;
 pub mod radar;

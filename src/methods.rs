@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 /// Every method this build knows, in the order they are shown.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
-    #[cfg(feature = "network")]
+    #[cfg(feature = "live")]
     let networks = crate::network::shipped();
-    #[cfg(not(feature = "network"))]
+    #[cfg(not(feature = "live"))]
     let networks: Vec<Arc<dyn Reconstructor>> = Vec::new();
     let live = networks.iter().find(|m| m.name() == "live").cloned();
     let fallback = live.unwrap_or_else(|| Arc::new(MatchedFilter::Incoherent));

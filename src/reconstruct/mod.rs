@@ -35,6 +35,7 @@ pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
 pub use hybrid::{Hybrid, on_one_scale};
+#[cfg(feature = "live")]
 pub(crate) use noise_test::level_above_mean_decades;
 pub use reconstructor::{About, Reconstructor, Weights, check_ends, untrained_noise};
 pub use rows::{

@@ -46,6 +46,7 @@ pub(super) fn decades_above_cells(cell_noise: f64, cells: usize) -> f64 {
 
 /// Decades from the mean of the logarithm of `cells` noise cells to the level that none of them exceeds, but with probability [`CHANCE`]. The mean
 /// of log10 |n| lies 0.125 decades below the root mean square of complex normal n.
+#[cfg(feature = "live")]
 pub(crate) fn level_above_mean_decades(cells: usize) -> f64 {
     decades_above_cells(1.0, cells) + 0.125
 }

@@ -1,5 +1,4 @@
 //! Drives the whole app without a display: pointer, keys, files; asserts on state and on what was computed and what was not.
-#![cfg(feature = "app")]
 
 mod compare;
 mod documents;

@@ -2,10 +2,10 @@
 //!
 //! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
+use super::config::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{PRODUCT_COLUMNS, Packed, convolve, product};
-use super::module::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::planes::{Block, Plane, rectified};
 use super::range_lobes::{RangeLobes, UNSEEN};
 use super::reading::{CELLS, Layers, circulant};

@@ -1,9 +1,9 @@
 //! The live network as a reconstruction method.
 
+use super::config::LiveConfig;
 use super::engine::{Decades, LiveEngine, Scratch};
 use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COLUMNS, ROWS};
-use super::module::LiveConfig;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
@@ -176,7 +176,7 @@ impl Reconstructor for LiveMethod {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "network"))]
 mod tests {
     use super::*;
     use crate::network::recipe::Recipe;

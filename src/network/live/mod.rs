@@ -13,20 +13,24 @@
 //! | file | what |
 //! |---|---|
 //! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
-//! | [`module`], `layers` | the network as a burn module: what trains |
+//! | `config` | how large the network is |
+//! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
 //! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
 //! | [`method`] | the network as a reconstruction method |
 
 mod capon;
 mod coarse;
+mod config;
 pub mod engine;
 pub mod features;
 mod filter;
 mod floors;
 pub mod grid;
 pub mod kernel;
+#[cfg(feature = "network")]
 mod layers;
 pub mod method;
+#[cfg(feature = "network")]
 pub mod module;
 mod planes;
 mod range_lobes;
@@ -35,5 +39,7 @@ mod registration;
 mod vector;
 mod winograd;
 
+pub use config::LiveConfig;
 pub use method::LiveMethod;
-pub use module::{Live, LiveBatch, LiveConfig};
+#[cfg(feature = "network")]
+pub use module::{Live, LiveBatch};

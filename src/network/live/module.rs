@@ -1,5 +1,7 @@
 //! The live network as a burn module.
 
+pub use super::config::INPUT_CHANNELS;
+use super::config::{FOLD, LiveConfig, WIDE, WIDENED};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::layers::{Block, WrapConv, blocks, small, through, zeroed};
@@ -10,33 +12,6 @@ use burn::nn::{Linear, LinearConfig};
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 use std::f64::consts::LN_10;
-
-/// Channels of the network's first convolution: fine features folded by 4, coarse, rows, scalars, and four of the grid itself.
-pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4;
-/// Fine columns in a coarse one.
-const FOLD: usize = FINE / COARSE;
-/// Columns of the coarse head's side-lobe sources.
-pub(super) const WIDE: usize = 128;
-/// Channels between the coarse and the fine half of the decoder.
-pub(super) const WIDENED: usize = 8;
-
-/// Channels and residual blocks of each level.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct LiveConfig {
-    /// Channels of the four levels, finest first.
-    pub channels: [usize; 4],
-    /// Residual blocks of the four levels; the encoder has half as many (rounded up) at the middle two.
-    pub blocks: [usize; 4],
-    /// Channels of the fine convolution.
-    pub fine: usize,
-}
-
-impl Default for LiveConfig {
-    /// The shipped network.
-    fn default() -> Self {
-        LiveConfig { channels: [16, 32, 64, 96], blocks: [1, 2, 2, 3], fine: 16 }
-    }
-}
 
 /// The live network. See the [room](super) for what it is made of.
 #[derive(Module, Debug)]

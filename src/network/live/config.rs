@@ -1,0 +1,30 @@
+//! The size of the live network: what its weight file, its burn module and its engine agree on.
+
+use super::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
+
+/// Channels of the network's first convolution: fine features folded by 4, coarse, rows, scalars, and four of the grid itself.
+pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4;
+/// Fine columns in a coarse one.
+pub(super) const FOLD: usize = FINE / COARSE;
+/// Columns of the coarse head's side-lobe sources.
+pub(super) const WIDE: usize = 128;
+/// Channels between the coarse and the fine half of the decoder.
+pub(super) const WIDENED: usize = 8;
+
+/// Channels and residual blocks of each level.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct LiveConfig {
+    /// Channels of the four levels, finest first.
+    pub channels: [usize; 4],
+    /// Residual blocks of the four levels; the encoder has half as many (rounded up) at the middle two.
+    pub blocks: [usize; 4],
+    /// Channels of the fine convolution.
+    pub fine: usize,
+}
+
+impl Default for LiveConfig {
+    /// The shipped network.
+    fn default() -> Self {
+        LiveConfig { channels: [16, 32, 64, 96], blocks: [1, 2, 2, 3], fine: 16 }
+    }
+}

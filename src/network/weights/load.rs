@@ -1,0 +1,38 @@
+//! Weights into a module of burn's.
+
+use super::{WeightFile, WeightsError};
+use burn::module::Module;
+use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, PyTorchToBurnAdapter, SafetensorsStore};
+use std::collections::BTreeMap;
+
+impl WeightFile<'_> {
+    /// Loads the weights, under PyTorch's names, into `module`. Buffers that `ignored` accepts may lie in the file unused.
+    ///
+    /// # Errors
+    /// [`WeightsError`] names the first tensor that is missing, unknown, of another shape or type, or not finite.
+    pub fn load_into<M: Module>(&self, module: &mut M, ignored: fn(&str) -> bool) -> Result<(), WeightsError> {
+        let bad = |tensor: &str, problem: String| WeightsError::Tensor {
+            file: self.name.clone(),
+            tensor: tensor.into(),
+            problem,
+        };
+        let wanted: BTreeMap<String, Vec<usize>> = module
+            .collect(None, Some(Box::new(BurnToPyTorchAdapter)), false)
+            .into_iter()
+            .map(|t| (t.name.clone(), t.shape.to_vec()))
+            .collect();
+        for (name, shape) in &wanted {
+            self.tensor(name, shape)?;
+        }
+        if let Some(name) = self.tensors.keys().find(|n| !wanted.contains_key(*n) && !ignored(n)) {
+            return Err(bad(name, "is not part of this network".into()));
+        }
+        let mut store = SafetensorsStore::from_bytes(Some(self.bytes.to_vec())).with_from_adapter(PyTorchToBurnAdapter);
+        let store_error = |reason: String| WeightsError::Store { file: self.name.clone(), reason };
+        let result = module.load_from(&mut store).map_err(|e| store_error(e.to_string()))?;
+        if !result.missing.is_empty() || !result.errors.is_empty() {
+            return Err(store_error(format!("missing {:?}, errors {:?}", result.missing, result.errors)));
+        }
+        Ok(())
+    }
+}

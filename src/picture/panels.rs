@@ -1,0 +1,202 @@
+//! Every panel on one picture: what [`render`] and [`render_svg`] draw.
+
+use super::canvas::{Area, Drawing, FAINT_INK, INK, PAPER, PictureError};
+use super::map_panel::{Cells, MapPanel};
+use super::scene_panel::{self, Content};
+use super::{ColourMap, text};
+use crate::evaluate::{Metrics, TARGET_ETA, eta_text};
+use crate::maps::RangeAngleMap;
+use crate::radar::{End, Radar};
+use crate::scene::Scene;
+use image::RgbImage;
+use plotters::prelude::*;
+
+/// Everything a picture shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Panels<'a> {
+    /// The scene; of a recording its name and notes, and what was found in it.
+    pub scene: &'a Scene,
+    /// What the scene's objects are: "Scene", or "Found by" a method.
+    pub objects_title: &'a str,
+    /// The radar that looks at it.
+    pub radar: &'a Radar,
+    /// What the maps were made of (reflectors, carrier, floor, normalisation), in words.
+    pub about: &'a str,
+    /// Lambda of the first end ("input 0").
+    pub first: &'a RangeAngleMap,
+    /// Lambda of the last end ("input 1").
+    pub last: &'a RangeAngleMap,
+    /// Lambda of the whole array ("target"), where it is known.
+    pub target: Option<&'a RangeAngleMap>,
+    /// What a method makes of the two ends.
+    pub output: &'a RangeAngleMap,
+    /// Name of the method.
+    pub method: &'a str,
+    /// The method's threshold.
+    pub eta: f32,
+    /// Colours of the maps.
+    pub colours: ColourMap,
+}
+
+const WIDTH: u32 = 2180;
+const HEIGHT: u32 = 1120;
+const HEADER: i32 = 84;
+const LEFT: i32 = 700;
+const MARGIN: i32 = 24;
+
+/// Draws a picture on a bitmap; the panels are 2180 x 1120 pixels.
+///
+/// # Errors
+/// [`PictureError`] when plotters can't draw.
+pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
+    text::register_fonts()?;
+    let (width, height) = drawing.size();
+    let mut buffer = vec![0; (width * height * 3) as usize];
+    drawing.draw(&BitMapBackend::with_buffer(&mut buffer, (width, height)).into_drawing_area())?;
+    RgbImage::from_raw(width, height, buffer).ok_or_else(|| PictureError::new("its buffer is too small"))
+}
+
+/// Draws the same picture as SVG: lines and text stay sharp at any size, the maps are bitmaps in it.
+///
+/// # Errors
+/// [`PictureError`] when plotters can't draw.
+pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
+    text::register_fonts()?;
+    let mut svg = String::new();
+    drawing.draw(&SVGBackend::with_string(&mut svg, drawing.size()).into_drawing_area())?;
+    Ok(svg)
+}
+
+impl Drawing for Panels<'_> {
+    fn size(&self) -> (u32, u32) {
+        (WIDTH, HEIGHT)
+    }
+
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+        root.fill(&PAPER).map_err(PictureError::new)?;
+        self.header(root)?;
+        let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
+        let field = |row: i32| {
+            root.clone().shrink((MARGIN, HEADER + 8 + row * (field_height + 12)), (field_width, field_height))
+        };
+        scene_panel::draw(&field(0), self.radar, self.objects_title, Content::Scene(self.scene))?;
+        let (title, map) = match self.target {
+            Some(target) => ("Target, seen from above", target),
+            None => ("Output, seen from above", self.output),
+        };
+        scene_panel::draw(&field(1), self.radar, title, Content::Map(map, self.colours))?;
+        let below = HEADER + 8 + 2 * (field_height + 12);
+        let text = root.clone().shrink((MARGIN + 8, below), (field_width - 8, HEIGHT as i32 - below - 8));
+        self.figures_and_notes(&text)?;
+
+        let (width, height) = ((WIDTH as i32 - LEFT - MARGIN) / 3, (HEIGHT as i32 - HEADER - 16) / 2);
+        for (index, panel) in self.map_panels().iter().enumerate() {
+            let (column, row) = (index as i32 % 3, index as i32 / 3);
+            let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
+            panel.draw(&area, self.radar)?;
+        }
+        root.present().map_err(PictureError::new)
+    }
+}
+
+impl Panels<'_> {
+    fn header<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+        let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
+        let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
+        let name = text::fitted(root, &name, 34, text::Weight::Bold, (LEFT - MARGIN) as u32)?;
+        text::line(root, (MARGIN + 8, 16), &name, 34, text::Weight::Bold, &INK)?;
+        text::line(root, (LEFT + 62, 30), self.about, 20, text::Weight::Normal, &FAINT_INK)
+    }
+
+    /// Three maps above; below them the output and both thresholds, or the output and its threshold where there is no target.
+    fn map_panels(&self) -> Vec<MapPanel<'_>> {
+        let elements = |end| {
+            let range = self.radar.end_range(end);
+            format!("elements {} to {}", range.start, range.end - 1)
+        };
+        let lambda = |title: String, map| MapPanel { title, cells: Cells::Lambda(map, self.colours) };
+        let mut panels = vec![
+            lambda(format!("Input 0: {}", elements(End::First)), self.first),
+            lambda(format!("Input 1: {}", elements(End::Last)), self.last),
+        ];
+        let output = lambda(format!("Output: {}", self.method), self.output);
+        let title = format!("Output > {}", eta_text(self.eta));
+        let Some(target) = self.target else {
+            panels.extend([output, MapPanel { title, cells: Cells::Above(self.output, self.eta) }]);
+            return panels;
+        };
+        panels.extend([
+            lambda(format!("Target: all {} elements", self.radar.elements), target),
+            output,
+            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(target, TARGET_ETA) },
+            MapPanel { title, cells: Cells::Detections { target, output: self.output, eta: self.eta } },
+        ]);
+        panels
+    }
+
+    /// The three figures of the tables for this scene, then the scene's notes.
+    fn figures_and_notes<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
+        // What was found in a recording says nothing of what it holds.
+        let has_echoes = !self.scene.is_silent() || self.objects_title != "Scene";
+        let metrics = Metrics::of_echoes(has_echoes, target, self.output, self.eta);
+        let percent = |part: f64| format!("{:.2} %", 100.0 * part);
+        let figures = [
+            ("SE", format!("{:.0}", metrics.squared_error)),
+            ("P_D", metrics.detection.map_or_else(|| "no target cell".to_owned(), percent)),
+            ("P_FA", percent(metrics.false_alarm)),
+        ];
+        for (column, (name, value)) in figures.iter().enumerate() {
+            let x = column as i32 * 210;
+            text::line(area, (x, 5), name, 18, text::Weight::Normal, &FAINT_INK)?;
+            text::line(area, (x + 58, 0), value, 23, text::Weight::Bold, &INK)?;
+        }
+        text::paragraphs(area, (0, 40), &self.scene.notes, 18, &INK)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::{LogMaps, Normalisation};
+    use crate::scene::presets;
+    use crate::signal::BeatSignal;
+
+    #[test]
+    fn pictures_are_drawn_and_known_as_ours() {
+        let radar = Radar { samples: 32, elements: 64, ..Radar::default() };
+        let maps = LogMaps::of_signal(&radar, &BeatSignal::silence(&radar));
+        let flat = maps.full.normalise(Normalisation::MinMax);
+        let file = presets::default_scene();
+        let panels = Panels {
+            scene: &file.scene,
+            radar: &radar,
+            objects_title: "Scene",
+            about: "exact floor",
+            first: &flat,
+            last: &flat,
+            target: Some(&flat),
+            output: &flat,
+            method: "baseline",
+            eta: 0.9,
+            colours: ColourMap::Grey,
+        };
+        let svg = render_svg(&panels).unwrap();
+        assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
+        assert_eq!(
+            svg.matches("<image").count(),
+            10,
+            "six maps, the one seen from above and three swatches are one image each"
+        );
+        let without = render_svg(&Panels { target: None, ..panels }).unwrap();
+        assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");
+        assert!(without.contains("Output, seen from above") && !without.contains("P_FA"));
+        let picture = render(&panels).unwrap();
+        assert_eq!(picture.dimensions(), (WIDTH, HEIGHT));
+        let bytes = encode_png(&picture).unwrap();
+        assert!(is_our_png(&bytes));
+        let mut foreign = Vec::new();
+        picture.write_to(&mut std::io::Cursor::new(&mut foreign), image::ImageFormat::Png).unwrap();
+        assert!(!is_our_png(&foreign) && !is_our_png(&bytes[..40]) && !is_our_png(b""));
+    }
+}
