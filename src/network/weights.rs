@@ -151,6 +151,7 @@ impl TensorHeader {
 #[derive(Debug)]
 pub struct WeightFile<'a> {
     name: String,
+    #[cfg(feature = "network")]
     bytes: &'a [u8],
     data: &'a [u8],
     tensors: BTreeMap<String, TensorHeader>,
@@ -201,7 +202,14 @@ impl<'a> WeightFile<'a> {
             let problem = "has a place in the file that does not fit its shape and type".to_owned();
             return Err(WeightsError::Tensor { file: name.to_owned(), tensor: tensor.clone(), problem });
         }
-        Ok(WeightFile { name: name.to_owned(), bytes, data, tensors, provenance })
+        Ok(WeightFile {
+            name: name.to_owned(),
+            #[cfg(feature = "network")]
+            bytes,
+            data,
+            tensors,
+            provenance,
+        })
     }
 
     /// Shape of the tensor called `name`, if the file has it.

@@ -41,4 +41,4 @@ pub use png::{encode_png, is_our_png};
 #[cfg(feature = "pictures")]
 pub use recording::{compose_recording, maps_of};
 #[cfg(feature = "pictures")]
-pub(crate) use text::register_fonts;
+pub use text::register_fonts;

@@ -16,7 +16,7 @@ pub(super) enum Weight {
 pub(super) const FAMILY: &str = "sans-serif";
 
 /// Makes the embedded fonts known to plotters; does nothing the second time.
-pub(crate) fn register_fonts() -> Result<(), PictureError> {
+pub fn register_fonts() -> Result<(), PictureError> {
     static DONE: OnceLock<Result<(), PictureError>> = OnceLock::new();
     DONE.get_or_init(|| {
         let broken = |_| PictureError::new("the embedded font is broken");
