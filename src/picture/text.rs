@@ -16,6 +16,9 @@ pub(super) enum Weight {
 pub(super) const FAMILY: &str = "sans-serif";
 
 /// Makes the embedded fonts known to plotters; does nothing the second time.
+///
+/// # Errors
+/// [`PictureError`] when an embedded font can't be read.
 pub fn register_fonts() -> Result<(), PictureError> {
     static DONE: OnceLock<Result<(), PictureError>> = OnceLock::new();
     DONE.get_or_init(|| {
