@@ -2,7 +2,8 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`live`] | the live network: features, burn module, an engine without a framework |
+//! | [`live`] | the live network: features, examples to train on, burn module, an engine without a framework |
+//! | [`floors`] | what lies beneath training scenes |
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`unet`] | the thesis' failing U-Net |
 //! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |
@@ -15,6 +16,7 @@
 pub mod backend;
 #[cfg(feature = "network")]
 pub mod checkpoint;
+pub mod floors;
 #[cfg(feature = "network")]
 mod lesson;
 pub mod live;

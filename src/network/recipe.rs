@@ -1,5 +1,6 @@
 //! Training recipes: everything that decides what a training run does, as TOML.
 
+use super::floors::Floors;
 use super::live::LiveConfig;
 use super::losses::Loss;
 use super::thesis::ThesisConfig;
@@ -9,8 +10,6 @@ use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use burn::optim::momentum::MomentumConfig;
 use burn::optim::{AdamWConfig, ModuleOptimizer, SgdConfig};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// The recipes that come with the program, by name.
@@ -276,13 +275,12 @@ impl Recipe {
 
     /// What lies beneath the training scene whose noise has this seed.
     pub fn floor(&self, noise_seed: u64) -> Floor {
-        let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
-        match self.thermal {
-            Some(Thermal { share, from_decibels, to_decibels }) if rng.random::<f64>() < share => {
-                Floor::Snr(Decibels(rng.random_range(from_decibels..to_decibels)))
-            }
-            _ => Floor::Thesis,
-        }
+        let floors = self.thermal.as_ref().map_or(Floors::Fixed(Floor::Thesis), |thermal| Floors::Thermal {
+            share: thermal.share,
+            from: Decibels(thermal.from_decibels),
+            to: Decibels(thermal.to_decibels),
+        });
+        floors.of(noise_seed)
     }
 
     /// Every training scene, as (kind, number).

@@ -6,8 +6,10 @@
 
 mod field;
 mod kind;
+mod mixture;
 
 pub use kind::Kind;
+pub use mixture::{Mixture, MixtureError};
 
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;

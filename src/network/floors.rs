@@ -1,0 +1,39 @@
+//! What lies beneath training scenes.
+
+use crate::radar::Decibels;
+use crate::signal::Floor;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Which floor a training scene has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Floors {
+    /// The same for all.
+    Fixed(Floor),
+    /// Thermal noise beneath a part of the scenes, the thesis' floor beneath the others.
+    Thermal {
+        /// The part, 0 to 1.
+        share: f64,
+        /// Lowest ratio of signal to noise.
+        from: Decibels,
+        /// Highest ratio, above `from`; scenes are uniform in between.
+        to: Decibels,
+    },
+}
+
+impl Floors {
+    /// What lies beneath the scene whose noise has this seed.
+    pub fn of(&self, noise_seed: u64) -> Floor {
+        match *self {
+            Floors::Fixed(floor) => floor,
+            Floors::Thermal { share, from, to } => {
+                let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
+                if rng.random::<f64>() < share {
+                    Floor::Snr(Decibels(rng.random_range(from.0..to.0)))
+                } else {
+                    Floor::Thesis
+                }
+            }
+        }
+    }
+}
