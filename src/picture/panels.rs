@@ -158,8 +158,8 @@ impl Panels<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::{encode_png, is_our_png};
     use crate::maps::{LogMaps, Normalisation};
+    use crate::picture::{encode_png, is_our_png};
     use crate::scene::presets;
     use crate::signal::BeatSignal;
 
