@@ -1,0 +1,69 @@
+"""See what a 1024-element automotive radar sees, and how much of it 24 elements recover.
+
+    import apertura as ap
+    scene = ap.Scene.random("3", seed=7)
+    maps = scene.simulate(floor="thesis")
+    found = ap.method("hybrid").reconstruct(maps.ends)
+    print(ap.metrics(maps.target, found.map, found.eta))
+
+Maps are `[range bins, columns]`: row k is range `radar.range_metres[k]`, column k the direction `radar.cos_theta[k]`. An error of the library
+becomes ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
+"""
+
+from . import torch
+from ._apertura import (
+    Examples,
+    Maps,
+    Method,
+    Radar,
+    Reconstruction,
+    Recording,
+    Scene,
+    __version__,
+    ambiguity,
+    cramer_rao,
+    evaluate,
+    maps,
+    method,
+    methods,
+    metrics,
+    read_rows,
+    roc,
+    set_threads,
+    threads,
+)
+from .objects import Cluster, Elements, Interferer, Line, Metrics, Mirror, Point, PositionBound
+from .program import find_program, open
+
+__all__ = [
+    "Cluster",
+    "Elements",
+    "Examples",
+    "Interferer",
+    "Line",
+    "Maps",
+    "Method",
+    "Metrics",
+    "Mirror",
+    "Point",
+    "PositionBound",
+    "Radar",
+    "Reconstruction",
+    "Recording",
+    "Scene",
+    "__version__",
+    "ambiguity",
+    "cramer_rao",
+    "evaluate",
+    "find_program",
+    "maps",
+    "method",
+    "methods",
+    "metrics",
+    "open",
+    "read_rows",
+    "roc",
+    "set_threads",
+    "threads",
+    "torch",
+]

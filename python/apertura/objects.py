@@ -1,0 +1,124 @@
+"""What scenes hold, and what figures come as: plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, NamedTuple, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from ._apertura import Radar, built_elements
+
+
+@dataclass(frozen=True)
+class Point:
+    """One reflector. x lies along the array, y ahead of it, both in metres."""
+
+    kind: ClassVar[str] = "point"
+    x_metres: float
+    y_metres: float
+    reflectivity: float = 1.0
+
+
+@dataclass(frozen=True)
+class Line:
+    """Reflectors at equal spacing on a straight line. `direction_degrees` is 0 along +x and 90 straight ahead."""
+
+    kind: ClassVar[str] = "line"
+    x_metres: float
+    y_start_metres: float
+    spacing_metres: float
+    count: int
+    direction_degrees: float = 90.0
+    reflectivity: float = 1.0
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster."""
+
+    kind: ClassVar[str] = "gaussian"
+    x_metres: float
+    y_metres: float
+    x_std_metres: float
+    y_std_metres: float
+    count: int
+    seed: int = 0
+    reflectivity: float = 1.0
+
+
+@dataclass(frozen=True)
+class Interferer:
+    """Another radar that sends at the same time: heard while its frequency crosses ours.
+
+    `strength` is its amplitude at 1 m over the radar's power, `crossing` when its frequency crosses ours and `duration` for how long it is
+    heard, both as parts of a chirp.
+    """
+
+    x_metres: float = 6.0
+    y_metres: float = 25.0
+    strength: float = 0.1
+    crossing: float = 0.6
+    duration: float = 0.1
+
+
+@dataclass(frozen=True)
+class Mirror:
+    """A straight wall that mirrors: a point of it in metres, where it leads (0 along the array, 90 ahead), and the part of an amplitude
+    that it reflects."""
+
+    x_metres: float = -5.0
+    y_metres: float = 0.0
+    direction_degrees: float = 90.0
+    reflection: float = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """Elements as they are built: three arrays, float64 `[elements]`, and the numbers of those that hear nothing."""
+
+    gain_db: npt.NDArray[np.float64]
+    phase_degrees: npt.NDArray[np.float64]
+    position_millimetres: npt.NDArray[np.float64]
+    dead: Sequence[int] = field(default_factory=tuple)
+
+    @staticmethod
+    def built(
+        *,
+        gain_db: float = 0.0,
+        phase_degrees: float = 0.0,
+        position_millimetres: float = 0.0,
+        seed: int = 0,
+        radar: Radar | None = None,
+    ) -> Elements:
+        """Elements drawn with these standard deviations; the same seed builds the same.
+
+        Raises:
+            ValueError: A number can't be used.
+        """
+        return built_elements(gain_db, phase_degrees, position_millimetres, seed, radar)
+
+
+class Metrics(NamedTuple):
+    """SE, P_D and P_FA of one scene; P_D is None where there is nothing to detect."""
+
+    squared_error: float
+    detection: float | None
+    false_alarm: float
+
+
+class PositionBound(NamedTuple):
+    """Standard deviations that no unbiased estimate of one reflector can stay below.
+
+    `y_metres` is infinite on the array's axis, `xy_covariance_metres2` then 0. `amplitude` is a part of the reflector's own, and
+    `position_metres` the root of the mean squared distance.
+    """
+
+    range_metres: float
+    cos_theta: float
+    x_metres: float
+    y_metres: float
+    xy_covariance_metres2: float
+    amplitude: float
+    position_metres: float

@@ -1,0 +1,102 @@
+"""A dataset for PyTorch. PyTorch itself is loaded when the first example is asked for."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any, Sequence
+
+from ._apertura import Examples
+
+if TYPE_CHECKING:
+    import torch
+
+_TENSORS = ("ends", "fine", "coarse", "rows", "scalars", "target")
+
+
+class Scenes:
+    """Examples for the live network, as a map-style dataset: example `i` is a function of (mixture, seed, i) alone.
+
+    No worker needs a seed of its own. Any number of workers and processes gives the same examples, started by fork, spawn or forkserver, and a
+    run that was stopped goes on by index. A forked worker computes on one thread (`apertura.set_threads` changes that there), so that as many
+    workers as processors keep all of them busy.
+
+    Args:
+        set: Kinds of scenes with their shares, as in "3" or "1=4,2=12,walls=8".
+        seed: Seed of the examples.
+        length: How many examples the dataset has; at most 2^32.
+        purpose: "training", "validation" or "test": their scenes never meet.
+        floor: What lies beneath all scenes: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
+        thermal: (share, lowest dB, highest dB), in place of `floor`: this share of the scenes lies over thermal noise at a ratio drawn between
+            the two, the others over the thesis' floor.
+
+    An example is a dict of tensors: `ends` complex64 `[2, 12, 512]`, the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32
+    `[10, 512, 64]`, `rows` float32 `[6, 512]` and `scalars` float32 `[2]`, and `target` float32 `[512, 1024]`, decades of amplitude of the
+    whole array's map. Ends and target are relative to the samples' mean power.
+
+    Raises:
+        ValueError: A name is unknown or a number can't be used.
+    """
+
+    def __init__(
+        self,
+        set: str | int,
+        seed: int = 0,
+        *,
+        length: int = 1 << 20,
+        purpose: str = "training",
+        floor: str = "thesis",
+        thermal: tuple[float, float, float] | None = None,
+    ) -> None:
+        length = operator.index(length)
+        if not 1 <= length <= 1 << 32:
+            raise ValueError(f"length is {length}; expected 1 to {1 << 32}")
+        self._length = length
+        self._arguments: dict[str, Any] = {
+            "mixture": str(set),
+            "seed": seed,
+            "purpose": purpose,
+            "floor": floor,
+            "thermal": thermal,
+        }
+        self._examples: Examples | None = Examples(**self._arguments)
+
+    def __len__(self) -> int:
+        return self._length
+
+    def __getitem__(self, index: int) -> dict[str, torch.Tensor]:
+        """Example `index`; negative numbers count from the end.
+
+        Raises:
+            IndexError: There are not as many.
+            ValueError: The example can't be made.
+        """
+        return self.__getitems__([index])[0]
+
+    def __getitems__(self, indices: Sequence[int]) -> list[dict[str, torch.Tensor]]:
+        """Several examples, made in parallel: what a DataLoader asks for."""
+        import torch
+
+        made = self._made().batch([self._number(index) for index in indices])
+        return [{name: torch.from_numpy(example[name]) for name in _TENSORS} for example in made]
+
+    def arrays(self, index: int) -> dict[str, Any]:
+        """Example `index` as NumPy arrays, with its `gain`, `kind` and `floor`; this needs no PyTorch."""
+        return self._made().batch([self._number(index)])[0]
+
+    def _number(self, index: int) -> int:
+        number = operator.index(index)
+        if not -self._length <= number < self._length:
+            raise IndexError(f"example {number} is asked for; there are {self._length}")
+        return number % self._length
+
+    def _made(self) -> Examples:
+        if self._examples is None:
+            self._examples = Examples(**self._arguments)
+        return self._examples
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"_length": self._length, "_arguments": self._arguments, "_examples": None}
+
+    def __repr__(self) -> str:
+        given = ", ".join(f"{name}={value!r}" for name, value in self._arguments.items())
+        return f"Scenes({given}, length={self._length})"

@@ -1,0 +1,107 @@
+//! NumPy arrays in and out.
+
+use crate::errors::value;
+use apertura::radar::Radar;
+use apertura::scene::Reflector;
+use apertura::signal::TwoEnds;
+use ndarray::{Array, Array2, ArrayBase, Axis, Data, Dimension};
+use num_complex::Complex64;
+use numpy::{Element, PyArray, PyArrayDescrMethods, PyReadonlyArray, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+/// An array of this library as NumPy's, which owns it: nothing is copied.
+pub fn owned<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) -> Bound<'_, PyArray<T, D>> {
+    PyArray::from_owned_array(py, array)
+}
+
+/// An array that lives in `container`, as a read-only view that keeps it alive: nothing is copied.
+///
+/// # Safety
+/// The array must neither move nor change as long as `container` lives.
+pub unsafe fn view<'py, S, D>(
+    array: &ArrayBase<S, D>,
+    container: Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray<S::Elem, D>>>
+where
+    S: Data,
+    S::Elem: Element,
+    D: Dimension,
+{
+    // SAFETY: as the caller promises.
+    let view = unsafe { PyArray::borrow_from_array(array, container) };
+    let flags = [("write", false)];
+    view.call_method("setflags", (), Some(&pyo3::types::IntoPyDict::into_py_dict(flags, view.py())?))?;
+    Ok(view)
+}
+
+/// Whatever NumPy can make an array of, as a copy with elements of `T`; `what` and `shape` are for messages.
+///
+/// Kinds of numbers that `T` can't hold are refused: text, objects, and complex numbers where real ones are wanted.
+pub fn numbers<T, D>(from: &Bound<'_, PyAny>, what: &str, shape: &str) -> PyResult<Array<T, D>>
+where
+    T: Element + Clone,
+    D: Dimension,
+{
+    let py = from.py();
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method1("asarray", (from,))?;
+    let array = array.cast_into::<PyUntypedArray>().map_err(|e| value(format!("{what}: {e}")))?;
+    let wanted = T::get_dtype(py);
+    let kind = array.dtype().kind();
+    let kinds: &[u8] = if wanted.kind() == b'c' { b"biufc" } else { b"biuf" };
+    if !kinds.contains(&kind) {
+        return Err(value(format!("{what}: its dtype is {}; expected {wanted}, shape {shape}", array.dtype())));
+    }
+    if let Some(ndim) = D::NDIM
+        && array.ndim() != ndim
+    {
+        return Err(value(format!("{what}: its shape is {:?}; expected {shape}", array.shape())));
+    }
+    let array = array.call_method1("astype", (wanted,))?;
+    let array: PyReadonlyArray<'_, T, D> =
+        array.extract().map_err(|_| value(format!("{what}: can't be read as {shape}")))?;
+    Ok(array.as_array().to_owned())
+}
+
+/// The samples of both ends, `[2, end elements, samples]`.
+pub fn ends(from: &Bound<'_, PyAny>, radar: &Radar) -> PyResult<TwoEnds> {
+    let shape = format!("[2, {}, {}]", radar.end_elements, radar.samples);
+    let both: ndarray::Array3<Complex64> = numbers(from, "ends", &shape)?;
+    if both.dim() != (2, radar.end_elements, radar.samples) {
+        return Err(value(format!("ends: their shape is {:?}; expected {shape}", both.shape())));
+    }
+    let end = |i: usize| both.index_axis(Axis(0), i).to_owned();
+    Ok(TwoEnds { first: end(0), last: end(1) })
+}
+
+/// Both ends as one array, `[2, end elements, samples]`.
+pub fn both_ends(ends: &TwoEnds) -> ndarray::Array3<Complex64> {
+    let (elements, samples) = ends.first.dim();
+    let mut both = ndarray::Array3::zeros((2, elements, samples));
+    both.index_axis_mut(Axis(0), 0).assign(&ends.first);
+    both.index_axis_mut(Axis(0), 1).assign(&ends.last);
+    both
+}
+
+/// Reflectors as rows of x, y (metres) and reflectivity.
+pub fn rows_of(reflectors: &[Reflector]) -> Array2<f64> {
+    Array2::from_shape_fn((reflectors.len(), 3), |(i, j)| {
+        let Reflector { x_metres, y_metres, reflectivity } = reflectors[i];
+        [x_metres, y_metres, reflectivity][j]
+    })
+}
+
+/// Rows of x, y (metres) and, where there is a third column, reflectivity, which is 1 otherwise.
+pub fn reflectors(from: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<Reflector>> {
+    let shape = "[reflectors, 2] or [reflectors, 3]";
+    let rows: Array2<f64> = numbers(from, what, shape)?;
+    if !(2..=3).contains(&rows.ncols()) {
+        return Err(value(format!("{what}: its shape is {:?}; expected {shape}", rows.shape())));
+    }
+    let reflector = |row: ndarray::ArrayView1<'_, f64>| Reflector {
+        x_metres: row[0],
+        y_metres: row[1],
+        reflectivity: row.get(2).copied().unwrap_or(1.0),
+    };
+    Ok(rows.outer_iter().map(reflector).collect())
+}

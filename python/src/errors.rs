@@ -1,0 +1,47 @@
+//! The library's errors as Python's, with the same words.
+
+use apertura::files::npz::NpzError;
+use apertura::recording::{Fault, RecordingError};
+use apertura::scene::file::SceneFileError;
+use pyo3::PyErr;
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyPermissionError, PyRuntimeError, PyValueError};
+use std::fmt::Display;
+use std::io;
+
+/// What was given can't be used.
+pub fn value(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// Something that should not happen.
+pub fn runtime(error: impl Display) -> PyErr {
+    PyRuntimeError::new_err(error.to_string())
+}
+
+/// The system could not read or write a file; `words` are the whole message.
+pub fn system(source: &io::Error, words: impl Display) -> PyErr {
+    let words = words.to_string();
+    match source.kind() {
+        io::ErrorKind::NotFound => PyFileNotFoundError::new_err(words),
+        io::ErrorKind::PermissionDenied => PyPermissionError::new_err(words),
+        _ => PyOSError::new_err(words),
+    }
+}
+
+/// A scene file that can't be read or written.
+pub fn scene_file(error: SceneFileError) -> PyErr {
+    match &error {
+        SceneFileError::Io { source, .. } | SceneFileError::Archive { source: NpzError::Io(source), .. } => {
+            system(source, &error)
+        }
+        _ => value(error),
+    }
+}
+
+/// A recording that can't be read.
+pub fn recording(error: RecordingError) -> PyErr {
+    match &error.fault {
+        Fault::Io(source) => system(source, &error),
+        _ => value(error),
+    }
+}

@@ -1,0 +1,235 @@
+//! Figures of merit, and methods over many scenes.
+
+use crate::arrays::{numbers, owned};
+use crate::errors::{runtime, system, value};
+use crate::radar::{Radar, or_default};
+use crate::scene::{named, purpose_of, reading_of, set_name};
+use crate::work::{self, Progress};
+use apertura::evaluate::campaign::{Campaign, CampaignError};
+use apertura::evaluate::rows::{Part, Row, read_rows as read, write_rows};
+use apertura::evaluate::sets::SceneSet;
+use apertura::evaluate::{Metrics, Roc};
+use apertura::files::write_bytes;
+use apertura::maps::RangeAngleMap;
+use apertura::reconstruct::Reconstructor;
+use apertura::scene::generate::Kind;
+use ndarray::{Array1, Array2};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+const SHAPE: &str = "[range bins, columns]";
+
+/// Lambda of every cell, all of them finite.
+fn map_of(from: &Bound<'_, PyAny>, what: &str) -> PyResult<RangeAngleMap> {
+    let lambda: Array2<f32> = numbers(from, what, SHAPE)?;
+    match lambda.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        Some((cell, v)) => Err(value(format!("{what}: {v} at {cell:?}; expected finite numbers only"))),
+        None => Ok(RangeAngleMap { lambda }),
+    }
+}
+
+/// Both maps, of one shape.
+fn both(target: &Bound<'_, PyAny>, output: &Bound<'_, PyAny>) -> PyResult<[RangeAngleMap; 2]> {
+    let both = [map_of(target, "target")?, map_of(output, "output")?];
+    let [target, output] = both.each_ref().map(|map| map.lambda.shape().to_vec());
+    if target != output {
+        return Err(value(format!("output: its shape is {output:?}; expected {target:?}, the target's")));
+    }
+    if target.contains(&0) {
+        return Err(value(format!("target: its shape is {target:?}; expected at least one cell")));
+    }
+    Ok(both)
+}
+
+/// The three figures of the thesis' tables for one scene.
+///
+/// Args:
+///     target: Lambda of the whole array, numbers `[range bins, columns]`, read as float32.
+///     output: Lambda as a method estimates it, of the same shape.
+///     eta: Threshold of the output.
+///     has_echoes: False where nothing reflects: then nothing can be detected, and what exceeds eta is a false alarm.
+///
+/// Returns:
+///     `squared_error`, `detection` (None where the target has no cell above 0.9) and `false_alarm`.
+///
+/// Raises:
+///     ValueError: The shapes differ, a map is empty, or a cell is not finite.
+#[pyfunction]
+#[pyo3(signature = (target, output, eta, *, has_echoes=true))]
+pub fn metrics<'py>(
+    py: Python<'py>,
+    target: &Bound<'py, PyAny>,
+    output: &Bound<'py, PyAny>,
+    eta: f32,
+    has_echoes: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    if !eta.is_finite() {
+        return Err(value(format!("eta is {eta}; expected a finite number")));
+    }
+    let [target, output] = both(target, output)?;
+    let found = Metrics::of_echoes(has_echoes, &target, &output, eta);
+    let figures = (found.squared_error, found.detection, found.false_alarm);
+    py.import("apertura.objects")?.getattr("Metrics")?.call1(figures)
+}
+
+/// P_D and P_FA over 4097 thresholds from 0 to 1.
+///
+/// Args:
+///     target: Lambda of the whole array, numbers `[range bins, columns]`, read as float32.
+///     output: Lambda as a method estimates it, of the same shape.
+///
+/// Returns:
+///     `eta`, `detection` and `false_alarm`, float64 `[4097]` each; empty where the target has no cell above 0.9, or no other.
+///
+/// Raises:
+///     ValueError: The shapes differ, a map is empty, or a cell is not finite.
+#[pyfunction]
+pub fn roc<'py>(
+    py: Python<'py>,
+    target: &Bound<'py, PyAny>,
+    output: &Bound<'py, PyAny>,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let [target, output] = both(target, output)?;
+    let roc = work::run(py, None, |_| Roc::of(&target, &output))?;
+    let column = |of: fn(apertura::evaluate::RocPoint) -> f64| owned(py, roc.points().map(of).collect::<Array1<f64>>());
+    Ok((column(|p| p.eta.into()), column(|p| p.detection), column(|p| p.false_alarm)))
+}
+
+/// Tries methods on random scenes: the rows of `apertura evaluate --rows`.
+///
+/// Args:
+///     methods: Names of methods.
+///     sets: Names of sets as `Scene.random` takes them.
+///     count: Scenes of each set.
+///     seed: Seed of the sets.
+///     floor: What lies beneath the reflectors.
+///     normalisation: How every map is normalised.
+///     purpose: "test", "validation" or "training".
+///     reading: "program" or "text".
+///     radar: The radar; that of table 3.1 where none is given.
+///     on_row: Called with each row as it is found.
+///     progress: Called with the part that is done, 0 to 1.
+///     path: A CSV file that all rows are written to in one step, in the program's format.
+///
+/// Returns:
+///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row.
+///
+/// Raises:
+///     ValueError: A name is unknown or given twice, `count` is 0, or a method can't work on a scene.
+///     OSError: `path` can't be written.
+#[pyfunction]
+#[pyo3(signature = (methods, sets, *, count=100, seed=0, floor="thesis", normalisation="min-max", purpose="test", reading="program",
+                    radar=None, on_row=None, progress=None, path=None))]
+#[expect(clippy::too_many_arguments, reason = "named in Python")]
+pub fn evaluate<'py>(
+    py: Python<'py>,
+    methods: Vec<String>,
+    sets: Vec<Bound<'py, PyAny>>,
+    count: u32,
+    seed: u64,
+    floor: &str,
+    normalisation: &str,
+    purpose: &str,
+    reading: &str,
+    radar: Option<&Radar>,
+    on_row: Option<&Bound<'py, PyAny>>,
+    progress: Progress<'_, 'py>,
+    path: Option<PathBuf>,
+) -> PyResult<Bound<'py, PyList>> {
+    if count == 0 {
+        return Err(value("count is 0; expected at least 1"));
+    }
+    let (purpose, reading) = (purpose_of(purpose)?, reading_of(reading)?);
+    let (floor, normalisation) = (named(floor)?, named(normalisation)?);
+    let campaign = Campaign {
+        radar: or_default(radar),
+        reading,
+        purpose,
+        seed,
+        count,
+        floor,
+        normalisation,
+        ..Campaign::default()
+    };
+    let kinds: PyResult<Vec<_>> = sets.iter().map(|s| named::<Kind>(&set_name(s)?)).collect();
+    let sets: Vec<SceneSet> = kinds?.into_iter().map(SceneSet::Generated).collect();
+    let known: Result<Vec<Arc<dyn Reconstructor>>, _> = methods.iter().map(|m| apertura::methods::by_name(m)).collect();
+    let known = known.map_err(value)?;
+    let methods: Vec<&dyn Reconstructor> = known.iter().map(AsRef::as_ref).collect();
+    let all = f64::from(count) * sets.len() as f64 * methods.len() as f64;
+    let mut done = 0.0;
+    let rows = work::run_watched(
+        py,
+        None,
+        |task, finder| campaign.run(&sets, &methods, task, |row| finder.found(row.clone())),
+        |row| {
+            done += 1.0;
+            if let Some(on_row) = on_row {
+                on_row.call1((dict_of(py, &row)?,))?;
+            }
+            if let Some(progress) = progress {
+                progress.call1((done / all,))?;
+            }
+            Ok(())
+        },
+    )?
+    .map_err(|error: CampaignError| value(error))?;
+    if let Some(path) = path {
+        let mut text = Vec::new();
+        write_rows(&mut text, &rows).map_err(runtime)?;
+        write_bytes(&path, &text).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
+    }
+    list_of(py, &rows)
+}
+
+/// Reads the rows of `apertura evaluate --rows`.
+///
+/// Returns:
+///     One dict a row, as `evaluate` gives them; what an older table does not say is None.
+///
+/// Raises:
+///     OSError: The file can't be read.
+///     ValueError: It is no such table; the message names the line and column.
+#[pyfunction]
+pub fn read_rows(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyList>> {
+    let file = std::fs::File::open(&path).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
+    let rows = work::run(py, None, |_| read(file))?.map_err(|e| value(format!("{}: {e}", path.display())))?;
+    list_of(py, &rows)
+}
+
+fn list_of<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyList>> {
+    let dicts: PyResult<Vec<_>> = rows.iter().map(|row| dict_of(py, row)).collect();
+    PyList::new(py, dicts?)
+}
+
+fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("set", &row.set)?;
+    dict.set_item("index", row.index)?;
+    dict.set_item("seed", row.seed)?;
+    dict.set_item("method", &row.method)?;
+    dict.set_item("eta", row.eta)?;
+    dict.set_item("squared_error", row.squared_error)?;
+    dict.set_item("detection", row.detection)?;
+    dict.set_item("false_alarm", row.false_alarm)?;
+    dict.set_item("detection_at_printed", row.detection_at_printed)?;
+    dict.set_item("milliseconds", row.milliseconds)?;
+    dict.set_item("objects", row.objects)?;
+    dict.set_item("reflectors", row.reflectors)?;
+    dict.set_item("missed", row.missed)?;
+    dict.set_item("ghosts", row.ghosts)?;
+    dict.set_item("nearest_pair_columns", row.nearest_pair_columns)?;
+    dict.set_item("nearest_pair_bins", row.nearest_pair_bins)?;
+    dict.set_item("min_range_metres", row.min_range_metres)?;
+    dict.set_item("strongest_over_weakest_db", row.strongest_over_weakest_db)?;
+    dict.set_item("found", row.found)?;
+    dict.set_item("merged", row.merged)?;
+    dict.set_item("wrong_tooth", row.wrong_tooth)?;
+    for part in Part::ALL {
+        dict.set_item(part.name(), row.origin.as_ref().map(|origin| origin.text(part)))?;
+    }
+    Ok(dict)
+}

@@ -1,0 +1,43 @@
+//! The library `apertura` as a Python module. `apertura/_apertura.pyi` says what each name takes and gives.
+
+mod arrays;
+mod bounds;
+mod errors;
+mod evaluate;
+mod examples;
+mod maps;
+mod methods;
+mod objects;
+mod pool;
+mod radar;
+mod recording;
+mod scene;
+mod work;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    pool::remember_process();
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<radar::Radar>()?;
+    module.add_class::<scene::Scene>()?;
+    module.add_class::<maps::Maps>()?;
+    module.add_class::<methods::Method>()?;
+    module.add_class::<methods::Reconstruction>()?;
+    module.add_class::<recording::Recording>()?;
+    module.add_class::<examples::Examples>()?;
+    module.add_function(wrap_pyfunction!(maps::maps, module)?)?;
+    module.add_function(wrap_pyfunction!(methods::method, module)?)?;
+    module.add_function(wrap_pyfunction!(methods::methods, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::metrics, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::roc, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::read_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(bounds::cramer_rao, module)?)?;
+    module.add_function(wrap_pyfunction!(bounds::ambiguity, module)?)?;
+    module.add_function(wrap_pyfunction!(objects::built_elements, module)?)?;
+    module.add_function(wrap_pyfunction!(pool::set_threads, module)?)?;
+    module.add_function(wrap_pyfunction!(pool::threads, module)?)?;
+    Ok(())
+}

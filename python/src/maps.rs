@@ -1,0 +1,136 @@
+//! Samples and the maps made of them.
+
+use crate::arrays::{both_ends, numbers, owned, view};
+use crate::errors::value;
+use crate::radar::{Radar, or_default};
+use crate::scene::named;
+use crate::work;
+use apertura::maps::{Aperture, LogMap, Normalisation, RangeAngleMap, angle_transform, channels_map, range_transform};
+use apertura::radar::{self, End};
+use apertura::signal::BeatSignal;
+use ndarray::{Array2, Array3, Axis};
+use num_complex::Complex64;
+use numpy::{PyArray2, PyArray3};
+use pyo3::prelude::*;
+use std::sync::OnceLock;
+
+/// The samples of a radar's elements, and the range-angle maps made of them. A map is computed when it is first asked for.
+///
+/// Arrays are read-only views of what this object holds, which they keep alive. Row k of a map is range `radar.range_metres[k]`, column k is
+/// the direction `radar.cos_theta[k]`.
+#[pyclass(module = "apertura", frozen)]
+pub struct Maps {
+    radar: radar::Radar,
+    normalisation: Normalisation,
+    signal: BeatSignal,
+    full: OnceLock<LogMap>,
+    target: OnceLock<RangeAngleMap>,
+}
+
+impl Maps {
+    pub fn new(radar: radar::Radar, signal: BeatSignal, normalisation: Normalisation) -> Self {
+        Maps { radar, normalisation, signal, full: OnceLock::new(), target: OnceLock::new() }
+    }
+
+    /// The whole array's map. Two threads that ask at once may both compute it: a lock held across the computation could hold the interpreter up.
+    fn full(&self, py: Python<'_>) -> PyResult<&LogMap> {
+        if let Some(full) = self.full.get() {
+            return Ok(full);
+        }
+        let (radar, signal) = (&self.radar, &self.signal);
+        let full = work::run(py, None, |_| {
+            angle_transform(radar, &range_transform(radar, signal), Aperture::Full).log_magnitude()
+        })?;
+        Ok(self.full.get_or_init(|| full))
+    }
+}
+
+#[pymethods]
+impl Maps {
+    /// The radar.
+    #[getter]
+    fn radar(&self) -> Radar {
+        Radar(self.radar.clone())
+    }
+
+    /// How decades become Lambda in `target` and `inputs`.
+    #[getter]
+    fn normalisation(&self) -> String {
+        self.normalisation.to_string()
+    }
+
+    /// Samples of all elements, complex128 `[elements, samples]`.
+    #[getter]
+    fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<Complex64>>> {
+        // SAFETY: a frozen object's samples neither move nor change.
+        unsafe { view(&slf.get().signal.samples, slf.clone().into_any()) }
+    }
+
+    /// Samples of the first and the last elements, complex128 `[2, end_elements, samples]`: what a method gets. A copy.
+    #[getter]
+    fn ends<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<Complex64>> {
+        owned(py, both_ends(&self.signal.two_ends(&self.radar)))
+    }
+
+    /// Decades of amplitude of the whole array's map, float64 `[samples, elements]`, not normalised.
+    #[getter]
+    fn decades<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let full = slf.get().full(slf.py())?;
+        // SAFETY: a frozen object's map, once there, neither moves nor changes.
+        unsafe { view(full.decades(), slf.clone().into_any()) }
+    }
+
+    /// Lambda of the whole array's map, float32 `[samples, elements]`, every cell in [0, 1]: what a method should draw.
+    #[getter]
+    fn target<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let own = slf.get();
+        let full = own.full(slf.py())?;
+        let target = own.target.get_or_init(|| full.normalise(own.normalisation));
+        // SAFETY: as above.
+        unsafe { view(&target.lambda, slf.clone().into_any()) }
+    }
+
+    /// Lambda of each end's own map, float32 `[2, samples, elements]`. Computed anew each time.
+    #[getter]
+    fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        let (radar, normalisation) = (&self.radar, self.normalisation);
+        let ends = self.signal.two_ends(radar);
+        let [first, last] = work::run(py, None, |_| {
+            End::BOTH
+                .map(|end| channels_map(radar, ends.end(end).view()).log_magnitude().normalise(normalisation).lambda)
+        })?;
+        let mut both = Array3::zeros((2, radar.samples, radar.elements));
+        both.index_axis_mut(Axis(0), 0).assign(&first);
+        both.index_axis_mut(Axis(0), 1).assign(&last);
+        Ok(owned(py, both))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Maps of {} elements by {} samples>", self.radar.elements, self.radar.samples)
+    }
+}
+
+/// Maps of samples that come from elsewhere.
+///
+/// Args:
+///     samples: Complex numbers `[elements, samples]`; they are copied.
+///     radar: The radar that sampled them; that of table 3.1 where none is given.
+///     normalisation: "min-max" or "db=RANGE".
+///
+/// Raises:
+///     ValueError: The shape is not the radar's, a sample is not finite, or a name is unknown.
+#[pyfunction]
+#[pyo3(signature = (samples, radar=None, *, normalisation="min-max"))]
+pub fn maps(samples: &Bound<'_, PyAny>, radar: Option<&Radar>, normalisation: &str) -> PyResult<Maps> {
+    let radar = or_default(radar);
+    let shape = format!("[{}, {}]", radar.elements, radar.samples);
+    let samples: Array2<Complex64> = numbers(samples, "samples", &shape)?;
+    if samples.dim() != (radar.elements, radar.samples) {
+        return Err(value(format!("samples: their shape is {:?}; expected {shape}", samples.shape())));
+    }
+    if let Some(((element, sample), _)) = samples.indexed_iter().find(|(_, v)| !(v.re.is_finite() && v.im.is_finite()))
+    {
+        return Err(value(format!("sample {sample} of element {element} is not finite")));
+    }
+    Ok(Maps::new(radar, BeatSignal { samples }, named(normalisation)?))
+}

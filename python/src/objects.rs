@@ -1,0 +1,191 @@
+//! Objects and disturbances of a scene, which are data classes in Python (`apertura/objects.py`).
+
+use crate::arrays::{numbers, owned};
+use crate::errors::value;
+use crate::radar::{Radar, or_default};
+use apertura::radar::{BuiltArray, Decibels, ElementError, Tolerances};
+use apertura::scene::{GaussianCluster, Interferer, Line, Mirror, Object, Point};
+use ndarray::Array1;
+use numpy::PyArray1;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A field of a data class, as a number; its name is part of the error.
+fn field<'py, T>(of: &Bound<'py, PyAny>, name: &str, what: &str) -> PyResult<T>
+where
+    T: for<'a> FromPyObject<'a, 'py>,
+{
+    let found = of.getattr(name)?;
+    found.extract().map_err(|_| {
+        let shown = found.repr().map_or_else(|_| "?".to_owned(), |r| r.to_string());
+        PyTypeError::new_err(format!("{what}: {name} is {shown}; expected a number"))
+    })
+}
+
+/// Object `index` of a scene.
+pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
+    let what = format!("object {}", index + 1);
+    let kind: Option<String> = from.getattr_opt("kind")?.and_then(|kind| kind.extract().ok());
+    let number = |name: &str| field::<f64>(from, name, &what);
+    let count = || field::<usize>(from, "count", &what);
+    Ok(match kind.as_deref() {
+        Some("point") => Object::Point(Point {
+            x_metres: number("x_metres")?,
+            y_metres: number("y_metres")?,
+            reflectivity: number("reflectivity")?,
+        }),
+        Some("line") => Object::Line(Line {
+            x_metres: number("x_metres")?,
+            y_start_metres: number("y_start_metres")?,
+            spacing_metres: number("spacing_metres")?,
+            direction_degrees: number("direction_degrees")?,
+            count: count()?,
+            reflectivity: number("reflectivity")?,
+        }),
+        Some("gaussian") => Object::Gaussian(GaussianCluster {
+            x_metres: number("x_metres")?,
+            y_metres: number("y_metres")?,
+            x_std_metres: number("x_std_metres")?,
+            y_std_metres: number("y_std_metres")?,
+            count: count()?,
+            seed: field(from, "seed", &what)?,
+            reflectivity: number("reflectivity")?,
+        }),
+        _ => {
+            let found = from.get_type().name()?;
+            return Err(PyTypeError::new_err(format!("{what} is a {found}; expected Point, Line or Cluster")));
+        }
+    })
+}
+
+fn data_class<'py>(py: Python<'py>, name: &str, fields: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    py.import("apertura.objects")?.getattr(name)?.call((), Some(fields))
+}
+
+/// The data class of an object.
+pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, PyAny>> {
+    let fields = PyDict::new(py);
+    fields.set_item("reflectivity", object.reflectivity())?;
+    let name = match object {
+        Object::Point(p) => {
+            fields.set_item("x_metres", p.x_metres)?;
+            fields.set_item("y_metres", p.y_metres)?;
+            "Point"
+        }
+        Object::Line(l) => {
+            fields.set_item("x_metres", l.x_metres)?;
+            fields.set_item("y_start_metres", l.y_start_metres)?;
+            fields.set_item("spacing_metres", l.spacing_metres)?;
+            fields.set_item("direction_degrees", l.direction_degrees)?;
+            fields.set_item("count", l.count)?;
+            "Line"
+        }
+        Object::Gaussian(g) => {
+            fields.set_item("x_metres", g.x_metres)?;
+            fields.set_item("y_metres", g.y_metres)?;
+            fields.set_item("x_std_metres", g.x_std_metres)?;
+            fields.set_item("y_std_metres", g.y_std_metres)?;
+            fields.set_item("count", g.count)?;
+            fields.set_item("seed", g.seed)?;
+            "Cluster"
+        }
+    };
+    data_class(py, name, &fields)
+}
+
+pub fn interferer(from: &Bound<'_, PyAny>) -> PyResult<Interferer> {
+    let number = |name: &str| field::<f64>(from, name, "interferer");
+    Ok(Interferer {
+        x_metres: number("x_metres")?,
+        y_metres: number("y_metres")?,
+        strength: number("strength")?,
+        crossing: number("crossing")?,
+        duration: number("duration")?,
+    })
+}
+
+pub fn of_interferer<'py>(py: Python<'py>, of: &Interferer) -> PyResult<Bound<'py, PyAny>> {
+    let fields = PyDict::new(py);
+    fields.set_item("x_metres", of.x_metres)?;
+    fields.set_item("y_metres", of.y_metres)?;
+    fields.set_item("strength", of.strength)?;
+    fields.set_item("crossing", of.crossing)?;
+    fields.set_item("duration", of.duration)?;
+    data_class(py, "Interferer", &fields)
+}
+
+pub fn mirror(from: &Bound<'_, PyAny>) -> PyResult<Mirror> {
+    let number = |name: &str| field::<f64>(from, name, "mirror");
+    Ok(Mirror {
+        x_metres: number("x_metres")?,
+        y_metres: number("y_metres")?,
+        direction_degrees: number("direction_degrees")?,
+        reflection: number("reflection")?,
+    })
+}
+
+pub fn of_mirror<'py>(py: Python<'py>, of: &Mirror) -> PyResult<Bound<'py, PyAny>> {
+    let fields = PyDict::new(py);
+    fields.set_item("x_metres", of.x_metres)?;
+    fields.set_item("y_metres", of.y_metres)?;
+    fields.set_item("direction_degrees", of.direction_degrees)?;
+    fields.set_item("reflection", of.reflection)?;
+    data_class(py, "Mirror", &fields)
+}
+
+/// Elements as they are built: four lists of equal length, one number an element.
+pub fn elements(from: &Bound<'_, PyAny>) -> PyResult<BuiltArray> {
+    let list = |name: &str| -> PyResult<Array1<f64>> {
+        numbers(&from.getattr(name)?, &format!("elements: {name}"), "[elements]")
+    };
+    let (gain, phase) = (list("gain_db")?, list("phase_degrees")?);
+    let (position, dead) = (list("position_millimetres")?, from.getattr("dead")?);
+    let dead: Vec<usize> = dead.extract().map_err(|_| value("elements: dead is no list of numbers of elements"))?;
+    let count = gain.len();
+    for (name, len) in [("phase_degrees", phase.len()), ("position_millimetres", position.len())] {
+        if len != count {
+            return Err(value(format!("elements: {name} has {len} numbers; expected {count} as gain_db has")));
+        }
+    }
+    if let Some(n) = dead.iter().find(|n| **n >= count) {
+        return Err(value(format!("elements: element {n} is dead, of {count}")));
+    }
+    let element = |n: usize| ElementError {
+        gain: Decibels(gain[n]),
+        phase_degrees: phase[n],
+        position_millimetres: position[n],
+        dead: dead.contains(&n),
+    };
+    Ok(BuiltArray { elements: (0..count).map(element).collect() })
+}
+
+pub fn of_elements<'py>(py: Python<'py>, of: &BuiltArray) -> PyResult<Bound<'py, PyAny>> {
+    let list = |value: fn(&ElementError) -> f64| -> Bound<'py, PyArray1<f64>> {
+        owned(py, of.elements.iter().map(value).collect::<Array1<f64>>())
+    };
+    let fields = PyDict::new(py);
+    fields.set_item("gain_db", list(|e| e.gain.0))?;
+    fields.set_item("phase_degrees", list(|e| e.phase_degrees))?;
+    fields.set_item("position_millimetres", list(|e| e.position_millimetres))?;
+    fields.set_item("dead", (0..of.elements.len()).filter(|n| of.elements[*n].dead).collect::<Vec<_>>())?;
+    data_class(py, "Elements", &fields)
+}
+
+/// Draws the elements of an array that was built with tolerances; see `Elements.built`.
+#[pyfunction]
+#[pyo3(signature = (gain_db, phase_degrees, position_millimetres, seed, radar=None))]
+pub fn built_elements<'py>(
+    py: Python<'py>,
+    gain_db: f64,
+    phase_degrees: f64,
+    position_millimetres: f64,
+    seed: u64,
+    radar: Option<&Radar>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let tolerances = Tolerances { gain: Decibels(gain_db), phase_degrees, position_millimetres };
+    let radar = or_default(radar);
+    let built = tolerances.build(&radar, seed);
+    built.validate(&radar).map_err(value)?;
+    of_elements(py, &built)
+}

@@ -1,0 +1,256 @@
+//! The radar.
+
+use crate::arrays::owned;
+use crate::errors::value;
+use apertura::radar::presets::{ALL, RadarPreset};
+use apertura::radar::{self, Carrier, WindowFunction};
+use ndarray::Array1;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyType};
+
+/// A radar with a uniform line array on the x axis, centred on x = 0. Without arguments it is that of the thesis' table 3.1.
+///
+/// Args:
+///     transmit_power_watts: Transmit power in watts.
+///     bandwidth_hz: Swept bandwidth in hertz.
+///     carrier_hz: Carrier frequency in hertz.
+///     element_spacing_metres: Distance between neighbouring elements in metres.
+///     elements: Elements of the whole array, also the columns of every map.
+///     end_elements: Elements of each of the two ends.
+///     samples: Samples of a chirp, also the range bins of every map.
+///     carrier: "one-way" (the thesis' convention) or "two-way".
+///     window: "hann", "hamming", "blackman" or "rectangular".
+///
+/// Raises:
+///     ValueError: A field is out of range, or the radar asks for too much memory.
+#[pyclass(module = "apertura", frozen)]
+#[derive(Clone, PartialEq)]
+pub struct Radar(pub radar::Radar);
+
+fn carrier_of(name: &str) -> PyResult<Carrier> {
+    match name {
+        "one-way" => Ok(Carrier::OneWay),
+        "two-way" => Ok(Carrier::TwoWay),
+        _ => Err(value(format!("carrier is \"{name}\"; expected one-way or two-way"))),
+    }
+}
+
+fn carrier_name(carrier: Carrier) -> &'static str {
+    match carrier {
+        Carrier::OneWay => "one-way",
+        Carrier::TwoWay => "two-way",
+    }
+}
+
+fn window_of(name: &str) -> PyResult<WindowFunction> {
+    let expected = || {
+        let names: Vec<_> = WindowFunction::ALL.iter().map(|w| w.name()).collect();
+        value(format!("window is \"{name}\"; expected {}", names.join(", ")))
+    };
+    WindowFunction::ALL.into_iter().find(|w| w.name() == name).ok_or_else(expected)
+}
+
+/// The radar given, or that of table 3.1.
+pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
+    radar.map(|r| r.0.clone()).unwrap_or_default()
+}
+
+#[pymethods]
+impl Radar {
+    #[new]
+    #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
+                        end_elements=None, samples=None, carrier=None, window=None))]
+    #[expect(clippy::too_many_arguments, reason = "one a field")]
+    fn new(
+        transmit_power_watts: Option<f64>,
+        bandwidth_hz: Option<f64>,
+        carrier_hz: Option<f64>,
+        element_spacing_metres: Option<f64>,
+        elements: Option<usize>,
+        end_elements: Option<usize>,
+        samples: Option<usize>,
+        carrier: Option<&str>,
+        window: Option<&str>,
+    ) -> PyResult<Self> {
+        let usual = radar::Radar::default();
+        let radar = radar::Radar {
+            transmit_power_watts: transmit_power_watts.unwrap_or(usual.transmit_power_watts),
+            bandwidth_hz: bandwidth_hz.unwrap_or(usual.bandwidth_hz),
+            carrier_hz: carrier_hz.unwrap_or(usual.carrier_hz),
+            element_spacing_metres: element_spacing_metres.unwrap_or(usual.element_spacing_metres),
+            elements: elements.unwrap_or(usual.elements),
+            end_elements: end_elements.unwrap_or(usual.end_elements),
+            samples: samples.unwrap_or(usual.samples),
+            carrier: carrier.map_or(Ok(usual.carrier), carrier_of)?,
+            window: window.map_or(Ok(usual.window), window_of)?,
+        };
+        radar.validate().map_err(value)?;
+        Ok(Radar(radar))
+    }
+
+    /// A radar that comes with the library.
+    ///
+    /// Raises:
+    ///     ValueError: There is none of this name.
+    #[staticmethod]
+    fn preset(name: &str) -> PyResult<Self> {
+        let known = || ALL.iter().map(|p| p.id).collect::<Vec<_>>().join(", ");
+        let unknown = || value(format!("no radar is called \"{name}\"; expected {}", known()));
+        RadarPreset::by_id(name).map(|p| Radar(p.radar.clone())).ok_or_else(unknown)
+    }
+
+    /// Names of the radars that come with the library.
+    #[staticmethod]
+    fn presets() -> Vec<&'static str> {
+        ALL.iter().map(|p| p.id).collect()
+    }
+
+    /// The same radar with other fields, named as in the constructor.
+    #[pyo3(signature = (**fields))]
+    fn replace<'py>(&self, py: Python<'py>, fields: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        let all = self.fields(py)?;
+        if let Some(fields) = fields {
+            all.update(fields.as_mapping())?;
+        }
+        PyType::new::<Radar>(py).call((), Some(&all))
+    }
+
+    /// Transmit power in watts.
+    #[getter]
+    fn transmit_power_watts(&self) -> f64 {
+        self.0.transmit_power_watts
+    }
+
+    /// Swept bandwidth in hertz.
+    #[getter]
+    fn bandwidth_hz(&self) -> f64 {
+        self.0.bandwidth_hz
+    }
+
+    /// Carrier frequency in hertz.
+    #[getter]
+    fn carrier_hz(&self) -> f64 {
+        self.0.carrier_hz
+    }
+
+    /// Distance between neighbouring elements in metres.
+    #[getter]
+    fn element_spacing_metres(&self) -> f64 {
+        self.0.element_spacing_metres
+    }
+
+    /// Elements of the whole array, and columns of every map.
+    #[getter]
+    fn elements(&self) -> usize {
+        self.0.elements
+    }
+
+    /// Elements of each of the two ends.
+    #[getter]
+    fn end_elements(&self) -> usize {
+        self.0.end_elements
+    }
+
+    /// Samples of a chirp, and range bins of every map.
+    #[getter]
+    fn samples(&self) -> usize {
+        self.0.samples
+    }
+
+    /// "one-way" or "two-way".
+    #[getter]
+    fn carrier(&self) -> &'static str {
+        carrier_name(self.0.carrier)
+    }
+
+    /// Name of the window.
+    #[getter]
+    fn window(&self) -> &'static str {
+        self.0.window.name()
+    }
+
+    /// Wavelength of the carrier in metres.
+    #[getter]
+    fn wavelength_metres(&self) -> f64 {
+        self.0.wavelength_metres()
+    }
+
+    /// Distance between neighbouring range bins in metres.
+    #[getter]
+    fn range_resolution_metres(&self) -> f64 {
+        self.0.range_resolution_metres()
+    }
+
+    /// Range at which range bins wrap around, in metres.
+    #[getter]
+    fn max_range_metres(&self) -> f64 {
+        self.0.max_range_metres()
+    }
+
+    /// Distance between the first and the last element in metres.
+    #[getter]
+    fn aperture_metres(&self) -> f64 {
+        self.0.aperture_metres()
+    }
+
+    /// Positions of the elements on the x axis in metres, float64 `[elements]`.
+    #[getter]
+    fn element_x_metres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        owned(py, (0..self.0.elements).map(|n| self.0.element_x_metres(n)).collect::<Array1<f64>>())
+    }
+
+    /// Ranges of the bins of a map in metres, float64 `[samples]`.
+    #[getter]
+    fn range_metres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        owned(py, (0..self.0.samples).map(|bin| self.0.range_of_bin_metres(bin as f64)).collect::<Array1<f64>>())
+    }
+
+    /// Cosines, from the array's axis, of the columns of a map, float64 `[elements]`.
+    #[getter]
+    fn cos_theta<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        owned(py, (0..self.0.elements).map(|column| self.0.cos_of_column(column as f64)).collect::<Array1<f64>>())
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Radar>().is_ok_and(|other| *other.get() == *self)
+    }
+
+    fn __hash__(&self) -> u64 {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut hasher = DefaultHasher::new();
+        (self.0.elements, self.0.samples, self.0.carrier_hz.to_bits()).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let usual = Radar(radar::Radar::default()).fields(py)?;
+        let mut parts = Vec::new();
+        for (key, own) in self.fields(py)? {
+            if !own.eq(usual.get_item(&key)?)? {
+                parts.push(format!("{key}={}", own.repr()?));
+            }
+        }
+        Ok(format!("Radar({})", parts.join(", ")))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {
+        Ok((py.import("apertura._pickle")?.getattr("radar")?, (self.fields(py)?,)))
+    }
+}
+
+impl Radar {
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let fields = PyDict::new(py);
+        fields.set_item("transmit_power_watts", self.0.transmit_power_watts)?;
+        fields.set_item("bandwidth_hz", self.0.bandwidth_hz)?;
+        fields.set_item("carrier_hz", self.0.carrier_hz)?;
+        fields.set_item("element_spacing_metres", self.0.element_spacing_metres)?;
+        fields.set_item("elements", self.0.elements)?;
+        fields.set_item("end_elements", self.0.end_elements)?;
+        fields.set_item("samples", self.0.samples)?;
+        fields.set_item("carrier", carrier_name(self.0.carrier))?;
+        fields.set_item("window", self.0.window.name())?;
+        Ok(fields)
+    }
+}

@@ -1,0 +1,119 @@
+//! Recordings: samples that a radar measured.
+
+use crate::arrays::{both_ends, owned, view};
+use crate::errors;
+use crate::maps::Maps;
+use crate::radar::Radar;
+use crate::scene::named;
+use apertura::recording::file::load;
+use apertura::recording::presets::{ALL, Preset};
+use apertura::recording::{self, FLOOR};
+use num_complex::Complex64;
+use numpy::{PyArray2, PyArray3};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// Samples that a radar measured, with the radar.
+#[pyclass(module = "apertura", frozen)]
+pub struct Recording(recording::Recording);
+
+#[pymethods]
+impl Recording {
+    /// Reads a recording's TOML and the samples beside it (docs/recordings.md says what they may be).
+    ///
+    /// Raises:
+    ///     OSError: A file can't be read.
+    ///     ValueError: A file is not what it should be; the message names file, key and what was expected.
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        load(&path).map(Recording).map_err(errors::recording)
+    }
+
+    /// A recording that comes with the library.
+    ///
+    /// Raises:
+    ///     ValueError: There is none of this name.
+    #[staticmethod]
+    fn preset(name: &str) -> PyResult<Self> {
+        let known = || Recording::presets().join(", ");
+        let unknown = || errors::value(format!("no recording is called \"{name}\"; expected {}", known()));
+        Preset::by_id(name).ok_or_else(unknown)?.load().map(Recording).map_err(errors::recording)
+    }
+
+    /// Names of the recordings that come with the library.
+    #[staticmethod]
+    fn presets() -> Vec<&'static str> {
+        ALL.iter().map(|p| p.id).collect()
+    }
+
+    /// What it is called.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// Where it comes from and what to look for.
+    #[getter]
+    fn notes(&self) -> &str {
+        &self.0.notes
+    }
+
+    /// The radar that measured it.
+    #[getter]
+    fn radar(&self) -> Radar {
+        Radar(self.0.radar.clone())
+    }
+
+    /// Samples of all elements, complex128 `[elements, samples]`, a read-only view; None where the two ends alone were recorded.
+    #[getter]
+    fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex64>>>> {
+        // SAFETY: a frozen object's samples neither move nor change.
+        slf.get().0.signal().map(|s| unsafe { view(&s.samples, slf.clone().into_any()) }).transpose()
+    }
+
+    /// Samples of the two ends, complex128 `[2, end_elements, samples]`. A copy.
+    #[getter]
+    fn ends<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<Complex64>> {
+        owned(py, both_ends(&self.0.two_ends()))
+    }
+
+    /// Elements that measured nothing.
+    #[getter]
+    fn missing(&self) -> Vec<usize> {
+        self.0.missing.clone()
+    }
+
+    /// Range of everything in a snapshot in metres, or None.
+    #[getter]
+    fn range_metres(&self) -> Option<f64> {
+        self.0.range_metres
+    }
+
+    /// What looks wrong and can't be known from the samples, a sentence each.
+    #[getter]
+    fn doubts(&self) -> Vec<String> {
+        self.0.doubts.clone()
+    }
+
+    /// The floor that methods are told of: its level they measure themselves.
+    #[getter]
+    fn floor(&self) -> String {
+        FLOOR.to_string()
+    }
+
+    /// Maps of the samples of all elements.
+    ///
+    /// Raises:
+    ///     ValueError: The two ends alone were recorded, or the name is unknown.
+    #[pyo3(signature = (*, normalisation="db=60"))]
+    fn maps(&self, normalisation: &str) -> PyResult<Maps> {
+        let normalisation = named(normalisation)?;
+        let signal = self.0.signal().ok_or_else(|| errors::value("the two ends alone were recorded; use ends"))?;
+        Ok(Maps::new(self.0.radar.clone(), signal.clone(), normalisation))
+    }
+
+    fn __repr__(&self) -> String {
+        let radar = &self.0.radar;
+        format!("<Recording {:?}: {} elements by {} samples>", self.0.name, radar.elements, radar.samples)
+    }
+}

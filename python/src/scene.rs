@@ -1,0 +1,329 @@
+//! Scenes.
+
+use crate::arrays::{owned, reflectors, rows_of};
+use crate::errors::{scene_file, value};
+use crate::maps::Maps;
+use crate::objects;
+use crate::radar::Radar;
+use crate::work::{self, Progress};
+use apertura::maps::Normalisation;
+use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
+use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::scene::presets::{ALL, Preset};
+use apertura::scene::{self, Disturbances};
+use apertura::signal::{Floor, Unfinished, simulate_for};
+use numpy::PyArray2;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyType};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Objects before a radar, and the radar that looks at them.
+///
+/// Args:
+///     objects: `Point`, `Line` and `Cluster`, in order.
+///     name: What the scene is called.
+///     notes: What it is meant to show.
+///     noise_seed: Picks the noise of the floor beneath it.
+///     radar: The radar; that of table 3.1 where none is given.
+///     elements: Elements as they are built (`Elements`); ideal where none are given.
+///     interferer: Another radar that sends at the same time (`Interferer`).
+///     mirror: A wall that mirrors (`Mirror`).
+///
+/// Raises:
+///     TypeError: An object is none of these.
+///     ValueError: The radar can't see the scene: the message names the object, what is wrong and what was expected.
+#[pyclass(module = "apertura", frozen)]
+#[derive(Clone, PartialEq)]
+pub struct Scene(pub SceneFile);
+
+/// Reads a name with `FromStr`.
+pub fn named<T: FromStr<Err: std::fmt::Display>>(name: &str) -> PyResult<T> {
+    name.parse().map_err(value)
+}
+
+pub fn purpose_of(name: &str) -> PyResult<Purpose> {
+    match name {
+        "training" => Ok(Purpose::Training),
+        "validation" => Ok(Purpose::Validation),
+        "test" => Ok(Purpose::Test),
+        _ => Err(value(format!("purpose is \"{name}\"; expected training, validation or test"))),
+    }
+}
+
+pub fn reading_of(name: &str) -> PyResult<Reading> {
+    match name {
+        "program" => Ok(Reading::Program),
+        "text" => Ok(Reading::Text),
+        _ => Err(value(format!("reading is \"{name}\"; expected program or text"))),
+    }
+}
+
+/// A set's name, or its number.
+pub fn set_name(set: &Bound<'_, PyAny>) -> PyResult<String> {
+    set.str().map(|name| name.to_string())
+}
+
+fn checked(file: SceneFile) -> PyResult<Scene> {
+    file.scene.validate(&file.radar).map_err(value)?;
+    Ok(Scene(file))
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (objects=None, *, name="", notes="", noise_seed=0, radar=None, elements=None, interferer=None, mirror=None))]
+    #[expect(clippy::too_many_arguments, reason = "one a field")]
+    fn new(
+        objects: Option<&Bound<'_, PyAny>>,
+        name: &str,
+        notes: &str,
+        noise_seed: u64,
+        radar: Option<&Radar>,
+        elements: Option<&Bound<'_, PyAny>>,
+        interferer: Option<&Bound<'_, PyAny>>,
+        mirror: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let mut made = Vec::new();
+        if let Some(objects) = objects {
+            for (index, object) in objects.try_iter()?.enumerate() {
+                made.push(objects::object(&object?, index)?);
+            }
+        }
+        let disturbances = Disturbances {
+            elements: elements.map(objects::elements).transpose()?.unwrap_or_default(),
+            interferer: interferer.map(objects::interferer).transpose()?,
+            mirror: mirror.map(objects::mirror).transpose()?,
+        };
+        let (name, notes) = (name.to_owned(), notes.to_owned());
+        let scene = scene::Scene { name, notes, noise_seed, disturbances, objects: made };
+        checked(SceneFile { scene, radar: radar.map(|r| r.0.clone()).unwrap_or_default() })
+    }
+
+    /// A scene of points.
+    ///
+    /// Args:
+    ///     points: Numbers `[points, 2]` (x and y in metres) or `[points, 3]` (and reflectivity).
+    ///     radar: The radar; that of table 3.1 where none is given.
+    ///
+    /// Raises:
+    ///     ValueError: The shape or dtype is another one, or the radar can't see the scene.
+    #[staticmethod]
+    #[pyo3(signature = (points, radar=None))]
+    fn of_points(points: &Bound<'_, PyAny>, radar: Option<&Radar>) -> PyResult<Self> {
+        let point = |r: scene::Reflector| {
+            let scene::Reflector { x_metres, y_metres, reflectivity } = r;
+            scene::Object::Point(scene::Point { x_metres, y_metres, reflectivity })
+        };
+        let objects = reflectors(points, "points")?.into_iter().map(point).collect();
+        let scene = scene::Scene { objects, ..scene::Scene::default() };
+        checked(SceneFile { scene, radar: radar.map(|r| r.0.clone()).unwrap_or_default() })
+    }
+
+    /// Random scene `index` of a set: the one that the program makes of the same numbers.
+    ///
+    /// Args:
+    ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near", "noise".
+    ///     seed: Seed of the set.
+    ///     index: Number of the scene, from 0.
+    ///     purpose: "test", "validation" or "training": their scenes never meet.
+    ///     reading: "program" or "text": after which description the thesis' sets are made.
+    ///     radar: The radar; that of table 3.1 where none is given.
+    ///
+    /// Raises:
+    ///     ValueError: A name is unknown.
+    #[staticmethod]
+    #[pyo3(signature = (set, seed=0, index=0, *, purpose="test", reading="program", radar=None))]
+    fn random(
+        set: &Bound<'_, PyAny>,
+        seed: u64,
+        index: u32,
+        purpose: &str,
+        reading: &str,
+        radar: Option<&Radar>,
+    ) -> PyResult<Self> {
+        let kind: Kind = named(&set_name(set)?)?;
+        let radar = radar.map(|r| r.0.clone()).unwrap_or_default();
+        let generator = Generator::new(&radar, reading_of(reading)?, purpose_of(purpose)?, seed);
+        checked(SceneFile { scene: generator.scene(kind, index), radar })
+    }
+
+    /// A scene that comes with the library.
+    ///
+    /// Raises:
+    ///     ValueError: There is none of this name.
+    #[staticmethod]
+    fn preset(name: &str) -> PyResult<Self> {
+        let known = || Scene::presets().join(", ");
+        let preset =
+            Preset::by_id(name).ok_or_else(|| value(format!("no scene is called \"{name}\"; expected {}", known())))?;
+        Ok(Scene(preset.load().map_err(value)?))
+    }
+
+    /// Names of the scenes that come with the library.
+    #[staticmethod]
+    fn presets() -> Vec<&'static str> {
+        ALL.iter().map(|p| p.id).collect()
+    }
+
+    /// Reads a scene file, `.toml` or `.npz`.
+    ///
+    /// Raises:
+    ///     OSError: The file can't be read.
+    ///     ValueError: It is no scene: the message names the line, the key or object, and what was expected.
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        load(&path).map(Scene).map_err(scene_file)
+    }
+
+    /// Writes a scene file in one step. A `.npz` keeps the reflectors' positions only.
+    ///
+    /// Raises:
+    ///     OSError: The file can't be written.
+    ///     ValueError: Its name ends neither in `.toml` nor in `.npz`, or it would replace a recording.
+    fn save(&self, path: PathBuf) -> PyResult<()> {
+        save(&path, &self.0).map_err(scene_file)
+    }
+
+    /// Reads a scene from TOML.
+    ///
+    /// Raises:
+    ///     ValueError: It is no scene.
+    #[staticmethod]
+    fn from_toml(text: &str) -> PyResult<Self> {
+        from_toml(text).map(Scene).map_err(value)
+    }
+
+    /// The scene as TOML.
+    ///
+    /// Raises:
+    ///     ValueError: It holds a number that TOML can't hold (an integer of 2^63 or more).
+    fn to_toml(&self) -> PyResult<String> {
+        to_toml(&self.0).map_err(value)
+    }
+
+    /// The same scene with other fields, named as in the constructor.
+    #[pyo3(signature = (**fields))]
+    fn replace<'py>(&self, py: Python<'py>, fields: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        let all = PyDict::new(py);
+        all.set_item("objects", self.objects(py)?)?;
+        all.set_item("name", self.name())?;
+        all.set_item("notes", self.notes())?;
+        all.set_item("noise_seed", self.noise_seed())?;
+        all.set_item("radar", self.radar())?;
+        all.set_item("elements", self.elements(py)?)?;
+        all.set_item("interferer", self.interferer(py)?)?;
+        all.set_item("mirror", self.mirror(py)?)?;
+        if let Some(fields) = fields {
+            all.update(fields.as_mapping())?;
+        }
+        PyType::new::<Scene>(py).call((), Some(&all))
+    }
+
+    /// The objects, in order.
+    #[getter]
+    fn objects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let objects: PyResult<Vec<_>> = self.0.scene.objects.iter().map(|o| objects::of_object(py, o)).collect();
+        PyList::new(py, objects?)
+    }
+
+    /// What the scene is called.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.scene.name
+    }
+
+    /// What it is meant to show.
+    #[getter]
+    fn notes(&self) -> &str {
+        &self.0.scene.notes
+    }
+
+    /// Picks the noise of the floor beneath it.
+    #[getter]
+    fn noise_seed(&self) -> u64 {
+        self.0.scene.noise_seed
+    }
+
+    /// The radar that looks at it.
+    #[getter]
+    fn radar(&self) -> Radar {
+        Radar(self.0.radar.clone())
+    }
+
+    /// Elements as they are built, or None where they are ideal.
+    #[getter]
+    fn elements<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let elements = &self.0.scene.disturbances.elements;
+        (!elements.is_ideal()).then(|| objects::of_elements(py, elements)).transpose()
+    }
+
+    /// Another radar that sends at the same time, or None.
+    #[getter]
+    fn interferer<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.0.scene.disturbances.interferer.as_ref().map(|i| objects::of_interferer(py, i)).transpose()
+    }
+
+    /// A wall that mirrors, or None.
+    #[getter]
+    fn mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.0.scene.disturbances.mirror.as_ref().map(|m| objects::of_mirror(py, m)).transpose()
+    }
+
+    /// Every reflector of every object, float64 `[reflectors, 3]`: x and y in metres, reflectivity.
+    #[getter]
+    fn reflectors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        owned(py, rows_of(&self.0.scene.reflectors()))
+    }
+
+    /// Samples of all elements over a floor, and the maps made of them: the bits that the program computes.
+    ///
+    /// Args:
+    ///     radar: Another radar than the scene's own.
+    ///     floor: "thesis" (the rounding floor of the thesis' program), "exact", "snr=DB" or "dbm=LEVEL".
+    ///     seed: Picks the floor's noise; the scene's `noise_seed` where none is given.
+    ///     normalisation: How decades become Lambda: "min-max" (the thesis) or "db=RANGE" below the peak.
+    ///     progress: Called with the part that is done, 0 to 1.
+    ///
+    /// Raises:
+    ///     ValueError: A name is unknown, or the radar can't see the scene.
+    #[pyo3(signature = (radar=None, *, floor="thesis", seed=None, normalisation="min-max", progress=None))]
+    fn simulate(
+        &self,
+        py: Python<'_>,
+        radar: Option<&Radar>,
+        floor: &str,
+        seed: Option<u64>,
+        normalisation: &str,
+        progress: Progress<'_, '_>,
+    ) -> PyResult<Maps> {
+        let (floor, normalisation): (Floor, Normalisation) = (named(floor)?, named(normalisation)?);
+        let radar = radar.map_or_else(|| self.0.radar.clone(), |r| r.0.clone());
+        let (scene, seed) = (&self.0.scene, seed.unwrap_or(self.0.scene.noise_seed));
+        let signal = work::run(py, progress, |task| simulate_for(task, &radar, scene, floor, seed))?;
+        let signal = signal.map_err(|error: Unfinished| value(error))?;
+        Ok(Maps::new(radar, signal, normalisation))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.scene.objects.len()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Scene>().is_ok_and(|other| *other.get() == *self)
+    }
+
+    fn __hash__(&self) -> PyResult<u64> {
+        Err(PyTypeError::new_err("unhashable type: 'Scene'"))
+    }
+
+    fn __repr__(&self) -> String {
+        let scene = &self.0.scene;
+        format!("<Scene {:?}: {} objects, {} reflectors>", scene.name, scene.objects.len(), scene.reflector_count())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        Ok((py.import("apertura._pickle")?.getattr("scene")?, (self.to_toml()?,)))
+    }
+}

@@ -1,0 +1,102 @@
+//! Long work: other Python threads go on meanwhile, Ctrl-C stops it, and somebody may be told how far it is.
+
+use crate::errors::runtime;
+use crate::pool;
+use apertura::task::{Task, panic_message};
+use pyo3::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// How often signals and progress are looked at.
+const TICK: Duration = Duration::from_millis(30);
+
+/// Who is told the part that is done.
+pub type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+enum Event<E, T> {
+    Found(E),
+    Done(std::thread::Result<T>),
+}
+
+/// Hands what is found while work goes on to the thread that waits for it.
+pub struct Finder<E, T>(Sender<Event<E, T>>);
+
+impl<E, T> Finder<E, T> {
+    pub fn found(&self, event: E) {
+        // Nobody listens any more once the work is done, and then nothing is found.
+        let _ = self.0.send(Event::Found(event));
+    }
+}
+
+/// Runs `job` on the threads of this process, with the interpreter free for others. A signal handler that raises, or `progress`, cancels the
+/// task; what they raised comes once the work has stopped.
+pub fn run<T: Send>(py: Python<'_>, progress: Progress<'_, '_>, job: impl FnOnce(&Task) -> T + Send) -> PyResult<T> {
+    run_watched(py, progress, |task, _: &Finder<(), T>| job(task), |()| Ok(()))
+}
+
+/// [`run`], with `on_found` called on this thread for whatever the job finds meanwhile.
+pub fn run_watched<T: Send, E: Send>(
+    py: Python<'_>,
+    progress: Progress<'_, '_>,
+    job: impl FnOnce(&Task, &Finder<E, T>) -> T + Send,
+    mut on_found: impl FnMut(E) -> PyResult<()>,
+) -> PyResult<T> {
+    let task = Task::default();
+    let (sender, mut receiver) = channel();
+    let mut raised = None;
+    let mut told = 0.0;
+    let outcome = pool::current()?.in_place_scope(|scope| {
+        let task = &task;
+        scope.spawn(move |_| {
+            let finder = Finder(sender);
+            let done = catch_unwind(AssertUnwindSafe(|| job(task, &finder)));
+            let _ = finder.0.send(Event::Done(done));
+        });
+        loop {
+            let receiver = &mut receiver;
+            let event = py.detach(move || receiver.recv_timeout(TICK));
+            let step = match event {
+                Ok(Event::Done(done)) => return Some(done),
+                Ok(Event::Found(event)) => {
+                    if raised.is_none() {
+                        on_found(event)
+                    } else {
+                        Ok(())
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return None,
+                Err(RecvTimeoutError::Timeout) => Ok(()),
+            };
+            if raised.is_some() {
+                continue;
+            }
+            if let Err(error) = step.and_then(|()| py.check_signals()).and_then(|()| tell(progress, task, &mut told)) {
+                task.cancel();
+                raised = Some(error);
+            }
+        }
+    });
+    if let Some(error) = raised {
+        return Err(error);
+    }
+    match outcome {
+        Some(Ok(result)) => {
+            if let Some(progress) = progress {
+                progress.call1((1.0,))?;
+            }
+            Ok(result)
+        }
+        Some(Err(panic)) => Err(runtime(format!("a fault in apertura: {}", panic_message(panic.as_ref())))),
+        None => Err(runtime("the work ended without an answer")),
+    }
+}
+
+fn tell(progress: Progress<'_, '_>, task: &Task, told: &mut f32) -> PyResult<()> {
+    let part = task.progress();
+    if let (Some(progress), true) = (progress, part > *told && part < 1.0) {
+        *told = part;
+        progress.call1((part,))?;
+    }
+    Ok(())
+}
