@@ -1,0 +1,301 @@
+"""What the compiled module holds; the docstrings at run time say shapes, units and errors."""
+
+import os
+from typing import Any, Callable, Iterable, Literal, Sequence, SupportsIndex, final
+
+import numpy as np
+import numpy.typing as npt
+
+from .objects import Cluster, Elements, Interferer, Line, Metrics, Mirror, Point, PositionBound
+
+_Path = str | os.PathLike[str]
+_Progress = Callable[[float], object]
+_Carrier = Literal["one-way", "two-way"]
+_Window = Literal["hann", "hamming", "blackman", "rectangular"]
+_Purpose = Literal["training", "validation", "test"]
+_Reading = Literal["program", "text"]
+
+__all__ = [
+    "Examples",
+    "Maps",
+    "Method",
+    "Radar",
+    "Reconstruction",
+    "Recording",
+    "Scene",
+    "__version__",
+    "ambiguity",
+    "built_elements",
+    "cramer_rao",
+    "evaluate",
+    "maps",
+    "method",
+    "methods",
+    "metrics",
+    "read_rows",
+    "roc",
+    "set_threads",
+    "threads",
+]
+__version__: str
+
+@final
+class Radar:
+    def __new__(
+        cls,
+        *,
+        transmit_power_watts: float | None = None,
+        bandwidth_hz: float | None = None,
+        carrier_hz: float | None = None,
+        element_spacing_metres: float | None = None,
+        elements: int | None = None,
+        end_elements: int | None = None,
+        samples: int | None = None,
+        carrier: _Carrier | None = None,
+        window: _Window | None = None,
+    ) -> Radar: ...
+    @staticmethod
+    def preset(name: str) -> Radar: ...
+    @staticmethod
+    def presets() -> list[str]: ...
+    def replace(self, **fields: Any) -> Radar: ...
+    @property
+    def transmit_power_watts(self) -> float: ...
+    @property
+    def bandwidth_hz(self) -> float: ...
+    @property
+    def carrier_hz(self) -> float: ...
+    @property
+    def element_spacing_metres(self) -> float: ...
+    @property
+    def elements(self) -> int: ...
+    @property
+    def end_elements(self) -> int: ...
+    @property
+    def samples(self) -> int: ...
+    @property
+    def carrier(self) -> _Carrier: ...
+    @property
+    def window(self) -> _Window: ...
+    @property
+    def wavelength_metres(self) -> float: ...
+    @property
+    def range_resolution_metres(self) -> float: ...
+    @property
+    def max_range_metres(self) -> float: ...
+    @property
+    def aperture_metres(self) -> float: ...
+    @property
+    def element_x_metres(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def range_metres(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def cos_theta(self) -> npt.NDArray[np.float64]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+
+@final
+class Scene:
+    def __new__(
+        cls,
+        objects: Iterable[Point | Line | Cluster] | None = None,
+        *,
+        name: str = "",
+        notes: str = "",
+        noise_seed: int = 0,
+        radar: Radar | None = None,
+        elements: Elements | None = None,
+        interferer: Interferer | None = None,
+        mirror: Mirror | None = None,
+    ) -> Scene: ...
+    @staticmethod
+    def of_points(points: npt.ArrayLike, radar: Radar | None = None) -> Scene: ...
+    @staticmethod
+    def random(
+        set: str | int,
+        seed: int = 0,
+        index: int = 0,
+        *,
+        purpose: _Purpose = "test",
+        reading: _Reading = "program",
+        radar: Radar | None = None,
+    ) -> Scene: ...
+    @staticmethod
+    def preset(name: str) -> Scene: ...
+    @staticmethod
+    def presets() -> list[str]: ...
+    @staticmethod
+    def load(path: _Path) -> Scene: ...
+    def save(self, path: _Path) -> None: ...
+    @staticmethod
+    def from_toml(text: str) -> Scene: ...
+    def to_toml(self) -> str: ...
+    def replace(self, **fields: Any) -> Scene: ...
+    @property
+    def objects(self) -> list[Point | Line | Cluster]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def notes(self) -> str: ...
+    @property
+    def noise_seed(self) -> int: ...
+    @property
+    def radar(self) -> Radar: ...
+    @property
+    def elements(self) -> Elements | None: ...
+    @property
+    def interferer(self) -> Interferer | None: ...
+    @property
+    def mirror(self) -> Mirror | None: ...
+    @property
+    def reflectors(self) -> npt.NDArray[np.float64]: ...
+    def simulate(
+        self,
+        radar: Radar | None = None,
+        *,
+        floor: str = "thesis",
+        seed: int | None = None,
+        normalisation: str = "min-max",
+        progress: _Progress | None = None,
+    ) -> Maps: ...
+    def __len__(self, /) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+
+@final
+class Maps:
+    @property
+    def radar(self) -> Radar: ...
+    @property
+    def normalisation(self) -> str: ...
+    @property
+    def samples(self) -> npt.NDArray[np.complex128]: ...
+    @property
+    def ends(self) -> npt.NDArray[np.complex128]: ...
+    @property
+    def decades(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def target(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def inputs(self) -> npt.NDArray[np.float32]: ...
+
+@final
+class Method:
+    @property
+    def name(self) -> str: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def told(self) -> str: ...
+    @property
+    def eta(self) -> float: ...
+    def reconstruct(
+        self,
+        ends: npt.ArrayLike,
+        radar: Radar | None = None,
+        *,
+        floor: str = "thesis",
+        normalisation: str = "min-max",
+        snapshot_range_metres: float | None = None,
+        progress: _Progress | None = None,
+    ) -> Reconstruction: ...
+
+@final
+class Reconstruction:
+    @property
+    def map(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def eta(self) -> float: ...
+    @property
+    def reflectors(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def confidences(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def detections(self) -> npt.NDArray[np.float64]: ...
+
+@final
+class Recording:
+    @staticmethod
+    def load(path: _Path) -> Recording: ...
+    @staticmethod
+    def preset(name: str) -> Recording: ...
+    @staticmethod
+    def presets() -> list[str]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def notes(self) -> str: ...
+    @property
+    def radar(self) -> Radar: ...
+    @property
+    def samples(self) -> npt.NDArray[np.complex128] | None: ...
+    @property
+    def ends(self) -> npt.NDArray[np.complex128]: ...
+    @property
+    def missing(self) -> list[int]: ...
+    @property
+    def range_metres(self) -> float | None: ...
+    @property
+    def doubts(self) -> list[str]: ...
+    @property
+    def floor(self) -> str: ...
+    def maps(self, *, normalisation: str = "db=60") -> Maps: ...
+
+@final
+class Examples:
+    def __new__(
+        cls,
+        mixture: str,
+        seed: int = 0,
+        *,
+        purpose: _Purpose = "training",
+        floor: str = "thesis",
+        thermal: tuple[float, float, float] | None = None,
+    ) -> Examples: ...
+    def batch(self, indices: Sequence[SupportsIndex]) -> list[dict[str, Any]]: ...
+
+def maps(samples: npt.ArrayLike, radar: Radar | None = None, *, normalisation: str = "min-max") -> Maps: ...
+def method(name: str) -> Method: ...
+def methods() -> list[str]: ...
+def metrics(target: npt.ArrayLike, output: npt.ArrayLike, eta: float, *, has_echoes: bool = True) -> Metrics: ...
+def roc(
+    target: npt.ArrayLike, output: npt.ArrayLike
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+def evaluate(
+    methods: Sequence[str],
+    sets: Sequence[str | int],
+    *,
+    count: int = 100,
+    seed: int = 0,
+    floor: str = "thesis",
+    normalisation: str = "min-max",
+    purpose: _Purpose = "test",
+    reading: _Reading = "program",
+    radar: Radar | None = None,
+    on_row: Callable[[dict[str, Any]], object] | None = None,
+    progress: _Progress | None = None,
+    path: _Path | None = None,
+) -> list[dict[str, Any]]: ...
+def read_rows(path: _Path) -> list[dict[str, Any]]: ...
+def cramer_rao(
+    reflectors: npt.ArrayLike,
+    snr_db: float,
+    radar: Radar | None = None,
+    *,
+    layout: str = "two-ends",
+    gains: Literal["one", "per-end"] = "one",
+) -> list[PositionBound]: ...
+def ambiguity(
+    x_metres: float,
+    y_metres: float,
+    range_metres: npt.ArrayLike,
+    cos_theta: npt.ArrayLike,
+    radar: Radar | None = None,
+    *,
+    layout: str = "two-ends",
+) -> npt.NDArray[np.float64]: ...
+def built_elements(
+    gain_db: float, phase_degrees: float, position_millimetres: float, seed: int, radar: Radar | None = None
+) -> Elements: ...
+def set_threads(count: int) -> None: ...
+def threads() -> int: ...

@@ -1,0 +1,108 @@
+"""Simulation, maps, methods and figures."""
+
+import gc
+
+import numpy as np
+import pytest
+
+import apertura as ap
+
+SMALL = ap.Radar(elements=64, end_elements=8, samples=32)
+
+
+def simulated(floor="thesis"):
+    return ap.Scene.of_points([[0.1, 1.2], [0.4, 1.7]], SMALL).simulate(floor=floor)
+
+
+def test_maps_are_those_of_a_transform_written_out():
+    maps = simulated("exact")
+    window = np.hanning(32)[None, :]
+    profiles = np.fft.fft(maps.samples * window, axis=1, norm="ortho")
+    full = np.roll(np.fft.fft(profiles * np.hanning(64)[:, None], axis=0, norm="ortho"), 32, axis=0).T
+    assert maps.decades.shape == (32, 64)
+    assert np.abs(10**maps.decades - np.abs(full)).max() < 1e-12 * np.abs(full).max()
+    stretched = (maps.decades - maps.decades.min()) / np.ptp(maps.decades)
+    assert np.abs(maps.target - stretched).max() < 1e-6
+
+
+def test_the_ends_are_the_outer_elements():
+    maps = simulated()
+    assert np.array_equal(maps.ends, np.stack([maps.samples[:8], maps.samples[-8:]]))
+    assert maps.inputs.shape == (2, 32, 64) and maps.inputs.max() == 1.0
+
+
+def test_maps_of_samples_are_those_of_the_scene():
+    maps = simulated()
+    again = ap.maps(maps.samples, SMALL)
+    assert np.array_equal(again.target, maps.target) and np.array_equal(again.decades, maps.decades)
+
+
+def test_views_are_read_only_and_outlive_their_maps():
+    target, samples = simulated().target, simulated().samples
+    expected = simulated().target.copy()
+    gc.collect()
+    junk = [np.ones((64, 64)) for _ in range(100)]
+    assert np.array_equal(target, expected) and len(junk) == 100
+    for array in (target, samples):
+        with pytest.raises(ValueError):
+            array[0, 0] = 3
+        with pytest.raises(ValueError):
+            array.setflags(write=True)
+
+
+def test_views_are_not_copies():
+    maps = simulated()
+    assert np.shares_memory(maps.samples, maps.samples) and np.shares_memory(maps.target, maps.target)
+    assert np.shares_memory(maps.decades, maps.decades)
+
+
+@pytest.mark.parametrize("name", ap.methods())
+def test_every_method_answers_by_name(name):
+    method = ap.method(name)
+    assert method.name == name and method.description and method.told and 0 <= method.eta <= 1
+    radar = ap.Radar() if name in ("live", "hybrid", "thesis", "thesis-1", "unet") else SMALL
+    scene = ap.Scene.of_points([[0.1, 1.2], [0.4, 1.7]], radar)
+    maps = scene.simulate(floor="snr=30")
+    found = method.reconstruct(maps.ends, radar, floor="snr=30")
+    assert found.map.shape == (radar.samples, radar.elements) and found.map.dtype == np.float32
+    assert 0 <= found.map.min() and found.map.max() <= 1
+    assert found.reflectors.shape[1] == 3 and found.detections.shape[1] == 4
+    figures = ap.metrics(maps.target, found.map, found.eta)
+    assert figures.squared_error == pytest.approx(float(((maps.target - found.map).astype(float) ** 2).sum()), rel=1e-5)
+
+
+def test_the_newton_search_finds_the_points():
+    found = ap.method("nomp").reconstruct(simulated("exact").ends, SMALL, floor="exact")
+    assert np.abs(np.sort(found.reflectors[:, 0]) - [0.1, 0.4]).max() < 1e-3
+    assert found.detections[0, 2] == 0.0
+
+
+def test_figures_are_hand_counted():
+    target, output = [[0.95, 0.2], [1.0, 0.0]], [[0.95, 0.8], [0.5, 0.0]]
+    figures = ap.metrics(target, output, 0.7)
+    assert (figures.detection, figures.false_alarm) == (0.5, 0.5)
+    assert ap.metrics(target, output, 0.9, has_echoes=False).detection is None
+    eta, detection, false_alarm = ap.roc(target, output)
+    at = int(np.searchsorted(eta, 0.7))
+    assert len(eta) == 4097 and (detection[at], false_alarm[at]) == (0.5, 0.5)
+
+
+def test_bounds_shrink_with_the_noise():
+    twenty, forty = (ap.cramer_rao([[5.0, 18.0]], snr)[0] for snr in (20, 40))
+    assert twenty.x_metres == pytest.approx(10 * forty.x_metres, rel=1e-6)
+    assert ap.cramer_rao([[5.0, 18.0]], 20, layout="full")[0].x_metres < twenty.x_metres
+
+
+def test_a_place_is_like_itself():
+    likeness = ap.ambiguity(0.0, 20.0, [20.0, 21.0], [0.0, 0.1])
+    assert likeness.shape == (2, 2) and likeness[0, 0] == pytest.approx(1) and likeness[1, 1] < 0.1
+
+
+def test_rows_come_one_by_one(tmp_path):
+    seen, parts = [], []
+    rows = ap.evaluate(["baseline"], [1, "crowd"], count=2, on_row=seen.append, progress=parts.append, path=tmp_path / "rows.csv")
+    assert rows == seen and [row["set"] for row in rows] == ["1", "1", "crowd", "crowd"]
+    assert parts == [0.25, 0.5, 0.75, 1.0]
+    again = ap.read_rows(tmp_path / "rows.csv")
+    assert [row["squared_error"] for row in again] == [row["squared_error"] for row in rows]
+    assert again[0]["floor"] == "thesis" and again[0]["methods"] == "baseline"

@@ -1,0 +1,65 @@
+"""The same bits as the program's, and opening its window."""
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import apertura as ap
+from apertura import program
+
+#: The program to compare with; built by `cargo build`, for instance.
+PROGRAM = os.environ.get("APERTURA_PROGRAM") or shutil.which("apertura")
+
+
+@pytest.mark.skipif(PROGRAM is None, reason="needs the program: set APERTURA_PROGRAM to its path")
+@pytest.mark.parametrize("floor", ["thesis", "exact", "snr=20"])
+def test_maps_have_the_bits_of_the_program(tmp_path, floor):
+    scene = ap.Scene.random("3", seed=7, index=2)
+    scene.save(tmp_path / "scene.toml")
+    subprocess.run([PROGRAM, "maps", "scene.toml", "-o", "maps.npz", "--floor", floor, "--method", "live"], cwd=tmp_path, check=True)
+    archive = np.load(tmp_path / "maps.npz")
+    maps = scene.simulate(floor=floor)
+    for key, end in (("sub0", maps.ends[0]), ("sub1", maps.ends[1])):
+        assert np.array_equal(archive[key], end.T), key
+    assert np.array_equal(archive["polar_full"][0], maps.decades)
+    found = ap.method("live").reconstruct(maps.ends, floor=floor)
+    assert np.array_equal(archive["output"][0], found.map)
+
+
+@pytest.mark.skipif(PROGRAM is None, reason="needs the program: set APERTURA_PROGRAM to its path")
+def test_rows_have_the_figures_of_the_program(tmp_path):
+    arguments = ["evaluate", "--method", "baseline,live", "--set", "2", "--count", "2", "--rows", "rows.csv"]
+    subprocess.run([PROGRAM, *arguments], cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+    theirs = ap.read_rows(tmp_path / "rows.csv")
+    own = ap.evaluate(["baseline", "live"], ["2"], count=2)
+    key = lambda row: (row["index"], row["method"])
+    for a, b in zip(sorted(theirs, key=key), sorted(own, key=key), strict=True):
+        a.pop("milliseconds"), b.pop("milliseconds")
+        assert a == b
+
+
+def test_the_window_opens_on_a_scene(tmp_path, monkeypatch):
+    script = tmp_path / "apertura"
+    script.write_text(f'#!/bin/sh\ncp "$1" {tmp_path}/seen.toml\n')
+    script.chmod(script.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "elsewhere" / "python"))
+    scene = ap.Scene.random("2")
+    assert ap.open(scene).wait(30) == 0
+    assert ap.Scene.load(tmp_path / "seen.toml") == scene
+    with pytest.raises(FileNotFoundError, match="no such file"):
+        ap.open(tmp_path / "nothing.toml")
+
+
+def test_a_missing_program_is_told(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    with pytest.raises(FileNotFoundError, match="cargo install"):
+        program.find_program()
+    with pytest.raises(FileNotFoundError, match="cargo install"):
+        ap.open(ap.Scene())

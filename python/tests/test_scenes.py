@@ -1,0 +1,77 @@
+"""Scenes, radars and their files."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import apertura as ap
+
+ALL_KINDS = [
+    ap.Point(-4.0, 12.5, 0.5),
+    ap.Line(1.0, 2.0, 0.1, 75, direction_degrees=30.0),
+    ap.Cluster(-5.0, 20.0, 1.0, 0.5, 40, seed=9),
+]
+
+
+def disturbed():
+    radar = ap.Radar(elements=32, end_elements=6, samples=16)
+    elements = ap.Elements.built(gain_db=0.5, phase_degrees=5, seed=3, radar=radar)
+    return ap.Scene(
+        ALL_KINDS, name="All", notes="Three", noise_seed=7, radar=radar, elements=elements, interferer=ap.Interferer(strength=0.2), mirror=ap.Mirror()
+    )
+
+
+def test_a_scene_keeps_what_it_is_made_of():
+    scene = disturbed()
+    assert scene.objects == ALL_KINDS and len(scene) == 3
+    assert (scene.name, scene.notes, scene.noise_seed) == ("All", "Three", 7)
+    assert scene.reflectors.shape == (116, 3) and scene.reflectors[0].tolist() == [-4.0, 12.5, 0.5]
+    assert scene.interferer == ap.Interferer(strength=0.2) and scene.mirror == ap.Mirror()
+    assert scene.elements is not None and scene.elements.gain_db.shape == (32,)
+
+
+@pytest.mark.parametrize("scene", [disturbed(), ap.Scene(), ap.Scene.preset("street")])
+def test_a_scene_is_read_as_it_was_written(scene, tmp_path):
+    scene.save(tmp_path / "scene.toml")
+    assert ap.Scene.load(tmp_path / "scene.toml") == scene
+    assert ap.Scene.from_toml(scene.to_toml()) == scene
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    assert scene.replace() == scene
+
+
+def test_an_npz_keeps_positions(tmp_path):
+    ap.Scene(ALL_KINDS).save(tmp_path / "scene.npz")
+    again = ap.Scene.load(tmp_path / "scene.npz")
+    assert np.array_equal(again.reflectors[:, :2], ap.Scene(ALL_KINDS).reflectors[:, :2])
+    assert set(np.load(tmp_path / "scene.npz")) == {"all_point_x", "all_point_y"}
+
+
+def test_replace_changes_what_it_is_told():
+    scene = disturbed().replace(name="Other", mirror=None)
+    assert scene.name == "Other" and scene.mirror is None and scene.objects == ALL_KINDS
+    assert ap.Radar().replace(samples=256) == ap.Radar(samples=256) != ap.Radar()
+
+
+def test_random_scenes_repeat():
+    scene = ap.Scene.random(3, seed=7, index=2)
+    assert scene == ap.Scene.random("3", 7, 2) != ap.Scene.random("3", 7, 3)
+    assert scene != ap.Scene.random("3", 7, 2, purpose="training")
+    assert len(ap.Scene.random("noise")) == 0
+
+
+def test_presets_load():
+    assert "street" in ap.Scene.presets() and all(len(ap.Scene.preset(name).name) > 0 for name in ap.Scene.presets())
+    assert [ap.Radar.preset(name) for name in ap.Radar.presets()][0] == ap.Radar()
+    for name in ap.Recording.presets():
+        recording = ap.Recording.preset(name)
+        assert recording.samples is not None and recording.samples.shape == (recording.radar.elements, recording.radar.samples)
+        assert recording.ends.shape == (2, recording.radar.end_elements, recording.radar.samples)
+
+
+def test_a_radar_says_its_axes():
+    radar = ap.Radar()
+    assert repr(radar) == "Radar()" and repr(ap.Radar(samples=256)) == "Radar(samples=256)"
+    assert radar.range_metres.shape == (512,) and radar.cos_theta[512] == 0.0
+    assert radar.element_x_metres[0] == -radar.element_x_metres[-1]
+    assert pickle.loads(pickle.dumps(ap.Radar(window="blackman"))) == ap.Radar(window="blackman")
