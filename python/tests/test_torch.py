@@ -1,5 +1,6 @@
 """The dataset for PyTorch."""
 
+import multiprocessing
 import pickle
 
 import numpy as np
@@ -30,6 +31,20 @@ def test_an_example_is_its_scene():
     assert np.allclose(example["ends"], maps.ends * scale, rtol=1e-6, atol=1e-6)
     assert np.abs(example["target"] - (maps.decades - example["gain"])).max() < 1e-5
     assert np.mean(np.abs(example["ends"]) ** 2) == pytest.approx(1, rel=1e-5)
+
+
+def total(index):
+    return float(DATA.arrays(index)["fine"].sum())
+
+
+DATA = ap.torch.Scenes(MIXTURE, seed=4, length=4)
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_processes_make_the_same_examples(method):
+    expected = [total(index) for index in range(4)]
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map_async(total, range(4)).get(120) == expected
 
 
 def test_numbers_beyond_the_end_are_told():
