@@ -5,7 +5,9 @@ use super::chrome::{file_dialog, menu, messages, palette, save_question, status_
 use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
-use super::state::{Arrangement, Command, Methods, Notices, Pointer, Settings, State};
+use super::state::{
+    Arrangement, Command, DocumentCommand, LessonCommand, Methods, Notices, Pointer, Settings, State, ViewCommand,
+};
 use super::widgets::{focus_ring, theme};
 use crate::interact::{Document, Editor};
 use crate::lesson::Progress;
@@ -128,8 +130,8 @@ impl App {
             ctx.set_zoom_factor(zoom);
         }
         start(&mut state, &jobs, options.scene);
-        let asked = options.lesson.map(Command::OpenLessonFile).into_iter();
-        let asked = asked.chain(options.shared.map(Command::OpenShared)).collect();
+        let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
+        let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v)))).collect();
         let memory = Memory::default();
         Ok(App {
             state,
@@ -148,7 +150,7 @@ impl App {
 
     /// Does commands, and what they ask of the window.
     fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
-        if commands.iter().any(|c| !matches!(c, Command::Hover(_))) {
+        if commands.iter().any(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))) {
             ctx.request_repaint();
         }
         for command in commands {

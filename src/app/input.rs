@@ -1,6 +1,6 @@
 //! Keys, clipboard events and dropped files become commands.
 
-use super::state::{Command, shortcuts};
+use super::state::{Command, DocumentCommand, EditCommand, RowsCommand, WindowCommand, shortcuts};
 use super::widgets::nudge::nudge;
 use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
@@ -55,12 +55,12 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
     let mut commands = Vec::new();
     let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
     commands.extend(dropped.map(|path| match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
-        true => Command::OpenTable(path),
-        false => Command::OpenPath(path),
+        true => Command::Rows(RowsCommand::OpenTable(path)),
+        false => Command::Document(DocumentCommand::OpenPath(path)),
     }));
     // Enter and Tab end an entry in a field as letting go ends a drag: each is a step of its own.
     if ctx.input(|i| i.pointer.any_released() || i.key_pressed(Key::Enter) || i.key_pressed(Key::Tab)) {
-        commands.push(Command::Seal);
+        commands.push(EditCommand::Seal.into());
     }
     let escapes_a_field = input.in_a_field && ctx.input(|i| i.key_pressed(Key::Escape));
     // The keys of an open menu are its own too: Escape closes it.
@@ -69,22 +69,26 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
     }
     let events = ctx.input(|i| i.events.clone());
     commands.extend(events.into_iter().filter_map(|event| match event {
-        Event::Copy => Some(Command::Copy),
-        Event::Cut => Some(Command::Cut),
-        Event::Paste(text) => Some(Command::PasteText(text)),
+        Event::Copy => Some(Command::Edit(EditCommand::Copy)),
+        Event::Cut => Some(Command::Edit(EditCommand::Cut)),
+        Event::Paste(text) => Some(Command::Edit(EditCommand::PasteText(text))),
         _ => None,
     }));
     ctx.input_mut(|keys| {
         for (shortcut, command) in shortcuts() {
             // The system turns these three into events of their own.
-            if !matches!(command, Command::Copy | Command::Cut | Command::Paste) && keys.consume_shortcut(shortcut) {
+            if !matches!(
+                command,
+                Command::Edit(EditCommand::Copy) | Command::Edit(EditCommand::Cut) | Command::Edit(EditCommand::Paste)
+            ) && keys.consume_shortcut(shortcut)
+            {
                 commands.push(command.clone());
             }
         }
         for (modifiers, key, command) in [
-            (Modifiers::NONE, Key::Backspace, Command::Delete),
-            (Modifiers::COMMAND, Key::Y, Command::Redo),
-            (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P, Command::Palette),
+            (Modifiers::NONE, Key::Backspace, Command::Edit(EditCommand::Delete)),
+            (Modifiers::COMMAND, Key::Y, Command::Edit(EditCommand::Redo)),
+            (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P, Command::Window(WindowCommand::Palette)),
         ] {
             if keys.consume_key(modifiers, key) {
                 commands.push(command);
@@ -119,8 +123,8 @@ mod tests {
             keys.key_press_modifiers(modifiers, key);
             keys.step();
         }
-        let nudge = Command::Nudge { dx_metres: 0.0, dy_metres: 5.0 };
-        assert_eq!(keys.state(), &[Command::Undo, Command::Redo, nudge]);
+        let nudge = Command::Edit(EditCommand::Nudge { dx_metres: 0.0, dy_metres: 5.0 });
+        assert_eq!(keys.state(), &[Command::Edit(EditCommand::Undo), Command::Edit(EditCommand::Redo), nudge]);
     }
 
     fn press(key: Key) -> Event {

@@ -38,8 +38,8 @@ impl App {
     }
 
     /// Asks for a command, as a menu entry would.
-    pub fn ask(&mut self, command: Command) {
-        self.asked.push(command);
+    pub fn ask(&mut self, command: impl Into<Command>) {
+        self.asked.push(command.into());
     }
 
     /// Who has answered what in lessons.

@@ -26,8 +26,9 @@ mod widgets;
 
 pub use application::{APP_ID, App, Options};
 pub use state::{
-    Arrangement, BoundsSettings, Brightness, Command, Compare, Cursor, DifferenceView, Elements, EvaluationChoice,
-    FailureChoice, Layout, MapKind, NewObject, Panel, Projection, SearchChoice, Settings, Units,
+    Arrangement, BoundsSettings, Brightness, Command, Compare, Cursor, DifferenceView, DocumentCommand, EditCommand,
+    Elements, EvaluationChoice, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind, NewObject, Panel,
+    Projection, RadarCommand, RowsCommand, SearchChoice, Settings, Units, ViewCommand, WindowCommand, WorkCommand,
 };
 
 /// Why the app did not open.

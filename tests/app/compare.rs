@@ -1,7 +1,7 @@
 //! Two methods on one scene: flipped, swiped, read off cell by cell, and what became of every object.
 
 use crate::session::{Session, step_until};
-use apertura::app::{Command, Compare, Layout, MapKind, Panel};
+use apertura::app::{Compare, DocumentCommand, Layout, MapKind, Panel, ViewCommand, WindowCommand};
 use apertura::evaluate::trial::Trial;
 use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
 use apertura::radar::Radar;
@@ -40,7 +40,7 @@ fn largest_difference(a: &RangeAngleMap, b: &RangeAngleMap) -> f32 {
 fn the_second_output_is_what_its_method_makes_and_its_figures_are_those_of_the_command_line() {
     let mut s = with_capon();
     assert!(s.state().second_output().is_none(), "nobody looks at it");
-    s.ask(Command::OpenPanel(Panel::Compare));
+    s.ask(WindowCommand::OpenPanel(Panel::Compare));
     for round in 0..2 {
         let trial = trial(&s);
         let answer = trial.ask(&CAPON, &Request { floor: Floor::Thesis, ..Request::default() }).unwrap();
@@ -52,7 +52,7 @@ fn the_second_output_is_what_its_method_makes_and_its_figures_are_those_of_the_c
         let at = s.handle("point 1: move");
         s.drag(at, vec2(14.0, 9.0), 5);
     }
-    s.ask(Command::SetCompare(Box::new(Compare { second: "baseline".into(), ..Compare::default() })));
+    s.ask(ViewCommand::SetCompare(Box::new(Compare { second: "baseline".into(), ..Compare::default() })));
     assert_eq!(s.state().second_metrics(), s.state().metrics(), "the same method twice");
 }
 
@@ -82,22 +82,22 @@ fn the_second_method_works_only_while_the_panel_is_open_and_says_when_it_is_behi
     let (finished, milliseconds) = (Arc::<AtomicU32>::default(), Arc::<AtomicU32>::default());
     let slow = Slow { finished: finished.clone(), milliseconds: milliseconds.clone() };
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(slow)]);
-    s.ask(Command::RandomScene(Kind::Set1));
+    s.ask(DocumentCommand::RandomScene(Kind::Set1));
     assert_eq!(finished.load(Ordering::SeqCst), 0);
-    s.ask(Command::Maximise(Panel::Compare));
+    s.ask(WindowCommand::Maximise(Panel::Compare));
     assert_eq!(finished.load(Ordering::SeqCst), 1);
     assert!(s.app.query_by_label_contains("(updating)").is_none());
 
     milliseconds.store(900, Ordering::SeqCst);
-    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     step_until(&mut s, "the second output is told to be old", |s| {
         s.app.query_all_by_label_contains("(updating)").any(|node| text_of(&node).starts_with("slow"))
     });
     s.settle();
     assert!(s.app.query_by_label_contains("(updating)").is_none());
     let before = finished.load(Ordering::SeqCst);
-    s.ask(Command::Maximise(Panel::Compare));
-    s.ask(Command::RandomScene(Kind::Set1));
+    s.ask(WindowCommand::Maximise(Panel::Compare));
+    s.ask(DocumentCommand::RandomScene(Kind::Set1));
     assert_eq!(finished.load(Ordering::SeqCst), before, "the panel is out of sight");
 }
 
@@ -116,7 +116,7 @@ impl Reconstructor for Refuses {
 #[test]
 fn a_second_method_that_refuses_says_so_and_the_first_stays() {
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(Refuses)]);
-    s.ask(Command::Maximise(Panel::Compare));
+    s.ask(WindowCommand::Maximise(Panel::Compare));
     assert!(s.app.query_all_by_label_contains("it never works").next().is_some());
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
     assert!(!s.state().pictures().contains(&MapKind::Second));
@@ -127,7 +127,7 @@ fn one_key_opens_the_panel_and_flips_two_maps_in_place() {
     let mut s = with_capon();
     s.press(Modifiers::NONE, Key::X);
     assert!(s.state().arrangement().is_open(Panel::Compare));
-    s.ask(Command::Maximise(Panel::Compare));
+    s.ask(WindowCommand::Maximise(Panel::Compare));
     let place = |s: &Session, label: &str| s.app.query_by_label(label).map(|map| map.rect());
     let first = place(&s, "Output map").expect("the first is in front");
     assert!(s.state().pictures().contains(&MapKind::Second), "the other is ready");
@@ -136,7 +136,7 @@ fn one_key_opens_the_panel_and_flips_two_maps_in_place() {
     s.press(Modifiers::NONE, Key::X);
     assert_eq!(place(&s, "Output map"), Some(first));
     let maps = [MapKind::Target, MapKind::Input1];
-    s.ask(Command::SetCompare(Box::new(Compare { maps, layout: Layout::Flip, ..Compare::default() })));
+    s.ask(ViewCommand::SetCompare(Box::new(Compare { maps, layout: Layout::Flip, ..Compare::default() })));
     assert_eq!(s.state().pictures(), [MapKind::Input1, MapKind::Target], "any two, and no others");
     s.press(Modifiers::NONE, Key::X);
     assert!(place(&s, "Input 1 map").is_some());
@@ -145,8 +145,8 @@ fn one_key_opens_the_panel_and_flips_two_maps_in_place() {
 #[test]
 fn the_edge_between_two_maps_is_swiped_by_pointer_and_keys() {
     let mut s = with_capon();
-    s.ask(Command::SetCompare(Box::new(Compare { layout: Layout::Swipe, ..Compare::default() })));
-    s.ask(Command::Maximise(Panel::Compare));
+    s.ask(ViewCommand::SetCompare(Box::new(Compare { layout: Layout::Swipe, ..Compare::default() })));
+    s.ask(WindowCommand::Maximise(Panel::Compare));
     let edge = |s: &Session| s.app.get_by_role_and_label(Role::Slider, "Edge between two maps").rect().center();
     let map = s.app.get_by_label("Output map").rect();
     let (scene, from) = (s.state().editor().scene().clone(), edge(&s) + vec2(0.0, 70.0));
@@ -165,9 +165,9 @@ fn the_edge_between_two_maps_is_swiped_by_pointer_and_keys() {
 #[test]
 fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
     let mut s = with_capon();
-    s.ask(Command::OpenPanel(Panel::Compare));
-    s.ask(Command::OpenPanel(Panel::Values));
-    s.ask(Command::Maximise(Panel::Values));
+    s.ask(WindowCommand::OpenPanel(Panel::Compare));
+    s.ask(WindowCommand::OpenPanel(Panel::Values));
+    s.ask(WindowCommand::Maximise(Panel::Values));
     let (radar, scene) = (s.state().radar().clone(), s.state().editor().scene().clone());
     let text = text_of(&s.app.get_by_label_contains("range bin "));
     let mut numbers = text.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty());

@@ -1,7 +1,7 @@
 //! The document: what undo, saving, a kill and a restart do to it.
 
 use crate::session::{Session, harness, step_until};
-use apertura::app::{Command, NewObject};
+use apertura::app::{DocumentCommand, EditCommand, NewObject, RadarCommand, WindowCommand};
 use apertura::interact::Document;
 use apertura::radar::{Carrier, Radar, WindowFunction};
 use apertura::reconstruct::Baseline;
@@ -38,19 +38,19 @@ fn points(path: &Path) -> usize {
 fn undo_of_open_and_save_write_each_scene_into_its_own_file() {
     let mut s = Session::start();
     let (a, b) = (s.folder.path().join("scene.toml"), write(&s, "b.toml", 5));
-    s.ask(Command::Add(NewObject::Point, None));
-    s.ask(Command::OpenPath(b.clone()));
+    s.ask(EditCommand::Add(NewObject::Point, None));
+    s.ask(DocumentCommand::OpenPath(b.clone()));
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("b.toml", 64));
     undo(&mut s);
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
-    s.ask(Command::Save);
+    s.ask(DocumentCommand::Save);
     assert_eq!((title(&s).as_str(), points(&a), points(&b)), ("scene.toml", 3, 5));
 }
 
 #[test]
 fn a_new_scene_has_the_usual_radar_and_undo_brings_back_the_other() {
     let mut s = Session::start();
-    s.ask(Command::New);
+    s.ask(DocumentCommand::New);
     assert_eq!((title(&s).as_str(), **s.state().editor().radar() == Radar::default()), ("untitled", true));
     undo(&mut s);
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml", 128));
@@ -59,14 +59,14 @@ fn a_new_scene_has_the_usual_radar_and_undo_brings_back_the_other() {
 #[test]
 fn carrier_and_window_are_edits() {
     let mut s = Session::start();
-    s.ask(Command::SetCarrier(Carrier::TwoWay));
+    s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
     assert_eq!(title(&s), "scene.toml •");
-    s.ask(Command::SetWindow(WindowFunction::Hamming));
+    s.ask(RadarCommand::SetWindow(WindowFunction::Hamming));
     undo(&mut s);
     undo(&mut s);
     assert_eq!((title(&s).as_str(), s.state().editor().radar().carrier), ("scene.toml", Carrier::OneWay));
     s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    s.ask(Command::Save);
+    s.ask(DocumentCommand::Save);
     let saved = Document::read(&s.folder.path().join("scene.toml")).unwrap();
     assert_eq!(saved.radar().carrier, Carrier::TwoWay);
 }
@@ -75,11 +75,11 @@ fn carrier_and_window_are_edits() {
 fn what_a_format_cannot_hold_is_asked_before_anything_is_written() {
     let mut s = Session::start();
     let path = write(&s, "points.npz", 2);
-    s.ask(Command::OpenPath(path.clone()));
-    s.ask(Command::Add(NewObject::Line, None));
+    s.ask(DocumentCommand::OpenPath(path.clone()));
+    s.ask(EditCommand::Add(NewObject::Line, None));
     let before = std::fs::read(&path).unwrap();
     let answer = |s: &mut Session, button: &str| {
-        s.ask(Command::Save);
+        s.ask(DocumentCommand::Save);
         let told = s.app.query_all_by_label_contains("one line or cluster").next().is_some();
         assert!(told, "it says what would be lost");
         assert_eq!(std::fs::read(&path).unwrap(), before, "and has written nothing");
@@ -99,9 +99,9 @@ fn what_a_format_cannot_hold_is_asked_before_anything_is_written() {
 
 /// Opens a scene with a line, saved as TOML, and writes it as points as well.
 fn save_as_points_too(s: &mut Session) {
-    s.ask(Command::Add(NewObject::Line, None));
-    s.ask(Command::Save);
-    s.ask(Command::SaveTo(s.folder.path().join("points.npz")));
+    s.ask(EditCommand::Add(NewObject::Line, None));
+    s.ask(DocumentCommand::Save);
+    s.ask(DocumentCommand::SaveTo(s.folder.path().join("points.npz")));
     s.app.get_by_label("Save anyway").click();
     s.settle();
 }
@@ -120,9 +120,9 @@ fn a_saved_scene_is_not_called_unsaved_when_a_second_format_is_written() {
 fn an_unsaved_scene_is_called_unsaved_when_a_second_format_is_written() {
     let mut s = Session::start();
     save_as_points_too(&mut s);
-    s.ask(Command::CloseMessages);
-    s.ask(Command::Add(NewObject::Point, None));
-    s.ask(Command::SaveTo(s.folder.path().join("again.npz")));
+    s.ask(WindowCommand::CloseMessages);
+    s.ask(EditCommand::Add(NewObject::Point, None));
+    s.ask(DocumentCommand::SaveTo(s.folder.path().join("again.npz")));
     s.app.get_by_label("Save anyway").click();
     s.settle();
     assert_eq!(title(&s), "scene.toml •");
@@ -133,13 +133,13 @@ fn an_unsaved_scene_is_called_unsaved_when_a_second_format_is_written() {
 fn what_another_program_wrote_is_not_replaced_without_a_question() {
     let mut s = Session::start();
     let path = s.folder.path().join("scene.toml");
-    s.ask(Command::Add(NewObject::Point, None));
-    s.ask(Command::Save);
+    s.ask(EditCommand::Add(NewObject::Point, None));
+    s.ask(DocumentCommand::Save);
     assert_eq!((title(&s).as_str(), points(&path)), ("scene.toml", 3), "nobody else was there");
     write(&s, "scene.toml", 7);
     let answer = |s: &mut Session, button: &str| {
-        s.ask(Command::Add(NewObject::Point, None));
-        s.ask(Command::Save);
+        s.ask(EditCommand::Add(NewObject::Point, None));
+        s.ask(DocumentCommand::Save);
         assert!(s.app.query_by_label("scene.toml has changed").is_some());
         assert_eq!(points(&path), 7, "nothing is written yet");
         s.app.get_by_label(button).click();
@@ -160,8 +160,8 @@ fn what_another_program_wrote_is_not_replaced_without_a_question() {
     let mine = s.folder.path().join("mine.toml");
     assert_eq!((title(&s).as_str(), points(&mine), points(&path)), ("mine.toml", 5, 7));
     write(&s, "mine.toml", 7);
-    s.ask(Command::Add(NewObject::Point, None));
-    s.ask(Command::Save);
+    s.ask(EditCommand::Add(NewObject::Point, None));
+    s.ask(DocumentCommand::Save);
     s.app.get_by_label("Replace it").click();
     s.settle();
     assert_eq!((title(&s).as_str(), points(&mine)), ("mine.toml", 6));
@@ -171,7 +171,7 @@ fn what_another_program_wrote_is_not_replaced_without_a_question() {
 fn a_start_with_a_file_loses_neither_the_file_nor_what_was_unsaved() {
     let mut s = Session::start();
     let b = write(&s, "b.toml", 5);
-    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(EditCommand::Add(NewObject::Point, None));
     let unsaved = s.state().editor().scene().clone();
     let copy = s.folder.path().join("data/autosave.toml");
     step_until(&mut s, "no autosave", |_| copy.exists());
@@ -201,7 +201,7 @@ fn a_start_with_a_file_loses_neither_the_file_nor_what_was_unsaved() {
 #[test]
 fn a_named_scene_comes_back_under_its_name() {
     let mut s = Session::start();
-    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(EditCommand::Add(NewObject::Point, None));
     let copy = s.folder.path().join("data/autosave.toml");
     step_until(&mut s, "no autosave", |_| copy.exists());
     let Session { app, folder } = s;
@@ -210,6 +210,6 @@ fn a_named_scene_comes_back_under_its_name() {
     let mut s = Session { app, folder };
     s.settle();
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
-    s.ask(Command::Save);
+    s.ask(DocumentCommand::Save);
     assert_eq!((title(&s).as_str(), points(&s.folder.path().join("scene.toml"))), ("scene.toml", 3));
 }

@@ -1,7 +1,9 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
 use crate::session::{Session, harness, step_until};
-use apertura::app::{Command, FailureChoice, Panel, SearchChoice};
+use apertura::app::{
+    Command, EditCommand, FailureChoice, Panel, RowsCommand, SearchChoice, ViewCommand, WindowCommand,
+};
 use apertura::evaluate::rows::{Row, read_rows, write_rows};
 use apertura::evaluate::sets::Folder;
 use apertura::evaluate::worsen::{Aim, Measure};
@@ -20,7 +22,7 @@ fn methods() -> Vec<Arc<dyn Reconstructor>> {
 /// A window with six rows: three scenes by two methods.
 fn tried() -> Session {
     let mut s = Session::with_methods(methods());
-    s.ask_and_wait(Command::TryMethods(choice(vec![Kind::Set2], false)));
+    s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(vec![Kind::Set2], false))));
     assert_eq!(s.state().rows().len(), 6);
     s
 }
@@ -65,7 +67,7 @@ fn write(s: &mut Session, text: &str) {
 #[test]
 fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
     let mut s = tried();
-    s.ask(Command::Maximise(Panel::Failures));
+    s.ask(WindowCommand::Maximise(Panel::Failures));
     s.app.get_by_label("squared_error").click();
     s.settle();
     let (index, row) = worst(&s);
@@ -89,7 +91,7 @@ fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
     let before = s.state().editor().document().clone();
     s.app.get_by_label(&name(&row)).click();
     s.settle();
-    s.ask(Command::Maximise(Panel::Failures));
+    s.ask(WindowCommand::Maximise(Panel::Failures));
     let radar = s.state().radar().clone();
     let expected = Generator::new(&radar, Reading::Program, Purpose::Test, 7).scene(Kind::Set2, row.index);
     assert_eq!((s.state().opened_row(), &**s.state().editor().scene()), (Some(index), &expected));
@@ -97,7 +99,7 @@ fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
     assert_eq!(s.state().shown_method(), Some(if row.method == "capon" { "capon" } else { "baseline" }));
     assert_eq!((m.squared_error, m.detection, m.false_alarm), (row.squared_error, row.detection, row.false_alarm));
 
-    s.ask(Command::OpenPanel(Panel::Failures));
+    s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let missed = format!("{} missed", row.missed);
     let fates = s.app.query_all_by_label_contains(&missed).count();
     assert!(row.missed == 0 || fates == 2, "those of the row, and those of now: {fates}");
@@ -106,16 +108,16 @@ fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
     s.drag(at, vec2(25.0, 10.0), 5);
     assert!(s.state().editor().is_modified() && s.state().metrics() != Some(m));
     let file = s.state().editor().document().to_file();
-    s.ask(Command::KeepScene("Moved a little.".to_owned()));
+    s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
     let own = s.folder.path().join("data/scenes");
     let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
-    s.ask_and_wait(Command::TryMethods(choice(Vec::new(), true)));
+    s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(Vec::new(), true))));
     assert_eq!(s.state().rows().len(), 8, "it is a test set at once");
 
-    s.ask(Command::Undo);
-    s.ask(Command::Undo);
+    s.ask(EditCommand::Undo);
+    s.ask(EditCommand::Undo);
     assert_eq!(s.state().editor().document().id(), before.id(), "the scene from before the row");
 }
 
@@ -123,8 +125,8 @@ fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
 fn arrow_keys_walk_through_rows_and_one_undo_takes_the_walk_back() {
     let mut s = tried();
     let before = (s.state().editor().document().id(), s.state().settings().method.clone());
-    s.ask(Command::SetFloor(Floor::Exact));
-    s.ask(Command::OpenPanel(Panel::Failures));
+    s.ask(ViewCommand::SetFloor(Floor::Exact));
+    s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let mut last = None;
     let first = s.handle(&name(&s.state().rows()[0]));
     s.drag(first, vec2(0.0, 0.0), 1);
@@ -142,7 +144,7 @@ fn arrow_keys_walk_through_rows_and_one_undo_takes_the_walk_back() {
         last = s.state().metrics();
     }
     assert!(last.is_some() && s.state().editor().left().is_empty(), "a walk leaves nothing behind");
-    s.ask(Command::Undo);
+    s.ask(EditCommand::Undo);
     let after = (s.state().editor().document().id(), s.state().settings().method.clone());
     assert_eq!((after, s.state().settings().floor), (before, Floor::Exact));
 }
@@ -152,23 +154,23 @@ fn rows_are_saved_opened_brought_back_and_there_after_a_restart() {
     let mut s = tried();
     let rows = s.state().rows().to_vec();
     let path = s.folder.path().join("saved.csv");
-    s.ask(Command::SaveRowsTo(path.clone()));
+    s.ask(RowsCommand::SaveTo(path.clone()));
     step_until(&mut s, "it is written", |s| s.folder.path().join("saved.csv").exists());
     assert_eq!(read_rows(std::fs::File::open(&path).unwrap()).unwrap(), rows);
-    s.ask(Command::ClearRows);
+    s.ask(RowsCommand::Clear);
     assert!(s.state().rows().is_empty());
-    s.ask(Command::BringRowsBack);
+    s.ask(RowsCommand::BringBack);
     assert_eq!(s.state().rows(), rows);
-    s.ask(Command::ClearRows);
-    s.ask(Command::OpenTable(path.clone()));
+    s.ask(RowsCommand::Clear);
+    s.ask(RowsCommand::OpenTable(path.clone()));
     assert_eq!(s.state().rows(), rows, "as when the file is dropped on the window");
     let (_, row) = worst(&s);
-    s.ask(Command::OpenRow(rows.iter().position(|r| *r == row).unwrap()));
-    s.ask(Command::ClosePanel(Panel::Failures));
+    s.ask(RowsCommand::Show(rows.iter().position(|r| *r == row).unwrap()));
+    s.ask(WindowCommand::ClosePanel(Panel::Failures));
     assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error, "the radar is that of the rows");
     std::fs::write(&path, "not,rows\n1,2\n").unwrap();
     let messages = s.state().messages();
-    s.ask(Command::OpenRowsFile(path));
+    s.ask(RowsCommand::OpenFile(path));
     assert!(s.state().messages() > messages && s.state().rows() == rows, "it is told, and the rows stay");
     step_until(&mut s, "they are kept", |s| s.state().rows_are_kept());
     let Session { app, folder } = s;
@@ -185,11 +187,11 @@ fn a_search_goes_on_beside_the_window_and_its_find_is_one_step() {
     // Where the error is least, there is most to make worse.
     let rows = s.state().rows().iter().enumerate();
     let best = rows.min_by(|a, b| a.1.squared_error.total_cmp(&b.1.squared_error)).unwrap().0;
-    s.ask(Command::OpenPanel(Panel::Failures));
-    s.ask(Command::OpenRow(best));
+    s.ask(WindowCommand::OpenPanel(Panel::Failures));
+    s.ask(RowsCommand::Show(best));
     let before = s.state().editor().scene().clone();
     let choice = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 48 };
-    s.ask_and_wait(Command::Search(choice));
+    s.ask_and_wait(Command::Rows(RowsCommand::Search(choice)));
     let path = s.state().search_path().to_vec();
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
@@ -197,11 +199,11 @@ fn a_search_goes_on_beside_the_window_and_its_find_is_one_step() {
     assert_eq!(s.state().editor().scene().objects, found.scene.objects);
     assert_eq!(s.state().metrics().unwrap().squared_error, found.metrics.squared_error);
     assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
-    s.ask(Command::Undo);
+    s.ask(EditCommand::Undo);
     assert_eq!(s.state().editor().scene(), &before);
-    s.app.state_mut().ask(Command::Search(SearchChoice { tries: 100_000, ..choice }));
+    s.app.state_mut().ask(RowsCommand::Search(SearchChoice { tries: 100_000, ..choice }));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
-    s.ask(Command::CancelSearch);
+    s.ask(RowsCommand::CancelSearch);
     step_until(&mut s, "it can be stopped", |s| !s.state().is_at_work());
 }
 
@@ -212,9 +214,9 @@ fn keys_walk_through_ten_thousand_rows() {
     let path = s.folder.path().join("many.csv");
     let rows: Vec<Row> = (0..10_000).map(|index| Row { index, origin: None, ..row.clone() }).collect();
     write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();
-    s.ask(Command::OpenTable(path));
+    s.ask(RowsCommand::OpenTable(path));
     assert_eq!(s.state().rows().len(), 10_000);
-    s.ask(Command::Maximise(Panel::Failures));
+    s.ask(WindowCommand::Maximise(Panel::Failures));
     let first = s.handle(&name(&s.state().rows()[0]));
     s.drag(first, vec2(0.0, 0.0), 1);
     for _ in 0..4 {

@@ -1,7 +1,7 @@
 //! Figures on screen are those of the command line, bit for bit, whatever the window showed before.
 
 use crate::session::{Session, harness, step_until};
-use apertura::app::{Command, NewObject};
+use apertura::app::{Command, DocumentCommand, EditCommand, NewObject};
 use apertura::evaluate::rows::read_rows;
 use apertura::evaluate::trial::Trial;
 use apertura::interact::Document;
@@ -61,8 +61,8 @@ fn one_scene_has_one_set_of_figures() {
 
     let at = s.handle("point 1: move");
     s.drag(at, vec2(30.0, 12.0), 20);
-    s.ask(Command::RandomScene(Kind::Set2));
-    s.ask(Command::OpenPath(file));
+    s.ask(DocumentCommand::RandomScene(Kind::Set2));
+    s.ask(DocumentCommand::OpenPath(file));
     assert_eq!(on_screen(&s), expected, "after other scenes");
 
     let at = s.handle("point 2: move");
@@ -89,13 +89,13 @@ fn one_scene_has_one_set_of_figures() {
 fn the_noise_belongs_to_the_scene() {
     let mut s = Session::start();
     let before = on_screen(&s);
-    s.ask(Command::SetNoiseSeed(7));
+    s.ask(EditCommand::SetNoiseSeed(7));
     assert_ne!(on_screen(&s), before);
-    s.ask(Command::Save);
+    s.ask(DocumentCommand::Save);
     let path = s.folder.path().join("scene.toml");
     assert_eq!(Document::read(&path).unwrap().scene().noise_seed, 7);
     assert_eq!(on_screen(&s), on_the_command_line(&path));
-    s.ask(Command::Undo);
+    s.ask(EditCommand::Undo);
     assert_eq!((s.state().editor().scene().noise_seed, on_screen(&s)), (0, before));
 }
 
@@ -118,7 +118,7 @@ fn a_scene_that_comes_to_rest_is_not_reconstructed_again() {
     let mut s = Session::with_methods(vec![Arc::new(Counted(asked.clone()))]);
     assert_eq!(asked.load(Ordering::SeqCst), 1);
     let before = on_screen(&s);
-    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(EditCommand::Add(NewObject::Point, None));
     assert_eq!(asked.load(Ordering::SeqCst), 2);
     assert_ne!(on_screen(&s), before);
     assert!(s.state().is_settled() && !s.state().output_is_outdated());

@@ -1,7 +1,7 @@
 //! Everything can be reached and done without a pointer.
 
 use crate::session::Session;
-use apertura::app::Command;
+use apertura::app::EditCommand;
 use apertura::interact::SelectionMode;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers};
@@ -84,7 +84,7 @@ fn selected(s: &Session) -> Option<usize> {
 /// A window whose first point is selected, with a menu open.
 fn with_a_menu() -> Session {
     let mut s = Session::start();
-    s.ask(Command::Select(vec![0], SelectionMode::Replace));
+    s.ask(EditCommand::Select(vec![0], SelectionMode::Replace));
     s.app.get_by_label("File").click();
     s.settle();
     assert!(s.app.query_by_label("Unsaved scenes").is_some(), "the menu is open");
@@ -130,7 +130,7 @@ fn enter_x(s: &mut Session, text: &str) {
 #[test]
 fn what_is_no_number_moves_nothing() {
     let mut s = Session::start();
-    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
     let (place, depth) = (s.place(1), s.state().editor().history().depth());
     for text in ["nan", "1e400", "abc", "1.234,5"] {
         enter_x(&mut s, text);
@@ -143,7 +143,7 @@ fn what_is_no_number_moves_nothing() {
 #[test]
 fn keys_after_a_wrong_entry_stay_in_the_field() {
     let mut s = Session::start();
-    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
     enter_x(&mut s, "abc");
     s.app.event(Event::Text("o".to_owned()));
     s.press(Modifiers::NONE, Key::O);
@@ -156,7 +156,7 @@ fn keys_after_a_wrong_entry_stay_in_the_field() {
 #[test]
 fn escape_in_a_field_gives_the_entry_up() {
     let mut s = Session::start();
-    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
     enter_x(&mut s, "abc");
     s.press(Modifiers::NONE, Key::Escape);
     assert_eq!((selected(&s), s.place(1)), (Some(1), [8.0, 12.0]));
@@ -166,7 +166,7 @@ fn escape_in_a_field_gives_the_entry_up() {
 #[test]
 fn each_entry_is_one_undo_step() {
     let mut s = Session::start();
-    s.ask(Command::Select(vec![1], SelectionMode::Replace));
+    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
     for text in ["-3,5", "4"] {
         enter_x(&mut s, text);
     }

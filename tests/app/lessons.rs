@@ -1,7 +1,9 @@
 //! Every lesson taken in the whole app: answered right and wrong by pointer and keyboard, challenges met by the solution that is shown.
 
 use crate::session::{Session, step_until};
-use apertura::app::{Command, MapKind, Panel};
+use apertura::app::{
+    DocumentCommand, EditCommand, LessonCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand,
+};
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
 use apertura::radar::Radar;
@@ -56,7 +58,7 @@ fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
             s.app.get_by_label("Answer").click();
         }
         (Answer::Choice { options, .. }, Guess::Choice(chosen)) => s.app.get_by_label(&options[chosen - 1]).click(),
-        (_, other) => s.ask(Command::Predict(other)),
+        (_, other) => s.ask(LessonCommand::Predict(other)),
     }
     s.app.step();
 }
@@ -64,7 +66,7 @@ fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
 /// Takes a step: the prediction right or wrong, then the challenge.
 fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     let (step, place) = (&lesson.steps[number], format!("{}, step {}", lesson.title, number + 1));
-    s.ask(Command::LessonStep(number));
+    s.ask(LessonCommand::Step(number));
     assert!(s.state().editor().scene().notes.is_empty(), "{place}: notes tell what is asked for");
     if let Some(question) = &step.predict {
         assert!(!shows(s, "Correct: "), "{place}");
@@ -90,16 +92,16 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
 
 fn take_all(right: impl Fn(usize, usize) -> bool) {
     let mut s = Session::start();
-    s.ask(Command::PresentLesson);
+    s.ask(LessonCommand::Present);
     for (index, file) in shipped::ALL.iter().enumerate() {
         let lesson = file.load().unwrap();
-        s.ask(Command::BeginLesson(index));
+        s.ask(LessonCommand::Begin(index));
         for number in 0..lesson.steps.len() {
             take(&mut s, &lesson, number, right(index, number));
         }
     }
     let before = s.state().arrangement().is_open(apertura::app::Panel::Controls);
-    s.ask(Command::LeaveLesson);
+    s.ask(LessonCommand::Leave);
     s.press(eframe::egui::Modifiers::NONE, eframe::egui::Key::Escape);
     assert!(!before && s.state().arrangement().is_open(apertura::app::Panel::Controls), "the panels are back");
     assert_eq!(s.state().radar().elements, 128, "and so is the scene");
@@ -134,13 +136,13 @@ fn painted(s: &Session) -> Vec<String> {
 
 /// Begins the lesson called `id` at a step, counted from 1.
 fn begin(s: &mut Session, id: &str, step: usize) {
-    s.ask(Command::BeginLesson(shipped::ALL.iter().position(|file| file.id == id).unwrap()));
-    s.ask(Command::LessonStep(step - 1));
+    s.ask(LessonCommand::Begin(shipped::ALL.iter().position(|file| file.id == id).unwrap()));
+    s.ask(LessonCommand::Step(step - 1));
 }
 
 /// Predicts, and waits for the verdict.
 fn predict(s: &mut Session, guess: Guess, verdict: &str) {
-    s.ask(Command::Predict(guess));
+    s.ask(LessonCommand::Predict(guess));
     step_until(s, verdict, |s| shows(s, verdict));
     s.settle();
 }
@@ -149,7 +151,7 @@ fn predict(s: &mut Session, guess: Guess, verdict: &str) {
 fn no_panel_answers_a_question_before_the_learner_does() {
     let mut s = Session::start();
     for panel in [Panel::Radar, Panel::Inspector] {
-        s.ask(Command::OpenPanel(panel));
+        s.ask(WindowCommand::OpenPanel(panel));
     }
     begin(&mut s, "range-and-bandwidth", 3);
     let tells = |s: &Session, text: &str| painted(s).iter().any(|t| t.contains(text));
@@ -174,7 +176,7 @@ fn a_question_about_a_place_leaves_the_axes() {
 fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
     let mut s = Session::start();
     begin(&mut s, "what-a-network-can-know", 1);
-    s.ask(Command::Method("baseline"));
+    s.ask(ViewCommand::Method("baseline"));
     assert!(!shows(&s, " in the target, "));
     predict(&mut s, Guess::Choice(1), "Correct: ");
     step_until(&mut s, "figures come with the maps", |s| shows(s, " in the target, "));
@@ -201,9 +203,9 @@ fn guess_and_truth_stay_drawn_on_the_map() {
     assert_eq!(drawn(&s), [false, false]);
     predict(&mut s, Guess::Place(Cell { bin: 100.0, column: 300.0 }), "Not quite: ");
     assert_eq!(drawn(&s), [true, true]);
-    s.ask(Command::LessonStep(1));
+    s.ask(LessonCommand::Step(1));
     assert_eq!(drawn(&s), [false, false]);
-    s.ask(Command::LessonStep(0));
+    s.ask(LessonCommand::Step(0));
     assert_eq!(drawn(&s), [true, true]);
 }
 
@@ -213,14 +215,14 @@ fn a_shown_solution_counts_as_unsolved_until_the_step_is_begun_again() {
     begin(&mut s, "range-and-bandwidth", 5);
     let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;
     let measured = |s: &Session| shows(s, "required ") && !shows(s, "not met yet");
-    s.ask(Command::ShowSolution);
+    s.ask(LessonCommand::ShowSolution);
     step_until(&mut s, "the solution is measured", measured);
     assert!(!is_met(&s) && shows(&s, "counts as unsolved"));
     s.app.get_by_label("Start this step again").click();
     s.settle();
     step_until(&mut s, "the step is as it was", |s| shows(s, "not met yet"));
     let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
-    s.ask(Command::SetRadar(Box::new(radar)));
+    s.ask(RadarCommand::Set(Box::new(radar)));
     step_until(&mut s, "it is solved", |s| shows(s, "Solved. "));
     assert!(is_met(&s));
 }
@@ -240,8 +242,8 @@ fn lessons_close_the_panels_that_they_do_not_use() {
     assert!(is_open(&s, MapKind::TargetAbove) && !is_open(&s, MapKind::Output));
     begin(&mut s, "what-a-network-can-know", 1);
     assert!(is_open(&s, MapKind::Output) && !is_open(&s, MapKind::OutputAbove));
-    s.ask(Command::LeaveLesson);
-    s.ask(Command::ClosePanel(Panel::Lesson));
+    s.ask(LessonCommand::Leave);
+    s.ask(WindowCommand::ClosePanel(Panel::Lesson));
     assert_eq!(*s.state().arrangement().shown(), before, "what was in sight is in sight again");
 }
 
@@ -258,11 +260,11 @@ fn the_end_of_a_lesson_gives_the_zoom_back() {
     assert_ne!(views.1, Default::default(), "the maps are zoomed");
     begin(&mut s, "range-and-bandwidth", 1);
     assert_eq!(s.state().views().1, Default::default(), "a lesson shows whole maps");
-    s.ask(Command::ZoomIn);
+    s.ask(WindowCommand::ZoomIn);
     assert!(s.app.ctx.zoom_factor() > zoom);
-    s.ask(Command::LeaveLesson);
+    s.ask(LessonCommand::Leave);
     assert_eq!(s.app.ctx.zoom_factor(), zoom);
-    s.ask(Command::ClosePanel(Panel::Lesson));
+    s.ask(WindowCommand::ClosePanel(Panel::Lesson));
     assert_eq!(s.state().views(), views);
 }
 
@@ -272,48 +274,48 @@ fn a_lesson_file_whose_solution_fails_is_refused() {
     let good = shipped::ALL.iter().find(|file| file.id == "range-and-bandwidth").unwrap().toml;
     let path = s.folder.path().join("lesson.toml");
     std::fs::write(&path, good.replace("bandwidth_hz = 0.95e9", "bandwidth_hz = 0.21e9")).unwrap();
-    s.ask(Command::OpenLessonFile(path.clone()));
+    s.ask(LessonCommand::OpenFile(path.clone()));
     assert!(shows(&s, "the solution does not meet the challenge") && shows(&s, "lesson.toml: line "));
     assert!(!shows(&s, "Step 1 of 5"));
-    s.ask(Command::CloseMessages);
+    s.ask(WindowCommand::CloseMessages);
     std::fs::write(&path, good).unwrap();
-    s.ask(Command::OpenLessonFile(path));
+    s.ask(LessonCommand::OpenFile(path));
     assert!(shows(&s, "Step 1 of 5") && s.state().messages() == 0);
 }
 
 #[test]
 fn a_lesson_is_shared_with_its_step_and_scene() {
     let mut s = Session::start();
-    s.ask(Command::BeginLesson(3));
-    s.ask(Command::LessonStep(2));
+    s.ask(LessonCommand::Begin(3));
+    s.ask(LessonCommand::Step(2));
     let radar = s.state().radar().clone();
     let text = s.state().shared_text().unwrap();
-    s.ask(Command::LeaveLesson);
+    s.ask(LessonCommand::Leave);
     assert_eq!(s.state().radar().elements, 128);
-    s.ask(Command::PasteText(text));
+    s.ask(EditCommand::PasteText(text));
     assert!(shows(&s, "Step 3 of 5"));
     assert_eq!(*s.state().radar(), radar);
-    s.ask(Command::PasteText("apertura:1:damaged".to_owned()));
+    s.ask(EditCommand::PasteText("apertura:1:damaged".to_owned()));
     assert!(shows(&s, "copy all of it again"));
 }
 
 #[test]
 fn a_shared_scene_comes_with_its_view_and_can_be_undone() {
     let mut s = Session::start();
-    s.ask(Command::ToggleProjection);
-    s.ask(Command::ToggleTheory);
-    s.ask(Command::SetTargetEta(0.5));
+    s.ask(ViewCommand::ToggleProjection);
+    s.ask(ViewCommand::ToggleTheory);
+    s.ask(ViewCommand::SetTargetEta(0.5));
     let text = s.state().shared_text().unwrap();
-    s.ask(Command::Preset(0));
-    s.ask(Command::ToggleProjection);
-    s.ask(Command::ToggleTheory);
-    s.ask(Command::SetTargetEta(0.9));
+    s.ask(DocumentCommand::Preset(0));
+    s.ask(ViewCommand::ToggleProjection);
+    s.ask(ViewCommand::ToggleTheory);
+    s.ask(ViewCommand::SetTargetEta(0.9));
     let other = s.state().editor().scene().clone();
-    s.ask(Command::OpenShared(text));
+    s.ask(DocumentCommand::OpenShared(text));
     assert_eq!(s.state().radar().elements, 128);
     assert_eq!(s.state().settings().projection, apertura::app::Projection::Cartesian);
     assert!(s.state().settings().show_theory && s.state().settings().target_eta == 0.5);
-    s.ask(Command::Undo);
+    s.ask(EditCommand::Undo);
     assert_eq!(s.state().editor().scene(), &other);
     assert_eq!(s.state().settings().target_eta, 0.9);
 }
@@ -321,8 +323,8 @@ fn a_shared_scene_comes_with_its_view_and_can_be_undone() {
 #[test]
 fn several_maps_and_theory_are_computed_while_they_are_looked_at() {
     let mut s = Session::start();
-    s.ask(Command::ToggleTheory);
-    s.ask(Command::OpenPanel(apertura::app::Panel::Several));
+    s.ask(ViewCommand::ToggleTheory);
+    s.ask(WindowCommand::OpenPanel(apertura::app::Panel::Several));
     step_until(&mut s, "all four windows are there", |s| s.state().several_maps_made() == 4);
     s.app.get_by_label("window: rectangular").click();
     s.settle();

@@ -1,7 +1,7 @@
 //! What is shown, what is computed for it and what is not.
 
 use crate::session::Session;
-use apertura::app::{Command, MapKind, Panel, Units};
+use apertura::app::{Command, DocumentCommand, MapKind, Panel, RadarCommand, Units, ViewCommand, WindowCommand};
 use apertura::engine::Stage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
@@ -33,7 +33,7 @@ fn another_normalisation_computes_no_signal_and_no_map() {
         Normalisation::MinMax,
     ] {
         let (_, painted) = s.state().work_done();
-        s.ask(Command::Normalise(normalisation));
+        s.ask(ViewCommand::Normalise(normalisation));
         assert_eq!(s.state().settings().normalisation, normalisation);
         assert!(s.state().work_done().1 >= painted + 6, "every map was painted again");
         let report = s.state().report().unwrap();
@@ -41,7 +41,7 @@ fn another_normalisation_computes_no_signal_and_no_map() {
             assert!(!report.ran(stage), "{stage}");
         }
     }
-    s.ask(Command::SetFloor(Floor::Exact));
+    s.ask(ViewCommand::SetFloor(Floor::Exact));
     assert_eq!(s.state().settings().floor, Floor::Exact);
 }
 
@@ -52,12 +52,12 @@ fn an_empty_scene_has_figures_over_noise_alone() {
     s.press(Modifiers::NONE, Key::Delete);
     for floor in [Floor::Exact, Floor::Thesis] {
         for normalisation in [Normalisation::DynamicRange(Decibels(100.0)), Normalisation::MinMax] {
-            s.ask(Command::SetFloor(floor));
-            s.ask(Command::Normalise(normalisation));
+            s.ask(ViewCommand::SetFloor(floor));
+            s.ask(ViewCommand::Normalise(normalisation));
             assert_eq!(s.state().metrics(), None, "{floor} {normalisation}: there is nothing to judge");
         }
     }
-    s.ask(Command::SetFloor(Floor::Level(DecibelMilliwatts(-20.0))));
+    s.ask(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0))));
     let noise = s.state().metrics().unwrap();
     assert_eq!((noise.detection, noise.false_alarm), (None, 0.0), "no cell of noise alone is an echo");
 }
@@ -67,24 +67,24 @@ fn hidden_panels_are_not_computed() {
     let mut s = Session::start();
     // The tabs behind the two output maps need the output too.
     for kind in [MapKind::Input1, MapKind::Output, MapKind::OutputAbove, MapKind::Difference] {
-        s.ask(Command::ClosePanel(Panel::Map(kind)));
+        s.ask(WindowCommand::ClosePanel(Panel::Map(kind)));
     }
-    s.ask(Command::ClosePanel(Panel::Roc));
+    s.ask(WindowCommand::ClosePanel(Panel::Roc));
     assert_eq!(s.state().pictures(), [MapKind::Input0, MapKind::Target, MapKind::TargetAbove]);
-    s.ask(Command::RandomScene(Kind::Set2));
+    s.ask(DocumentCommand::RandomScene(Kind::Set2));
     let report = s.state().report().unwrap();
     assert!(report.ran(Stage::FirstMap) && report.ran(Stage::FullMap));
     assert!(!report.ran(Stage::LastMap) && !report.ran(Stage::Ends), "nobody looks at input 1 or an output");
-    s.ask(Command::TogglePanel(Panel::Map(MapKind::Input1)));
+    s.ask(WindowCommand::TogglePanel(Panel::Map(MapKind::Input1)));
     assert!(s.state().pictures().contains(&MapKind::Input1));
 }
 
 #[test]
 fn a_maximised_map_is_the_only_one_computed() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::Map(MapKind::Input0)));
+    s.ask(WindowCommand::Maximise(Panel::Map(MapKind::Input0)));
     assert_eq!(s.state().pictures(), [MapKind::Input0]);
-    s.ask(Command::RandomScene(Kind::Set1));
+    s.ask(DocumentCommand::RandomScene(Kind::Set1));
     let report = s.state().report().unwrap();
     assert!(report.ran(Stage::FirstMap) && !report.ran(Stage::FullMap) && !report.ran(Stage::LastMap));
     s.press(Modifiers::NONE, Key::Escape);
@@ -122,7 +122,7 @@ fn the_palette_knows_every_preset_and_every_method() {
 #[test]
 fn messages_can_be_closed() {
     let mut s = Session::start();
-    s.ask(Command::OpenPath(s.folder.path().join("missing.toml")));
+    s.ask(DocumentCommand::OpenPath(s.folder.path().join("missing.toml")));
     assert_eq!(s.state().messages(), 1);
     s.app.get_by_label("Close this message").click();
     s.settle();
@@ -140,7 +140,7 @@ fn the_window_reaches_the_maps_and_comes_back() {
     assert_eq!(s.state().radar().window, WindowFunction::Hamming);
     let after = s.state().work_done();
     assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
-    s.ask(Command::SetWindow(WindowFunction::Hann));
+    s.ask(RadarCommand::SetWindow(WindowFunction::Hann));
     assert_eq!(s.state().radar().window, WindowFunction::Hann);
 }
 
@@ -148,13 +148,13 @@ fn the_window_reaches_the_maps_and_comes_back() {
 fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
     let mut s = Session::start();
     assert_eq!(s.state().bounds_asked(), 0);
-    s.ask(Command::OpenPanel(Panel::Bounds));
+    s.ask(WindowCommand::OpenPanel(Panel::Bounds));
     let before = s.state().position_bound().expect("of the first reflector");
     let at = s.handle("point 2: move");
     s.drag(at, vec2(0.0, 20.0), 4);
     let after = s.state().position_bound().unwrap();
     assert_ne!(before, after);
-    s.ask(Command::TogglePanel(Panel::Bounds));
+    s.ask(WindowCommand::TogglePanel(Panel::Bounds));
     let asked = s.state().bounds_asked();
     let at = s.handle("point 2: move");
     s.drag(at, vec2(0.0, 20.0), 4);
@@ -164,21 +164,23 @@ fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
 #[test]
 fn cuts_are_pinned_by_a_key_and_stay_when_the_scene_goes() {
     let mut s = Session::start();
-    s.ask(Command::OpenPanel(Panel::Cuts));
+    s.ask(WindowCommand::OpenPanel(Panel::Cuts));
     s.press(Modifiers::NONE, Key::K);
-    s.ask(Command::RandomScene(Kind::Set1));
+    s.ask(DocumentCommand::RandomScene(Kind::Set1));
     let _pinned = s.app.get_by_label_contains("Unpin 1: ");
     s.press(Modifiers::NONE, Key::D);
     assert_eq!(s.state().settings().units, Units::Decibels);
-    s.ask(Command::UnpinAll);
+    s.ask(ViewCommand::UnpinAll);
     assert!(s.app.query_by_label_contains("Unpin 1: ").is_none());
 }
 
 #[test]
 fn a_difference_is_painted_again_when_its_scale_changes() {
     let mut s = Session::start();
-    s.ask(Command::OpenPanel(Panel::Map(MapKind::Difference)));
-    for command in [Command::ToggleAbsoluteDifference, Command::ToggleWholeDifference] {
+    s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Difference)));
+    for command in
+        [Command::View(ViewCommand::ToggleAbsoluteDifference), Command::View(ViewCommand::ToggleWholeDifference)]
+    {
         let (_, painted) = s.state().work_done();
         s.ask(command);
         assert_eq!(s.state().work_done().1, painted + 1, "the difference alone");
@@ -201,7 +203,7 @@ fn press_in_the_guide(s: &mut Session, name: &str) {
 #[test]
 fn every_button_of_the_guide_leaves_a_working_app() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::Guide));
+    s.ask(WindowCommand::Maximise(Panel::Guide));
     press_in_the_guide(&mut s, "Two-way");
     assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
     assert_eq!(s.state().editor().scene().name, "Four reflectors");
@@ -211,10 +213,10 @@ fn every_button_of_the_guide_leaves_a_working_app() {
 #[test]
 fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
     let mut s = Session::start();
-    s.ask(Command::SetFloor(Floor::Snr(Decibels(30.0))));
+    s.ask(ViewCommand::SetFloor(Floor::Snr(Decibels(30.0))));
     let (scene, radar, settings) =
         (s.state().editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
-    s.ask(Command::Maximise(Panel::Guide));
+    s.ask(WindowCommand::Maximise(Panel::Guide));
     for button in ["No window", "Hamming"] {
         press_in_the_guide(&mut s, button);
     }
@@ -231,9 +233,9 @@ fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
 #[test]
 fn random_scenes_are_those_of_the_tables() {
     let mut s = Session::start();
-    s.ask(Command::SetNextRandom { seed: 7, number: 3 });
+    s.ask(DocumentCommand::SetNextRandom { seed: 7, number: 3 });
     for number in [3, 4] {
-        s.ask(Command::RandomScene(Kind::Set3));
+        s.ask(DocumentCommand::RandomScene(Kind::Set3));
         let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
         assert_eq!(s.state().editor().scene().objects, generator.scene(Kind::Set3, number).objects);
     }

@@ -1,7 +1,7 @@
 //! The app's panels as pictures, compared with those in `tests/snapshots`. Needs a Vulkan driver (lavapipe will do) and is skipped
 //! without one. After a change that is meant to be seen: `UPDATE_SNAPSHOTS=1 cargo test --test app pictures`.
 
-use apertura::app::{App, Command, Options, Panel};
+use apertura::app::{App, Command, EditCommand, Options, Panel, ViewCommand, WindowCommand};
 use apertura::reconstruct::Baseline;
 use eframe::egui::Theme;
 use egui_kittest::wgpu::WgpuTestRenderer;
@@ -35,8 +35,8 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
         .with_size([560.0, 400.0])
         .renderer(renderer)
         .build_eframe(|creation| App::new(creation, options).unwrap());
-    let light = (theme == Theme::Light).then_some(Command::ToggleTheme);
-    for command in light.into_iter().chain(commands).chain([Command::Maximise(panel)]) {
+    let light = (theme == Theme::Light).then_some(Command::Window(WindowCommand::ToggleTheme));
+    for command in light.into_iter().chain(commands).chain([Command::Window(WindowCommand::Maximise(panel))]) {
         app.state_mut().ask(command);
         app.step();
     }
@@ -55,13 +55,18 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
 
 #[test]
 fn the_scene_in_light() {
-    compare("scene-light", Theme::Light, Panel::Scene, vec![Command::SelectAll]);
+    compare("scene-light", Theme::Light, Panel::Scene, vec![Command::Edit(EditCommand::SelectAll)]);
 }
 
 #[test]
 fn the_target_in_dark() {
     use apertura::app::MapKind;
-    compare("target-dark", Theme::Dark, Panel::Map(MapKind::Target), vec![Command::ToggleReflectors]);
+    compare(
+        "target-dark",
+        Theme::Dark,
+        Panel::Map(MapKind::Target),
+        vec![Command::View(ViewCommand::ToggleReflectors)],
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is shown to many people, or taken to their slides.
 
 use crate::session::{Session, step_until};
-use apertura::app::{Command, MapKind, Panel};
+use apertura::app::{DocumentCommand, ExportCommand, MapKind, Panel, WindowCommand};
 use apertura::radar::Radar;
 use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
@@ -15,17 +15,17 @@ use std::time::Duration;
 #[test]
 fn one_key_begins_a_presentation_and_the_same_brings_everything_back() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::Cuts));
-    s.ask(Command::Maximise(Panel::Cuts));
-    s.ask(Command::ClosePanel(Panel::Inspector));
-    s.ask(Command::ZoomIn);
+    s.ask(WindowCommand::Maximise(Panel::Cuts));
+    s.ask(WindowCommand::Maximise(Panel::Cuts));
+    s.ask(WindowCommand::ClosePanel(Panel::Inspector));
+    s.ask(WindowCommand::ZoomIn);
     let (zoom, before) = (s.app.ctx.zoom_factor(), s.state().arrangement().shown().clone());
     s.press(Modifiers::NONE, Key::F11);
     let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output].map(Panel::Map);
     let shown: BTreeSet<Panel> = maps.into_iter().chain([Panel::Scene]).collect();
     assert_eq!(*s.state().arrangement().shown(), shown);
     assert!((s.app.ctx.zoom_factor() / zoom - 1.5).abs() < 1e-6, "larger type");
-    s.ask(Command::OpenPanel(Panel::Roc));
+    s.ask(WindowCommand::OpenPanel(Panel::Roc));
     s.press(Modifiers::NONE, Key::F11);
     assert_eq!(s.app.ctx.zoom_factor(), zoom);
     assert_eq!(*s.state().arrangement().shown(), before, "whatever was opened meanwhile");
@@ -90,8 +90,8 @@ impl Reconstructor for Slow {
 #[test]
 fn an_exported_picture_waits_for_the_maps() {
     let mut s = Session::with_methods(vec![Arc::new(Slow)]);
-    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
-    s.app.state_mut().ask(Command::ExportPictureTo(s.folder.path().join("window.png")));
+    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
+    s.app.state_mut().ask(ExportCommand::PictureTo(s.folder.path().join("window.png")));
     step_until(&mut s, "the picture is taken", is_photographed);
     assert!(!s.state().output_is_outdated());
     let said: Vec<String> = texts(&s).into_iter().map(|(text, _)| text).collect();
@@ -104,8 +104,8 @@ fn an_exported_picture_waits_for_the_maps() {
 #[test]
 fn an_exported_picture_holds_no_message() {
     let mut s = Session::start();
-    s.app.state_mut().ask(Command::OpenPath(s.folder.path().join("missing.toml")));
-    s.app.state_mut().ask(Command::ExportPictureTo(s.folder.path().join("window.png")));
+    s.app.state_mut().ask(DocumentCommand::OpenPath(s.folder.path().join("missing.toml")));
+    s.app.state_mut().ask(ExportCommand::PictureTo(s.folder.path().join("window.png")));
     let holds =
         |s: &Session| texts(s).iter().any(|(text, _)| text.contains("Exporting") || text.contains("missing.toml"));
     step_until(&mut s, "the messages are seen", holds);
@@ -117,7 +117,7 @@ fn an_exported_picture_holds_no_message() {
 #[test]
 fn a_recorded_drag_holds_no_message() {
     let mut s = Session::start();
-    s.app.state_mut().ask(Command::RecordDragTo(s.folder.path().join("drag.gif")));
+    s.app.state_mut().ask(ExportCommand::RecordDragTo(s.folder.path().join("drag.gif")));
     let holds = |s: &Session| texts(s).iter().any(|(text, _)| text.contains("Drag something now"));
     step_until(&mut s, "the message is seen", holds);
     let at = s.handle("point 1: move");
@@ -143,7 +143,7 @@ fn a_recorded_drag_holds_no_message() {
 #[test]
 fn a_map_is_copied_upright_a_pixel_a_cell() {
     let mut s = Session::start();
-    s.app.state_mut().ask(Command::CopyMap(MapKind::Target));
+    s.app.state_mut().ask(ExportCommand::CopyMap(MapKind::Target));
     s.app.step();
     let commands = &s.app.output().platform_output.commands;
     let image = commands.iter().find_map(|c| if let OutputCommand::CopyImage(image) = c { Some(image) } else { None });
@@ -157,9 +157,9 @@ fn a_map_is_copied_upright_a_pixel_a_cell() {
     let bins = [[0.0f64, 20.0], [8.0, 12.0]].map(|[x, y]| radar.bin_of_range(x.hypot(y)));
     let bin = (radar.samples - 1 - brightest) as f64;
     assert!(bins.iter().any(|b| (b - bin).abs() <= 1.5), "row {brightest} is bin {bin}, reflectors in {bins:?}");
-    s.ask(Command::ClosePanel(Panel::Map(MapKind::Target)));
+    s.ask(WindowCommand::ClosePanel(Panel::Map(MapKind::Target)));
     let before = s.state().messages();
-    s.ask(Command::CopyMap(MapKind::Target));
+    s.ask(ExportCommand::CopyMap(MapKind::Target));
     assert_eq!(s.state().messages(), before + 1, "a map that isn't drawn is no picture: that is told");
 }
 

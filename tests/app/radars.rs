@@ -1,7 +1,7 @@
 //! Radars that the thesis never had, in the app: maps, every model-based method, lists.
 
 use crate::session::Session;
-use apertura::app::{Command, MapKind, Panel};
+use apertura::app::{DocumentCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand};
 use apertura::maps::Normalisation;
 use apertura::methods;
 use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT, presets};
@@ -52,16 +52,16 @@ fn recorded(s: &Session, radar: &Radar) -> PathBuf {
 fn five_radars_are_recorded_opened_and_seen_by_every_model_based_method() {
     let model_based = methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name()));
     let mut s = Session::with_methods(model_based.collect());
-    s.ask(Command::Normalise(Normalisation::DynamicRange(Decibels(40.0))));
+    s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(40.0))));
     for (what, radar) in radars() {
-        s.ask(Command::OpenPath(recorded(&s, &radar)));
+        s.ask(DocumentCommand::OpenPath(recorded(&s, &radar)));
         assert_eq!(s.state().messages(), 0, "{what}");
         assert_eq!(s.state().radar(), &radar, "{what}");
-        s.ask(Command::OpenPanel(Panel::Map(MapKind::Unexplained)));
+        s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Unexplained)));
         let mut works = 0;
         for method in methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name())) {
             let name = method.name();
-            s.ask(Command::Method(name));
+            s.ask(ViewCommand::Method(name));
             let shown = s.state().pictures();
             assert!(shown.contains(&MapKind::Target) && shown.contains(&MapKind::Input0), "{name} on {what}");
             match s.state().refusal() {
@@ -84,7 +84,7 @@ fn five_radars_are_recorded_opened_and_seen_by_every_model_based_method() {
 fn the_same_radars_are_chosen_in_the_panel_and_every_map_follows() {
     let mut s = Session::start();
     for (what, radar) in radars() {
-        s.ask(Command::SetRadar(Box::new(radar.clone())));
+        s.ask(RadarCommand::Set(Box::new(radar.clone())));
         assert_eq!((s.state().radar(), s.state().messages()), (&radar, 0), "{what}");
         assert_eq!(s.state().shown_method(), Some("baseline"));
         assert!(s.state().refusal().is_none(), "{what}: {:?}", s.state().refusal());
@@ -92,7 +92,7 @@ fn the_same_radars_are_chosen_in_the_panel_and_every_map_follows() {
     // The large ones take long in an unoptimised build.
     let small = |radar: &Radar| radar.elements * radar.samples <= 1 << 15;
     for (index, preset) in presets::ALL.iter().enumerate().filter(|(_, p)| small(&p.radar)) {
-        s.ask(Command::RadarPreset(index));
+        s.ask(RadarCommand::Preset(index));
         assert_eq!(s.state().radar(), &preset.radar);
         assert!(s.state().refusal().is_none() && s.state().metrics().is_some());
     }

@@ -1,7 +1,9 @@
 //! Recordings in the place of a scene: opened, looked at, explained, exported, and undone.
 
 use crate::session::{Session, harness, step_until};
-use apertura::app::{Command, MapKind, NewObject, Panel};
+use apertura::app::{
+    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
+};
 use apertura::interact::{Document, Editor, Place};
 use apertura::maps::Normalisation;
 use apertura::radar::{BuiltArray, Carrier, Decibels, ElementError, Radar, Tolerances, WindowFunction};
@@ -38,7 +40,7 @@ fn copied(s: &Session, name: &str) -> PathBuf {
 #[test]
 fn a_snapshot_shows_target_and_output_and_lists_both_directions() {
     let mut s = with_iaa();
-    s.ask(Command::Recording(CASCADE));
+    s.ask(DocumentCommand::Recording(CASCADE));
     assert_eq!((s.state().radar().elements, s.state().radar().samples), (86, 1));
     assert!(s.state().pictures().contains(&MapKind::Target) && s.state().pictures().contains(&MapKind::Output));
     let found = s.state().found().expect("the list is in front");
@@ -52,9 +54,9 @@ fn a_snapshot_shows_target_and_output_and_lists_both_directions() {
 #[test]
 fn the_scene_before_a_recording_is_one_undo_away_and_nothing_is_unsaved() {
     let mut s = Session::start();
-    s.ask(Command::Add(NewObject::Point, None));
+    s.ask(EditCommand::Add(NewObject::Point, None));
     let path = copied(&s, "chip-8.toml");
-    s.ask(Command::OpenPath(path));
+    s.ask(DocumentCommand::OpenPath(path));
     assert_eq!(s.state().editor().document().title(), "chip-8.toml");
     assert_eq!(s.state().editor().left().len(), 1, "the unsaved scene is kept");
     undo(&mut s);
@@ -68,19 +70,19 @@ fn the_scene_before_a_recording_is_one_undo_away_and_nothing_is_unsaved() {
 #[test]
 fn reflectors_laid_over_a_recording_explain_part_of_it_and_are_saved_as_a_scene() {
     let mut s = with_iaa();
-    s.ask(Command::Recording(CHIP));
-    s.ask(Command::OpenPanel(Panel::Map(MapKind::Unexplained)));
+    s.ask(DocumentCommand::Recording(CHIP));
+    s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Unexplained)));
     assert_eq!(s.state().explained(), Some(0.0));
     let strongest = s.state().found().unwrap()[0];
     let at = strongest.reflector();
-    s.ask(Command::Add(NewObject::Point, Some(Place::new(at.x_metres, at.y_metres))));
+    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(at.x_metres, at.y_metres))));
     let one = s.state().explained().unwrap();
     assert!(one > 1e-3 && one < 1.0, "{one}");
     undo(&mut s);
     assert_eq!(s.state().explained(), Some(0.0));
     s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     let path = s.folder.path().join("post.toml");
-    s.ask(Command::SaveTo(path.clone()));
+    s.ask(DocumentCommand::SaveTo(path.clone()));
     assert_eq!(Document::read(&path).unwrap().scene().objects.len(), 1);
     assert!(s.state().editor().document().recording().is_some(), "it stays on screen");
 }
@@ -92,25 +94,25 @@ fn what_is_laid_over_a_recording_is_saved_beside_it_and_never_in_its_place() {
     let data = path.with_extension("npz");
     let kept = || [&path, &data].map(|p| std::fs::read(p).unwrap());
     let before = kept();
-    s.ask(Command::OpenPath(path.clone()));
+    s.ask(DocumentCommand::OpenPath(path.clone()));
     s.press(Modifiers::COMMAND, Key::S);
     assert_eq!(s.state().messages(), 1, "told that there is nothing to save, and not asked for a file");
-    s.ask(Command::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
-    s.ask(Command::SaveTo(path.clone()));
+    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
+    s.ask(DocumentCommand::SaveTo(path.clone()));
     assert!(s.state().messages() == 2 && s.state().editor().is_modified());
     let refused = Editor::of(Document::read_recording(&path).unwrap()).save(&data).unwrap_err().to_string();
     assert!(refused.contains("chip-8.npz: holds a recording"), "{refused}");
     assert_eq!(kept(), before);
     let post = s.folder.path().join("post.toml");
-    s.ask(Command::SaveTo(post.clone()));
+    s.ask(DocumentCommand::SaveTo(post.clone()));
     assert_eq!(s.state().editor().document().title(), "post.toml");
-    s.ask(Command::Add(NewObject::Point, Some(Place::new(-0.5, 4.0))));
+    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(-0.5, 4.0))));
     s.press(Modifiers::COMMAND, Key::S);
     assert_eq!(s.state().editor().document().title(), "post.toml");
     let text = std::fs::read_to_string(&post).unwrap();
     assert!(text.contains("recording = \"chip-8.toml\""), "{text}");
-    s.ask(Command::New);
-    s.ask(Command::OpenPath(post.clone()));
+    s.ask(DocumentCommand::New);
+    s.ask(DocumentCommand::OpenPath(post.clone()));
     assert_eq!(s.state().editor().scene().objects.len(), 2);
     assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
     assert_eq!(apertura::scene::file::load(&post).unwrap().radar.elements, 8, "commands see a scene");
@@ -127,13 +129,13 @@ fn what_is_laid_over_a_recording_is_saved_beside_it_and_never_in_its_place() {
 #[test]
 fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
     let mut s = Session::start();
-    s.ask(Command::Recording(CASCADE));
+    s.ask(DocumentCommand::Recording(CASCADE));
     let measured = s.state().radar().clone();
-    s.ask(Command::SetCarrier(Carrier::TwoWay));
-    s.ask(Command::SetRadar(Box::new(Radar { elements: 64, ..measured.clone() })));
+    s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
+    s.ask(RadarCommand::Set(Box::new(Radar { elements: 64, ..measured.clone() })));
     assert_eq!((s.state().radar(), s.state().messages()), (&measured, 1));
-    s.ask(Command::SetRadar(Box::new(Radar { end_elements: 20, ..measured.clone() })));
-    s.ask(Command::SetWindow(WindowFunction::Hamming));
+    s.ask(RadarCommand::Set(Box::new(Radar { end_elements: 20, ..measured.clone() })));
+    s.ask(RadarCommand::SetWindow(WindowFunction::Hamming));
     assert_eq!((s.state().radar().end_elements, s.state().radar().window), (20, WindowFunction::Hamming));
     assert_eq!(s.state().shown_method(), Some("baseline"));
     undo(&mut s);
@@ -144,11 +146,11 @@ fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
 #[test]
 fn maps_and_drawing_of_a_recording_are_exported() {
     let mut s = Session::start();
-    s.ask(Command::Recording(CHIP));
-    s.ask(Command::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
+    s.ask(DocumentCommand::Recording(CHIP));
+    s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
     let (maps, drawing) = (s.folder.path().join("maps.npz"), s.folder.path().join("maps.svg"));
-    s.ask(Command::ExportMapsTo(maps.clone()));
-    s.ask(Command::ExportPictureTo(drawing.clone()));
+    s.ask(ExportCommand::MapsTo(maps.clone()));
+    s.ask(ExportCommand::PictureTo(drawing.clone()));
     step_until(&mut s, "no export", |_| maps.exists() && drawing.exists());
     assert!(std::fs::read_to_string(&drawing).unwrap().contains("Target: all 8 elements"));
     let mut archive = ndarray_npy::NpzReader::new(std::fs::File::open(&maps).unwrap()).unwrap();
@@ -160,8 +162,8 @@ fn maps_and_drawing_of_a_recording_are_exported() {
 fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     let mut s = Session::start();
     let path = copied(&s, "chip-8.toml");
-    s.ask(Command::OpenPath(path));
-    s.ask(Command::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
+    s.ask(DocumentCommand::OpenPath(path));
+    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
     let copy = s.folder.path().join("data/autosave.toml");
     step_until(&mut s, "no autosave", |_| copy.exists());
     let Session { app, folder } = s;
@@ -179,7 +181,7 @@ fn a_recording_is_opened_at_the_start_and_a_broken_one_keeps_the_scene() {
     let path = copied(&s, "cascade-86.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(s.folder.path().join("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
-    s.ask(Command::OpenPath(s.folder.path().join("broken.toml")));
+    s.ask(DocumentCommand::OpenPath(s.folder.path().join("broken.toml")));
     assert_eq!((s.state().messages(), s.state().radar().elements), (1, 128));
     let Session { app, folder } = s;
     drop(app);
@@ -197,18 +199,18 @@ fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
     let before = s.state().metrics();
     let mut elements = BuiltArray { elements: vec![ElementError::default(); 128] };
     elements.elements[3].dead = true;
-    s.ask(Command::SetElements(Arc::new(elements)));
-    s.ask(Command::SetInterferer(Some(Interferer::default())));
-    s.ask(Command::SetMirror(Some(Mirror::default())));
+    s.ask(RadarCommand::SetElements(Arc::new(elements)));
+    s.ask(RadarCommand::SetInterferer(Some(Interferer::default())));
+    s.ask(RadarCommand::SetMirror(Some(Mirror::default())));
     assert_ne!(s.state().metrics(), before);
     let path = s.folder.path().join("disturbed.toml");
-    s.ask(Command::SaveTo(path.clone()));
+    s.ask(DocumentCommand::SaveTo(path.clone()));
     let saved = Document::read(&path).unwrap();
     assert_eq!(saved.scene(), s.state().editor().scene());
     assert!(saved.scene().disturbances.elements.elements[3].dead);
     // Fewer elements keep what is wrong with those that stay.
     let radar = Radar { elements: 64, ..s.state().radar().clone() };
-    s.ask(Command::SetRadar(Box::new(radar)));
+    s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().editor().scene().disturbances.elements.elements.len(), 64);
     for _ in 0..4 {
         undo(&mut s);
@@ -220,15 +222,15 @@ fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
 #[test]
 fn a_selected_point_calibrates_the_elements() {
     let mut s = Session::start();
-    s.ask(Command::SetFloor(Floor::Exact));
-    s.ask(Command::Delete);
+    s.ask(ViewCommand::SetFloor(Floor::Exact));
+    s.ask(EditCommand::Delete);
     let drawn = Tolerances { gain: Decibels(1.0), phase_degrees: 15.0, position_millimetres: 0.0 };
     let built = drawn.build(s.state().radar(), 1);
-    s.ask(Command::SetElements(Arc::new(built)));
-    s.ask(Command::SelectAll);
-    s.ask(Command::Delete);
-    s.ask(Command::Add(NewObject::Point, Some(Place::new(1.0, 12.0))));
-    s.ask(Command::OpenPanel(Panel::Elements));
+    s.ask(RadarCommand::SetElements(Arc::new(built)));
+    s.ask(EditCommand::SelectAll);
+    s.ask(EditCommand::Delete);
+    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(1.0, 12.0))));
+    s.ask(WindowCommand::OpenPanel(Panel::Elements));
     s.app.get_by_label("Calibrate on this reflector").scroll_to_me();
     s.settle();
     s.app.get_by_label("Calibrate on this reflector").click();

@@ -1,7 +1,7 @@
 //! Editing, files and what survives a crash.
 
 use crate::session::{Session, harness};
-use apertura::app::{Command, NewObject};
+use apertura::app::{DocumentCommand, EditCommand, NewObject};
 use apertura::reconstruct::Baseline;
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use std::path::Path;
@@ -76,11 +76,11 @@ fn a_bad_file_is_told_and_nothing_is_lost() {
         let path = s.folder.path().join(name);
         std::fs::write(&path, text).unwrap();
         let before = s.state().messages();
-        s.ask(Command::OpenPath(path));
+        s.ask(DocumentCommand::OpenPath(path));
         assert!(Arc::ptr_eq(&scene, s.state().editor().scene()), "{name}");
         assert_eq!(s.state().messages(), before + 1, "{name}");
     }
-    s.ask(Command::OpenPath(s.folder.path().join("missing.toml")));
+    s.ask(DocumentCommand::OpenPath(s.folder.path().join("missing.toml")));
     assert!(Arc::ptr_eq(&scene, s.state().editor().scene()));
 }
 
@@ -134,7 +134,7 @@ fn two_windows_keep_apart_and_a_killed_one_leaves_its_scene_to_the_next() {
     assert_eq!(copies(folder.path()), ["autosave.toml"]);
     let mut second = harness(folder.path(), None, vec![Arc::new(Baseline)]);
     assert!(!second.state().editor().scene().objects.is_empty(), "what an open window holds is not restored");
-    second.state_mut().ask(Command::Add(NewObject::Point, None));
+    second.state_mut().ask(EditCommand::Add(NewObject::Point, None));
     let deadline = Instant::now() + Duration::from_secs(10);
     while copies(folder.path()) != ["autosave-2.toml", "autosave.toml"] {
         assert!(Instant::now() < deadline, "{:?}", copies(folder.path()));

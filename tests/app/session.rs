@@ -51,13 +51,13 @@ impl Session {
         }
     }
 
-    pub fn ask(&mut self, command: Command) {
+    pub fn ask(&mut self, command: impl Into<Command>) {
         self.app.state_mut().ask(command);
         self.settle();
     }
 
     /// Asks for what goes on beside the window, and waits for its end, which may come within the frame it began in.
-    pub fn ask_and_wait(&mut self, command: Command) {
+    pub fn ask_and_wait(&mut self, command: impl Into<Command>) {
         self.app.state_mut().ask(command);
         self.app.step();
         step_until(self, "it ends", |s| !s.state().is_at_work());

@@ -1,7 +1,10 @@
 //! Long work beside the window: evaluations, measurements, training logs, methods that fail.
 
 use crate::session::{Session, step_until};
-use apertura::app::{Command, MapKind, NewObject, Panel};
+use apertura::app::{
+    Command, DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand,
+    WindowCommand,
+};
 use apertura::engine::{Outcome, StageReport};
 use apertura::files::npz::Npz;
 use apertura::radar::{Carrier, Radar};
@@ -21,7 +24,7 @@ use std::time::{Duration, Instant};
 #[test]
 fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::Evaluation));
+    s.ask(WindowCommand::Maximise(Panel::Evaluation));
     s.app.get_by_label("Evaluate").click();
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     step_until(&mut s, "it can be cancelled", |s| s.app.query_by_label("Cancel").is_some());
@@ -35,7 +38,7 @@ fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
 #[test]
 fn run_times_arrive_while_they_are_measured() {
     let mut s = Session::start();
-    s.ask(Command::Maximise(Panel::RunTime));
+    s.ask(WindowCommand::Maximise(Panel::RunTime));
     s.app.get_by_label("Measure").click();
     step_until(&mut s, "a row arrives", |s| s.state().run_time_rows() > 0);
     s.app.step();
@@ -93,7 +96,7 @@ fn a_method_that_panics_is_a_message_and_the_app_goes_on() {
     assert!(!s.state().pictures().contains(&MapKind::Output));
     assert!(s.state().pictures().contains(&MapKind::Target), "the maps go on");
     fails.store(false, Ordering::SeqCst);
-    s.ask(Command::RandomScene(Kind::Set1));
+    s.ask(DocumentCommand::RandomScene(Kind::Set1));
     assert!(s.state().pictures().contains(&MapKind::Output), "and so does the method");
 }
 
@@ -116,7 +119,7 @@ impl Reconstructor for Trained {
 fn a_method_that_refuses_leaves_nothing_of_its_last_output_and_offers_another() {
     let mut s = Session::with_methods(vec![Arc::new(Trained), Arc::new(Baseline)]);
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
-    s.ask(Command::SetCarrier(Carrier::TwoWay));
+    s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
     assert_eq!(s.state().shown_method(), None);
     assert!(!s.state().pictures().iter().any(|kind| kind.needs_output()), "{:?}", s.state().pictures());
     assert_eq!(s.state().metrics(), None, "no figures beside no output");
@@ -150,7 +153,7 @@ fn figures_are_of_one_pair_of_maps_and_a_slow_output_is_marked_as_old() {
     let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
     let before = s.state().metrics().unwrap();
     assert!(!s.state().output_is_outdated());
-    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     let target = s.state().report().unwrap().total;
     step_until(&mut s, "the maps are new", |s| s.state().report().unwrap().total != target);
     step_until(&mut s, "the output is told to be old", |s| {
@@ -166,9 +169,9 @@ fn figures_are_of_one_pair_of_maps_and_a_slow_output_is_marked_as_old() {
 #[test]
 fn nothing_found_in_one_recording_is_listed_over_the_next() {
     let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
-    s.ask(Command::Recording(0));
+    s.ask(DocumentCommand::Recording(0));
     assert!(s.state().found().is_some_and(|found| !found.is_empty()) && !s.state().marked_found().is_empty());
-    s.app.state_mut().ask(Command::Recording(1));
+    s.app.state_mut().ask(DocumentCommand::Recording(1));
     step_until(&mut s, "the next recording is on screen", |s| s.state().radar().samples == 128);
     for _ in 0..5 {
         assert_eq!((s.state().found(), s.state().marked_found().len()), (None, 0));
@@ -182,11 +185,11 @@ fn nothing_found_in_one_recording_is_listed_over_the_next() {
 #[test]
 fn nothing_found_in_one_scene_is_marked_over_the_next() {
     let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
-    s.ask(Command::ToggleFound);
-    s.ask(Command::OpenPanel(Panel::Found));
+    s.ask(ViewCommand::ToggleFound);
+    s.ask(WindowCommand::OpenPanel(Panel::Found));
     assert!(!s.state().marked_found().is_empty());
     let before = s.state().editor().document().id();
-    s.app.state_mut().ask(Command::RandomScene(Kind::Set2));
+    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     step_until(&mut s, "another scene is on screen", |s| s.state().editor().document().id() != before);
     assert!(s.state().marked_found().is_empty() && s.state().found().is_none());
     s.settle();
@@ -224,17 +227,17 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
     let place = "x_metres = 0.0\ny_metres = 10.0\nx_std_metres = 2.0\ny_std_metres = 2.0\n";
     let cluster = format!("[[object]]\nkind = \"gaussian\"\n{place}count = {CLUSTER}\nseed = 1\n");
     std::fs::write(&path, radar.to_owned() + &cluster).unwrap();
-    s.ask(Command::OpenPath(path));
+    s.ask(DocumentCommand::OpenPath(path));
     let said = |s: &Session, text: &str| {
         let says = |stage: &StageReport| matches!(&stage.outcome, Outcome::Computed(what) if what.contains(text));
         s.state().report().unwrap().stages.iter().any(says)
     };
     // A machine may be so quick that the scene rests before the edit is seen, but not every time.
     let given_up = (1..=10).step_by(2).any(|points| {
-        s.app.state_mut().ask(Command::Add(NewObject::Point, None));
+        s.app.state_mut().ask(EditCommand::Add(NewObject::Point, None));
         step_until(&mut s, "the maps follow", |s| said(s, &format!("{} reflectors", CLUSTER + points)));
         step_until(&mut s, "the scene rests", |s| s.state().is_settling());
-        s.app.state_mut().ask(Command::Add(NewObject::Point, None));
+        s.app.state_mut().ask(EditCommand::Add(NewObject::Point, None));
         let came_to_rest = Cell::new(false);
         step_until(&mut s, "the maps follow", |s| {
             came_to_rest.set(came_to_rest.get() || said(s, "from scratch in f64"));
@@ -251,7 +254,7 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
 fn exported_maps_hold_the_output() {
     let mut s = Session::start();
     let path = s.folder.path().join("maps.npz");
-    s.ask(Command::ExportMapsTo(path.clone()));
+    s.ask(ExportCommand::MapsTo(path.clone()));
     step_until(&mut s, "it is written", |_| path.exists());
     let bytes = std::fs::read(&path).unwrap();
     let named = |key: &[u8]| bytes.windows(key.len()).any(|w| w == key);
@@ -262,7 +265,7 @@ fn exported_maps_hold_the_output() {
 fn the_window_exports_what_apertura_maps_writes() {
     let mut s = Session::start();
     let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.folder.path().join(name));
-    s.ask(Command::ExportMapsTo(by_window.clone()));
+    s.ask(ExportCommand::MapsTo(by_window.clone()));
     step_until(&mut s, "it is written", |_| by_window.exists());
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
     command.arg("maps").arg(s.folder.path().join("scene.toml")).arg("-o").arg(&by_command);
@@ -285,7 +288,7 @@ fn the_window_exports_what_apertura_maps_writes() {
 #[test]
 fn open_shows_a_dialog_of_the_windows_own_where_the_system_has_none() {
     let mut s = Session::start();
-    s.ask(Command::Open);
+    s.ask(DocumentCommand::Open);
     assert!(s.app.query_all_by_label_contains("Open a scene").next().is_some());
     s.app.get_by_label("scene.toml").click();
     s.settle();

@@ -1,36 +1,69 @@
-//! Commands that change the scene on screen or its selection.
+//! Commands that select objects and change the scene on screen.
 
-use crate::app::state::{Command, NewObject, State};
+use super::{Effect, shared};
+use crate::app::state::{EditCommand, NewObject, State};
 use crate::interact::Place;
 use crate::scene::{GaussianCluster, Line, Object, Point};
+use crate::share::is_shared;
 
-/// Does those commands, and hands others on.
-pub fn apply(state: &mut State, command: Command) -> Option<Command> {
+/// Does such a command, but for what the clipboard has to do.
+pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
     let editor = &mut state.editor;
     match command {
-        Command::Undo => state.undo(),
-        Command::Redo => state.redo(),
-        Command::Seal => editor.seal(),
-        Command::PasteText(text) => {
+        EditCommand::Undo => state.undo(),
+        EditCommand::Redo => state.redo(),
+        EditCommand::Seal => editor.seal(),
+        EditCommand::Cut => {
+            let copied = copy(state);
+            state.editor.delete_selected();
+            return copied;
+        }
+        EditCommand::Copy => return copy(state),
+        EditCommand::Paste => return Some(Effect::RequestPaste),
+        EditCommand::PasteText(text) if is_shared(&text) => shared::open(state, &text),
+        EditCommand::PasteText(text) => {
             if let Err(error) = editor.paste(&text) {
                 state.notices.error(format!("Nothing was pasted: {error}"));
             }
         }
-        Command::Duplicate => {
+        EditCommand::Duplicate => {
             if let Err(error) = editor.duplicate_selected() {
                 state.notices.error(format!("Nothing was duplicated: {error}"));
             }
         }
-        Command::Delete => editor.delete_selected(),
-        Command::SelectAll => editor.select_all(),
-        Command::Nudge { dx_metres, dy_metres } => editor.nudge(dx_metres, dy_metres),
-        Command::Add(kind, place) => add(state, kind, place),
-        Command::SetNoiseSeed(seed) => {
+        EditCommand::Delete => editor.delete_selected(),
+        EditCommand::SelectAll => editor.select_all(),
+        EditCommand::Select(objects, mode) => editor.select(objects, mode),
+        EditCommand::SelectNext => editor.select_neighbour(true),
+        EditCommand::SelectPrevious => editor.select_neighbour(false),
+        EditCommand::SetField(field, change) => {
+            if let Err(error) = editor.set_field(field, change) {
+                state.notices.error(format!("Nothing was changed: {error}"));
+            }
+        }
+        EditCommand::Align(alignment) => editor.align(alignment),
+        EditCommand::Distribute(along) => editor.distribute(along),
+        EditCommand::Grab(blob) => editor.grab(blob),
+        EditCommand::DragTo(place) => _ = editor.drag_to(place, state.settings.snap),
+        EditCommand::Drop => editor.end_drag(),
+        EditCommand::Add(kind, place) => add(state, kind, place),
+        EditCommand::Nudge { dx_metres, dy_metres } => editor.nudge(dx_metres, dy_metres),
+        EditCommand::SetNoiseSeed(seed) => {
             editor.edit("noise seed", Some("noise seed"), |scene, _| scene.noise_seed = seed);
         }
-        other => return Some(other),
+        EditCommand::SetSnap(snap) => state.settings.snap = snap,
+        EditCommand::SetCoordinates(coordinates) => state.settings.coordinates = coordinates,
     }
     None
+}
+
+/// The selected objects for the clipboard; says what to do where there are none.
+fn copy(state: &mut State) -> Option<Effect> {
+    let copied = state.editor.copy().map(Effect::Copy);
+    if copied.is_none() {
+        state.notices.info("Nothing is selected: click an object, or drag a box around several.");
+    }
+    copied
 }
 
 /// Adds an object at `place`, or in the middle of the visible scene, beside whatever is there already.

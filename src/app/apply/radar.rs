@@ -1,31 +1,29 @@
 //! Commands that change the radar before the scene, its elements, and what else disturbs it.
 
-use crate::app::state::{Command, State};
+use crate::app::state::{RadarCommand, State};
 use crate::radar::{BuiltArray, Radar, presets};
 use crate::scene::Disturbances;
 
-/// Does those commands, and hands others on.
-pub fn apply(state: &mut State, command: Command) -> Option<Command> {
+/// Does such a command.
+pub fn apply(state: &mut State, command: RadarCommand) {
     match command {
-        Command::SetCarrier(carrier) => edit(state, "carrier", None, |r| r.carrier = carrier),
-        Command::SetWindow(window) => edit(state, "window", None, |r| r.window = window),
-        Command::SetRadar(radar) => {
+        RadarCommand::SetCarrier(carrier) => edit(state, "carrier", None, |r| r.carrier = carrier),
+        RadarCommand::SetWindow(window) => edit(state, "window", None, |r| r.window = window),
+        RadarCommand::Set(radar) => {
             let field = changed_field(state.radar(), &radar);
             edit(state, field, Some(field), |r| *r = *radar);
         }
-        Command::SetElements(elements) => disturb(state, "built elements", |d| {
+        RadarCommand::SetElements(elements) => disturb(state, "built elements", |d| {
             d.elements = if elements.is_ideal() { BuiltArray::default() } else { BuiltArray::clone(&elements) };
         }),
-        Command::SetInterferer(interferer) => disturb(state, "interferer", |d| d.interferer = interferer),
-        Command::SetMirror(mirror) => disturb(state, "mirror", |d| d.mirror = mirror),
-        Command::RadarPreset(index) => {
+        RadarCommand::SetInterferer(interferer) => disturb(state, "interferer", |d| d.interferer = interferer),
+        RadarCommand::SetMirror(mirror) => disturb(state, "mirror", |d| d.mirror = mirror),
+        RadarCommand::Preset(index) => {
             if let Some(preset) = presets::ALL.get(index) {
                 edit(state, "radar preset", None, |r| *r = preset.radar.clone());
             }
         }
-        other => return Some(other),
     }
-    None
 }
 
 /// Changes what disturbs the scene; changes of one kind in a row are one step until the pointer is let go.

@@ -1,22 +1,11 @@
 //! What is on screen as a line of text, and back.
 
-use super::lessons;
-use crate::app::jobs::Jobs;
-use crate::app::state::{Command, MapView, Projection, State};
+use super::lesson;
+use crate::app::state::{MapView, Projection, State};
 use crate::interact::Document;
 use crate::lesson::shipped;
-use crate::share::{LessonPlace, Part, ShareError, Shared, View, is_shared};
+use crate::share::{LessonPlace, Part, ShareError, Shared, View};
 use eframe::egui::pos2;
-
-/// Opens a text that was shared; hands any other command on.
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
-    match command {
-        Command::PasteText(text) if is_shared(&text) => open(state, jobs, &text),
-        Command::OpenShared(text) => open(state, jobs, &text),
-        other => return Some(other),
-    }
-    None
-}
 
 /// The text of what is on screen; says why where there can be none.
 pub fn text(state: &mut State) -> Option<String> {
@@ -68,7 +57,8 @@ fn part(view: MapView) -> Part {
     Part { left, bottom, right, top }
 }
 
-fn open(state: &mut State, jobs: &mut Jobs, text: &str) {
+/// Opens a text that was shared; on any error the scene on screen stays.
+pub fn open(state: &mut State, text: &str) {
     let shared = match Shared::from_text(text) {
         Ok(shared) => shared,
         Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
@@ -78,8 +68,8 @@ fn open(state: &mut State, jobs: &mut Jobs, text: &str) {
         let index = shipped::ALL.iter().position(|lesson| lesson.id == place.id);
         match index {
             Some(index) => {
-                lessons::apply(state, jobs, Command::BeginLesson(index));
-                lessons::apply(state, jobs, Command::LessonStep(place.step.saturating_sub(1)));
+                lesson::begin_shipped(state, index);
+                lesson::go_to(state, place.step.saturating_sub(1));
             }
             None => {
                 state.notices.error(format!("There is no lesson \"{}\" here; the scene was opened alone.", place.id))

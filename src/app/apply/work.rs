@@ -1,38 +1,30 @@
 //! Commands that start long work, or stop it.
 
 use crate::app::jobs::{EvaluationPlan, Jobs, Purpose, tell};
-use crate::app::state::{Command, EvaluationChoice, MethodSlot, Panel, PinnedCut, State};
+use crate::app::state::{EvaluationChoice, MethodSlot, Panel, State, WorkCommand};
 use crate::evaluate::campaign::Campaign;
+use std::path::PathBuf;
 
-/// Does those commands, and hands others on.
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+/// Does such a command.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
-        Command::NextMethod => {
-            let next = state.method().and_then(|now| state.methods.after(now.name()));
-            next.into_iter().for_each(|name| state.settings.method = name.to_owned());
-        }
-        Command::PinCuts => {
-            let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
-            state.pins.push(PinnedCut { radar, cursor, maps: jobs.pipeline.cut_maps() });
-        }
-        Command::Unpin(index) => state.pins.remove(index),
-        Command::UnpinAll => state.pins.clear(),
-        Command::CancelMethod => jobs.pipeline.cancel_method(MethodSlot::First),
-        Command::CancelSecond => jobs.pipeline.cancel_method(MethodSlot::Second),
-        Command::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
-        Command::CancelEvaluation => jobs.evaluation.cancel(),
-        Command::Measure { thorough } => jobs.run_time.begin(state.radar().clone(), thorough),
-        Command::CancelMeasurement => jobs.run_time.cancel(),
-        Command::OpenLog => jobs.choose_file(state, Purpose::OpenLog),
-        Command::WatchLog(path) => {
-            jobs.training.follow(path);
-            state.arrangement.set_open(Panel::Training, true);
-        }
-        Command::Train(recipe) => train(state, jobs, recipe),
-        Command::CancelTraining => jobs.training.cancel(),
-        other => return Some(other),
+        WorkCommand::CancelMethod => jobs.pipeline.cancel_method(MethodSlot::First),
+        WorkCommand::CancelSecond => jobs.pipeline.cancel_method(MethodSlot::Second),
+        WorkCommand::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
+        WorkCommand::CancelEvaluation => jobs.evaluation.cancel(),
+        WorkCommand::Measure { thorough } => jobs.run_time.begin(state.radar().clone(), thorough),
+        WorkCommand::CancelMeasurement => jobs.run_time.cancel(),
+        WorkCommand::OpenLog => jobs.choose_file(state, Purpose::OpenLog),
+        WorkCommand::WatchLog(path) => watch(state, jobs, path),
+        WorkCommand::Train(recipe) => train(state, jobs, recipe),
+        WorkCommand::CancelTraining => jobs.training.cancel(),
     }
-    None
+}
+
+/// Watches the log of a training.
+pub fn watch(state: &mut State, jobs: &mut Jobs, log: PathBuf) {
+    jobs.training.follow(log);
+    state.arrangement.set_open(Panel::Training, true);
 }
 
 fn evaluation_plan(state: &State, choice: &EvaluationChoice) -> EvaluationPlan {

@@ -2,7 +2,7 @@
 
 use super::file_browser::{Answer, Browser};
 use crate::app::jobs::{Purpose, Question};
-use crate::app::state::Command;
+use crate::app::state::{Command, DocumentCommand, ExportCommand};
 use eframe::egui::{Context, Id, Modal, Ui};
 use std::path::{Path, PathBuf};
 
@@ -96,7 +96,9 @@ mod tests {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, "").unwrap();
         let question = Question::beside(Purpose::SaveScene, Some(&folder.path().join("scene.toml")));
-        for (answer, asked) in [("Keep it", vec![]), ("Replace", vec![Command::SaveTo(path.clone())])] {
+        for (answer, asked) in
+            [("Keep it", vec![]), ("Replace", vec![Command::Document(DocumentCommand::SaveTo(path.clone()))])]
+        {
             let mut dialog = panel(question.clone());
             dialog.get_by_label("Save").click();
             dialog.run_steps(3);
@@ -115,6 +117,6 @@ mod tests {
         let mut dialog = panel(question);
         dialog.get_by_label("Save").click();
         dialog.run_steps(3);
-        assert_eq!(dialog.state().1, [Command::ExportMapsTo(folder.path().join("maps.npz"))]);
+        assert_eq!(dialog.state().1, [Command::Export(ExportCommand::MapsTo(folder.path().join("maps.npz")))]);
     }
 }

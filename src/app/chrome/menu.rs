@@ -1,7 +1,10 @@
 //! The menu bar and the buttons beside it.
 
 use super::unsaved;
-use crate::app::state::{Command, MapKind, NewObject, Panel, Projection};
+use crate::app::state::{
+    Command, DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, Projection, ViewCommand,
+    WindowCommand,
+};
 use crate::app::widgets::entry::{arrange, button, entry, entry_called, tooltip};
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
@@ -84,15 +87,15 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             for (kind, label) in
                 [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
             {
-                button(ui, label, Command::Add(kind, None), true, &mut asked);
+                button(ui, label, EditCommand::Add(kind, None), true, &mut asked);
             }
             ui.separator();
-            button(ui, "Undo", Command::Undo, input.can_undo, &mut asked);
-            button(ui, "Redo", Command::Redo, input.can_redo, &mut asked);
+            button(ui, "Undo", EditCommand::Undo, input.can_undo, &mut asked);
+            button(ui, "Redo", EditCommand::Redo, input.can_redo, &mut asked);
             ui.separator();
-            button(ui, "Lessons", Command::OpenPanel(Panel::Lesson), true, &mut asked);
+            button(ui, "Lessons", WindowCommand::OpenPanel(Panel::Lesson), true, &mut asked);
             if input.presents {
-                button(ui, "End presentation", Command::Present, true, &mut asked);
+                button(ui, "End presentation", WindowCommand::Present, true, &mut asked);
             }
             let right = egui::Layout::right_to_left(egui::Align::Center);
             ui.with_layout(right, |ui| self::right(ui, input.projection, &mut asked));
@@ -106,15 +109,15 @@ fn right(ui: &mut Ui, shown: Projection, asked: &mut Vec<Command>) {
     if ui.available_width() < 90.0 {
         return;
     }
-    button(ui, "Commands", Command::Palette, true, asked);
+    button(ui, "Commands", WindowCommand::Palette, true, asked);
     if ui.available_width() < 180.0 {
         return;
     }
     ui.separator();
     for (projection, label) in [(Projection::Cartesian, "Cartesian"), (Projection::RangeAngle, "Range–angle")] {
         let response = ui.selectable_label(shown == projection, label);
-        if response.on_hover_text(tooltip(ui, &Command::ToggleProjection)).clicked() {
-            asked.push(Command::SetProjection(projection));
+        if response.on_hover_text(tooltip(ui, &Command::View(ViewCommand::ToggleProjection))).clicked() {
+            asked.push(ViewCommand::SetProjection(projection).into());
         }
     }
 }
@@ -128,13 +131,13 @@ fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut
 fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let recent = input.recent;
     ui.set_min_width(220.0);
-    entries(ui, [Command::New, Command::Open], asked);
+    entries(ui, [Command::Document(DocumentCommand::New), Command::Document(DocumentCommand::Open)], asked);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in recent {
                 let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
                 if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                    asked.push(Command::OpenPath(path.clone()));
+                    asked.push(DocumentCommand::OpenPath(path.clone()).into());
                     ui.close();
                 }
             }
@@ -142,30 +145,46 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
     unsaved::show(ui, input.left, asked);
     ui.separator();
-    entries(ui, [Command::Save, Command::SaveAs, Command::CopyShared], asked);
+    entries(
+        ui,
+        [
+            Command::Document(DocumentCommand::Save),
+            Command::Document(DocumentCommand::SaveAs),
+            Command::Export(ExportCommand::CopyShared),
+        ],
+        asked,
+    );
     ui.separator();
-    entries(ui, [Command::ExportPicture, Command::ExportMaps, Command::ExportMetrics], asked);
-    entries(ui, [Command::RecordDrag, Command::DrawLesson], asked);
-    entry(ui, Command::StopRecording, input.is_recording, asked);
+    entries(
+        ui,
+        [
+            Command::Export(ExportCommand::Picture),
+            Command::Export(ExportCommand::Maps),
+            Command::Export(ExportCommand::Metrics),
+        ],
+        asked,
+    );
+    entries(ui, [Command::Export(ExportCommand::RecordDrag), Command::Export(ExportCommand::DrawLesson)], asked);
+    entry(ui, ExportCommand::StopRecording, input.is_recording, asked);
     ui.separator();
-    entry(ui, Command::Quit, true, asked);
+    entry(ui, WindowCommand::Quit, true, asked);
 }
 
 fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(220.0);
-    entry(ui, Command::Undo, input.can_undo, asked);
-    entry(ui, Command::Redo, input.can_redo, asked);
+    entry(ui, EditCommand::Undo, input.can_undo, asked);
+    entry(ui, EditCommand::Redo, input.can_redo, asked);
     ui.separator();
     for (command, enabled) in [
-        (Command::Cut, input.selected),
-        (Command::Copy, input.selected),
-        (Command::Paste, true),
-        (Command::Duplicate, input.selected),
-        (Command::Delete, input.selected),
-        (Command::SelectAll, true),
-        (Command::SelectNext, true),
-        (Command::SelectPrevious, true),
-        (Command::Escape, input.selected),
+        (Command::Edit(EditCommand::Cut), input.selected),
+        (Command::Edit(EditCommand::Copy), input.selected),
+        (Command::Edit(EditCommand::Paste), true),
+        (Command::Edit(EditCommand::Duplicate), input.selected),
+        (Command::Edit(EditCommand::Delete), input.selected),
+        (Command::Edit(EditCommand::SelectAll), true),
+        (Command::Edit(EditCommand::SelectNext), true),
+        (Command::Edit(EditCommand::SelectPrevious), true),
+        (Command::Window(WindowCommand::Escape), input.selected),
     ] {
         entry(ui, command, enabled, asked);
     }
@@ -175,25 +194,29 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 
 fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Command>) {
     ui.set_min_width(260.0);
-    entries(ui, [NewObject::Point, NewObject::Line, NewObject::Cluster].map(|kind| Command::Add(kind, None)), asked);
+    entries(
+        ui,
+        [NewObject::Point, NewObject::Line, NewObject::Cluster].map(|kind| Command::Edit(EditCommand::Add(kind, None))),
+        asked,
+    );
     ui.separator();
     ui.menu_button("Presets", |ui| presets_of(ui, memory, false, asked));
     ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
     ui.menu_button("Recordings", |ui| {
-        entries(ui, (0..recordings::ALL.len()).map(Command::Recording), asked);
+        entries(ui, (0..recordings::ALL.len()).map(|v| Command::Document(DocumentCommand::Recording(v))), asked);
     });
     ui.separator();
     // A click into one of its fields must not close it.
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     SubMenuButton::new("Random scene").config(stays).ui(ui, |ui| random_scenes(ui, random, asked));
     ui.separator();
-    entry(ui, Command::FitScene, true, asked);
+    entry(ui, ViewCommand::FitScene, true, asked);
 }
 
 /// Every kind of random scene, and which one is next.
 fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
     for kind in Kind::all() {
-        entry_called(ui, kind.description(), Command::RandomScene(kind), true, asked);
+        entry_called(ui, kind.description(), Command::Document(DocumentCommand::RandomScene(kind)), true, asked);
     }
     ui.separator();
     ui.horizontal(|ui| {
@@ -206,7 +229,7 @@ fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
         let tip = "It rises by one each time";
         let numbers = ui.add(NumberField::new(&mut number).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
         if seeds.changed() || numbers.changed() {
-            asked.push(Command::SetNextRandom { seed, number });
+            asked.push(DocumentCommand::SetNextRandom { seed, number }.into());
         }
     });
 }
@@ -216,7 +239,7 @@ fn presets_of(ui: &mut Ui, memory: &Memory, failures: bool, asked: &mut Vec<Comm
     let listed = memory.presets.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
     for (index, preset) in listed {
         if ui.button(&preset.name).on_hover_text(&preset.notes).clicked() {
-            asked.push(Command::Preset(index));
+            asked.push(DocumentCommand::Preset(index).into());
             ui.close();
         }
     }
@@ -244,7 +267,11 @@ fn checkboxes<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &
     for &panel in panels.filter(|panel| is_of_use(**panel, input)) {
         let mut open = (input.is_open)(panel);
         if ui.checkbox(&mut open, panel.title()).on_hover_text(panel.describe()).clicked() {
-            asked.push(if open { Command::OpenPanel(panel) } else { Command::ClosePanel(panel) });
+            asked.push(if open {
+                Command::Window(WindowCommand::OpenPanel(panel))
+            } else {
+                Command::Window(WindowCommand::ClosePanel(panel))
+            });
             ui.close();
         }
     }
@@ -256,33 +283,33 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.menu_button("Colours", |ui| {
         for colours in ColourMap::ALL {
             if ui.radio(input.colours == colours, colours.name()).clicked() {
-                asked.push(Command::Colours(colours));
+                asked.push(ViewCommand::Colours(colours).into());
             }
         }
     });
-    entry(ui, Command::ResetLayout, true, asked);
+    entry(ui, WindowCommand::ResetLayout, true, asked);
     ui.separator();
     let of_maps = [
-        Command::ToggleProjection,
-        Command::ToggleUnits,
-        Command::ResetMaps,
-        Command::ToggleReflectors,
-        Command::ToggleFound,
-        Command::ToggleFieldsOfView,
-        Command::ToggleTheory,
-        Command::ToggleKinds,
-        Command::NextMethod,
-        Command::Flip,
+        Command::View(ViewCommand::ToggleProjection),
+        Command::View(ViewCommand::ToggleUnits),
+        Command::View(ViewCommand::ResetMaps),
+        Command::View(ViewCommand::ToggleReflectors),
+        Command::View(ViewCommand::ToggleFound),
+        Command::View(ViewCommand::ToggleFieldsOfView),
+        Command::View(ViewCommand::ToggleTheory),
+        Command::View(ViewCommand::ToggleKinds),
+        Command::View(ViewCommand::NextMethod),
+        Command::View(ViewCommand::Flip),
     ];
     entries(ui, of_maps, asked);
     ui.separator();
     let of_window = [
-        Command::Present,
-        Command::ToggleTheme,
-        Command::ZoomIn,
-        Command::ZoomOut,
-        Command::ZoomReset,
-        Command::Palette,
+        Command::Window(WindowCommand::Present),
+        Command::Window(WindowCommand::ToggleTheme),
+        Command::Window(WindowCommand::ZoomIn),
+        Command::Window(WindowCommand::ZoomOut),
+        Command::Window(WindowCommand::ZoomReset),
+        Command::Window(WindowCommand::Palette),
     ];
     entries(ui, of_window, asked);
 }

@@ -1,6 +1,6 @@
 //! The palette: find any command by typing part of its name.
 
-use crate::app::state::{Command, listed};
+use crate::app::state::{Command, EditCommand, ViewCommand, WindowCommand, listed};
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
 use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
@@ -71,14 +71,14 @@ fn matches(name: &str, text: &str) -> bool {
 
 /// The commands whose names match `text`.
 fn find(ctx: &Context, input: &Input<'_>, text: &str) -> Vec<Found> {
-    let commands = listed().iter().filter(|e| e.command != Command::Palette).map(|e| Found {
+    let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
         command: e.command.clone(),
         name: e.name.to_string(),
         tooltip: e.tooltip,
         key: e.key.map(|key| ctx.format_shortcut(&key)).unwrap_or_default(),
     });
     let methods = input.methods.iter().map(|m| Found {
-        command: Command::Method(m.name()),
+        command: Command::View(ViewCommand::Method(m.name())),
         name: format!("Method: {}", m.name()),
         tooltip: m.description(),
         key: String::new(),
@@ -200,6 +200,9 @@ mod tests {
             palette.step();
             assert!(!palette.state().0.is_open());
         }
-        assert_eq!(palette.state().1, [Command::Add(NewObject::Line, None), Command::Method("baseline")]);
+        assert_eq!(
+            palette.state().1,
+            [Command::Edit(EditCommand::Add(NewObject::Line, None)), Command::View(ViewCommand::Method("baseline"))]
+        );
     }
 }

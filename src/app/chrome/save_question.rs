@@ -1,6 +1,6 @@
 //! Asks before a scene is written to a file that can't hold all of it, or that somebody else has written to.
 
-use crate::app::state::{Command, Doubt, SaveAnswer, SaveQuestion};
+use crate::app::state::{Command, DocumentCommand, Doubt, SaveAnswer, SaveQuestion};
 use eframe::egui::{Context, Id, Modal, Ui};
 
 /// What is asked.
@@ -14,7 +14,7 @@ pub fn show(ctx: &Context, input: Input<'_>) -> Vec<Command> {
     let Some(question) = input.question else { return Vec::new() };
     let modal = Modal::new(Id::unique("save question")).show(ctx, |ui| draw(ui, question));
     let answer = modal.inner.or(modal.should_close().then_some(SaveAnswer::Cancel));
-    answer.map(Command::AnswerSave).into_iter().collect()
+    answer.map(|v| Command::Document(DocumentCommand::AnswerSave(v))).into_iter().collect()
 }
 
 fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
@@ -83,7 +83,7 @@ mod tests {
             assert!(question.state().is_empty(), "nothing happens by itself");
             question.get_by_label(button).click();
             question.step();
-            assert_eq!(question.state(), &[Command::AnswerSave(answer)]);
+            assert_eq!(question.state(), &[Command::Document(DocumentCommand::AnswerSave(answer))]);
         }
     }
 
@@ -93,7 +93,11 @@ mod tests {
             let mut question = asked();
             question.key_press(key);
             question.step();
-            assert_eq!(question.state().first(), Some(&Command::AnswerSave(answer)), "{key:?}");
+            assert_eq!(
+                question.state().first(),
+                Some(&Command::Document(DocumentCommand::AnswerSave(answer))),
+                "{key:?}"
+            );
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The panels' tiles: tabs, title bars, one panel that fills the window.
 
-use crate::app::state::{Arrangement, Command, Panel};
+use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
 use crate::app::widgets::icons::{Icon, icon};
 use eframe::egui;
 use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
@@ -38,7 +38,7 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
             ui.strong(panel.title());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("Restore").on_hover_text("Show all panels again (Esc)").clicked() {
-                    behavior.asked.push(Command::Maximise(panel));
+                    behavior.asked.push(WindowCommand::Maximise(panel).into());
                 }
                 let room = ui.available_width();
                 behavior.caption(ui, panel, room);
@@ -125,7 +125,7 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
     fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, tile: TileId, button: egui::Response) -> egui::Response {
         let Some(panel) = tiles.get_pane(&tile).copied() else { return button };
         if button.double_clicked() {
-            self.asked.push(Command::Maximise(panel));
+            self.asked.push(WindowCommand::Maximise(panel).into());
         }
         button.on_hover_ui(|ui| {
             ui.label(panel.describe());
@@ -146,10 +146,10 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
         ui.add_space(4.0);
         let name = panel.title();
         if icon(ui, Icon::Close, &format!("Hide {name}")).clicked() {
-            self.asked.push(Command::ClosePanel(panel));
+            self.asked.push(WindowCommand::ClosePanel(panel).into());
         }
         if icon(ui, Icon::Maximise, &format!("Maximise {name}")).clicked() {
-            self.asked.push(Command::Maximise(panel));
+            self.asked.push(WindowCommand::Maximise(panel).into());
         }
         // The tabs come first: what they leave is the caption's.
         let row = tabs_of(ui, tiles, tabs);

@@ -1,6 +1,6 @@
 //! The menu of unsaved scenes that another took the place of: to be brought back, or given up.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, DocumentCommand};
 use crate::interact::Document;
 use eframe::egui::Ui;
 
@@ -24,8 +24,16 @@ fn one(ui: &mut Ui, document: &Document, asked: &mut Vec<Command>) {
     ui.push_id(document.id(), |ui| {
         ui.menu_button(text, |ui| {
             let entries = [
-                ("Bring back", "Put it on screen; undo takes that back", Command::Recover(document.id())),
-                ("Discard", "Give it up: no copy of it is kept", Command::Discard(document.id())),
+                (
+                    "Bring back",
+                    "Put it on screen; undo takes that back",
+                    Command::Document(DocumentCommand::Recover(document.id())),
+                ),
+                (
+                    "Discard",
+                    "Give it up: no copy of it is kept",
+                    Command::Document(DocumentCommand::Discard(document.id())),
+                ),
             ];
             for (name, tooltip, command) in entries {
                 if ui.button(name).on_hover_text(tooltip).clicked() {
@@ -61,6 +69,9 @@ mod tests {
                 menu.run();
             }
         }
-        assert_eq!(menu.state(), &[Command::Recover(ids[1]), Command::Discard(ids[0])]);
+        assert_eq!(
+            menu.state(),
+            &[Command::Document(DocumentCommand::Recover(ids[1])), Command::Document(DocumentCommand::Discard(ids[0]))]
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Which file? The system's dialogs, off the UI thread; what is chosen comes back as a command. Where the system has none, whoever asks
 //! is told, so that the window shows its own.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,18 +44,18 @@ impl Purpose {
     /// What is done with the file.
     pub fn command(self, path: PathBuf) -> Command {
         match self {
-            Purpose::Open => Command::OpenPath(path),
-            Purpose::OpenLog => Command::WatchLog(path),
-            Purpose::OpenLesson => Command::OpenLessonFile(path),
-            Purpose::SaveScene => Command::SaveTo(path),
-            Purpose::ExportPicture => Command::ExportPictureTo(path),
-            Purpose::ExportMaps => Command::ExportMapsTo(path),
-            Purpose::RecordDrag => Command::RecordDragTo(path),
-            Purpose::DrawLesson => Command::DrawLessonTo(path),
-            Purpose::ExportMetrics => Command::ExportMetricsTo(path),
-            Purpose::OpenRows => Command::OpenRowsFile(path),
-            Purpose::SaveRows => Command::SaveRowsTo(path),
-            Purpose::OwnScenes => Command::SetOwnScenes(path),
+            Purpose::Open => Command::Document(DocumentCommand::OpenPath(path)),
+            Purpose::OpenLog => Command::Work(WorkCommand::WatchLog(path)),
+            Purpose::OpenLesson => Command::Lesson(LessonCommand::OpenFile(path)),
+            Purpose::SaveScene => Command::Document(DocumentCommand::SaveTo(path)),
+            Purpose::ExportPicture => Command::Export(ExportCommand::PictureTo(path)),
+            Purpose::ExportMaps => Command::Export(ExportCommand::MapsTo(path)),
+            Purpose::RecordDrag => Command::Export(ExportCommand::RecordDragTo(path)),
+            Purpose::DrawLesson => Command::Export(ExportCommand::DrawLessonTo(path)),
+            Purpose::ExportMetrics => Command::Export(ExportCommand::MetricsTo(path)),
+            Purpose::OpenRows => Command::Rows(RowsCommand::OpenFile(path)),
+            Purpose::SaveRows => Command::Rows(RowsCommand::SaveTo(path)),
+            Purpose::OwnScenes => Command::Rows(RowsCommand::SetOwnScenes(path)),
         }
     }
 
@@ -306,6 +306,6 @@ mod tests {
         assert_eq!(answer(&mut dialogs, question(Purpose::ExportMaps)), (Vec::new(), None));
         assert_eq!(dialogs.take_unanswered(), None);
         let (chosen, _) = answer(&mut dialogs, question(Purpose::Open));
-        assert_eq!(chosen, [Command::OpenPath("a.toml".into())]);
+        assert_eq!(chosen, [Command::Document(DocumentCommand::OpenPath("a.toml".into()))]);
     }
 }

@@ -1,6 +1,6 @@
 //! Predictions judged and challenges measured, off the UI thread.
 
-use crate::app::state::{Command, LessonRun, State};
+use crate::app::state::{Command, LessonCommand, LessonRun, State};
 use crate::app::widgets::textures::colour_table;
 use crate::lesson::{Guess, Judgement, Lesson, LessonError, MapName, Measured, Stage, Step};
 use crate::maps::RangeAngleMap;
@@ -128,7 +128,7 @@ impl Lessons {
         for reply in self.reader.iter().flat_map(Worker::replies) {
             match reply {
                 Reply::Done { result: (path, Ok(lesson)), .. } => {
-                    begun.push(Command::TakeLesson { id: path.display().to_string(), lesson: Arc::new(lesson) });
+                    begun.push(LessonCommand::Take { id: path.display().to_string(), lesson: Arc::new(lesson) }.into());
                 }
                 Reply::Done { result: (_, Err(error)), .. } => errors.push(format!("{error}\nNo lesson was opened.")),
                 Reply::Panicked { message, .. } => errors.push(format!("The lesson can't be tried out ({message}).")),

@@ -50,7 +50,7 @@ pub use several::{SeveralMaps, Small};
 pub use theory::{Theory, TheoryResult};
 pub use training::{Log, Training};
 
-use crate::app::state::{Command, Panel, State};
+use crate::app::state::{Command, Panel, RowsCommand, State};
 use crate::interact::Autosave;
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
@@ -156,7 +156,7 @@ impl Jobs {
         chosen.extend(begun);
         // What was found takes the place of what it was looked for near, but not of what somebody made of that meanwhile.
         if found && self.failures.search.is_about(state.editor.scene()) {
-            chosen.push(Command::TakeFinding);
+            chosen.push(RowsCommand::TakeFinding.into());
         }
         chosen
     }

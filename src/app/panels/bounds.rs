@@ -1,7 +1,7 @@
 //! What no unbiased estimator can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
 use crate::app::jobs::{BoundsRequest, BoundsResult};
-use crate::app::state::{BoundsSettings, Command, Elements};
+use crate::app::state::{BoundsSettings, Command, Elements, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{self, Chart};
 use crate::app::widgets::colour_bar::Bar;
@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         let mut settings = input.settings;
         choices(ui, &mut settings, input.elements);
         if settings != input.settings {
-            asked.push(Command::SetBounds(settings));
+            asked.push(ViewCommand::SetBounds(settings).into());
         }
         if let Some(error) = input.error {
             ui.colored_label(ui.visuals().error_fg_color, error);
@@ -280,7 +280,7 @@ mod tests {
         bounds.get_by_label("the whole array").click();
         bounds.run();
         let all = BoundsSettings { elements: Elements::All, ..BoundsSettings::default() };
-        assert_eq!(bounds.state().1, [Command::SetBounds(all)]);
+        assert_eq!(bounds.state().1, [Command::View(ViewCommand::SetBounds(all))]);
     }
 
     /// The panel with the bounds of one point.

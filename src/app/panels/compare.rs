@@ -1,7 +1,7 @@
 //! Two methods on the scene on screen: side by side, flipped in place, or parted by an edge.
 
 use super::map::{self, Over};
-use crate::app::state::{Command, Compare, Layout, MapKind, MapView};
+use crate::app::state::{Command, Compare, EditCommand, Layout, MapKind, MapView, ViewCommand, WorkCommand};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
 use crate::app::widgets::progress::progress;
@@ -86,7 +86,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let [first, second] = input.chosen;
         if let Some(name) = method(ui, "First", first, input.methods) {
-            asked.push(Command::Method(name));
+            asked.push(ViewCommand::Method(name).into());
         }
         if let Some(name) = method(ui, "Second", second, input.methods) {
             compare.second = name.to_owned();
@@ -106,7 +106,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
                 choose_map(ui, label, map);
             }
         }
-        button(ui, "Flip maps", Command::Flip, true, asked);
+        button(ui, "Flip maps", ViewCommand::Flip, true, asked);
         // Its room is kept: what stands below must not jump when a reconstruction begins.
         let room = vec2(170.0, ui.spacing().interact_size.y);
         ui.allocate_ui(room, |ui| {
@@ -114,12 +114,12 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             if let Some(part) = input.progress
                 && progress(ui, part, 100.0, "Stop the second method; its last output stays")
             {
-                asked.push(Command::CancelSecond);
+                asked.push(WorkCommand::CancelSecond.into());
             }
         });
     });
     if compare != *input.compare {
-        asked.push(Command::SetCompare(Box::new(compare)));
+        asked.push(ViewCommand::SetCompare(Box::new(compare)).into());
     }
 }
 
@@ -183,7 +183,7 @@ mod tests {
                 progress: held.progress,
             };
             let asked = show(ui, input, &mut view, &mut memory);
-            held.asked.extend(asked.into_iter().filter(|c| !matches!(c, Command::Hover(_))));
+            held.asked.extend(asked.into_iter().filter(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))));
         };
         let compare = Compare { layout, ..Compare::default() };
         let held = Held { compare, progress: None, refused: false, asked: Vec::new() };
@@ -210,7 +210,7 @@ mod tests {
         assert!(panel.query_by_label("Second output map").is_none());
         panel.get_by_label("Flip maps").click();
         panel.step();
-        assert_eq!(panel.state().asked, [Command::Flip]);
+        assert_eq!(panel.state().asked, [Command::View(ViewCommand::Flip)]);
         panel.state_mut().compare.flip();
         panel.run_steps(2);
         assert_eq!(panel.get_by_label("Second output map").rect(), first);
@@ -234,11 +234,17 @@ mod tests {
         panel.drop_at(from + vec2(-map.width() / 4.0, 0.0));
         panel.step();
         let swipes = |asked: &[Command]| -> Vec<f32> {
-            asked.iter().filter_map(|c| if let Command::Swipe(edge) = c { Some(*edge) } else { None }).collect()
+            asked
+                .iter()
+                .filter_map(|c| if let Command::View(ViewCommand::Swipe(edge)) = c { Some(*edge) } else { None })
+                .collect()
         };
         let dragged = swipes(&panel.state().asked);
         assert!(dragged.last().is_some_and(|edge| (edge - 0.25).abs() < 0.01), "{dragged:?}");
-        assert!(!panel.state().asked.iter().any(|c| matches!(c, Command::Grab(_))), "the map beneath stays");
+        assert!(
+            !panel.state().asked.iter().any(|c| matches!(c, Command::Edit(EditCommand::Grab(_)))),
+            "the map beneath stays"
+        );
 
         panel.state_mut().asked.clear();
         panel.get_by_role_and_label(Role::Slider, "Edge between two maps").focus();
@@ -258,7 +264,7 @@ mod tests {
         panel.run_steps(2);
         panel.get_by_role_and_label(Role::Button, "baseline").click();
         panel.run_steps(2);
-        let Some(Command::SetCompare(compare)) = panel.state().asked.last().cloned() else {
+        let Some(Command::View(ViewCommand::SetCompare(compare))) = panel.state().asked.last().cloned() else {
             panic!("{:?}", panel.state().asked)
         };
         assert_eq!(compare.second, "baseline");
@@ -266,7 +272,7 @@ mod tests {
         panel.run_steps(2);
         panel.get_by_label("Target").click();
         panel.run_steps(2);
-        let Some(Command::SetCompare(compare)) = panel.state().asked.last().cloned() else {
+        let Some(Command::View(ViewCommand::SetCompare(compare))) = panel.state().asked.last().cloned() else {
             panic!("{:?}", panel.state().asked)
         };
         assert_eq!(compare.maps, [MapKind::Output, MapKind::Target]);
@@ -274,7 +280,7 @@ mod tests {
         panel.run_steps(2);
         panel.get_by_label("Cancel").click();
         panel.run_steps(2);
-        assert_eq!(panel.state().asked.last(), Some(&Command::CancelSecond));
+        assert_eq!(panel.state().asked.last(), Some(&Command::Work(WorkCommand::CancelSecond)));
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Settings: radar and floor, display, reconstruction with its live figures.
 
 use crate::app::jobs::{Refusal, Scores};
-use crate::app::state::{Command, DifferenceView, Projection, Settings, Units};
+use crate::app::state::{
+    Command, DifferenceView, EditCommand, Projection, RadarCommand, Settings, Units, ViewCommand, WorkCommand,
+};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
 use crate::app::widgets::number_field::NumberField;
@@ -125,11 +127,11 @@ fn row_of(ui: &mut Ui, name: &str, tooltip: &str, widgets: impl FnOnce(&mut Ui))
 }
 
 /// Choices beside each other.
-fn choices<T: PartialEq + Copy>(
+fn choices<T: PartialEq + Copy, C: Into<Command>>(
     ui: &mut Ui,
     chosen: T,
     of: impl IntoIterator<Item = (T, &'static str, &'static str)>,
-    command: impl Fn(T) -> Command,
+    command: impl Fn(T) -> C,
     asked: &mut Vec<Command>,
 ) {
     for (choice, name, tooltip) in of {
@@ -138,7 +140,7 @@ fn choices<T: PartialEq + Copy>(
             response = response.on_hover_text(tooltip);
         }
         if response.clicked() && choice != chosen {
-            asked.push(command(choice));
+            asked.push(command(choice).into());
         }
     }
 }
@@ -153,7 +155,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             let combo = ComboBox::from_id_salt("method").width(150.0).height(LIST_HEIGHT).selected_text(method.name());
             let listed = combo.show_ui(ui, |ui| {
                 let chosen = method_list(ui, input.methods, method.name());
-                asked.extend(chosen.map(Command::Method));
+                asked.extend(chosen.map(|v| Command::View(ViewCommand::Method(v))));
             });
             listed.response
         });
@@ -164,7 +166,9 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             ui.horizontal(|ui| {
                 let mut eta = input.eta;
                 let slider = threshold(ui, "η in numbers", &mut eta);
-                asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
+                asked.extend(
+                    moved(input.eta, eta).map(|eta| Command::View(ViewCommand::SetMethodEta(method.name(), Some(eta)))),
+                );
                 let own = input.settings.method_eta.contains_key(method.name());
                 let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
                 let back = match method.reads_eta() {
@@ -172,7 +176,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
                     false => format!("Back to the method's own η = {}", eta_text(method.eta())),
                 };
                 if reset.on_hover_text(back).clicked() {
-                    asked.push(Command::SetMethodEta(method.name(), None));
+                    asked.push(ViewCommand::SetMethodEta(method.name(), None).into());
                 }
                 in_decibels(ui, input, input.eta);
                 slider
@@ -190,7 +194,7 @@ fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             let mut eta = input.settings.target_eta;
             let slider = threshold(ui, "η' in numbers", &mut eta);
-            asked.extend(moved(input.settings.target_eta, eta).map(Command::SetTargetEta));
+            asked.extend(moved(input.settings.target_eta, eta).map(|v| Command::View(ViewCommand::SetTargetEta(v))));
             in_decibels(ui, input, input.settings.target_eta);
             slider
         })
@@ -228,7 +232,7 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
         ui.set_min_height(ui.spacing().interact_size.y);
         if let Some(part) = run.progress {
             if progress(ui, part, 150.0, "Stop this reconstruction; the last output stays") {
-                asked.push(Command::CancelMethod);
+                asked.push(WorkCommand::CancelMethod.into());
             }
         } else if let Some(refusal) = run.refusal {
             let reason = egui::RichText::new(&refusal.reason).color(ui.visuals().error_fg_color);
@@ -279,11 +283,11 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
             (range(60.0), "60 dB", "Λ is 0 at 60 dB below the peak"),
             (range(100.0), "100 dB", "Λ is 0 at 100 dB below the peak"),
         ];
-        choices(ui, settings.normalisation, of, Command::Normalise, asked);
+        choices(ui, settings.normalisation, of, ViewCommand::Normalise, asked);
         if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
             let drag = ui.add(NumberField::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
             if drag.on_hover_text("Any other dynamic range").changed() {
-                asked.push(Command::Normalise(Normalisation::DynamicRange(Decibels(range))));
+                asked.push(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(range))).into());
             }
         }
     });
@@ -305,18 +309,18 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
             ),
             (Floor::Level(settings.level), "dBm", LEVEL),
         ];
-        choices(ui, settings.floor, of, Command::SetFloor, asked);
+        choices(ui, settings.floor, of, ViewCommand::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {
             let drag = ui.add(NumberField::new(&mut snr).range(-40.0..=200.0).speed(0.5).suffix(" dB"));
             if drag.changed() {
-                asked.push(Command::SetFloor(Floor::Snr(Decibels(snr))));
+                asked.push(ViewCommand::SetFloor(Floor::Snr(Decibels(snr))).into());
             }
         }
         if let Floor::Level(DecibelMilliwatts(mut level)) = settings.floor {
             let drag =
                 NumberField::new(&mut level).range(signal::floor::LEVEL_DECIBEL_MILLIWATTS).speed(0.5).suffix(" dBm");
             if ui.add(drag).on_hover_text(LEVEL).changed() {
-                asked.push(Command::SetFloor(Floor::Level(DecibelMilliwatts(level))));
+                asked.push(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(level))).into());
             }
         }
     });
@@ -324,7 +328,7 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
         row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
             let drag = ui.add(NumberField::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
             if drag.changed() {
-                asked.push(Command::SetNoiseSeed(noise_seed));
+                asked.push(EditCommand::SetNoiseSeed(noise_seed).into());
             }
             drag
         });
@@ -335,7 +339,7 @@ fn carrier(ui: &mut Ui, carrier: Carrier, asked: &mut Vec<Command>) {
     let tooltip = "One-way: the thesis' convention, unambiguous. Two-way: as equation 3.1 is printed; each column stands for two directions";
     row_of(ui, "Carrier", tooltip, |ui| {
         let of = [(Carrier::OneWay, "One-way", ""), (Carrier::TwoWay, "Two-way", "")];
-        choices(ui, carrier, of, Command::SetCarrier, asked);
+        choices(ui, carrier, of, RadarCommand::SetCarrier, asked);
     });
 }
 
@@ -343,28 +347,28 @@ fn window(ui: &mut Ui, window: WindowFunction, asked: &mut Vec<Command>) {
     let tooltip = "Weights of samples and elements in both transforms: low side lobes cost a wide main lobe";
     row_of(ui, "Window", tooltip, |ui| {
         let of = WindowFunction::ALL.map(|choice| {
-            let entry = Command::SetWindow(choice).entry();
+            let entry = Command::Radar(RadarCommand::SetWindow(choice)).entry();
             (choice, choice.name(), entry.map_or("", |e| e.tooltip))
         });
-        choices(ui, window, of, Command::SetWindow, asked);
+        choices(ui, window, of, RadarCommand::SetWindow, asked);
     });
 }
 
 fn display(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
         let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
-        choices(ui, settings.projection, of, Command::SetProjection, asked);
+        choices(ui, settings.projection, of, ViewCommand::SetProjection, asked);
     });
     row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
-        choices(ui, settings.units, of, Command::SetUnits, asked);
+        choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
     });
     if uses.output {
         difference(ui, settings, asked);
     }
     row_of(ui, "Colours", "Colours of Λ", |ui| {
         let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
-        choices(ui, settings.colours, of, Command::Colours, asked);
+        choices(ui, settings.colours, of, ViewCommand::Colours, asked);
     });
     marks(ui, settings, uses, asked);
     row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
@@ -373,7 +377,7 @@ fn display(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command
             (Snap::Metres(0.5), "0.5 m", ""),
             (Snap::Cells, "Cells", "Whole range bins and columns"),
         ];
-        choices(ui, settings.snap, of, Command::SetSnap, asked);
+        choices(ui, settings.snap, of, EditCommand::SetSnap, asked);
     });
 }
 
@@ -382,12 +386,12 @@ fn difference(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
         let DifferenceView { mut absolute, whole } = settings.difference;
         let tip = "Its absolute value, or output minus target";
         if ui.checkbox(&mut absolute, "absolute").on_hover_text(tip).changed() {
-            asked.push(Command::ToggleAbsoluteDifference);
+            asked.push(ViewCommand::ToggleAbsoluteDifference.into());
         }
         let mut fits = !whole;
         let tip = "On a scale that just holds it, or on one up to 1";
         if ui.checkbox(&mut fits, "automatic scale").on_hover_text(tip).changed() {
-            asked.push(Command::ToggleWholeDifference);
+            asked.push(ViewCommand::ToggleWholeDifference.into());
         }
     });
 }
@@ -395,20 +399,20 @@ fn difference(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
 /// What is drawn over maps and scene.
 fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Mark", "What is drawn over maps and scene", |ui| {
-        let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: Command| {
+        let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: ViewCommand| {
             if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
-                asked.push(command);
+                asked.push(command.into());
             }
         };
         let tooltip = "The scene's own reflectors, over every map (R)";
-        mark(ui, settings.show_reflectors, "reflectors", tooltip, Command::ToggleReflectors);
+        mark(ui, settings.show_reflectors, "reflectors", tooltip, ViewCommand::ToggleReflectors);
         if uses.output {
-            mark(ui, settings.show_found, "found", "Reflectors that the method found", Command::ToggleFound);
+            mark(ui, settings.show_found, "found", "Reflectors that the method found", ViewCommand::ToggleFound);
         }
         let tooltip = "What each end can see, in the scene (V)";
-        mark(ui, settings.show_fields_of_view, "views", tooltip, Command::ToggleFieldsOfView);
+        mark(ui, settings.show_fields_of_view, "views", tooltip, ViewCommand::ToggleFieldsOfView);
         let tooltip = "What the formulas say of the selected reflector, over every map (T)";
-        mark(ui, settings.show_theory, "theory", tooltip, Command::ToggleTheory);
+        mark(ui, settings.show_theory, "theory", tooltip, ViewCommand::ToggleTheory);
     });
     if !uses.output {
         return;
@@ -417,7 +421,7 @@ fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>)
         let mut marked = settings.show_kinds;
         let tip = "What became of every object: found, missed, merged, on the wrong tooth; and ghosts (H)";
         if ui.checkbox(&mut marked, "mark").on_hover_text(tip).changed() {
-            asked.push(Command::ToggleKinds);
+            asked.push(ViewCommand::ToggleKinds.into());
         }
     });
 }

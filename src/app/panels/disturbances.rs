@@ -1,6 +1,6 @@
 //! What disturbs the scene: somebody else's radar, and a wall that mirrors.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
@@ -72,7 +72,7 @@ fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut on = now.is_some();
     let tooltip = "Another radar whose chirps are not synchronised: received while its frequency crosses ours";
     if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
-        asked.push(Command::SetInterferer(on.then(|| Interferer::before(input.radar))));
+        asked.push(RadarCommand::SetInterferer(on.then(|| Interferer::before(input.radar))).into());
         return;
     }
     let Some(now) = now else { return };
@@ -90,7 +90,7 @@ fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         number(ui, &percent("duration (% of chirp)", tooltip, 0.1), &mut edited.duration);
     });
     if edited != now {
-        asked.push(Command::SetInterferer(Some(edited)));
+        asked.push(RadarCommand::SetInterferer(Some(edited)).into());
     }
 }
 
@@ -98,7 +98,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
     let mut on = now.is_some();
     let tooltip = "A straight wall: every reflector on the radar's side of it gets three ghosts";
     if ui.checkbox(&mut on, "Mirror").on_hover_text(tooltip).changed() {
-        asked.push(Command::SetMirror(on.then(Mirror::default)));
+        asked.push(RadarCommand::SetMirror(on.then(Mirror::default)).into());
         return;
     }
     let Some(now) = now else { return };
@@ -119,7 +119,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
         number(ui, &field, &mut edited.reflection);
     });
     if edited != now {
-        asked.push(Command::SetMirror(Some(edited)));
+        asked.push(RadarCommand::SetMirror(Some(edited)).into());
     }
 }
 
@@ -133,8 +133,8 @@ mod tests {
         let draw = move |ui: &mut Ui, state: &mut Disturbances| {
             for command in show(ui, Input { disturbances: &state.clone(), radar: &Radar::default(), is_recorded }) {
                 match command {
-                    Command::SetInterferer(interferer) => state.interferer = interferer,
-                    Command::SetMirror(mirror) => state.mirror = mirror,
+                    Command::Radar(RadarCommand::SetInterferer(interferer)) => state.interferer = interferer,
+                    Command::Radar(RadarCommand::SetMirror(mirror)) => state.mirror = mirror,
                     other => panic!("{other:?}"),
                 }
             }

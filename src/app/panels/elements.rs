@@ -1,7 +1,7 @@
 //! Elements as they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
 
 use crate::app::jobs::Calibrated;
-use crate::app::state::Command;
+use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{BuiltArray, Decibels, ElementError, End, Radar, Tolerances};
@@ -57,7 +57,7 @@ fn with(input: &Input<'_>, n: usize, change: impl FnOnce(&mut ElementError)) -> 
     let mut elements = input.elements.elements.clone();
     elements.resize(input.radar.elements, ElementError::default());
     change(&mut elements[n]);
-    Command::SetElements(Arc::new(BuiltArray { elements }))
+    Command::Radar(RadarCommand::SetElements(Arc::new(BuiltArray { elements })))
 }
 
 fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
@@ -70,7 +70,7 @@ fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ui.label(told(input.elements)).on_hover_text(spread_tooltip(living));
         let tooltip = "Remove all element errors; undo brings them back";
         if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
-            asked.push(Command::SetElements(Arc::default()));
+            asked.push(RadarCommand::SetElements(Arc::default()).into());
         }
     });
 }
@@ -214,7 +214,7 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &m
         if ui.button("Draw").on_hover_text(tooltip).clicked() {
             let mut drawn = memory.tolerances.build(input.radar, memory.seed);
             drawn.elements.iter_mut().enumerate().for_each(|(n, e)| e.dead = input.elements.element(n).dead);
-            asked.push(Command::SetElements(Arc::new(drawn)));
+            asked.push(RadarCommand::SetElements(Arc::new(drawn)).into());
         }
     });
 }
@@ -247,7 +247,7 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
     let tooltip = "Divide every element's samples by what was found of it";
     if ui.button("Calibrate on this reflector").on_hover_text(tooltip).clicked() {
-        asked.push(Command::SetElements(Arc::new(found.left.clone())));
+        asked.push(RadarCommand::SetElements(Arc::new(found.left.clone())).into());
     }
 }
 
@@ -276,7 +276,7 @@ mod tests {
             let calibration = state.calibrated.as_ref().map(Ok);
             let input = Input { radar: &radar(), elements: &elements, calibration };
             for command in show(ui, input, &mut state.memory) {
-                let Command::SetElements(elements) = command else { panic!("{command:?}") };
+                let Command::Radar(RadarCommand::SetElements(elements)) = command else { panic!("{command:?}") };
                 state.elements = elements;
                 state.asked += 1;
             }

@@ -1,7 +1,7 @@
 //! Methods on the tables' test scenes, beside what the thesis prints.
 
 use crate::app::jobs::EvaluationRow;
-use crate::app::state::{Command, EvaluationChoice};
+use crate::app::state::{Command, EvaluationChoice, ExportCommand, WorkCommand};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::progress;
@@ -113,7 +113,7 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Comm
     ui.horizontal(|ui| {
         if let Some(part) = input.progress {
             if progress(ui, part, 180.0, "Stop after this map; the rows that are finished stay") {
-                asked.push(Command::CancelEvaluation);
+                asked.push(WorkCommand::CancelEvaluation.into());
             }
             return;
         }
@@ -124,11 +124,11 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Comm
         if start.on_disabled_hover_text("Choose a method and a set first").clicked() {
             let methods = memory.methods.iter().copied().collect();
             let (count, seed) = (memory.count, memory.seed);
-            asked.push(Command::Evaluate(EvaluationChoice { methods, sets, count, seed }));
+            asked.push(WorkCommand::Evaluate(EvaluationChoice { methods, sets, count, seed }).into());
         }
         if !input.rows.is_empty() && ui.button("Copy as CSV").on_hover_text("Copy the rows to the clipboard").clicked()
         {
-            asked.push(Command::CopyEvaluation);
+            asked.push(ExportCommand::CopyEvaluation.into());
         }
     });
 }
@@ -213,7 +213,7 @@ mod tests {
         evaluation.get_by_label("Evaluate").click();
         evaluation.step();
         let choice = EvaluationChoice { methods: vec!["capon"], sets: vec![1, 3], count: 10, seed: 0 };
-        assert_eq!(evaluation.state().1, [Command::Evaluate(choice)]);
+        assert_eq!(evaluation.state().1, [Command::Work(WorkCommand::Evaluate(choice))]);
         let _told = evaluation.get_by_label_contains("With a two-way carrier");
     }
 

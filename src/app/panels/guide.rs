@@ -1,6 +1,8 @@
 //! A guide: what the maps show and why, each paragraph with a button that sets it up.
 
-use crate::app::state::{Command, MapKind, Panel, Projection};
+use crate::app::state::{
+    Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
+};
 use crate::maps::Normalisation;
 use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::scene::presets;
@@ -37,17 +39,25 @@ const CHAPTERS: &[&[Step]] = &[
     ],
     &[
         Step { label: "Two points, two bins apart", commands: || scene("two-close-in-range", thesis()) },
-        Step { label: "Show the bounds", commands: || vec![Command::OpenPanel(Panel::Bounds)] },
+        Step { label: "Show the bounds", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Bounds))] },
     ],
     &[
-        Step { label: "One-way", commands: || scene("four-reflectors", vec![Command::SetCarrier(Carrier::OneWay)]) },
-        Step { label: "Two-way", commands: || scene("four-reflectors", vec![Command::SetCarrier(Carrier::TwoWay)]) },
+        Step {
+            label: "One-way",
+            commands: || scene("four-reflectors", vec![Command::Radar(RadarCommand::SetCarrier(Carrier::OneWay))]),
+        },
+        Step {
+            label: "Two-way",
+            commands: || scene("four-reflectors", vec![Command::Radar(RadarCommand::SetCarrier(Carrier::TwoWay))]),
+        },
     ],
     &[
         Step { label: "Beyond the range", commands: || scene("beyond-the-range", thesis()) },
         Step {
             label: "The same, Cartesian",
-            commands: || scene("beyond-the-range", vec![Command::SetProjection(Projection::Cartesian)]),
+            commands: || {
+                scene("beyond-the-range", vec![Command::View(ViewCommand::SetProjection(Projection::Cartesian))])
+            },
         },
     ],
     &[
@@ -62,10 +72,12 @@ const CHAPTERS: &[&[Step]] = &[
     &[
         Step {
             label: "Difference",
-            commands: || scene("test-set-3", vec![Command::OpenPanel(Panel::Map(MapKind::Difference))]),
+            commands: || {
+                scene("test-set-3", vec![Command::Window(WindowCommand::OpenPanel(Panel::Map(MapKind::Difference)))])
+            },
         },
-        Step { label: "ROC", commands: || vec![Command::OpenPanel(Panel::Roc)] },
-        Step { label: "Tables", commands: || vec![Command::OpenPanel(Panel::Evaluation)] },
+        Step { label: "ROC", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Roc))] },
+        Step { label: "Tables", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Evaluation))] },
     ],
     &[
         Step { label: "The failing U-Net", commands: || output_by("unet") },
@@ -74,7 +86,7 @@ const CHAPTERS: &[&[Step]] = &[
         Step { label: "A search for reflectors", commands: || output_by("hybrid") },
     ],
     &[
-        Step { label: "Failures", commands: || vec![Command::OpenPanel(Panel::Failures)] },
+        Step { label: "Failures", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Failures))] },
         Step { label: "live: missed", commands: || failure("live-missed", "live") },
         Step { label: "live: merged", commands: || failure("live-merged", "live") },
         Step { label: "live: ghost", commands: || failure("live-ghost", "live") },
@@ -85,13 +97,16 @@ const CHAPTERS: &[&[Step]] = &[
         Step { label: "thesis: merged", commands: || failure("thesis-merged", "thesis") },
         Step { label: "thesis: ghost", commands: || failure("thesis-ghost", "thesis") },
         Step { label: "thesis: wrong tooth", commands: || failure("thesis-wrong-tooth", "thesis") },
-        Step { label: "Compare two methods", commands: || vec![Command::OpenPanel(Panel::Compare)] },
+        Step {
+            label: "Compare two methods",
+            commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Compare))],
+        },
     ],
 ];
 
 /// Opens a preset, then does the rest.
 fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
-    let preset = presets::ALL.iter().position(|p| p.id == id).map(Command::Preset);
+    let preset = presets::ALL.iter().position(|p| p.id == id).map(|v| Command::Document(DocumentCommand::Preset(v)));
     preset.into_iter().chain(then).collect()
 }
 
@@ -99,42 +114,48 @@ fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
 fn failure(which: &str, method: &'static str) -> Vec<Command> {
     let mut then = thesis();
     then.extend(output_by(method));
-    then.extend([Command::SetMethodEta(method, None), Command::MarkKinds]);
+    then.extend([Command::View(ViewCommand::SetMethodEta(method, None)), Command::View(ViewCommand::MarkKinds)]);
     scene(&format!("failure-{which}"), then)
 }
 
 /// A method, its map in sight.
 fn output_by(method: &'static str) -> Vec<Command> {
-    vec![Command::OpenPanel(Panel::Map(MapKind::Output)), Command::Method(method)]
+    vec![
+        Command::Window(WindowCommand::OpenPanel(Panel::Map(MapKind::Output))),
+        Command::View(ViewCommand::Method(method)),
+    ]
 }
 
 /// The thesis' conventions.
 fn thesis() -> Vec<Command> {
     vec![
-        Command::SetFloor(Floor::Thesis),
-        Command::Normalise(Normalisation::MinMax),
-        Command::SetWindow(WindowFunction::Hann),
-        Command::SetCarrier(Carrier::OneWay),
+        Command::View(ViewCommand::SetFloor(Floor::Thesis)),
+        Command::View(ViewCommand::Normalise(Normalisation::MinMax)),
+        Command::Radar(RadarCommand::SetWindow(WindowFunction::Hann)),
+        Command::Radar(RadarCommand::SetCarrier(Carrier::OneWay)),
     ]
 }
 
 /// The true reflectors over the maps besides.
 fn rings(mut then: Vec<Command>) -> Vec<Command> {
-    then.push(Command::MarkReflectors);
+    then.push(ViewCommand::MarkReflectors.into());
     then
 }
 
 /// A window without a floor, so that its side lobes are all there is to see.
 fn window(window: WindowFunction) -> Vec<Command> {
     vec![
-        Command::SetFloor(Floor::Exact),
-        Command::Normalise(Normalisation::DynamicRange(Decibels(100.0))),
-        Command::SetWindow(window),
+        Command::View(ViewCommand::SetFloor(Floor::Exact)),
+        Command::View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(100.0)))),
+        Command::Radar(RadarCommand::SetWindow(window)),
     ]
 }
 
 fn floor(floor: Floor, normalisation: Normalisation) -> Vec<Command> {
-    scene("one-at-20-m", vec![Command::SetFloor(floor), Command::Normalise(normalisation)])
+    scene(
+        "one-at-20-m",
+        vec![Command::View(ViewCommand::SetFloor(floor)), Command::View(ViewCommand::Normalise(normalisation))],
+    )
 }
 
 /// The chapters of [`TEXT`].
@@ -176,7 +197,7 @@ pub fn show(ui: &mut Ui, memory: &mut Memory) -> Vec<Command> {
                 for step in *steps {
                     let button = ui.button(step.label);
                     if button.on_hover_text("Set it up; undo brings your scene and your settings back").clicked() {
-                        asked.push(Command::Guided((step.commands)()));
+                        asked.push((step.commands)().into());
                     }
                 }
             });
@@ -264,7 +285,10 @@ mod tests {
             for step in *steps {
                 let commands = (step.commands)();
                 assert!(!commands.is_empty(), "{}", step.label);
-                let opens = matches!(commands[0], Command::Preset(_) | Command::OpenPanel(_));
+                let opens = matches!(
+                    commands[0],
+                    Command::Document(DocumentCommand::Preset(_)) | Command::Window(WindowCommand::OpenPanel(_))
+                );
                 assert!(opens, "{}: a preset of that name", step.label);
             }
         }

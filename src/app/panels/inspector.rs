@@ -1,6 +1,6 @@
 //! Numbers of what is selected, with units: of one object, or those that several have in common.
 
-use crate::app::state::{Command, NewObject};
+use crate::app::state::{Command, EditCommand, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
 use crate::app::widgets::number_field::NumberField;
@@ -38,7 +38,7 @@ fn nothing(ui: &mut Ui, scene: &Scene, asked: &mut Vec<Command>) {
         named(ui, scene);
         ui.weak("The scene is empty.");
         if ui.button("Add a point").clicked() {
-            asked.push(Command::Add(NewObject::Point, None));
+            asked.push(EditCommand::Add(NewObject::Point, None).into());
         }
         return;
     }
@@ -76,7 +76,7 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         Grid::new("numbers").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
             for shared in editor.shared_fields(coordinates) {
                 let change = number(ui, &shared);
-                asked.extend(change.map(|change| Command::SetField(shared.field, change)));
+                asked.extend(change.map(|change| Command::Edit(EditCommand::SetField(shared.field, change))));
             }
         });
     });
@@ -84,8 +84,8 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         seen(ui, radar, object.centre_metres(), coordinates);
     }
     ui.horizontal(|ui| {
-        button(ui, "Duplicate", Command::Duplicate, true, asked);
-        button(ui, "Delete", Command::Delete, true, asked);
+        button(ui, "Duplicate", EditCommand::Duplicate, true, asked);
+        button(ui, "Delete", EditCommand::Delete, true, asked);
         if object.is_none() {
             ui.menu_button("Arrange", |ui| arrange(ui, asked)).response.on_hover_text("Align and distribute them");
         }
@@ -99,7 +99,7 @@ fn toggle(ui: &mut Ui, shown: Coordinates, asked: &mut Vec<Command>) {
             (Coordinates::Cartesian, "x, y", "Enter places as x and y"),
         ] {
             if ui.selectable_label(shown == coordinates, label).on_hover_text(tip).clicked() {
-                asked.push(Command::SetCoordinates(coordinates));
+                asked.push(EditCommand::SetCoordinates(coordinates).into());
             }
         }
     });
@@ -246,7 +246,7 @@ mod tests {
         let draw = |ui: &mut Ui, held: &mut Held| {
             let input = Input { editor: &held.editor, radar: &Radar::default(), coordinates: held.coordinates };
             for command in show(ui, input) {
-                if let Command::SetField(field, change) = command {
+                if let Command::Edit(EditCommand::SetField(field, change)) = command {
                     held.editor.set_field(field, change).unwrap();
                 }
                 held.asked.push(command);
@@ -281,7 +281,7 @@ mod tests {
         let mut inspector = panel(Editor::new(Scene::default()), Coordinates::Cartesian);
         inspector.get_by_label("Add a point").click();
         inspector.step();
-        assert_eq!(inspector.state().asked, [Command::Add(NewObject::Point, None)]);
+        assert_eq!(inspector.state().asked, [Command::Edit(EditCommand::Add(NewObject::Point, None))]);
     }
 
     #[test]
@@ -343,7 +343,10 @@ mod tests {
         assert!(x == 0.0 && (y - 10.0).abs() < 1e-9, "{x}, {y}");
         inspector.get_by_label("x, y").click();
         inspector.step();
-        assert_eq!(inspector.state().asked.last(), Some(&Command::SetCoordinates(Coordinates::Cartesian)));
+        assert_eq!(
+            inspector.state().asked.last(),
+            Some(&Command::Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)))
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Lessons: predict first, then look, then change something until a condition holds.
 
-use crate::app::state::{Command, LessonRun};
+use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
 use crate::app::widgets::number_field::{NumberField, Wanted};
@@ -84,13 +84,13 @@ fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<C
         let field =
             ui.add(TextEdit::singleline(&mut memory.learner).desired_width(120.0).char_limit(60).hint_text("anybody"));
         if field.labelled_by(name.id).lost_focus() && memory.learner.trim() != progress.learner() {
-            asked.push(Command::SetLearner(memory.learner.clone()));
+            asked.push(LessonCommand::SetLearner(memory.learner.clone()).into());
         }
         let (made, right) = progress.score();
         if made > 0 {
             ui.weak(format!("{right} of {made} first guesses right"));
             if ui.button("Start over").on_hover_text("Forget what this learner did").clicked() {
-                asked.push(Command::ForgetProgress);
+                asked.push(LessonCommand::ForgetProgress.into());
             }
         }
     });
@@ -98,7 +98,7 @@ fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<C
     for (index, (file, lesson)) in shipped().iter().enumerate() {
         ui.horizontal_wrapped(|ui| {
             if ui.button(RichText::new(&lesson.title).strong()).on_hover_text(&lesson.about).clicked() {
-                asked.push(Command::BeginLesson(index));
+                asked.push(LessonCommand::Begin(index).into());
             }
             ui.weak(done(progress, file.id, lesson));
         });
@@ -107,7 +107,7 @@ fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<C
     }
     if ui.button("Open a lesson file…").on_hover_text("A TOML file; docs/lessons.md says how to write one").clicked()
     {
-        asked.push(Command::OpenLesson);
+        asked.push(LessonCommand::Open.into());
     }
 }
 
@@ -149,15 +149,15 @@ fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, as
 fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if ui.add_enabled(run.step > 0, egui::Button::new("Previous")).clicked() {
-            asked.push(Command::LessonStep(run.step - 1));
+            asked.push(LessonCommand::Step(run.step - 1).into());
         }
         let is_last = run.step + 1 == run.lesson.steps.len();
         if !is_last && ui.button("Next").clicked() {
-            asked.push(Command::LessonStep(run.step + 1));
+            asked.push(LessonCommand::Step(run.step + 1).into());
         }
         let leave = if is_last { "Finish" } else { "Exit lesson" };
         if ui.button(leave).on_hover_text("Your scene, settings, panels and zoom come back").clicked() {
-            asked.push(Command::LeaveLesson);
+            asked.push(LessonCommand::Leave.into());
         }
         whole_screen(ui, presenting, asked);
     });
@@ -174,7 +174,7 @@ fn large(ui: &Ui, text: impl Into<String>) -> RichText {
 /// For a projector.
 fn whole_screen(ui: &mut Ui, presenting: bool, asked: &mut Vec<Command>) {
     let label = if presenting { "Back to the window" } else { "Whole screen" };
-    button(ui, label, Command::PresentLesson, true, asked);
+    button(ui, label, LessonCommand::Present, true, asked);
 }
 
 fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec<Command>) {
@@ -191,7 +191,9 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
                 let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
                 let clicked = ui.add_enabled(read.is_ok(), egui::Button::new("Answer")).clicked();
                 match read {
-                    Ok(number) if clicked || entered => asked.push(Command::Predict(Guess::Number(number))),
+                    Ok(number) if clicked || entered => {
+                        asked.push(LessonCommand::Predict(Guess::Number(number)).into())
+                    }
                     Ok(_) => {}
                     Err(_) if memory.number.trim().is_empty() => {}
                     Err(message) => {
@@ -206,7 +208,7 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
         Answer::Choice { options, .. } => {
             for (index, option) in options.iter().enumerate() {
                 if ui.button(option).clicked() {
-                    asked.push(Command::Predict(Guess::Choice(index + 1)));
+                    asked.push(LessonCommand::Predict(Guess::Choice(index + 1)).into());
                 }
             }
         }
@@ -217,7 +219,7 @@ fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec
                 let field = ui.add(field);
                 ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
                 if ui.button("Answer").clicked() {
-                    asked.push(Command::Predict(Guess::Eta(memory.eta)));
+                    asked.push(LessonCommand::Predict(Guess::Eta(memory.eta)).into());
                 }
             });
         }
@@ -314,14 +316,14 @@ fn requirements(
     if run.gave_up {
         ui.label("The solution was shown: the challenge counts as unsolved.");
         if ui.button("Start this step again").on_hover_text("Puts the step's scene and radar back").clicked() {
-            asked.push(Command::LessonStep(run.step));
+            asked.push(LessonCommand::Step(run.step).into());
         }
     } else if run.is_met() {
         ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
     } else {
         let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
         if ui.button("Show a solution").on_hover_text(tip).clicked() {
-            asked.push(Command::ShowSolution);
+            asked.push(LessonCommand::ShowSolution.into());
         }
     }
 }

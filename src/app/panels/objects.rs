@@ -1,6 +1,6 @@
 //! The list of the scene's objects: what each is, where it stands, how strongly it reflects; a click selects it.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, EditCommand};
 use crate::app::widgets::axes;
 use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
 use crate::interact::{Coordinates, Field, Selection, SelectionMode};
@@ -78,7 +78,7 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
                     }
                 }
             };
-            asked = Some(Command::Select(vec![to], mode));
+            asked = Some(Command::Edit(EditCommand::Select(vec![to], mode)));
         }
         asked
     })
@@ -135,7 +135,7 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Com
             let Some(object) = input.scene.objects.get(index) else { break };
             if let Some(mode) = row(ui, input, index, object) {
                 memory.was_clicked = true;
-                asked.push(Command::Select(vec![index], mode));
+                asked.push(EditCommand::Select(vec![index], mode).into());
             }
         }
     });
@@ -196,7 +196,7 @@ mod tests {
         let draw = |ui: &mut Ui, held: &mut Held| {
             let input = Input { scene: &held.scene, selection: &held.selection, coordinates: Coordinates::Cartesian };
             for command in show(ui, input, &mut held.memory) {
-                let Command::Select(objects, mode) = command else { panic!("{command:?}") };
+                let Command::Edit(EditCommand::Select(objects, mode)) = command else { panic!("{command:?}") };
                 held.selection.pick(objects, mode);
             }
         };

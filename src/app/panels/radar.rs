@@ -1,6 +1,6 @@
 //! The radar: every constant of it, and what follows from each.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{Carrier, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             }
             radar.end_elements = radar.end_elements.min(radar.elements / 2);
             if radar != *input.radar {
-                asked.push(Command::SetRadar(Box::new(radar)));
+                asked.push(RadarCommand::Set(Box::new(radar)).into());
             }
         });
     });
@@ -142,7 +142,7 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
             for (index, preset) in presets::ALL.iter().enumerate() {
                 let is_chosen = chosen.is_some_and(|c| c.id == preset.id);
                 if ui.selectable_label(is_chosen, preset.name).on_hover_text(preset.about).clicked() && !is_chosen {
-                    asked.push(Command::RadarPreset(index));
+                    asked.push(RadarCommand::Preset(index).into());
                 }
             }
         });

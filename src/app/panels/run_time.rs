@@ -1,6 +1,6 @@
 //! Run time against error on this machine, measured while one watches.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::progress::progress;
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         ui.horizontal_wrapped(|ui| match input.progress {
             Some(part) => {
                 if progress(ui, part, 180.0, "Stop after this measurement; what was measured stays") {
-                    asked.push(Command::CancelMeasurement);
+                    asked.push(WorkCommand::CancelMeasurement.into());
                 }
             }
             None => {
@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
                            machine alone meanwhile";
                 if ui.button("Measure").on_hover_text(tip).clicked() {
                     memory.reflectors = None;
-                    asked.push(Command::Measure { thorough: memory.thorough });
+                    asked.push(WorkCommand::Measure { thorough: memory.thorough }.into());
                 }
                 ui.checkbox(&mut memory.thorough, "thorough")
                     .on_hover_text("Every algorithm, up to 300 reflectors, drags too: about a minute instead of seconds");
@@ -205,6 +205,9 @@ mod tests {
             run_time.get_by_label(label).click();
             run_time.run_steps(2);
         }
-        assert_eq!(run_time.state().1, [Command::Measure { thorough: true }, Command::CancelMeasurement]);
+        assert_eq!(
+            run_time.state().1,
+            [Command::Work(WorkCommand::Measure { thorough: true }), Command::Work(WorkCommand::CancelMeasurement)]
+        );
     }
 }

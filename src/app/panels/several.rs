@@ -1,7 +1,7 @@
 //! One map several times, side by side: what one constant does to it.
 
 use crate::app::jobs::Small;
-use crate::app::state::{Command, MapKind, Parameter, Several, Variant};
+use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
 use crate::app::widgets::method_menu::method_lines;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::textures::Texture;
@@ -93,7 +93,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
     });
     if several != *input.several {
-        asked.push(Command::SetSeveral(Box::new(several)));
+        asked.push(ViewCommand::SetSeveral(Box::new(several)).into());
     }
 }
 
@@ -175,10 +175,10 @@ fn tile(
 /// The command that gives the scene's radar, floor or method this value.
 fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
     Some(match parameter {
-        Parameter::Window => Command::SetWindow(variant.radar.window),
-        Parameter::Snr => Command::SetFloor(variant.floor),
-        Parameter::Method => Command::Method(variant.method.as_ref()?.name()),
-        _ => Command::SetRadar(Box::new(variant.radar.clone())),
+        Parameter::Window => Command::Radar(RadarCommand::SetWindow(variant.radar.window)),
+        Parameter::Snr => Command::View(ViewCommand::SetFloor(variant.floor)),
+        Parameter::Method => Command::View(ViewCommand::Method(variant.method.as_ref()?.name())),
+        _ => Command::Radar(RadarCommand::Set(Box::new(variant.radar.clone()))),
     })
 }
 
@@ -223,11 +223,16 @@ mod tests {
         let mut panel = harness(Parameter::Window, false);
         panel.get_by_label("window: rectangular").click();
         panel.step();
-        assert_eq!(panel.state().asked, [Command::SetWindow(crate::radar::WindowFunction::Rectangular)]);
+        assert_eq!(
+            panel.state().asked,
+            [Command::Radar(RadarCommand::SetWindow(crate::radar::WindowFunction::Rectangular))]
+        );
         let mut panel = harness(Parameter::Bandwidth, false);
         panel.get_by_label("bandwidth: 4.00 GHz").click();
         panel.step();
-        let [Command::SetRadar(radar)] = panel.state().asked.as_slice() else { panic!("{:?}", panel.state().asked) };
+        let [Command::Radar(RadarCommand::Set(radar))] = panel.state().asked.as_slice() else {
+            panic!("{:?}", panel.state().asked)
+        };
         assert!((radar.bandwidth_hz - 4e9).abs() < 1.0);
     }
 
@@ -239,7 +244,7 @@ mod tests {
         panel.step();
         panel.get_by_label("elements of an end").click();
         panel.step();
-        let Some(Command::SetSeveral(several)) = panel.state().asked.last() else {
+        let Some(Command::View(ViewCommand::SetSeveral(several))) = panel.state().asked.last() else {
             panic!("{:?}", panel.state().asked)
         };
         assert_eq!((several.parameter, several.map, several.low), (Parameter::EndElements, MapKind::Input0, 3.0));

@@ -1,7 +1,7 @@
 //! A training watched: its loss, and how far it is.
 
 use crate::app::jobs::Log;
-use crate::app::state::Command;
+use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::progress::progress;
@@ -55,11 +55,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            button(ui, "Open training log…", Command::OpenLog, true, &mut asked);
+            button(ui, "Open training log…", WorkCommand::OpenLog, true, &mut asked);
             match input.running {
                 Some(part) => {
                     if progress(ui, part, 140.0, "Stop the training; its last checkpoint stays") {
-                        asked.push(Command::CancelTraining);
+                        asked.push(WorkCommand::CancelTraining.into());
                     }
                 }
                 None => start(ui, memory, &mut asked),
@@ -129,7 +129,7 @@ fn start(ui: &mut Ui, memory: &Memory, asked: &mut Vec<Command>) {
         for recipe in &memory.recipes {
             if ui.button(recipe.name).on_hover_text(&recipe.description).clicked() {
                 ui.close();
-                asked.push(Command::Train(recipe.name));
+                asked.push(WorkCommand::Train(recipe.name).into());
             }
         }
     });
@@ -157,7 +157,7 @@ mod tests {
         let _waiting = waits.get_by_label_contains("Waiting for the first line");
         waits.get_by_label("Cancel").click();
         waits.step();
-        assert_eq!(waits.state().1, [Command::CancelTraining]);
+        assert_eq!(waits.state().1, [Command::Work(WorkCommand::CancelTraining)]);
         let stopped = panel(Some("stopped"), None);
         assert!(stopped.query_by_label_contains("Waiting").is_none());
     }

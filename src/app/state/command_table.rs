@@ -1,6 +1,9 @@
 //! The one list of commands: what each is called, what it does, and its key. Menus, tooltips, shortcuts and the palette read it.
 
-use super::command::{Command, NewObject};
+use super::command::{
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, RadarCommand, RowsCommand,
+    ViewCommand, WindowCommand, WorkCommand,
+};
 use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
 use crate::interact::{Alignment, Along, Coordinates};
@@ -53,217 +56,387 @@ const fn command_shift(key: Key) -> Option<KeyboardShortcut> {
 const TABLE: &[Entry] = {
     use Command::*;
     &[
-        entry(Add(NewObject::Point, None), "Add point", "Add one reflector", key(Key::P)),
-        entry(Add(NewObject::Line, None), "Add line", "Add a vertical line of 75 reflectors", key(Key::L)),
-        entry(Add(NewObject::Cluster, None), "Add cluster", "Add a Gaussian cluster of 40 reflectors", key(Key::G)),
-        entry(New, "New scene", "Start with an empty scene; undo brings this one back", command(Key::N)),
-        entry(Open, "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O)),
-        entry(Save, "Save", "Save the scene as TOML", command(Key::S)),
-        entry(SaveAs, "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S)),
-        entry(OpenLog, "Open training log…", "Watch the loss of a training (its log.csv)", None),
-        entry(OpenRows, "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None),
-        entry(SaveRows, "Save rows…", "Save the rows of the panel Failures as CSV", None),
+        entry(Edit(EditCommand::Add(NewObject::Point, None)), "Add point", "Add one reflector", key(Key::P)),
         entry(
-            ChooseOwnScenes,
+            Edit(EditCommand::Add(NewObject::Line, None)),
+            "Add line",
+            "Add a vertical line of 75 reflectors",
+            key(Key::L),
+        ),
+        entry(
+            Edit(EditCommand::Add(NewObject::Cluster, None)),
+            "Add cluster",
+            "Add a Gaussian cluster of 40 reflectors",
+            key(Key::G),
+        ),
+        entry(
+            Document(DocumentCommand::New),
+            "New scene",
+            "Start with an empty scene; undo brings this one back",
+            command(Key::N),
+        ),
+        entry(
+            Document(DocumentCommand::Open),
+            "Open…",
+            "Open a scene (.toml or .npz) or a recording (.toml)",
+            command(Key::O),
+        ),
+        entry(Document(DocumentCommand::Save), "Save", "Save the scene as TOML", command(Key::S)),
+        entry(
+            Document(DocumentCommand::SaveAs),
+            "Save as…",
+            "Save the scene under another name (.toml or .npz)",
+            command_shift(Key::S),
+        ),
+        entry(Work(WorkCommand::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None),
+        entry(Rows(RowsCommand::Open), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None),
+        entry(Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Failures as CSV", None),
+        entry(
+            Rows(RowsCommand::ChooseOwnScenes),
             "Folder of own scenes…",
             "Choose where Keep puts scenes: pick any scene of the folder",
             None,
         ),
-        entry(ExportPicture, "Export picture…", "Save the window as PNG, or all panels as SVG", command(Key::E)),
-        entry(ExportMaps, "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),
-        entry(RecordDrag, "Record a drag…", "Record the next drag as an animation (.gif) for slides", None),
-        entry(DrawLesson, "Draw lesson…", "Draw every step of the lesson as a picture (.png) for slides", None),
-        entry(StopRecording, "Stop recording", "Give up what is recorded or drawn; nothing is written", None),
-        entry(ExportMetrics, "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None),
-        entry(Undo, "Undo", "Undo the last change of the scene", command(Key::Z)),
-        entry(Redo, "Redo", "Redo what was undone", command_shift(Key::Z)),
-        entry(Cut, "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X)),
-        entry(Copy, "Copy", "Copy the selected objects to the clipboard, as TOML", command(Key::C)),
         entry(
-            CopyShared,
+            Export(ExportCommand::Picture),
+            "Export picture…",
+            "Save the window as PNG, or all panels as SVG",
+            command(Key::E),
+        ),
+        entry(Export(ExportCommand::Maps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),
+        entry(
+            Export(ExportCommand::RecordDrag),
+            "Record a drag…",
+            "Record the next drag as an animation (.gif) for slides",
+            None,
+        ),
+        entry(
+            Export(ExportCommand::DrawLesson),
+            "Draw lesson…",
+            "Draw every step of the lesson as a picture (.png) for slides",
+            None,
+        ),
+        entry(
+            Export(ExportCommand::StopRecording),
+            "Stop recording",
+            "Give up what is recorded or drawn; nothing is written",
+            None,
+        ),
+        entry(Export(ExportCommand::Metrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None),
+        entry(Edit(EditCommand::Undo), "Undo", "Undo the last change of the scene", command(Key::Z)),
+        entry(Edit(EditCommand::Redo), "Redo", "Redo what was undone", command_shift(Key::Z)),
+        entry(Edit(EditCommand::Cut), "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X)),
+        entry(Edit(EditCommand::Copy), "Copy", "Copy the selected objects to the clipboard, as TOML", command(Key::C)),
+        entry(
+            Export(ExportCommand::CopyShared),
             "Copy all as text",
             "Copy scene, radar, view, method and lesson step as one line; paste it into another apertura, or start one with it",
             None,
         ),
-        entry(Paste, "Paste", "Add the objects on the clipboard, or open what was copied as text", command(Key::V)),
-        entry(Duplicate, "Duplicate", "Copy the selected objects a metre aside", command(Key::D)),
-        entry(Delete, "Delete", "Delete the selected objects", key(Key::Delete)),
-        entry(SelectAll, "Select all", "Select every object", command(Key::A)),
-        entry(SelectNext, "Select next object", "Select the object after the one that was picked last", key(Key::O)),
-        entry(SelectPrevious, "Select previous object", "Select the object before it", shift(Key::O)),
-        entry(SetCoordinates(Coordinates::Cartesian), "Places: x and y", "Tell and enter places as x and y", None),
         entry(
-            SetCoordinates(Coordinates::Polar),
+            Edit(EditCommand::Paste),
+            "Paste",
+            "Add the objects on the clipboard, or open what was copied as text",
+            command(Key::V),
+        ),
+        entry(Edit(EditCommand::Duplicate), "Duplicate", "Copy the selected objects a metre aside", command(Key::D)),
+        entry(Edit(EditCommand::Delete), "Delete", "Delete the selected objects", key(Key::Delete)),
+        entry(Edit(EditCommand::SelectAll), "Select all", "Select every object", command(Key::A)),
+        entry(
+            Edit(EditCommand::SelectNext),
+            "Select next object",
+            "Select the object after the one that was picked last",
+            key(Key::O),
+        ),
+        entry(
+            Edit(EditCommand::SelectPrevious),
+            "Select previous object",
+            "Select the object before it",
+            shift(Key::O),
+        ),
+        entry(
+            Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)),
+            "Places: x and y",
+            "Tell and enter places as x and y",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::SetCoordinates(Coordinates::Polar)),
             "Places: range and angle",
             "Tell and enter places as range and direction",
             None,
         ),
-        entry(Align(Alignment::Left), "Align left", "Move the selected objects' left ends to the leftmost", None),
-        entry(Align(Alignment::Centre), "Align centres", "Move the selected objects one behind the other", None),
-        entry(Align(Alignment::Right), "Align right", "Move the selected objects' right ends to the rightmost", None),
-        entry(Align(Alignment::Near), "Align near", "Move the selected objects' near ends to the nearest", None),
-        entry(Align(Alignment::Middle), "Align middles", "Move the selected objects one beside the other", None),
-        entry(Align(Alignment::Far), "Align far", "Move the selected objects' far ends to the farthest", None),
-        entry(Distribute(Along::X), "Distribute along x", "The same distance in x between selected objects", None),
-        entry(Distribute(Along::Y), "Distribute along y", "The same distance in y between selected objects", None),
-        entry(Escape, "Deselect", "Cancel a drag, show all panels, select nothing", key(Key::Escape)),
-        entry(FitScene, "Fit scene", "Show the whole scene", key(Key::F)),
-        entry(ResetMaps, "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
-        entry(OpenLesson, "Open lesson…", "Begin a lesson from a TOML file", None),
         entry(
-            PresentLesson,
+            Edit(EditCommand::Align(Alignment::Left)),
+            "Align left",
+            "Move the selected objects' left ends to the leftmost",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Align(Alignment::Centre)),
+            "Align centres",
+            "Move the selected objects one behind the other",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Align(Alignment::Right)),
+            "Align right",
+            "Move the selected objects' right ends to the rightmost",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Align(Alignment::Near)),
+            "Align near",
+            "Move the selected objects' near ends to the nearest",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Align(Alignment::Middle)),
+            "Align middles",
+            "Move the selected objects one beside the other",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Align(Alignment::Far)),
+            "Align far",
+            "Move the selected objects' far ends to the farthest",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Distribute(Along::X)),
+            "Distribute along x",
+            "The same distance in x between selected objects",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Distribute(Along::Y)),
+            "Distribute along y",
+            "The same distance in y between selected objects",
+            None,
+        ),
+        entry(
+            Window(WindowCommand::Escape),
+            "Deselect",
+            "Cancel a drag, show all panels, select nothing",
+            key(Key::Escape),
+        ),
+        entry(View(ViewCommand::FitScene), "Fit scene", "Show the whole scene", key(Key::F)),
+        entry(View(ViewCommand::ResetMaps), "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
+        entry(Lesson(LessonCommand::Open), "Open lesson…", "Begin a lesson from a TOML file", None),
+        entry(
+            Lesson(LessonCommand::Present),
             "Lessons: whole screen",
             "Lesson, scene and maps on the whole screen, in large type",
             shift(Key::F11),
         ),
-        entry(LeaveLesson, "Exit lesson", "End the lesson; your scene and settings come back", None),
-        entry(ResetLayout, "Reset layout", "Put all panels where they were at first", None),
+        entry(Lesson(LessonCommand::Leave), "Exit lesson", "End the lesson; your scene and settings come back", None),
+        entry(Window(WindowCommand::ResetLayout), "Reset layout", "Put all panels where they were at first", None),
         entry(
-            ToggleProjection,
+            View(ViewCommand::ToggleProjection),
             "Cartesian / range-angle",
             "Draw maps over x and y, or over cos θ and range",
             key(Key::C),
         ),
-        entry(SetProjection(Projection::RangeAngle), "Maps: range-angle", "Draw maps over cos θ and range", None),
-        entry(SetProjection(Projection::Cartesian), "Maps: Cartesian", "Draw maps over x and y", None),
         entry(
-            Normalise(Normalisation::MinMax),
+            View(ViewCommand::SetProjection(Projection::RangeAngle)),
+            "Maps: range-angle",
+            "Draw maps over cos θ and range",
+            None,
+        ),
+        entry(
+            View(ViewCommand::SetProjection(Projection::Cartesian)),
+            "Maps: Cartesian",
+            "Draw maps over x and y",
+            None,
+        ),
+        entry(
+            View(ViewCommand::Normalise(Normalisation::MinMax)),
             "Normalise: min-max",
             "Λ is 0 at the smallest cell and 1 at the largest (the thesis)",
             key(Key::M),
         ),
         entry(
-            ToggleUnits,
+            View(ViewCommand::ToggleUnits),
             "Λ / dB",
             "Tell Λ, or decibels relative to the peak, on colour bars, cuts, readouts and thresholds",
             key(Key::D),
         ),
         entry(
-            SetUnits(Units::Lambda),
+            View(ViewCommand::SetUnits(Units::Lambda)),
             "Scale: Λ",
             "Tell Λ, 0 to 1, on colour bars, cuts, readouts and thresholds",
             None,
         ),
         entry(
-            SetUnits(Units::Decibels),
+            View(ViewCommand::SetUnits(Units::Decibels)),
             "Scale: dB",
             "Tell decibels relative to the peak on colour bars, cuts, readouts and thresholds",
             None,
         ),
-        entry(ToggleAbsoluteDifference, "|Difference|", "Draw the difference with its sign or without", None),
         entry(
-            ToggleWholeDifference,
+            View(ViewCommand::ToggleAbsoluteDifference),
+            "|Difference|",
+            "Draw the difference with its sign or without",
+            None,
+        ),
+        entry(
+            View(ViewCommand::ToggleWholeDifference),
             "Difference: automatic scale",
             "Draw the difference on a scale that just holds it, or on one up to 1",
             None,
         ),
-        entry(PinCuts, "Pin cuts", "Keep the cuts that are shown while the cursor moves on", key(Key::K)),
-        entry(UnpinAll, "Unpin cuts", "Let all pinned cuts go", None),
         entry(
-            Normalise(Normalisation::DynamicRange(Decibels(40.0))),
+            View(ViewCommand::PinCuts),
+            "Pin cuts",
+            "Keep the cuts that are shown while the cursor moves on",
+            key(Key::K),
+        ),
+        entry(View(ViewCommand::UnpinAll), "Unpin cuts", "Let all pinned cuts go", None),
+        entry(
+            View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(40.0)))),
             "Normalise: 40 dB",
             "Λ is 0 at 40 dB below the peak",
             None,
         ),
         entry(
-            Normalise(Normalisation::DynamicRange(Decibels(60.0))),
+            View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0)))),
             "Normalise: 60 dB",
             "Λ is 0 at 60 dB below the peak",
             None,
         ),
         entry(
-            Normalise(Normalisation::DynamicRange(Decibels(100.0))),
+            View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(100.0)))),
             "Normalise: 100 dB",
             "Λ is 0 at 100 dB below the peak",
             key(Key::B),
         ),
-        entry(SetFloor(Floor::Thesis), "Floor: thesis", "The rounding noise of the thesis' f64 evaluation", None),
-        entry(SetFloor(Floor::Exact), "Floor: exact", "No noise at all", None),
         entry(
-            SetFloor(Floor::Snr(Decibels(20.0))),
+            View(ViewCommand::SetFloor(Floor::Thesis)),
+            "Floor: thesis",
+            "The rounding noise of the thesis' f64 evaluation",
+            None,
+        ),
+        entry(View(ViewCommand::SetFloor(Floor::Exact)), "Floor: exact", "No noise at all", None),
+        entry(
+            View(ViewCommand::SetFloor(Floor::Snr(Decibels(20.0)))),
             "Floor: thermal noise",
             "White noise at a signal-to-noise ratio",
             None,
         ),
         entry(
-            SetFloor(Floor::Level(DecibelMilliwatts(-20.0))),
+            View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))),
             "Floor: thermal noise of a level",
             "White noise of -20 dBm in every sample, whatever the scene: an empty scene is noise alone",
             None,
         ),
         entry(
-            SetCarrier(Carrier::OneWay),
+            Radar(RadarCommand::SetCarrier(Carrier::OneWay)),
             "Carrier: one-way",
             "The thesis' convention: unambiguous over all of cos θ",
             None,
         ),
         entry(
-            SetCarrier(Carrier::TwoWay),
+            Radar(RadarCommand::SetCarrier(Carrier::TwoWay)),
             "Carrier: two-way",
             "As equation 3.1 is printed: each column stands for two directions",
             None,
         ),
-        entry(SetWindow(WindowFunction::Hann), "Window: Hann", "Side lobes that fall fast (the thesis)", None),
         entry(
-            SetWindow(WindowFunction::Hamming),
+            Radar(RadarCommand::SetWindow(WindowFunction::Hann)),
+            "Window: Hann",
+            "Side lobes that fall fast (the thesis)",
+            None,
+        ),
+        entry(
+            Radar(RadarCommand::SetWindow(WindowFunction::Hamming)),
             "Window: Hamming",
             "The first side lobes lower, the far ones higher",
             None,
         ),
         entry(
-            SetWindow(WindowFunction::Blackman),
+            Radar(RadarCommand::SetWindow(WindowFunction::Blackman)),
             "Window: Blackman",
             "Lower side lobes still, a wider main lobe",
             None,
         ),
         entry(
-            SetWindow(WindowFunction::Rectangular),
+            Radar(RadarCommand::SetWindow(WindowFunction::Rectangular)),
             "Window: rectangular",
             "No weights: the narrowest main lobe, the highest side lobes",
             None,
         ),
-        entry(SetInterferer(None), "Interferer: none", "No other radar sends", None),
-        entry(SetMirror(None), "Mirror: none", "No wall mirrors", None),
-        entry(Colours(ColourMap::Grey), "Colours: grey", "The thesis' grey", None),
-        entry(Colours(ColourMap::Viridis), "Colours: viridis", "Colours of even brightness steps", None),
-        entry(Colours(ColourMap::Diverging), "Colours: diverging", "Blue below the middle, red above", None),
-        entry(Colours(ColourMap::Inferno), "Colours: inferno", "Dark to bright through red", None),
-        entry(ToggleReflectors, "Mark true reflectors", "Draw the scene's reflectors over the maps", key(Key::R)),
-        entry(ToggleFound, "Mark found reflectors", "Draw the reflectors that the method found", None),
-        entry(ToggleFieldsOfView, "Fields of view", "Draw what each end can see in the scene", key(Key::V)),
+        entry(Radar(RadarCommand::SetInterferer(None)), "Interferer: none", "No other radar sends", None),
+        entry(Radar(RadarCommand::SetMirror(None)), "Mirror: none", "No wall mirrors", None),
+        entry(View(ViewCommand::Colours(ColourMap::Grey)), "Colours: grey", "The thesis' grey", None),
         entry(
-            ToggleTheory,
+            View(ViewCommand::Colours(ColourMap::Viridis)),
+            "Colours: viridis",
+            "Colours of even brightness steps",
+            None,
+        ),
+        entry(
+            View(ViewCommand::Colours(ColourMap::Diverging)),
+            "Colours: diverging",
+            "Blue below the middle, red above",
+            None,
+        ),
+        entry(View(ViewCommand::Colours(ColourMap::Inferno)), "Colours: inferno", "Dark to bright through red", None),
+        entry(
+            View(ViewCommand::ToggleReflectors),
+            "Mark true reflectors",
+            "Draw the scene's reflectors over the maps",
+            key(Key::R),
+        ),
+        entry(
+            View(ViewCommand::ToggleFound),
+            "Mark found reflectors",
+            "Draw the reflectors that the method found",
+            None,
+        ),
+        entry(
+            View(ViewCommand::ToggleFieldsOfView),
+            "Fields of view",
+            "Draw what each end can see in the scene",
+            key(Key::V),
+        ),
+        entry(
+            View(ViewCommand::ToggleTheory),
             "Theory on the maps",
             "Draw what the formulas say of the selected reflector: beam, lobes, streak, comb, bound, what wraps and folds",
             key(Key::T),
         ),
         entry(
-            ToggleKinds,
+            View(ViewCommand::ToggleKinds),
             "Mark kinds of failure",
             "Mark in the maps which objects are found, missed, merged or on the wrong tooth, and ghosts",
             key(Key::H),
         ),
         entry(
-            Flip,
+            View(ViewCommand::Flip),
             "Flip two maps",
             "Put the other of the two maps of the panel Compare in the place of the one on screen",
             key(Key::X),
         ),
-        entry(NextMethod, "Next method", "Reconstruct with the next method", key(Key::N)),
-        entry(CancelMethod, "Cancel reconstruction", "Stop the reconstruction that runs", None),
+        entry(View(ViewCommand::NextMethod), "Next method", "Reconstruct with the next method", key(Key::N)),
+        entry(Work(WorkCommand::CancelMethod), "Cancel reconstruction", "Stop the reconstruction that runs", None),
         entry(
-            Present,
+            Window(WindowCommand::Present),
             "Presentation",
             "The scene and the maps on the whole screen, in large type; the same key brings everything back",
             key(Key::F11),
         ),
-        entry(CloseMessages, "Close messages", "Close every message in the corner", None),
-        entry(ToggleTheme, "Light / dark", "Switch between light and dark", command(Key::T)),
-        entry(ZoomIn, "Zoom in", "Larger interface", command(Key::Plus)),
-        entry(ZoomOut, "Zoom out", "Smaller interface", command(Key::Minus)),
-        entry(ZoomReset, "Normal size", "Interface at its normal size", command(Key::Num0)),
-        entry(Palette, "Command palette", "Find any command by name", command(Key::K)),
-        entry(Quit, "Quit", "Close the window; an unsaved scene is restored at the next start", command(Key::Q)),
+        entry(Window(WindowCommand::CloseMessages), "Close messages", "Close every message in the corner", None),
+        entry(Window(WindowCommand::ToggleTheme), "Light / dark", "Switch between light and dark", command(Key::T)),
+        entry(Window(WindowCommand::ZoomIn), "Zoom in", "Larger interface", command(Key::Plus)),
+        entry(Window(WindowCommand::ZoomOut), "Zoom out", "Smaller interface", command(Key::Minus)),
+        entry(Window(WindowCommand::ZoomReset), "Normal size", "Interface at its normal size", command(Key::Num0)),
+        entry(Window(WindowCommand::Palette), "Command palette", "Find any command by name", command(Key::K)),
+        entry(
+            Window(WindowCommand::Quit),
+            "Quit",
+            "Close the window; an unsaved scene is restored at the next start",
+            command(Key::Q),
+        ),
     ]
 };
 
@@ -296,10 +469,15 @@ pub fn listed() -> &'static [Entry] {
         let panel_key = |panel| PANEL_KEYS.iter().find(|(p, _)| *p == panel).and_then(|(_, k)| key(*k));
         let toggle = |panel: Panel| {
             let name = format!("Show or hide: {}", panel.title());
-            named(Command::TogglePanel(panel), name, panel.describe(), panel_key(panel))
+            named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel_key(panel))
         };
         let maximise = |panel: Panel| {
-            named(Command::Maximise(panel), format!("Maximise: {}", panel.title()), panel.describe(), None)
+            named(
+                Command::Window(WindowCommand::Maximise(panel)),
+                format!("Maximise: {}", panel.title()),
+                panel.describe(),
+                None,
+            )
         };
         let preset = |(index, preset): (usize, &presets::Preset)| {
             let name = format!("Preset: {}", preset.id.replace('-', " "));
@@ -307,7 +485,7 @@ pub fn listed() -> &'static [Entry] {
                 true => "Open a scene on which a method fails, with the reason in its notes",
                 false => "Open a scene the thesis talks about",
             };
-            named(Command::Preset(index), name, tooltip, None)
+            named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
         };
         let random = |kind: Kind| {
             let keys = [Key::Num1, Key::Num2, Key::Num3];
@@ -316,14 +494,24 @@ pub fn listed() -> &'static [Entry] {
                 None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
                 None => ("A scene of a kind that the thesis' sets leave out", None),
             };
-            named(Command::RandomScene(kind), format!("Random scene: {}", kind.description()), tooltip, key)
+            named(
+                Command::Document(DocumentCommand::RandomScene(kind)),
+                format!("Random scene: {}", kind.description()),
+                tooltip,
+                key,
+            )
         };
         let radar = |(index, preset): (usize, &RadarPreset)| {
-            named(Command::RadarPreset(index), format!("Radar: {}", preset.name), preset.about, None)
+            named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
         };
         let recording = |(index, preset): (usize, &recordings::Preset)| {
             let name = format!("Recording: {}", preset.id.replace('-', " "));
-            named(Command::Recording(index), name, "Open samples that a radar measured", None)
+            named(
+                Command::Document(DocumentCommand::Recording(index)),
+                name,
+                "Open samples that a radar measured",
+                None,
+            )
         };
         let mut all = TABLE.to_vec();
         all.extend(Kind::all().map(random));
@@ -331,7 +519,12 @@ pub fn listed() -> &'static [Entry] {
         all.extend(Panel::all().into_iter().map(maximise));
         all.extend(MapKind::ALL.map(|kind| {
             let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
-            named(Command::CopyMap(kind), format!("Copy picture: {}", kind.title()), tooltip, None)
+            named(
+                Command::Export(ExportCommand::CopyMap(kind)),
+                format!("Copy picture: {}", kind.title()),
+                tooltip,
+                None,
+            )
         }));
         all.extend(presets::ALL.iter().enumerate().map(preset));
         all.extend(recordings::ALL.iter().enumerate().map(recording));
@@ -354,8 +547,10 @@ impl Command {
     /// Its line of the list, where it has one: what is added or closed somewhere in particular is called as anywhere.
     pub fn entry(&self) -> Option<&'static Entry> {
         let like = match self {
-            Command::Add(kind, _) => Command::Add(*kind, None),
-            Command::OpenPanel(panel) | Command::ClosePanel(panel) => Command::TogglePanel(*panel),
+            Command::Edit(EditCommand::Add(kind, _)) => Command::Edit(EditCommand::Add(*kind, None)),
+            Command::Window(WindowCommand::OpenPanel(panel) | WindowCommand::ClosePanel(panel)) => {
+                Command::Window(WindowCommand::TogglePanel(*panel))
+            }
             other => other.clone(),
         };
         listed().iter().find(|e| e.command == like)
@@ -383,12 +578,15 @@ mod tests {
     #[test]
     fn every_choice_of_a_window_and_of_colours_is_listed() {
         for window in WindowFunction::ALL {
-            assert!(Command::SetWindow(window).entry().is_some(), "{window:?}");
+            assert!(Command::Radar(RadarCommand::SetWindow(window)).entry().is_some(), "{window:?}");
         }
         for colours in ColourMap::ALL {
-            assert!(Command::Colours(colours).entry().is_some(), "{colours:?}");
+            assert!(Command::View(ViewCommand::Colours(colours)).entry().is_some(), "{colours:?}");
         }
         let map = Panel::Map(MapKind::Target);
-        assert_eq!(Command::ClosePanel(map).entry(), Command::TogglePanel(map).entry());
+        assert_eq!(
+            Command::Window(WindowCommand::ClosePanel(map)).entry(),
+            Command::Window(WindowCommand::TogglePanel(map)).entry()
+        );
     }
 }

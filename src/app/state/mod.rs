@@ -20,7 +20,10 @@ mod view;
 
 pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
-pub use command::{Command, EvaluationChoice, NewObject};
+pub use command::{
+    Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
+    RowsCommand, ViewCommand, WindowCommand, WorkCommand,
+};
 pub use command_table::{listed, shortcuts};
 pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, Pins};

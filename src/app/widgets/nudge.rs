@@ -1,6 +1,6 @@
 //! Arrow keys that move the selection.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, EditCommand};
 use eframe::egui::{Context, EventFilter, Key, Modifiers, Response};
 
 /// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
@@ -13,7 +13,8 @@ pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
             dy += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
         }
     });
-    ((dx, dy) != (0.0, 0.0)).then_some(Command::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres })
+    ((dx, dy) != (0.0, 0.0))
+        .then_some(Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
 }
 
 /// Steps in and out that `+` and `-` ask for in a view that has the focus, as a factor; its arrow keys are its own then, and don't move

@@ -1,7 +1,10 @@
 //! What a hand may do to the window, at random.
 
 use super::{FILES, Monkey};
-use apertura::app::{Command, MapKind, NewObject, Panel};
+use apertura::app::{
+    Command, DocumentCommand, EditCommand, LessonCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand,
+    WindowCommand,
+};
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use apertura::signal::Floor;
@@ -122,39 +125,49 @@ impl Monkey {
         let left: Vec<u64> = self.s.state().editor().left().iter().map(|d| d.id()).collect();
         let files = ["bad.toml", "missing.toml"].into_iter().chain(FILES).collect::<Vec<_>>();
         match self.rng.random_range(0..22) {
-            0 => Command::New,
+            0 => Command::Document(DocumentCommand::New),
             1..=3 => {
                 let name = self.pick(&files);
-                Command::OpenPath(self.s.folder.path().join(name))
+                Command::Document(DocumentCommand::OpenPath(self.s.folder.path().join(name)))
             }
-            4..=6 if named => Command::Save,
+            4..=6 if named => Command::Document(DocumentCommand::Save),
             7 => {
                 let name = self.pick(&FILES);
-                Command::SaveTo(self.s.folder.path().join(name))
+                Command::Document(DocumentCommand::SaveTo(self.s.folder.path().join(name)))
             }
-            8 => Command::Undo,
-            9 => Command::Redo,
-            10 => Command::SelectAll,
-            11 => Command::Duplicate,
-            12 => Command::SetCarrier(self.pick(&[Carrier::OneWay, Carrier::TwoWay])),
-            13 => Command::SetWindow(self.pick(&[WindowFunction::Hann, WindowFunction::Hamming])),
-            14 => Command::SetNoiseSeed(self.rng.random_range(0..9)),
-            15 => Command::SetFloor(self.pick(&[
+            8 => Command::Edit(EditCommand::Undo),
+            9 => Command::Edit(EditCommand::Redo),
+            10 => Command::Edit(EditCommand::SelectAll),
+            11 => Command::Edit(EditCommand::Duplicate),
+            12 => Command::Radar(RadarCommand::SetCarrier(self.pick(&[Carrier::OneWay, Carrier::TwoWay]))),
+            13 => Command::Radar(RadarCommand::SetWindow(self.pick(&[WindowFunction::Hann, WindowFunction::Hamming]))),
+            14 => Command::Edit(EditCommand::SetNoiseSeed(self.rng.random_range(0..9))),
+            15 => Command::View(ViewCommand::SetFloor(self.pick(&[
                 Floor::Thesis,
                 Floor::Exact,
                 Floor::Snr(Decibels(20.0)),
                 Floor::Level(DecibelMilliwatts(-20.0)),
-            ])),
-            16 => Command::Normalise(self.pick(&[Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))])),
+            ]))),
+            16 => Command::View(ViewCommand::Normalise(
+                self.pick(&[Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))]),
+            )),
             17 => {
                 let panels = Panel::all();
-                Command::TogglePanel(self.pick(&panels))
+                Command::Window(WindowCommand::TogglePanel(self.pick(&panels)))
             }
-            18 => Command::Maximise(self.pick(&[Panel::Scene, Panel::Map(MapKind::Target), Panel::Cuts, Panel::Guide])),
-            19 => Command::Recover(if left.is_empty() { 0 } else { self.pick(&left) }),
-            20 if self.rng.random_bool(0.5) => Command::BeginLesson(0),
-            20 => Command::LeaveLesson,
-            _ => Command::Add(self.pick(&[NewObject::Point, NewObject::Line, NewObject::Cluster]), None),
+            18 => Command::Window(WindowCommand::Maximise(self.pick(&[
+                Panel::Scene,
+                Panel::Map(MapKind::Target),
+                Panel::Cuts,
+                Panel::Guide,
+            ]))),
+            19 => Command::Document(DocumentCommand::Recover(if left.is_empty() { 0 } else { self.pick(&left) })),
+            20 if self.rng.random_bool(0.5) => Command::Lesson(LessonCommand::Begin(0)),
+            20 => Command::Lesson(LessonCommand::Leave),
+            _ => Command::Edit(EditCommand::Add(
+                self.pick(&[NewObject::Point, NewObject::Line, NewObject::Cluster]),
+                None,
+            )),
         }
     }
 }

@@ -7,7 +7,7 @@ mod hand;
 mod witness;
 
 use crate::session::{Session, harness};
-use apertura::app::{Command, Panel};
+use apertura::app::{Command, DocumentCommand, Panel, WindowCommand};
 use apertura::files::memory::resident_bytes;
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use egui_kittest::kittest::Queryable;
@@ -83,9 +83,9 @@ impl Monkey {
         let discarded = editor.left().first().filter(|_| editor.left().len() > MANY_UNSAVED).map(|d| d.id());
         let may_train = arrangement.is_open(Panel::Training);
         let commands = [
-            crowded.then_some(Command::New),
-            discarded.map(Command::Discard),
-            may_train.then_some(Command::ClosePanel(Panel::Training)),
+            crowded.then_some(Command::Document(DocumentCommand::New)),
+            discarded.map(|v| Command::Document(DocumentCommand::Discard(v))),
+            may_train.then_some(Command::Window(WindowCommand::ClosePanel(Panel::Training))),
         ];
         for command in commands.into_iter().flatten() {
             app.state_mut().ask(command);

@@ -46,7 +46,7 @@ fn tools_for_research_have_a_menu_of_their_own() {
             assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?} in {menus:?}");
         }
         open(&mut menu, &["Research", "Training"]);
-        assert_eq!(menu.state().1, [Command::OpenPanel(Panel::Training)]);
+        assert_eq!(menu.state().1, [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
     }
 }
 
@@ -61,7 +61,7 @@ fn random_scenes_have_a_menu_of_their_own() {
     assert!(Kind::all().all(is_listed));
     menu.get_by_label_contains(name).click();
     menu.run();
-    assert_eq!(menu.state().1, [Command::RandomScene(Kind::Walls)]);
+    assert_eq!(menu.state().1, [Command::Document(DocumentCommand::RandomScene(Kind::Walls))]);
     assert!(menu.query_by_label("Fit scene").is_none(), "the menu has closed");
 }
 
@@ -76,7 +76,7 @@ fn the_seed_of_random_scenes_is_typed_in_the_menu() {
     menu.run();
     menu.key_press(egui::Key::Enter);
     menu.run();
-    assert_eq!(menu.state().1, [Command::SetNextRandom { seed: 7, number: 0 }]);
+    assert_eq!(menu.state().1, [Command::Document(DocumentCommand::SetNextRandom { seed: 7, number: 0 })]);
 }
 
 #[test]
@@ -105,8 +105,15 @@ fn menus_ask_for_what_they_list() {
     menu.get_by_label("Four reflectors").click();
     menu.run();
     let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
-    let projection = Command::SetProjection(Projection::Cartesian);
-    assert_eq!(menu.state().1, [Command::Add(NewObject::Line, None), projection, Command::Preset(preset)]);
+    let projection = Command::View(ViewCommand::SetProjection(Projection::Cartesian));
+    assert_eq!(
+        menu.state().1,
+        [
+            Command::Edit(EditCommand::Add(NewObject::Line, None)),
+            projection,
+            Command::Document(DocumentCommand::Preset(preset))
+        ]
+    );
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn every_method_of_the_list_says_in_a_line_what_it_is() {
     }
     controls.get_by_label(CAPON.description()).click();
     controls.run();
-    assert_eq!(controls.state(), &[Command::Method("capon")]);
+    assert_eq!(controls.state(), &[Command::View(ViewCommand::Method("capon"))]);
 }
 
 #[test]
@@ -83,14 +83,14 @@ fn a_click_is_one_command_and_nothing_else_changes() {
         controls.run();
     }
     let asked = [
-        Command::SetWindow(WindowFunction::Hamming),
-        Command::SetCarrier(Carrier::TwoWay),
-        Command::SetFloor(Floor::Exact),
-        Command::ToggleFound,
-        Command::SetSnap(Snap::Metres(0.5)),
-        Command::Normalise(Normalisation::DynamicRange(Decibels(60.0))),
-        Command::SetUnits(Units::Decibels),
-        Command::ToggleAbsoluteDifference,
+        Command::Radar(RadarCommand::SetWindow(WindowFunction::Hamming)),
+        Command::Radar(RadarCommand::SetCarrier(Carrier::TwoWay)),
+        Command::View(ViewCommand::SetFloor(Floor::Exact)),
+        Command::View(ViewCommand::ToggleFound),
+        Command::Edit(EditCommand::SetSnap(Snap::Metres(0.5))),
+        Command::View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0)))),
+        Command::View(ViewCommand::SetUnits(Units::Decibels)),
+        Command::View(ViewCommand::ToggleAbsoluteDifference),
     ];
     assert_eq!(controls.state(), &asked, "and what is chosen already is not asked for");
 }
@@ -143,7 +143,7 @@ fn the_level_of_the_noise_can_be_chosen() {
     let mut controls = panel(Run::default);
     controls.get_by_label("dBm").click();
     controls.run();
-    assert_eq!(controls.state(), &[Command::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))]);
+    assert_eq!(controls.state(), &[Command::View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0))))]);
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn figures_stand_beside_the_bar_that_cancels() {
     let _told = (controls.get_by_label("321"), controls.get_by_label("1 blob in the target, 2 in the output"));
     controls.get_by_label("Cancel").click();
     controls.step();
-    assert_eq!(controls.state(), &[Command::CancelMethod]);
+    assert_eq!(controls.state(), &[Command::Work(WorkCommand::CancelMethod)]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod markers;
 mod measure;
 mod trace;
 
-use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units};
+use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Dash, Drawn, Span};
 use crate::app::widgets::direction::direction;
@@ -119,17 +119,17 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Com
         for (units, name) in [(Units::Lambda, "Λ"), (Units::Decibels, "dB")] {
             let tip = "Λ, or decibels relative to each map's peak (D)";
             if ui.selectable_label(input.units == units, name).on_hover_text(tip).clicked() && input.units != units {
-                asked.push(Command::SetUnits(units));
+                asked.push(ViewCommand::SetUnits(units).into());
             }
         }
         ui.add_space(6.0);
-        button(ui, "Pin", Command::PinCuts, !input.maps.is_empty(), asked);
+        button(ui, "Pin", ViewCommand::PinCuts, !input.maps.is_empty(), asked);
         for (index, pin) in input.pins.iter().enumerate() {
             let way = direction(pin.cursor.cos_theta, 1);
             let place = format!("{}: {:.2} m · {way}", index + 1, pin.cursor.range_metres);
             let tip = "A cut that stays, drawn thin; click to let it go";
             if ui.button(format!("Unpin {place}")).on_hover_text(tip).clicked() {
-                asked.push(Command::Unpin(index));
+                asked.push(ViewCommand::Unpin(index).into());
             }
         }
         ui.add_space(6.0);

@@ -34,7 +34,7 @@ fn panel(size: [f32; 2]) -> Harness<'static, Held> {
         let cursor = Cursor::at_cell(&radar, held.bin, 700.0);
         let input = Input { radar: &radar, cursor, maps: &maps, pins: &held.pins, units: held.units };
         let commands = show(ui, input, &mut held.memory);
-        if commands.contains(&Command::PinCuts) {
+        if commands.contains(&Command::View(ViewCommand::PinCuts)) {
             held.pins.push(PinnedCut { radar: radar.clone(), cursor, maps: maps.to_vec() });
         }
         held.asked.extend(commands);
@@ -106,7 +106,7 @@ fn a_pinned_cut_stays_while_the_cursor_moves_on() {
     let mut cuts = panel([900.0, 500.0]);
     cuts.get_by_label("Pin").click();
     cuts.run_steps(2);
-    assert_eq!(cuts.state().asked, [Command::PinCuts]);
+    assert_eq!(cuts.state().asked, [Command::View(ViewCommand::PinCuts)]);
     cuts.state_mut().bin = 400.0;
     cuts.run_steps(2);
     let held = cuts.state();
@@ -128,7 +128,7 @@ fn a_pinned_cut_stays_while_the_cursor_moves_on() {
     assert!(highest(&drawn[0]) > 0.999 && highest(&drawn[1]) < 0.3, "one through the lobe, one beside it");
     cuts.get_by_label_contains("Unpin 1: ").click();
     cuts.step();
-    assert_eq!(cuts.state().asked, [Command::PinCuts, Command::Unpin(0)]);
+    assert_eq!(cuts.state().asked, [Command::View(ViewCommand::PinCuts), Command::View(ViewCommand::Unpin(0))]);
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn decibels_are_an_axis_and_a_choice() {
     let mut cuts = panel([900.0, 400.0]);
     cuts.get_by_label("dB").click();
     cuts.step();
-    assert_eq!(cuts.state().asked, [Command::SetUnits(Units::Decibels)]);
+    assert_eq!(cuts.state().asked, [Command::View(ViewCommand::SetUnits(Units::Decibels))]);
     cuts.state_mut().units = Units::Decibels;
     cuts.run_steps(2);
     let texts = seen::texts(cuts.output());

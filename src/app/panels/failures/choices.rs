@@ -1,7 +1,7 @@
 //! Which methods are tried on which scenes, and where the rows come from and go to.
 
 use super::input::Input;
-use crate::app::state::{Command, FailureChoice};
+use crate::app::state::{Command, FailureChoice, RowsCommand};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::progress;
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec
         match input.progress {
             Some(part) => {
                 if progress(ui, part, 180.0, "Stop after this map; the rows stay") {
-                    asked.push(Command::CancelTrying);
+                    asked.push(RowsCommand::CancelTrying.into());
                 }
             }
             None => run(ui, input, memory, asked),
@@ -66,7 +66,7 @@ fn run(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
         ui.checkbox(&mut memory.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));
         if ui.button("Another folder…").on_hover_text("Pick any scene of the folder").clicked() {
-            asked.push(Command::ChooseOwnScenes);
+            asked.push(RowsCommand::ChooseOwnScenes.into());
             ui.close();
         }
     });
@@ -81,13 +81,16 @@ fn run(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
                the same stay; those made with others make room";
     let start = start.on_hover_text(tip).on_disabled_hover_text("Choose a method and scenes first");
     if start.clicked() {
-        asked.push(Command::TryMethods(FailureChoice {
-            methods: memory.methods.iter().copied().collect(),
-            kinds: memory.kinds.iter().copied().collect(),
-            own: memory.own,
-            count: memory.count,
-            seed: memory.seed,
-        }));
+        asked.push(
+            RowsCommand::Try(FailureChoice {
+                methods: memory.methods.iter().copied().collect(),
+                kinds: memory.kinds.iter().copied().collect(),
+                own: memory.own,
+                count: memory.count,
+                seed: memory.seed,
+            })
+            .into(),
+        );
     }
 }
 
@@ -104,11 +107,16 @@ fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             asked.push(command);
         }
     };
-    button("Open…", "Show rows that were saved, or written by apertura evaluate --rows", true, Command::OpenRows);
-    button("Save…", "Save the rows as CSV", has_rows, Command::SaveRows);
-    button("Clear", "Forget every row", has_rows, Command::ClearRows);
+    button(
+        "Open…",
+        "Show rows that were saved, or written by apertura evaluate --rows",
+        true,
+        Command::Rows(RowsCommand::Open),
+    );
+    button("Save…", "Save the rows as CSV", has_rows, Command::Rows(RowsCommand::Save));
+    button("Clear", "Forget every row", has_rows, Command::Rows(RowsCommand::Clear));
     if let Some(count) = input.before {
         let name = format!("Bring back {}", counted(count, "row", "rows"));
-        button(&name, "The rows that others took the place of", true, Command::BringRowsBack);
+        button(&name, "The rows that others took the place of", true, Command::Rows(RowsCommand::BringBack));
     }
 }

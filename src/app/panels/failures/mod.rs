@@ -12,7 +12,7 @@ mod table;
 
 pub use input::{Input, Live, Now, Searched};
 
-use crate::app::state::Command;
+use crate::app::state::{Command, RowsCommand};
 use crate::radar::counted;
 use charts::View;
 use eframe::egui;
@@ -120,7 +120,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
 fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     let of = charts::Input { table: input.table, order: &memory.order, opened: input.opened };
     let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
-    asked.extend(answer.open.map(Command::OpenRow));
+    asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
     if let Some(boxed) = answer.boxed {
         // An empty box selects all.
         memory.boxed = Some(boxed).filter(|boxed| !boxed.rows.is_empty());
@@ -138,7 +138,7 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Com
         colours: input.colours,
     };
     let answer = table::show(ui, &of, &mut memory.table);
-    asked.extend(answer.open.map(Command::OpenRow));
+    asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
     if let Some(column) = answer.sort {
         memory.sort = Sort::clicked(memory.sort, column);
         ui.request_repaint();

@@ -1,7 +1,7 @@
 //! The scene on screen: the row's own figures beside those of now, worse and repaired, and kept.
 
 use super::input::{Input, Live, Now, Searched};
-use crate::app::state::{Command, SearchChoice};
+use crate::app::state::{Command, RowsCommand, SearchChoice};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
@@ -40,10 +40,10 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec
         let keep = ui.add_enabled(input.own.is_some(), Button::new("Keep"));
         let tip = format!("Add the scene on screen to your own scenes, with the note: {folder}");
         if keep.on_hover_text(tip).clicked() {
-            asked.push(Command::KeepScene(std::mem::take(&mut memory.note)));
+            asked.push(RowsCommand::KeepScene(std::mem::take(&mut memory.note)).into());
         }
         if input.own.is_none() && ui.button("Folder…").clicked() {
-            asked.push(Command::ChooseOwnScenes);
+            asked.push(RowsCommand::ChooseOwnScenes.into());
         }
     });
 }
@@ -92,7 +92,7 @@ fn fates(row: &Row) -> String {
 fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     if let Some(part) = searched.progress {
         if progress(ui, part, 140.0, "Stop looking; what was found stays") {
-            asked.push(Command::CancelSearch);
+            asked.push(RowsCommand::CancelSearch.into());
         }
     } else {
         let label = ui.label("Look by");
@@ -113,7 +113,7 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut
         for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
             if ui.button(title).on_hover_text(tip).clicked() {
                 let Memory { measure, within_metres, tries, .. } = *memory;
-                asked.push(Command::Search(SearchChoice { aim, measure, within_metres, tries }));
+                asked.push(RowsCommand::Search(SearchChoice { aim, measure, within_metres, tries }).into());
             }
         }
     }
@@ -125,10 +125,10 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut
     }
     if searched.progress.is_none() && searched.has_found {
         if ui.button("Show").on_hover_text("Put what was found on screen; undo brings this scene back").clicked() {
-            asked.push(Command::TakeFinding);
+            asked.push(RowsCommand::TakeFinding.into());
         }
         if ui.button("Forget").on_hover_text("Forget the search; its path is no longer drawn").clicked() {
-            asked.push(Command::ForgetSearch);
+            asked.push(RowsCommand::ForgetSearch.into());
         }
     }
 }

@@ -42,7 +42,7 @@ fn panel_of(rows: Vec<Row>, size: Vec2) -> Harness<'static, Drawn> {
         };
         let asked = show(ui, &input, &mut drawn.memory);
         for command in &asked {
-            if let Command::OpenRow(index) = command {
+            if let Command::Rows(RowsCommand::Show(index)) = command {
                 drawn.opened = Some(*index);
             }
         }
@@ -73,8 +73,12 @@ fn what_is_chosen_is_tried_searched_and_kept() {
     }
     let choice = FailureChoice { methods: vec!["capon"], kinds: vec![Kind::Set2], own: false, count: 20, seed: 0 };
     let search = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 256 };
-    let asked =
-        [Command::TryMethods(choice), Command::Search(search), Command::KeepScene(String::new()), Command::OpenRows];
+    let asked = [
+        Command::Rows(RowsCommand::Try(choice)),
+        Command::Rows(RowsCommand::Search(search)),
+        Command::Rows(RowsCommand::KeepScene(String::new())),
+        Command::Rows(RowsCommand::Open),
+    ];
     assert_eq!(panel.state().asked, asked);
 }
 
@@ -96,7 +100,7 @@ fn titles_sort_and_keys_walk_through_the_rows_in_that_order() {
         .state()
         .asked
         .iter()
-        .map(|c| if let Command::OpenRow(row) = c { *row } else { panic!("{c:?}") })
+        .map(|c| if let Command::Rows(RowsCommand::Show(row)) = c { *row } else { panic!("{c:?}") })
         .collect();
     let figures: Vec<f64> = opened.iter().map(|row| rows[*row].squared_error).collect();
     assert_eq!((opened.len(), opened[0]), (4, worst));

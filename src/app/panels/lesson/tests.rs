@@ -37,7 +37,7 @@ fn a_lesson_is_begun_from_the_list() {
     let mut panel = harness(None);
     panel.get_by_label("Range and bandwidth").click();
     panel.step();
-    assert_eq!(panel.state().2, [Command::BeginLesson(0)]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Begin(0))]);
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn lessons_ask_for_the_whole_screen() {
     let mut panel = harness(Some(run("range-and-bandwidth", 0)));
     panel.get_by_label("Whole screen").click();
     panel.step();
-    assert_eq!(panel.state().2, [Command::PresentLesson]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Present)]);
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn options_are_predictions_and_results_stay_hidden_before() {
     assert!(panel.query_by_label_contains("Correct").is_none());
     panel.get_by_label("It stays").click();
     panel.step();
-    assert_eq!(panel.state().2, [Command::Predict(Guess::Choice(3))]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Predict(Guess::Choice(3)))]);
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn a_number_is_typed_and_answered() {
     panel.step();
     panel.get_by_label("Answer").click();
     panel.step();
-    assert_eq!(panel.state().2, [Command::Predict(Guess::Number(0.075))]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Predict(Guess::Number(0.075)))]);
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_challenge_offers_its_solution() {
     let mut panel = harness(Some(run("range-and-bandwidth", 4)));
     panel.get_by_label("Show a solution").click();
     panel.step();
-    assert_eq!(panel.state().2, [Command::ShowSolution]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::ShowSolution)]);
 }
 
 /// A run in which a step was answered.
@@ -132,7 +132,7 @@ fn a_shown_solution_counts_as_unsolved() {
     assert!(panel.query_by_label_contains("Solved").is_none());
     panel.get_by_label("Start this step again").click();
     panel.step();
-    assert_eq!(panel.state().2, [Command::LessonStep(4)]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Step(4))]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is drawn where a map has no picture, or hides it.
 
-use crate::app::state::Command;
+use crate::app::state::{Command, ViewCommand};
 use crate::app::widgets::theme::Inks;
 use eframe::egui::{self, Align2, Painter, Rect, Ui, vec2};
 
@@ -30,7 +30,7 @@ pub fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<
             if let Some(instead) = error.and_then(|e| e.instead)
                 && ui.button(format!("Use {instead}")).on_hover_text("A method that works here").clicked()
             {
-                asked.push(Command::Method(instead));
+                asked.push(ViewCommand::Method(instead).into());
             }
         });
     });

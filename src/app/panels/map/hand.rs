@@ -1,7 +1,7 @@
 //! The pointer on a map: a click selects the reflector behind a blob, a drag moves it.
 
 use super::frame::Frame;
-use crate::app::state::{Command, MapKind};
+use crate::app::state::{Command, EditCommand, MapKind};
 use crate::interact::SelectionMode;
 use crate::interact::blob::{self, BlobHit};
 use crate::radar::Polar;
@@ -43,18 +43,18 @@ pub fn work(
         && let Some(blob) = under(scene, frame, origin)
     {
         memory.held = Some((kind, Held { blob, from: frame.polar(origin) }));
-        asked.push(Command::Grab(blob));
+        asked.push(EditCommand::Grab(blob).into());
     }
     if response.clicked_by(PointerButton::Primary)
         && let Some(pos) = now
     {
         let hit = under(scene, frame, pos);
-        asked.push(Command::Select(hit.map(|h| h.object).into_iter().collect(), mode));
+        asked.push(EditCommand::Select(hit.map(|h| h.object).into_iter().collect(), mode).into());
     }
     let held = memory.held.filter(|(of, _)| *of == kind).map(|(_, held)| held);
     if let (Some(held), Some(now)) = (held, now) {
         let to = blob::moved(frame.radar, frame.centre_x_metres, held.blob.place, held.from, frame.polar(now));
-        asked.push(Command::DragTo(to));
+        asked.push(EditCommand::DragTo(to).into());
         ui.set_cursor_icon(CursorIcon::Grabbing);
     } else if let Some(pos) = response.hover_pos()
         && scene.reflector_count() <= HOVERED
@@ -64,7 +64,7 @@ pub fn work(
     }
     if held.is_some() && !response.dragged_by(PointerButton::Primary) {
         memory.held = None;
-        asked.push(Command::Drop);
+        asked.push(EditCommand::Drop.into());
     }
     held.is_some()
 }
@@ -102,10 +102,10 @@ mod tests {
             let input = Input::bare(kind, &radar, projection, &scene, &selection);
             for command in show(ui, input, &mut desk.view, &mut desk.memory) {
                 match command.clone() {
-                    Command::Grab(blob) => desk.editor.grab(blob),
-                    Command::DragTo(place) => _ = desk.editor.drag_to(place, desk.snap),
-                    Command::Drop => desk.editor.end_drag(),
-                    Command::Select(objects, mode) => desk.editor.select(objects, mode),
+                    Command::Edit(EditCommand::Grab(blob)) => desk.editor.grab(blob),
+                    Command::Edit(EditCommand::DragTo(place)) => _ = desk.editor.drag_to(place, desk.snap),
+                    Command::Edit(EditCommand::Drop) => desk.editor.end_drag(),
+                    Command::Edit(EditCommand::Select(objects, mode)) => desk.editor.select(objects, mode),
                     _ => continue,
                 }
                 desk.asked.push(command);
@@ -154,7 +154,7 @@ mod tests {
                 assert!(off < 1.5, "{kind:?}, {projection:?}: its blob is {off} points beside the pointer");
                 assert_eq!(place(&map, 0), [-8.0, 18.0]);
                 assert_eq!(map.state().view, MapView::default(), "the map itself stays");
-                assert_eq!(map.state().asked.last(), Some(&Command::Drop));
+                assert_eq!(map.state().asked.last(), Some(&Command::Edit(EditCommand::Drop)));
                 let editor = &mut map.state_mut().editor;
                 assert_eq!((editor.selection().single(), editor.history().depth()), (Some(1), 1));
                 editor.undo();

@@ -22,7 +22,10 @@ pub use kinds::Kinds;
 pub use swipe::Over;
 pub use theory::Theory;
 
-use crate::app::state::{Command, Cursor, DifferenceView, MapKind, MapView, Panel, Projection, Units};
+use crate::app::state::{
+    Command, Cursor, DifferenceView, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection, Units,
+    ViewCommand, WindowCommand,
+};
 use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::entry::entry;
@@ -244,9 +247,9 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
     let Some(cursor) = cursor_at(input.radar, input.projection, frame.view.at(frame.rect, pos)) else { return };
     if input.veil.is_some_and(|v| v.is_clicked) && response.clicked() {
         let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
-        asked.push(Command::Predict(crate::lesson::Guess::Place(cell)));
+        asked.push(LessonCommand::Predict(crate::lesson::Guess::Place(cell)).into());
     }
-    asked.push(Command::Hover(cursor));
+    asked.push(ViewCommand::Hover(cursor).into());
 }
 
 /// Middle of the elements that a map is of.
@@ -266,21 +269,21 @@ fn bar_of(input: &Input<'_>) -> Bar {
 
 fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
     for command in [
-        Command::Maximise(Panel::Map(kind)),
-        Command::ToggleProjection,
-        Command::ToggleUnits,
-        Command::ResetMaps,
-        Command::ToggleReflectors,
-        Command::ToggleTheory,
-        Command::ToggleKinds,
-        Command::CopyMap(kind),
-        Command::ClosePanel(Panel::Map(kind)),
+        Command::Window(WindowCommand::Maximise(Panel::Map(kind))),
+        Command::View(ViewCommand::ToggleProjection),
+        Command::View(ViewCommand::ToggleUnits),
+        Command::View(ViewCommand::ResetMaps),
+        Command::View(ViewCommand::ToggleReflectors),
+        Command::View(ViewCommand::ToggleTheory),
+        Command::View(ViewCommand::ToggleKinds),
+        Command::Export(ExportCommand::CopyMap(kind)),
+        Command::Window(WindowCommand::ClosePanel(Panel::Map(kind))),
     ] {
         entry(ui, command, true, asked);
     }
     if kind.is_difference() {
-        entry(ui, Command::ToggleAbsoluteDifference, true, asked);
-        entry(ui, Command::ToggleWholeDifference, true, asked);
+        entry(ui, ViewCommand::ToggleAbsoluteDifference, true, asked);
+        entry(ui, ViewCommand::ToggleWholeDifference, true, asked);
     }
 }
 

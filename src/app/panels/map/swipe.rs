@@ -2,7 +2,7 @@
 
 use super::blank::Problem;
 use super::frame::{Cells, Frame};
-use crate::app::state::Command;
+use crate::app::state::{Command, ViewCommand};
 use crate::app::widgets::theme::{Inks, MARK, MARK_EDGE};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, EventFilter, FontId, Key, Modifiers, Painter, Rect, Response, Sense, Stroke,
@@ -72,7 +72,7 @@ impl<'a> Over<'a> {
         let pointed = response.interact_pointer_pos().filter(|_| response.dragged());
         let dragged = pointed.map(|at| (at.x - rect.left()) / rect.width().max(1.0));
         let moved = dragged.or_else(|| steps(&response).map(|steps| self.edge + steps as f32 * STEP));
-        asked.extend(moved.map(Command::Swipe));
+        asked.extend(moved.map(|v| Command::View(ViewCommand::Swipe(v))));
         for (width, colour) in [(4.0, MARK_EDGE), (2.0, MARK)] {
             painter.vline(x, rect.y_range(), Stroke::new(width, colour));
         }

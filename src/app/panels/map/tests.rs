@@ -30,7 +30,7 @@ fn the_pointer_is_told_in_cells() {
     let rect = map.get_by_label("Output map").rect();
     map.hover_at(rect.center());
     map.step();
-    let Some(Command::Hover(cursor)) = map.state().last() else { panic!("{:?}", map.state()) };
+    let Some(Command::View(ViewCommand::Hover(cursor))) = map.state().last() else { panic!("{:?}", map.state()) };
     assert!((cursor.bin - 255.5).abs() < 1.0 && (cursor.column - 511.5).abs() < 1.0, "{cursor:?}");
 }
 
@@ -44,7 +44,7 @@ fn a_refusal_is_told_and_another_method_offered() {
     let _one = map.get_by_label("Output map");
     map.get_by_label("Use capon").click();
     map.step();
-    assert!(map.state().contains(&Command::Method("capon")), "{:?}", map.state());
+    assert!(map.state().contains(&Command::View(ViewCommand::Method("capon"))), "{:?}", map.state());
 }
 
 #[test]

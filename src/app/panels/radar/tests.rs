@@ -9,8 +9,8 @@ fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, V
         let asked = show(ui, Input { radar: &state.0, measured });
         for command in &asked {
             match command {
-                Command::SetRadar(radar) => state.0 = (**radar).clone(),
-                Command::RadarPreset(index) => state.0 = presets::ALL[*index].radar.clone(),
+                Command::Radar(RadarCommand::Set(radar)) => state.0 = (**radar).clone(),
+                Command::Radar(RadarCommand::Preset(index)) => state.0 = presets::ALL[*index].radar.clone(),
                 other => panic!("{other:?}"),
             }
         }
@@ -111,7 +111,7 @@ fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
     free.run();
     free.get_by_label("24 GHz, 256 elements").click();
     free.run();
-    assert_eq!(free.state().1, [Command::RadarPreset(3)]);
+    assert_eq!(free.state().1, [Command::Radar(RadarCommand::Preset(3))]);
     let _told = free.get_by_label_contains("range bins of 60 cm");
     let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
     measured.run();

@@ -5,7 +5,7 @@ mod canvas;
 mod disturbances;
 mod trail;
 
-use crate::app::state::{Command, Cursor, NewObject, SceneView};
+use crate::app::state::{Command, Cursor, EditCommand, NewObject, SceneView, ViewCommand};
 use crate::app::widgets::entry::entry;
 use crate::app::widgets::nudge::{nudge, zoom_keys};
 use crate::app::widgets::theme::Inks;
@@ -80,7 +80,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         canvas::selection_box(&painter, canvas, start, pos);
     }
     match (hover, input.cursor) {
-        (Some(place), _) => asked.push(Command::Hover(Cursor::at_place(input.radar, place))),
+        (Some(place), _) => asked.push(ViewCommand::Hover(Cursor::at_place(input.radar, place)).into()),
         (None, Some(cursor)) => canvas::cursor(&painter, canvas, &cursor),
         (None, None) => {}
     }
@@ -230,7 +230,7 @@ fn pointer(
         let place = view.to_scene(rect, pos);
         if editor.hit(place, view.metres_per_point).is_none() {
             let place = input.snap.apply(input.radar, place);
-            asked.push(Command::Add(NewObject::Point, Some(place)));
+            asked.push(EditCommand::Add(NewObject::Point, Some(place)).into());
         }
     }
 }
@@ -293,16 +293,21 @@ fn context_menu(
     popup.show(|ui| {
         let place = ui.data(|d| d.get_temp::<[f64; 2]>(id)).map(Place::from);
         for kind in [NewObject::Point, NewObject::Line, NewObject::Cluster] {
-            entry(ui, Command::Add(kind, place), true, asked);
+            entry(ui, EditCommand::Add(kind, place), true, asked);
         }
         ui.separator();
         let selected = !editor.selection().is_empty();
-        for command in [Command::Cut, Command::Copy, Command::Duplicate, Command::Delete] {
+        for command in [
+            Command::Edit(EditCommand::Cut),
+            Command::Edit(EditCommand::Copy),
+            Command::Edit(EditCommand::Duplicate),
+            Command::Edit(EditCommand::Delete),
+        ] {
             entry(ui, command, selected, asked);
         }
-        entry(ui, Command::Paste, true, asked);
+        entry(ui, EditCommand::Paste, true, asked);
         ui.separator();
-        entry(ui, Command::FitScene, true, asked);
+        entry(ui, ViewCommand::FitScene, true, asked);
     });
 }
 

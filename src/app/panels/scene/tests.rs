@@ -49,7 +49,7 @@ fn a_drag_moves_the_object_and_the_pointer_is_told() {
     let held = scene.state();
     let moved = held.editor.scene().objects[0].centre_metres()[0];
     assert!((moved - 40.0 * held.view.metres_per_point).abs() < 1e-6, "{moved}");
-    assert!(held.asked.iter().all(|c| matches!(c, Command::Hover(_))) && !held.asked.is_empty());
+    assert!(held.asked.iter().all(|c| matches!(c, Command::View(ViewCommand::Hover(_)))) && !held.asked.is_empty());
 }
 
 #[test]
@@ -253,5 +253,5 @@ fn a_double_click_asks_for_a_point_there() {
     }
     let held = scene.state();
     let place = held.view.to_scene(scene.get_by_label("Scene").rect(), at);
-    assert!(held.asked.contains(&Command::Add(NewObject::Point, Some(place))), "{:?}", held.asked);
+    assert!(held.asked.contains(&Command::Edit(EditCommand::Add(NewObject::Point, Some(place)))), "{:?}", held.asked);
 }

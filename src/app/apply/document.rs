@@ -1,8 +1,8 @@
 //! Commands that put another scene on screen, or this one in a file.
 
-use super::saving;
+use super::{saving, shared};
 use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{Command, MapKind, Panel, Settings, State};
+use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State};
 use crate::interact::Document;
 use crate::recording;
 use crate::scene::file::SceneFile;
@@ -11,26 +11,26 @@ use crate::scene::presets;
 use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
-/// Does those commands, and hands others on.
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+/// Does such a command.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
     match command {
-        Command::New => {
-            state.set_document("new scene", Document::default());
+        DocumentCommand::New => state.set_document("new scene", Document::default()),
+        DocumentCommand::Open => jobs.choose_file(state, Purpose::Open),
+        DocumentCommand::OpenPath(path) => open(state, path),
+        DocumentCommand::Save => saving::save_again(state, jobs),
+        DocumentCommand::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
+        DocumentCommand::SaveTo(path) => saving::save(state, path),
+        DocumentCommand::AnswerSave(answer) => saving::answer(state, jobs, answer),
+        DocumentCommand::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
+        DocumentCommand::Discard(id) => state.editor.discard(id),
+        DocumentCommand::Preset(index) => preset(state, index),
+        DocumentCommand::Recording(index) => shipped_recording(state, index),
+        DocumentCommand::RandomScene(kind) => random_scene(state, kind),
+        DocumentCommand::SetNextRandom { seed, number } => {
+            (state.settings.random_seed, state.settings.random_number) = (seed, number);
         }
-        Command::Open => jobs.choose_file(state, Purpose::Open),
-        Command::OpenPath(path) => open(state, path),
-        Command::Save => saving::save_again(state, jobs),
-        Command::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
-        Command::SaveTo(path) => saving::save(state, path),
-        Command::AnswerSave(answer) => saving::answer(state, jobs, answer),
-        Command::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
-        Command::Discard(id) => state.editor.discard(id),
-        Command::Preset(index) => preset(state, index),
-        Command::Recording(index) => shipped_recording(state, index),
-        Command::RandomScene(kind) => random_scene(state, kind),
-        other => return Some(other),
+        DocumentCommand::OpenShared(text) => shared::open(state, &text),
     }
-    None
 }
 
 /// Opens a scene file or a recording; on any error the scene on screen stays.

@@ -1,31 +1,22 @@
 //! Commands of lessons: begin, predict, go on, leave.
 
 use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{Arrangement, Before, Command, LessonRun, MapViews, Panel, State};
+use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapViews, Panel, State};
 use crate::interact::Document;
 use crate::lesson::{Guess, Lesson, shipped};
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use std::sync::Arc;
 
-/// Does a command of a lesson; hands any other on.
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+/// Does such a command.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
     match command {
-        Command::BeginLesson(index) => {
-            let file = shipped::ALL.get(index)?;
-            match file.load() {
-                Ok(lesson) => begin(state, file.id.to_owned(), Arc::new(lesson)),
-                Err(error) => state.notices.error(format!("Lesson {}: {error}", file.id)),
-            }
-        }
-        Command::OpenLesson => jobs.choose_file(state, Purpose::OpenLesson),
-        Command::OpenLessonFile(path) => jobs.lessons.open(path),
-        Command::TakeLesson { id, lesson } => begin(state, id, lesson),
-        Command::LessonStep(step) => {
-            state.lesson.iter_mut().for_each(|run| run.go_to(step));
-            set_up(state);
-        }
-        Command::Predict(guess) => {
+        LessonCommand::Begin(index) => begin_shipped(state, index),
+        LessonCommand::Open => jobs.choose_file(state, Purpose::OpenLesson),
+        LessonCommand::OpenFile(path) => jobs.lessons.open(path),
+        LessonCommand::Take { id, lesson } => begin(state, id, lesson),
+        LessonCommand::Step(step) => go_to(state, step),
+        LessonCommand::Predict(guess) => {
             if let Some(run) = state.lesson.as_mut().filter(|run| run.is_predicting()) {
                 run.guess = Some(guess);
                 // The maps of what exceeds the threshold show what was chosen.
@@ -34,14 +25,27 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Com
                 }
             }
         }
-        Command::ShowSolution => show_solution(state),
-        Command::LeaveLesson => leave(state),
-        Command::PresentLesson => state.present_lesson(),
-        Command::SetLearner(name) => state.progress.set_learner(&name),
-        Command::ForgetProgress => state.progress.reset(),
-        other => return Some(other),
+        LessonCommand::ShowSolution => show_solution(state),
+        LessonCommand::Leave => leave(state),
+        LessonCommand::Present => state.present_lesson(),
+        LessonCommand::SetLearner(name) => state.progress.set_learner(&name),
+        LessonCommand::ForgetProgress => state.progress.reset(),
     }
-    None
+}
+
+/// Begins a lesson that comes with the program.
+pub fn begin_shipped(state: &mut State, index: usize) {
+    let Some(file) = shipped::ALL.get(index) else { return };
+    match file.load() {
+        Ok(lesson) => begin(state, file.id.to_owned(), Arc::new(lesson)),
+        Err(error) => state.notices.error(format!("Lesson {}: {error}", file.id)),
+    }
+}
+
+/// Goes to a step of the lesson, from 0.
+pub fn go_to(state: &mut State, step: usize) {
+    state.lesson.iter_mut().for_each(|run| run.go_to(step));
+    set_up(state);
 }
 
 fn begin(state: &mut State, id: String, lesson: Arc<Lesson>) {

@@ -1,46 +1,45 @@
 //! Commands about rows: try methods, open a row, look for worse, keep.
 
+use super::work;
 use crate::app::jobs::{FailuresPlan, Jobs, Purpose, is_table_of_rows, keep, tell};
-use crate::app::state::{Command, Conditions, FailureChoice, OpenedRow, Panel, State};
+use crate::app::state::{Conditions, FailureChoice, OpenedRow, Panel, RowsCommand, State};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::evaluate::worsen::Aim;
 use std::path::Path;
 
-/// Does a command about rows; hands any other on.
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Command> {
+/// Does such a command.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
     match command {
-        Command::TryMethods(choice) => match plan(state, jobs, &choice) {
+        RowsCommand::Try(choice) => match plan(state, jobs, &choice) {
             Ok(plan) => jobs.failures.begin(plan),
             Err(error) => state.notices.error(error),
         },
-        Command::CancelTrying => jobs.failures.cancel(),
-        Command::OpenRows => jobs.choose_file(state, Purpose::OpenRows),
-        Command::OpenTable(path) if !is_table_of_rows(&path) => return Some(Command::WatchLog(path)),
-        Command::OpenRowsFile(path) | Command::OpenTable(path) => {
+        RowsCommand::CancelTrying => jobs.failures.cancel(),
+        RowsCommand::Open => jobs.choose_file(state, Purpose::OpenRows),
+        RowsCommand::OpenTable(path) if !is_table_of_rows(&path) => work::watch(state, jobs, path),
+        RowsCommand::OpenFile(path) | RowsCommand::OpenTable(path) => {
             jobs.failures.open(path);
             if state.arrangement.maximised() != Some(Panel::Failures) {
                 state.arrangement.set_open(Panel::Failures, true);
             }
         }
-        Command::SaveRows => jobs.choose_file(state, Purpose::SaveRows),
-        Command::SaveRowsTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
-        Command::ClearRows => jobs.failures.clear(),
-        Command::BringRowsBack => jobs.failures.bring_back(),
-        Command::OpenRow(index) => open_row(state, jobs, index),
-        Command::Search(choice) => jobs.failures.search.begin(state, choice),
-        Command::CancelSearch => jobs.failures.search.cancel(),
-        Command::TakeFinding => take_finding(state, jobs),
-        Command::ForgetSearch => jobs.failures.search.forget(),
-        Command::KeepScene(note) => keep_scene(state, jobs, &note),
-        Command::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
-        Command::SetOwnScenes(path) => {
+        RowsCommand::Save => jobs.choose_file(state, Purpose::SaveRows),
+        RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
+        RowsCommand::Clear => jobs.failures.clear(),
+        RowsCommand::BringBack => jobs.failures.bring_back(),
+        RowsCommand::Show(index) => open_row(state, jobs, index),
+        RowsCommand::Search(choice) => jobs.failures.search.begin(state, choice),
+        RowsCommand::CancelSearch => jobs.failures.search.cancel(),
+        RowsCommand::TakeFinding => take_finding(state, jobs),
+        RowsCommand::ForgetSearch => jobs.failures.search.forget(),
+        RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note),
+        RowsCommand::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
+        RowsCommand::SetOwnScenes(path) => {
             let folder = if path.is_dir() { Some(path.as_path()) } else { path.parent() };
             state.settings.own_scenes = folder.map(Path::to_path_buf);
         }
-        other => return Some(other),
     }
-    None
 }
 
 fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPlan, String> {

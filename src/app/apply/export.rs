@@ -1,0 +1,35 @@
+//! Commands that write for other programs: files and the clipboard.
+
+use super::{Effect, map_picture, shared};
+use crate::app::jobs::{Jobs, Purpose, tell};
+use crate::app::state::{ExportCommand, State};
+
+/// Does such a command, but for what the clipboard has to do.
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Option<Effect> {
+    let said = match command {
+        ExportCommand::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),
+        ExportCommand::CopyShared => return shared::text(state).map(Effect::Copy),
+        ExportCommand::CopyEvaluation => return Some(Effect::Copy(jobs.evaluation.to_csv())),
+        ExportCommand::Picture => return choose(state, jobs, Purpose::ExportPicture),
+        ExportCommand::Maps => return choose(state, jobs, Purpose::ExportMaps),
+        ExportCommand::Metrics => return choose(state, jobs, Purpose::ExportMetrics),
+        ExportCommand::RecordDrag => return choose(state, jobs, Purpose::RecordDrag),
+        ExportCommand::DrawLesson => return choose(state, jobs, Purpose::DrawLesson),
+        ExportCommand::StopRecording => {
+            let given_up = jobs.recorder.cancel().or_else(|| jobs.exports.give_up());
+            Ok(given_up.unwrap_or_else(|| "Nothing is recorded.".to_owned()))
+        }
+        ExportCommand::RecordDragTo(path) => jobs.recorder.record_drag(path),
+        ExportCommand::DrawLessonTo(path) => jobs.recorder.draw_lesson(state, path),
+        ExportCommand::PictureTo(path) => jobs.exports.picture(state, path),
+        ExportCommand::MapsTo(path) => jobs.exports.maps(state, path),
+        ExportCommand::MetricsTo(path) => jobs.exports.metrics(state, &jobs.pipeline, path),
+    };
+    tell(state, said);
+    None
+}
+
+fn choose(state: &mut State, jobs: &mut Jobs, purpose: Purpose) -> Option<Effect> {
+    jobs.choose_file(state, purpose);
+    None
+}

@@ -1,0 +1,72 @@
+//! Commands that change how the scene is looked at.
+
+use crate::app::jobs::Jobs;
+use crate::app::state::{MapViews, Panel, PinnedCut, Projection, State, Units, ViewCommand};
+use crate::signal::Floor;
+
+/// Does such a command.
+pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
+    let settings = &mut state.settings;
+    match command {
+        ViewCommand::Hover(cursor) => state.pointer.hover(cursor),
+        ViewCommand::FitScene => state.scene_view.fit = true,
+        ViewCommand::ResetMaps => state.map_views = MapViews::default(),
+        ViewCommand::ToggleProjection => {
+            settings.projection = match settings.projection {
+                Projection::RangeAngle => Projection::Cartesian,
+                Projection::Cartesian => Projection::RangeAngle,
+            }
+        }
+        ViewCommand::SetProjection(projection) => settings.projection = projection,
+        ViewCommand::ToggleUnits => {
+            settings.units = match settings.units {
+                Units::Lambda => Units::Decibels,
+                Units::Decibels => Units::Lambda,
+            }
+        }
+        ViewCommand::SetUnits(units) => settings.units = units,
+        ViewCommand::ToggleAbsoluteDifference => settings.difference.absolute ^= true,
+        ViewCommand::ToggleWholeDifference => settings.difference.whole ^= true,
+        ViewCommand::Colours(colours) => settings.colours = colours,
+        ViewCommand::Normalise(normalisation) => settings.normalisation = normalisation,
+        ViewCommand::SetFloor(floor) => {
+            settings.floor = floor;
+            match floor {
+                Floor::Snr(snr) => settings.snr = snr,
+                Floor::Level(level) => settings.level = level,
+                Floor::Thesis | Floor::Exact => {}
+            }
+        }
+        ViewCommand::SetTargetEta(eta) => settings.target_eta = eta,
+        ViewCommand::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
+        ViewCommand::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
+        ViewCommand::SetBounds(bounds) => settings.bounds = bounds,
+        ViewCommand::MarkReflectors => settings.show_reflectors = true,
+        ViewCommand::ToggleReflectors => settings.show_reflectors ^= true,
+        ViewCommand::ToggleFound => settings.show_found ^= true,
+        ViewCommand::ToggleFieldsOfView => settings.show_fields_of_view ^= true,
+        ViewCommand::SetSeveral(several) => settings.several = *several,
+        ViewCommand::ToggleTheory => settings.show_theory ^= true,
+        ViewCommand::MarkKinds => settings.show_kinds = true,
+        ViewCommand::ToggleKinds => settings.show_kinds ^= true,
+        ViewCommand::SetCompare(compare) => settings.compare = *compare,
+        ViewCommand::Swipe(edge) => settings.compare.swipe(edge),
+        ViewCommand::Method(name) => settings.method = name.to_owned(),
+        ViewCommand::Flip => {
+            settings.compare.flip();
+            if !state.arrangement.shown().contains(&Panel::Compare) {
+                state.arrangement.set_open(Panel::Compare, true);
+            }
+        }
+        ViewCommand::NextMethod => {
+            let next = state.method().and_then(|now| state.methods.after(now.name()));
+            next.into_iter().for_each(|name| state.settings.method = name.to_owned());
+        }
+        ViewCommand::PinCuts => {
+            let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
+            state.pins.push(PinnedCut { radar, cursor, maps: jobs.pipeline.cut_maps() });
+        }
+        ViewCommand::Unpin(index) => state.pins.remove(index),
+        ViewCommand::UnpinAll => state.pins.clear(),
+    }
+}

@@ -1,0 +1,46 @@
+//! Commands that arrange the window.
+
+use super::Effect;
+use crate::app::state::{Arrangement, Brightness, State, WindowCommand};
+use crate::interact::SelectionMode;
+
+/// Does such a command, but for what the window has to do.
+pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
+    match command {
+        WindowCommand::Escape => escape(state),
+        WindowCommand::TogglePanel(panel) => state.arrangement.toggle(panel),
+        WindowCommand::ClosePanel(panel) => state.arrangement.set_open(panel, false),
+        WindowCommand::OpenPanel(panel) => state.arrangement.set_open(panel, true),
+        WindowCommand::Maximise(panel) => state.arrangement.toggle_maximised(panel),
+        WindowCommand::ResetLayout => {
+            state.stop_presenting();
+            state.arrangement = Arrangement::default();
+        }
+        WindowCommand::Present => state.present(),
+        WindowCommand::CloseMessages => state.notices.clear(),
+        WindowCommand::ToggleTheme => {
+            state.settings.theme = if state.dark { Brightness::Light } else { Brightness::Dark };
+            return Some(Effect::Brightness(state.settings.theme));
+        }
+        WindowCommand::ZoomIn => return Some(Effect::Zoom(Some(0.1))),
+        WindowCommand::ZoomOut => return Some(Effect::Zoom(Some(-0.1))),
+        WindowCommand::ZoomReset => return Some(Effect::Zoom(None)),
+        WindowCommand::Palette => return Some(Effect::Palette),
+        WindowCommand::Quit => return Some(Effect::Close),
+    }
+    None
+}
+
+/// Ends what is nearest: a drag, a panel that fills the window, a presentation; else selects nothing.
+fn escape(state: &mut State) {
+    if state.editor.dragged().is_some() {
+        state.editor.cancel_drag();
+    } else if state.arrangement.maximised().is_some() {
+        state.arrangement.restore();
+    } else if state.is_presenting() {
+        state.stop_presenting();
+    } else {
+        state.editor.select([], SelectionMode::Replace);
+    }
+    state.scene_view.box_start = None;
+}

@@ -1,0 +1,43 @@
+//! Commands that put another scene on screen, or this one in a file.
+
+use crate::app::state::SaveAnswer;
+use crate::scene::generate::Kind;
+use std::path::PathBuf;
+
+/// Commands that put another scene on screen, or this one in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DocumentCommand {
+    /// Start with an empty scene.
+    New,
+    /// Ask for a scene file and open it.
+    Open,
+    /// Open this scene file.
+    OpenPath(PathBuf),
+    /// Save the scene where it came from, or ask where.
+    Save,
+    /// Ask where to save the scene.
+    SaveAs,
+    /// Save the scene in this file.
+    SaveTo(PathBuf),
+    /// Whether the scene is saved in a file that can't hold all of it, or that somebody else has written to.
+    AnswerSave(SaveAnswer),
+    /// Put this unsaved document, which another took the place of, on screen again.
+    Recover(u64),
+    /// Give this unsaved document up.
+    Discard(u64),
+    /// Open a scene that comes with the program.
+    Preset(usize),
+    /// Open a recording that comes with the program.
+    Recording(usize),
+    /// Make a random test scene.
+    RandomScene(Kind),
+    /// Which random scene is next.
+    SetNextRandom {
+        /// Seed of its stream.
+        seed: u64,
+        /// Its number in the stream.
+        number: u32,
+    },
+    /// Open such a text.
+    OpenShared(String),
+}

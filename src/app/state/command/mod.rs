@@ -1,0 +1,94 @@
+//! Everything a button, a menu entry, a shortcut, the palette or a panel can ask for, in groups. Each group has a file here, which says
+//! what can be asked, and one of the same name in `app::apply`, which does it.
+
+mod document;
+mod edit;
+mod export;
+mod lesson;
+mod radar;
+mod rows;
+mod view;
+mod window;
+mod work;
+
+pub use document::DocumentCommand;
+pub use edit::EditCommand;
+pub use export::ExportCommand;
+pub use lesson::LessonCommand;
+pub use radar::RadarCommand;
+pub use rows::RowsCommand;
+pub use view::ViewCommand;
+pub use window::WindowCommand;
+pub use work::WorkCommand;
+
+/// A kind of object to add.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NewObject {
+    /// One reflector.
+    Point,
+    /// A vertical line.
+    Line,
+    /// A Gaussian cluster.
+    Cluster,
+}
+
+/// Which methods are to be evaluated, and on what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EvaluationChoice {
+    /// Names of methods.
+    pub methods: Vec<&'static str>,
+    /// Test sets, 1 to 3.
+    pub sets: Vec<usize>,
+    /// Scenes of each set.
+    pub count: u32,
+    /// Seed of the scenes.
+    pub seed: u64,
+}
+
+/// Something the app can do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// Put another scene on screen, or this one in a file.
+    Document(DocumentCommand),
+    /// Select objects, or change the scene.
+    Edit(EditCommand),
+    /// Change the radar or what disturbs it.
+    Radar(RadarCommand),
+    /// Look at the scene in another way.
+    View(ViewCommand),
+    /// Try methods on many scenes, or look at what came of it.
+    Rows(RowsCommand),
+    /// Take a lesson.
+    Lesson(LessonCommand),
+    /// Start long work or stop it.
+    Work(WorkCommand),
+    /// Write for other programs.
+    Export(ExportCommand),
+    /// Arrange the window.
+    Window(WindowCommand),
+    /// Do these for the guide: undo takes back the settings they change, too.
+    Guided(Vec<Command>),
+}
+
+/// A command of a group is a command.
+macro_rules! groups {
+    ($($group:ident($commands:ident)),*) => {$(
+        impl From<$commands> for Command {
+            fn from(command: $commands) -> Command {
+                Command::$group(command)
+            }
+        }
+    )*};
+}
+
+groups!(
+    Document(DocumentCommand),
+    Edit(EditCommand),
+    Radar(RadarCommand),
+    View(ViewCommand),
+    Rows(RowsCommand),
+    Lesson(LessonCommand),
+    Work(WorkCommand),
+    Export(ExportCommand),
+    Window(WindowCommand)
+);

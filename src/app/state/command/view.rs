@@ -1,0 +1,73 @@
+//! Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
+
+use crate::app::state::{BoundsSettings, Compare, Cursor, Projection, Several, Units};
+use crate::maps::Normalisation;
+use crate::picture::ColourMap;
+use crate::signal::Floor;
+
+/// Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ViewCommand {
+    /// The pointer is here, in whichever panel.
+    Hover(Cursor),
+    /// Show the whole scene.
+    FitScene,
+    /// Show whole maps.
+    ResetMaps,
+    /// Range-angle or Cartesian maps, the other way round.
+    ToggleProjection,
+    /// Range-angle or Cartesian maps.
+    SetProjection(Projection),
+    /// Lambda or decibels, the other way round.
+    ToggleUnits,
+    /// Lambda or decibels on colour bars, cuts, readouts and thresholds.
+    SetUnits(Units),
+    /// The difference with its sign or without, the other way round.
+    ToggleAbsoluteDifference,
+    /// The difference on a scale that just holds it or on one up to 1, the other way round.
+    ToggleWholeDifference,
+    /// Keep the cuts that are shown, whatever the cursor does.
+    PinCuts,
+    /// Let the pinned cuts of this number go.
+    Unpin(usize),
+    /// Let all pinned cuts go.
+    UnpinAll,
+    /// Colours of the maps.
+    Colours(ColourMap),
+    /// How maps are normalised.
+    Normalise(Normalisation),
+    /// What lies beneath the reflectors.
+    SetFloor(Floor),
+    /// eta', the threshold of the target.
+    SetTargetEta(f32),
+    /// eta of the method of this name; its own where `None`.
+    SetMethodEta(&'static str, Option<f32>),
+    /// What bounds are computed for.
+    SetBounds(BoundsSettings),
+    /// Draw true reflectors over the maps.
+    MarkReflectors,
+    /// Draw true reflectors over the maps or not.
+    ToggleReflectors,
+    /// Draw the reflectors that the method found or not.
+    ToggleFound,
+    /// Draw the ends' fields of view or not.
+    ToggleFieldsOfView,
+    /// Draw over the maps what the formulas say of the selected reflector, or not.
+    ToggleTheory,
+    /// Mark every object by what became of it in the output.
+    MarkKinds,
+    /// Mark every object by what became of it in the output, or not.
+    ToggleKinds,
+    /// Which map is shown several times, and what differs.
+    SetSeveral(Box<Several>),
+    /// Which two methods and maps are compared, and how.
+    SetCompare(Box<Compare>),
+    /// Put the other of two compared maps in the place of the one on screen.
+    Flip,
+    /// Move the edge between two compared maps to this part of their width.
+    Swipe(f32),
+    /// Reconstruct with the method of this name.
+    Method(&'static str),
+    /// The next reconstruction method.
+    NextMethod,
+}

@@ -1,0 +1,36 @@
+//! Commands that arrange the window.
+
+use crate::app::state::Panel;
+
+/// Commands that arrange the window.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WindowCommand {
+    /// Select nothing, end maximising, close the palette.
+    Escape,
+    /// Hide a panel that is in sight, or bring it into sight.
+    TogglePanel(Panel),
+    /// Hide a panel.
+    ClosePanel(Panel),
+    /// Show a panel, in front.
+    OpenPanel(Panel),
+    /// Let a panel fill the window, or end that.
+    Maximise(Panel),
+    /// Put all panels where they were at first.
+    ResetLayout,
+    /// The scene and the maps in large type, or everything as before.
+    Present,
+    /// Close every message.
+    CloseMessages,
+    /// Light or dark.
+    ToggleTheme,
+    /// Larger interface.
+    ZoomIn,
+    /// Smaller interface.
+    ZoomOut,
+    /// Interface at its normal size.
+    ZoomReset,
+    /// Show or hide the palette of commands.
+    Palette,
+    /// Close the window.
+    Quit,
+}

@@ -1,0 +1,32 @@
+//! Commands that start long work, or stop it.
+
+use super::EvaluationChoice;
+use std::path::PathBuf;
+
+/// Commands that start long work, or stop it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WorkCommand {
+    /// Stop the reconstruction that runs.
+    CancelMethod,
+    /// Stop the second method's reconstruction.
+    CancelSecond,
+    /// Evaluate methods on test sets.
+    Evaluate(EvaluationChoice),
+    /// Stop the evaluation.
+    CancelEvaluation,
+    /// Measure run time against error.
+    Measure {
+        /// Every algorithm and more reflectors, for about a minute.
+        thorough: bool,
+    },
+    /// Stop measuring.
+    CancelMeasurement,
+    /// Ask for the log of a training and watch it.
+    OpenLog,
+    /// Watch this log of a training.
+    WatchLog(PathBuf),
+    /// Start a training by the recipe of this name, and watch it.
+    Train(&'static str),
+    /// Stop the training that was started here.
+    CancelTraining,
+}
