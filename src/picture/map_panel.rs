@@ -100,13 +100,13 @@ impl Cells<'_> {
                 let column = if mirrored { width - 1 - column } else { column };
                 let cells = under(row, height, bins)
                     .flat_map(|bin| under(column, width, columns).map(move |column| [bin, column]));
-                pixels.extend(self.colour(cells, [column, row]));
+                pixels.extend(self.colour(cells));
             }
         }
         pixels
     }
 
-    fn colour(&self, cells: impl Iterator<Item = [usize; 2]>, [x, y]: [usize; 2]) -> Rgb {
+    fn colour(&self, cells: impl Iterator<Item = [usize; 2]>) -> Rgb {
         match self {
             Cells::Lambda(map, colours) => colours.colour(cells.map(|c| map.lambda[c]).fold(0.0, f32::max)),
             Cells::Above(map, eta) => {
@@ -115,7 +115,7 @@ impl Cells<'_> {
             }
             Cells::Detections { target, output, eta } => {
                 let of = |c: [usize; 2]| Detection::of(target.lambda[c] > TARGET_ETA, output.lambda[c] > *eta);
-                cells.map(of).max().unwrap_or(Detection::Nothing).colour(x, y, true)
+                cells.map(of).max().unwrap_or(Detection::Nothing).fill(true)
             }
         }
     }
@@ -152,10 +152,8 @@ fn legend<B: DrawingBackend>(area: &Area<B>) -> Result<(), PictureError> {
         area.draw(&Text::new(name, (x, 13), style)).map_err(PictureError::new)?;
         x -= 19;
         let square = [(x, 14), (x + 13, 27)];
-        let pixels = (0..13 * 13).flat_map(|i| detection.colour(i % 13, i / 13, true)).collect();
-        let swatch: BitMapElement<_> = BitMapElement::with_owned_buffer((x, 14), (13, 13), pixels)
-            .ok_or_else(|| PictureError::new("a legend has no room"))?;
-        area.draw(&swatch).map_err(PictureError::new)?;
+        let [r, g, b] = detection.fill(true);
+        area.draw(&Rectangle::new(square, RGBColor(r, g, b).filled())).map_err(PictureError::new)?;
         area.draw(&Rectangle::new(square, FAINT_INK)).map_err(PictureError::new)?;
         x -= 14;
     }

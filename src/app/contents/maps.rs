@@ -5,6 +5,7 @@ use crate::app::jobs::{Jobs, TheoryResult};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
+use crate::evaluate::TARGET_ETA;
 use crate::lesson::Cell;
 use crate::reconstruct::untrained_noise;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
@@ -77,7 +78,6 @@ pub(super) fn map_input<'a>(
     let (settings, pipeline) = (&state.settings, &jobs.pipeline);
     let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
     let found = if kind.slot() == Some(MethodSlot::First) { shown_found(state, pipeline) } else { &[] };
-    let pair = kind.slot().and_then(|slot| pipeline.method(slot).output()).map(|o| &o.pair);
     let of_formulas = jobs.theory.result().filter(|r| r.request.radar == *state.radar());
     map::Input {
         kind,
@@ -85,16 +85,19 @@ pub(super) fn map_input<'a>(
         scene: state.editor.scene(),
         selection: state.editor.selection(),
         projection: settings.projection,
+        other_view: state.map_views.seen(settings.projection.other()),
         colours: settings.colours,
         units: settings.units,
         difference: settings.difference,
         texture,
+        pictured: picture.map_or(settings.projection, |p| p.projection),
         end: picture.map_or(1.0, |p| p.end),
+        sentence: picture.map(|p| p.sentence.as_ref()),
         stale: pipeline.is_stale(kind),
         cells: cells(jobs, kind),
         marks: map::Marks { objects, found },
         kinds: kinds(state, jobs, kind),
-        told_apart: kind.is_above() && pair.is_some_and(|pair| pair.target.is_some()),
+        told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
         over: None,
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
@@ -104,6 +107,13 @@ pub(super) fn map_input<'a>(
         axes: state.shows_axes(),
         places: places(state, kind),
     }
+}
+
+/// What tells hits, misses and false alarms of a method's output apart, where there is a target.
+fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map::ToldApart<'a>> {
+    let pair = &jobs.pipeline.method(slot).output()?.pair;
+    let etas = [jobs.pipeline.eta(state, slot), TARGET_ETA];
+    Some(map::ToldApart { output: &pair.output, target: pair.target.as_deref()?, etas })
 }
 
 /// What is to be known of the method whose map it is: over how much noise it was trained, where the scene has another amount. Nobody knows

@@ -20,8 +20,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// Between asking for a picture of the window and taking it: menus and dialogs are gone by then.
-const PAUSE: Duration = Duration::from_millis(300);
+/// Between asking for a picture of the window and taking it: menus and dialogs are gone by then, and maps have come to rest in their
+/// coordinates.
+const PAUSE: Duration = Duration::from_millis(600);
 
 /// What came of an export.
 pub struct Export {

@@ -20,6 +20,7 @@ mod rest;
 mod rows;
 mod run_time;
 mod scene_maps;
+mod sentence;
 mod several;
 mod theory;
 mod training;

@@ -1,13 +1,16 @@
 //! From maps to pictures, off the UI thread and only where something changed.
 
+use super::sentence::sentence;
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::app::widgets::textures::colour_table;
+use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian;
 use crate::picture::{ColourMap, Detection};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
+use ndarray::Array2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -23,7 +26,7 @@ pub enum Paint {
         /// Whether the window is dark.
         dark: bool,
     },
-    /// Cells above a threshold, told apart by whether the target has them too: in colours and hatches.
+    /// Cells above a threshold, told apart by whether the target has them too: flat fills, each with an outline.
     Detections {
         /// The threshold.
         eta: f32,
@@ -71,6 +74,10 @@ pub struct Picture {
     pub image: Arc<ColorImage>,
     /// Where its scale ends: 1, but for differences.
     pub end: f32,
+    /// Over which coordinates it is.
+    pub projection: Projection,
+    /// What it shows, for whoever can't see it.
+    pub sentence: Arc<str>,
 }
 
 /// Paints pictures and keeps the last of each kind.
@@ -85,12 +92,8 @@ pub struct Painter {
 /// Colour beyond the maximum range of a Cartesian map.
 const OUTSIDE: Color32 = Color32::TRANSPARENT;
 
-/// Cells below a threshold and above it, in a dark window and in a light one.
-const DARK_MASK: [Color32; 2] = [Color32::from_rgb(18, 22, 30), Color32::from_rgb(255, 214, 90)];
-const LIGHT_MASK: [Color32; 2] = [Color32::from_rgb(252, 253, 255), Color32::from_rgb(176, 84, 0)];
-
 /// Columns and rows that a map on screen has room for, about.
-const HATCHED: [usize; 2] = [340, 128];
+const ON_SCREEN: [usize; 2] = [340, 128];
 
 impl Painter {
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
@@ -119,7 +122,9 @@ impl Painter {
             Projection::Cartesian => [2 * rows, rows],
         };
         self.painted += 1;
-        let picture = Picture { image: Arc::new(ColorImage::new(size, pixels)), end };
+        let image = Arc::new(ColorImage::new(size, pixels));
+        let sentence = sentence(radar, subject).into();
+        let picture = Picture { image, end, projection: subject.projection, sentence };
         self.cache.insert(kind, (subject.clone(), picture.clone()));
         picture
     }
@@ -153,20 +158,12 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>,
             cells.map(|&v| shown(v, table[(v * 255.0 + 0.5) as u8 as usize])).collect()
         }
         (Paint::Above { eta, dark }, _) => {
-            let mask = if dark { DARK_MASK } else { LIGHT_MASK };
+            let mask = theme::mask(dark);
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
         (Paint::Detections { eta, dark }, Some(target)) => {
-            let ((rows, columns), target) = (map.lambda.dim(), &target.lambda);
-            // A map of many cells is shrunk on screen: its hatches are of blocks of cells.
-            let block = [(columns / HATCHED[0]).max(1), (rows / HATCHED[1]).max(1)];
-            let cell = |((row, column), (&v, &t)): ((usize, usize), (&f32, &f32))| {
-                let kind = Detection::of(t > TARGET_ETA, v > eta);
-                let [r, g, b] = kind.colour(column / block[0], row / block[1], dark);
-                shown(v, Color32::from_rgb(r, g, b))
-            };
-            let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-            places.zip(cells.zip(target)).map(cell).collect()
+            let colours = detections(&map.lambda, &target.lambda, eta, dark);
+            cells.zip(colours).map(|(&v, colour)| shown(v, colour)).collect()
         }
         (Paint::Difference { view, colours }, Some(minus)) if view.absolute => {
             let table = colour_table(colours);
@@ -182,6 +179,34 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>,
         }
         (Paint::Difference { .. } | Paint::Detections { .. }, None) => vec![OUTSIDE; map.lambda.len()],
     }
+}
+
+/// Fills of hits, misses and false alarms, and an outline around each patch of them.
+fn detections(output: &Array2<f32>, target: &Array2<f32>, eta: f32, dark: bool) -> Vec<Color32> {
+    let (rows, columns) = output.dim();
+    let kinds: Vec<Detection> =
+        output.iter().zip(target).map(|(&v, &t)| Detection::of(t > TARGET_ETA, v > eta)).collect();
+    // A map of many cells is shrunk on screen: a thinner outline would be lost there.
+    let [wide, high] = [(columns / ON_SCREEN[0]).max(1), (rows / ON_SCREEN[1]).max(1)];
+    let mut around = vec![Detection::Nothing; kinds.len()];
+    let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let kind = kinds[row * columns + column];
+        let is_edge = || {
+            let mut beside = near(row, 1, rows).flat_map(|r| near(column, 1, columns).map(move |c| r * columns + c));
+            beside.any(|at| kinds[at] == Detection::Nothing)
+        };
+        if kind != Detection::Nothing && is_edge() {
+            for at in near(row, high, rows).flat_map(|r| near(column, wide, columns).map(move |c| r * columns + c)) {
+                around[at] = around[at].max(kind);
+            }
+        }
+    }
+    let colour = |(kind, around): (Detection, Detection)| {
+        let [r, g, b] = if kind == Detection::Nothing { around.outline(dark) } else { kind.fill(dark) };
+        Color32::from_rgb(r, g, b)
+    };
+    kinds.into_iter().zip(around).map(colour).collect()
 }
 
 #[cfg(test)]
@@ -208,7 +233,7 @@ mod tests {
     #[test]
     fn masks_are_light_in_a_light_window() {
         let (mut painter, radar) = (Painter::default(), Radar::default());
-        for (dark, [below, above]) in [(true, DARK_MASK), (false, LIGHT_MASK)] {
+        for (dark, [below, above]) in [true, false].map(|dark| (dark, theme::mask(dark))) {
             let subject = subject(Paint::Above { eta: 0.9, dark });
             let mask = painter.paint(&radar, MapKind::TargetAbove, &subject);
             assert_eq!(mask.image.pixels, [below, above, below, above]);
@@ -228,18 +253,25 @@ mod tests {
                 projection: Projection::RangeAngle,
             };
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
-            let expected = [
-                (Detection::Nothing, 0, 0),
-                (Detection::Miss, 1, 0),
-                (Detection::FalseAlarm, 0, 1),
-                (Detection::Hit, 1, 1),
-            ];
-            let colour = |(kind, x, y): (Detection, usize, usize)| {
-                let [r, g, b] = kind.colour(x, y, dark);
-                Color32::from_rgb(r, g, b)
-            };
-            assert_eq!(painted, expected.map(colour));
+            let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
+            // The cell of neither map is beside a hit: the outline of what it touches most telling.
+            let expected = [Detection::Hit.outline(dark)]
+                .into_iter()
+                .chain([Detection::Miss, Detection::FalseAlarm, Detection::Hit].map(|kind| kind.fill(dark)));
+            let expected: Vec<Color32> = expected.map(colour).collect();
+            assert_eq!(painted, expected);
         }
+    }
+
+    #[test]
+    fn a_patch_of_hits_is_flat_with_an_outline_around_it() {
+        let mut target = Array2::from_elem((9, 9), 0.0f32);
+        target.slice_mut(ndarray::s![3..6, 2..7]).fill(0.95);
+        let colours = detections(&target, &target, 0.5, true);
+        let of = |[r, g, b]: [u8; 3]| colours.iter().filter(|c| **c == Color32::from_rgb(r, g, b)).count();
+        let [inside, around, beside] =
+            [Detection::Hit.fill(true), Detection::Hit.outline(true), Detection::Nothing.fill(true)].map(of);
+        assert_eq!([inside, around, beside], [15, 5 * 7 - 15, 81 - 5 * 7]);
     }
 
     #[test]

@@ -122,7 +122,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
     let bar = Bar::new(colour_table(ColourMap::Viridis), 0.0, 1.0, "likeness");
-    let right = bar.width(ui.painter(), area.height() - axes::BOTTOM - 8.0);
+    let right = axes::RIGHT;
     let x = Axis::new(-half[0], half[0], "cos θ off, columns");
     let chart = Chart { name: "Ambiguity function", x, y: Axis::new(-half[1], half[1], "range off, m") };
     let map = area.with_max_x(area.right() - right + 12.0);

@@ -22,6 +22,16 @@ pub enum Projection {
     Cartesian,
 }
 
+impl Projection {
+    /// The other one.
+    pub fn other(self) -> Projection {
+        match self {
+            Projection::RangeAngle => Projection::Cartesian,
+            Projection::Cartesian => Projection::RangeAngle,
+        }
+    }
+}
+
 /// What the scale of a map or a cut counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Units {

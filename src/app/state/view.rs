@@ -151,6 +151,16 @@ impl MapViews {
     }
 }
 
+impl MapViews {
+    /// What is seen of maps over these coordinates.
+    pub fn seen(&self, projection: Projection) -> MapView {
+        match projection {
+            Projection::RangeAngle => self.range_angle,
+            Projection::Cartesian => self.cartesian,
+        }
+    }
+}
+
 /// Where the pointer is and was.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Pointer {

@@ -7,6 +7,9 @@ use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec
 pub const LEFT: f32 = 46.0;
 pub const BOTTOM: f32 = 36.0;
 
+/// Space right of a map for its bar of colours, or for what stands in its place: the same beside every map.
+pub const RIGHT: f32 = 62.0;
+
 /// Between a side of the plot and its labels.
 const GAP: f32 = 5.0;
 
@@ -66,17 +69,25 @@ pub struct Axis<'a> {
     pub title: &'a str,
     /// Marks; at round numbers where `None`.
     pub ticks: Option<&'a [Tick]>,
+    /// How far beyond an end a round number still has its mark there, in what is counted.
+    pub slack: f64,
 }
 
 impl<'a> Axis<'a> {
     /// With marks at round numbers.
     pub fn new(low: f64, high: f64, title: &'a str) -> Self {
-        Axis { low, high, title, ticks: None }
+        Axis { low, high, title, ticks: None, slack: 0.0 }
+    }
+
+    /// Round numbers up to `slack` beyond an end have their mark at the end: half a cell, where the ends are the edges of cells.
+    pub fn with_slack(self, slack: f64) -> Self {
+        Axis { slack: slack.abs(), ..self }
     }
 
     /// Where a value is, 0 to 1.
     pub fn part(&self, value: f64) -> f32 {
-        ((value - self.low) / (self.high - self.low)) as f32
+        let part = ((value - self.low) / (self.high - self.low)) as f32;
+        if self.slack > 0.0 { part.clamp(0.0, 1.0) } else { part }
     }
 
     /// The value at a part of it.
@@ -102,7 +113,8 @@ impl<'a> Axis<'a> {
             return ticks.iter().filter(inside).cloned().collect();
         }
         let most = (length / spacing).max(4.0) as usize;
-        let of = |count: usize| round_ticks(self.low, self.high, count as f32);
+        let (low, high) = (self.low.min(self.high) - self.slack, self.low.max(self.high) + self.slack);
+        let of = |count: usize| round_ticks(low, high, count as f32);
         let fits = |ticks: &Vec<Tick>| ticks.len().saturating_sub(1) as f32 * room(ticks) <= length;
         (1..=most).rev().map(of).find(fits).unwrap_or_else(|| of(1))
     }
@@ -195,6 +207,14 @@ mod tests {
         assert_eq!(ticks(1.0, -1.0, 4.0), ticks(-1.0, 1.0, 4.0));
         assert_eq!(ticks(0.0, 38.4, 4.0), [0.0, 10.0, 20.0, 30.0]);
         assert!(ticks(1.0, 1.0, 4.0).is_empty() && ticks(f64::NAN, 1.0, 4.0).is_empty());
+    }
+
+    #[test]
+    fn a_round_number_just_beyond_the_end_is_marked_at_the_end() {
+        let axis = Axis::new(-1.001, 0.999, "cos θ").with_slack(0.001);
+        let last = axis.upwards(200.0).pop().unwrap();
+        assert_eq!((last.text.as_str(), axis.part(last.value)), ("1.0", 1.0));
+        assert_eq!(Axis { slack: 0.0, ..axis }.upwards(200.0).pop().unwrap().text, "0.5");
     }
 
     #[test]

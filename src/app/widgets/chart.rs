@@ -1,6 +1,7 @@
 //! Charts of lines, drawn as the maps are: the same axes, the same font, nothing over the data.
 
 use super::axes::{self, Axis};
+use super::nudge::{pan_keys, zoom_keys};
 use eframe::egui;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -114,7 +115,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Follows wheel, pinch and drag over a chart; a double click shows `whole` again.
+    /// Follows wheel, pinch and drag over a chart, and arrow keys, `+` and `-` in one that has the focus; a double click shows `whole` again.
     pub fn navigate(self, ui: &Ui, drawn: &Drawn<'_>, whole: Span, may_drag: bool) -> Span {
         if drawn.response.double_clicked() {
             return whole;
@@ -125,6 +126,14 @@ impl Span {
             let factor = f64::from(pinch * (scroll / 200.0).exp());
             let fixed = drawn.x_at(pos);
             (low, high) = (fixed - (fixed - low) / factor, fixed + (high - fixed) / factor);
+        }
+        if let Some(factor) = zoom_keys(&drawn.response) {
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) / f64::from(factor));
+            (low, high) = (middle - half, middle + half);
+        }
+        if let Some(by) = pan_keys(&drawn.response, true) {
+            let by = f64::from(by.x) * (high - low);
+            (low, high) = (low + by, high + by);
         }
         if may_drag && drawn.response.dragged() {
             let by = f64::from(drawn.response.drag_delta().x / drawn.rect.width()) * (high - low);

@@ -9,6 +9,12 @@ const COLOURS: f32 = 9.0;
 /// Between map and colours, and between colours and labels.
 const GAPS: [f32; 2] = [7.0, 5.0];
 
+/// Right of its labels and its title.
+const END: f32 = 4.0;
+
+/// What the shortest title of a map's axis needs beneath it.
+const AXIS_TITLE: f32 = 60.0;
+
 /// A scale of colours.
 pub struct Bar {
     /// Its colours, from the lowest to the highest.
@@ -17,7 +23,7 @@ pub struct Bar {
     pub low: f64,
     /// What the last stands for.
     pub high: f64,
-    /// What is counted.
+    /// What is counted, and after a comma how.
     pub title: &'static str,
     /// The lowest value that has a label: what is below it is no echo.
     pub told_from: f64,
@@ -38,14 +44,6 @@ impl Bar {
 
     fn axis(&self) -> Axis<'static> {
         Axis::new(self.low, self.high, self.title)
-    }
-
-    /// What it needs beside a map of a height, labels included.
-    pub fn width(&self, painter: &Painter, height: f32) -> f32 {
-        let labels = self.labels(height);
-        let labels = labels.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
-        let beneath = axes::width(painter, self.title);
-        GAPS[0] + (COLOURS + GAPS[1] + labels).max(beneath) + 5.0
     }
 
     /// Draws it right of a map.
@@ -73,6 +71,18 @@ impl Bar {
             painter.hline(rect.right()..=rect.right() + 3.0, y, Stroke::new(1.0, ink));
             axes::text(painter, pos2(rect.right() + GAPS[1], y), Align2::LEFT_CENTER, &tick.text, ink);
         }
-        axes::text(painter, pos2(rect.left(), rect.bottom() + 18.0), Align2::LEFT_TOP, self.title, ink);
+        let at = pos2(map.right() + axes::RIGHT - END, rect.bottom() + 18.0);
+        axes::text(painter, at, Align2::RIGHT_TOP, self.title_for(painter, map.width()), ink);
+    }
+
+    /// The title, or its first word where a map of `width` points leaves no room for more beside the title of its axis.
+    fn title_for(&self, painter: &Painter, width: f32) -> &'static str {
+        let short = self.title.split(',').next().unwrap_or_default();
+        axes::fitting(painter, axes::RIGHT - END + (width - AXIS_TITLE) / 2.0, &[self.title, short])
+    }
+
+    /// How far its title reaches beneath a map of `width` points.
+    pub fn overhang(&self, painter: &Painter, width: f32) -> f32 {
+        (axes::width(painter, self.title_for(painter, width)) + GAPS[0] - (axes::RIGHT - END)).max(0.0)
     }
 }

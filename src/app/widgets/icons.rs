@@ -1,6 +1,7 @@
 //! Small drawn buttons.
 
-use eframe::egui::{self, Ui};
+use super::theme::{MARK, MARK_EDGE};
+use eframe::egui::{self, Painter, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 /// What is drawn on the button.
 pub enum Icon {
@@ -8,26 +9,56 @@ pub enum Icon {
     Maximise,
     /// A cross.
     Close,
+    /// Half a disc with a ring and a spoke: places over x and y.
+    Fan,
+    /// A rectangle with lines: places over direction and range.
+    Grid,
 }
 
 /// A small drawn button with a name for tooltips and screen readers.
 pub fn icon(ui: &mut Ui, icon: Icon, name: &str) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(18.0), egui::Sense::click());
+    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(18.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     let visuals = ui.style().interact(&response);
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 3.0, visuals.bg_fill);
     }
-    let r = rect.shrink(5.0);
-    let stroke = egui::Stroke::new(1.2, visuals.fg_stroke.color);
+    let stroke = Stroke::new(1.2, visuals.fg_stroke.color);
+    draw(ui.painter(), rect.shrink(5.0), icon, stroke);
+    response.on_hover_text(name)
+}
+
+/// A drawn button over a picture, at a place of its own.
+pub fn over_picture(ui: &mut Ui, rect: Rect, icon: Icon, name: &str) -> Response {
+    let response = ui.interact(rect, ui.scope_id().with(name), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
+    let is_met = response.hovered() || response.has_focus();
+    ui.painter().rect_filled(rect, 4.0, if is_met { egui::Color32::from_gray(60) } else { MARK_EDGE });
+    draw(ui.painter(), rect.shrink2(vec2(5.0, 5.0)), icon, Stroke::new(1.3, MARK));
+    response.on_hover_text(name)
+}
+
+fn draw(painter: &Painter, r: Rect, icon: Icon, stroke: Stroke) {
     match icon {
-        Icon::Maximise => {
-            ui.painter().rect_stroke(r, 1.0, stroke, egui::StrokeKind::Middle);
-        }
+        Icon::Maximise => _ = painter.rect_stroke(r, 1.0, stroke, egui::StrokeKind::Middle),
         Icon::Close => {
-            ui.painter().line_segment([r.left_top(), r.right_bottom()], stroke);
-            ui.painter().line_segment([r.right_top(), r.left_bottom()], stroke);
+            painter.line_segment([r.left_top(), r.right_bottom()], stroke);
+            painter.line_segment([r.right_top(), r.left_bottom()], stroke);
+        }
+        Icon::Fan => {
+            let (middle, radius) = (pos2(r.center().x, r.bottom()), r.width() / 2.0);
+            let on = |i: usize| (std::f32::consts::PI * i as f32 / 12.0).sin_cos();
+            for part in [0.5, 1.0] {
+                let arc = (0..=12).map(|i| middle + part * radius * vec2(on(i).1, -on(i).0));
+                painter.add(Shape::line(arc.collect(), stroke));
+            }
+            painter.hline(r.x_range(), r.bottom(), stroke);
+            painter.vline(middle.x, middle.y - radius..=middle.y, stroke);
+        }
+        Icon::Grid => {
+            painter.rect_stroke(r, 0.0, stroke, egui::StrokeKind::Middle);
+            painter.hline(r.x_range(), r.center().y, stroke);
+            painter.vline(r.center().x, r.y_range(), stroke);
         }
     }
-    response.on_hover_text(name)
 }

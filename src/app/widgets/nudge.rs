@@ -1,10 +1,13 @@
-//! Arrow keys that move the selection.
+//! Keys that do what dragging does: arrows move the selection or a grip, pan and zoom a view.
 
 use crate::app::state::{Command, EditCommand};
-use eframe::egui::{Context, EventFilter, Key, Modifiers, Response};
+use eframe::egui::{Context, EventFilter, Key, Modifiers, Response, Vec2, vec2};
 
-/// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
-pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
+/// Part of a view that an arrow key pans by.
+const PAN: f32 = 0.1;
+
+/// Steps to the right and upwards that arrow keys ask for: with Shift ten times as far, with Alt a tenth.
+fn steps(ctx: &Context) -> Option<(f64, f64)> {
     let (mut dx, mut dy) = (0.0, 0.0);
     ctx.input_mut(|input| {
         for (modifiers, step) in [(Modifiers::SHIFT, 10.0), (Modifiers::ALT, 0.1), (Modifiers::NONE, 1.0)] {
@@ -13,8 +16,39 @@ pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
             dy += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
         }
     });
-    ((dx, dy) != (0.0, 0.0))
-        .then_some(Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
+    ((dx, dy) != (0.0, 0.0)).then_some((dx, dy))
+}
+
+/// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
+pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
+    steps(ctx).map(|(dx, dy)| Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
+}
+
+/// The same for something that has the focus, as steps to the right and upwards.
+pub fn focused_steps(response: &Response) -> Option<(f64, f64)> {
+    if !response.has_focus() {
+        return None;
+    }
+    keep_arrows(response);
+    steps(&response.ctx)
+}
+
+/// Parts of a view's width and height that arrow keys pan it by while it has the focus: with Ctrl, or without where they are `free`.
+pub fn pan_keys(response: &Response, free: bool) -> Option<Vec2> {
+    if !response.has_focus() {
+        return None;
+    }
+    keep_arrows(response);
+    let by = response.ctx.input_mut(|input| {
+        let mut by = Vec2::ZERO;
+        for modifiers in [Modifiers::COMMAND, Modifiers::NONE].into_iter().take(if free { 2 } else { 1 }) {
+            let mut pressed = |key| input.count_and_consume_key(modifiers, key) as f32;
+            by.x += pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
+            by.y += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
+        }
+        PAN * by
+    });
+    (by != vec2(0.0, 0.0)).then_some(by)
 }
 
 /// Steps in and out that `+` and `-` ask for in a view that has the focus, as a factor; its arrow keys are its own then, and don't move
@@ -23,11 +57,16 @@ pub fn zoom_keys(response: &Response) -> Option<f32> {
     if !response.has_focus() {
         return None;
     }
-    let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
-    response.ctx.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    keep_arrows(response);
     let steps = response.ctx.input_mut(|input| {
         let mut pressed = |key| input.count_and_consume_key(Modifiers::NONE, key) as i32;
         pressed(Key::Plus) + pressed(Key::Equals) - pressed(Key::Minus)
     });
     (steps != 0).then(|| 1.25f32.powi(steps))
+}
+
+/// Arrow keys don't move the focus away from what uses them.
+fn keep_arrows(response: &Response) {
+    let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
+    response.ctx.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
 }

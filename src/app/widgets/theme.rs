@@ -64,6 +64,14 @@ pub const MARK: Color32 = Color32::WHITE;
 pub const MARK_SELECTED: Color32 = Color32::from_rgb(255, 176, 59);
 pub const MARK_EDGE: Color32 = Color32::from_black_alpha(200);
 
+/// Cells below a threshold, and above it.
+pub fn mask(dark: bool) -> [Color32; 2] {
+    match dark {
+        true => [Color32::from_rgb(18, 22, 30), Color32::from_rgb(255, 214, 90)],
+        false => [Color32::from_rgb(252, 253, 255), Color32::from_rgb(176, 84, 0)],
+    }
+}
+
 /// The ring around what has the keyboard's focus.
 pub fn focus(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(120, 190, 255) } else { Color32::from_rgb(0, 92, 200) }

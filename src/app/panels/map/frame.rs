@@ -1,5 +1,6 @@
 //! A map on screen: where its places are, and the numbers behind them.
 
+use super::morph::{Morph, between};
 use crate::app::state::{Cursor, MapView, Projection};
 use crate::app::widgets::levels;
 use crate::app::widgets::numbers::signed;
@@ -22,9 +23,21 @@ pub struct Frame<'a> {
     pub projection: Projection,
     /// Middle of the elements that the map is of, metres along the array.
     pub centre_x_metres: f64,
+    /// Where it comes from, while it is on its way from other coordinates.
+    pub morph: Option<Morph>,
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    /// Of a part of a map on screen.
+    pub fn of(rect: Rect, view: MapView, radar: &'a Radar, projection: Projection, centre_x_metres: f64) -> Self {
+        Frame { rect, view, radar, projection, centre_x_metres, morph: None }
+    }
+
+    /// Height of a range bin on screen, points; in a Cartesian map that of one straight ahead.
+    pub fn cell_height(&self) -> f32 {
+        self.rect.height() / (self.view.high.y - self.view.low.y) / self.radar.samples as f32
+    }
+
     /// Where the map shows a reflector.
     pub fn blob(&self, reflector: &Reflector) -> Pos2 {
         self.at(self.radar.blob_of(self.centre_x_metres, reflector.x_metres, reflector.y_metres))
@@ -65,21 +78,64 @@ impl Frame<'_> {
 
     /// Where a range and a direction of the map are; ranges wrap around where the map's do.
     fn at(&self, blob: Polar) -> Pos2 {
-        let (radar, Polar { range_metres, cos_theta }) = (self.radar, blob);
-        let fraction = match self.projection {
-            Projection::RangeAngle => {
-                let bin = radar.bin_of_range(range_metres).rem_euclid(radar.samples as f64);
-                let column = radar.column_of_cos(cos_theta);
-                pos2(((column + 0.5) / radar.elements as f64) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
-            }
-            Projection::Cartesian => {
-                let extent = radar.max_range_metres();
-                let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-                let (x, y) = (range_metres * cos_theta, range_metres * sin_theta);
-                pos2(((x / extent + 1.0) / 2.0) as f32, (y / extent) as f32)
-            }
-        };
-        self.view.to_screen(self.rect, fraction)
+        self.on_screen(|projection| fraction(self.radar, projection, blob))
+    }
+
+    /// A place on screen, of what `fraction` says of either coordinates.
+    fn on_screen(&self, fraction: impl Fn(Projection) -> Pos2) -> Pos2 {
+        let to = self.view.to_screen(self.rect, fraction(self.projection));
+        match &self.morph {
+            Some(from) => between(to, from.view.to_screen(from.rect, fraction(from.projection)), from.left),
+            None => to,
+        }
+    }
+
+    /// The range and the direction of a place of the range-angle map, given as a fraction of it.
+    pub fn polar_of_cell(&self, fraction: Pos2) -> Polar {
+        let (radar, fx, fy) = (self.radar, f64::from(fraction.x), f64::from(fraction.y));
+        Polar {
+            range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5).max(0.0),
+            cos_theta: radar.cos_of_column(fx * radar.elements as f64 - 0.5),
+        }
+    }
+
+    /// Where a map in `projection` has a place of which the fraction of the range-angle map is known: computed again, the map's far edges
+    /// would wrap around.
+    pub fn fraction_in(&self, projection: Projection, polar: Polar, range_angle: Pos2) -> Pos2 {
+        match projection {
+            Projection::RangeAngle => range_angle,
+            Projection::Cartesian => fraction(self.radar, projection, polar),
+        }
+    }
+
+    /// Where such a place is on screen.
+    pub fn at_fraction(&self, polar: Polar, range_angle: Pos2) -> Pos2 {
+        self.on_screen(|projection| self.fraction_in(projection, polar, range_angle))
+    }
+
+    /// What is shown of it on screen, on its way, too.
+    pub fn shown(&self) -> Rect {
+        let Some(from) = &self.morph else { return self.rect };
+        let corner = |to: Pos2, of: Pos2| between(to, of, from.left);
+        Rect::from_min_max(corner(self.rect.min, from.rect.min), corner(self.rect.max, from.rect.max))
+    }
+}
+
+/// Where a map in a projection has a range and a direction, as fractions of its width and height.
+fn fraction(radar: &Radar, projection: Projection, polar: Polar) -> Pos2 {
+    let Polar { range_metres, cos_theta } = polar;
+    match projection {
+        Projection::RangeAngle => {
+            let bin = radar.bin_of_range(range_metres).rem_euclid(radar.samples as f64);
+            let column = radar.column_of_cos(cos_theta);
+            pos2(((column + 0.5) / radar.elements as f64) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
+        }
+        Projection::Cartesian => {
+            let extent = radar.max_range_metres();
+            let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+            let (x, y) = (range_metres * cos_theta, range_metres * sin_theta);
+            pos2(((x / extent + 1.0) / 2.0) as f32, (y / extent) as f32)
+        }
     }
 }
 
@@ -179,13 +235,8 @@ mod tests {
         let radar = Radar::default();
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(1024.0, 512.0));
         let reflector = Reflector { x_metres: -0.832 * 20.0, y_metres: 0.5548 * 20.0, reflectivity: 1.0 };
-        let frame = |projection, centre_x_metres| Frame {
-            rect,
-            view: MapView::default(),
-            radar: &radar,
-            projection,
-            centre_x_metres,
-        };
+        let frame =
+            |projection, centre_x_metres| Frame::of(rect, MapView::default(), &radar, projection, centre_x_metres);
         let target = frame(Projection::RangeAngle, 0.0);
         let cos = |at: Pos2| radar.cos_of_column(f64::from(at.x) - 0.5);
         assert!((cos(target.blob(&reflector)) + 0.81).abs() < 2e-3, "the blob");

@@ -121,7 +121,7 @@ mod tests {
 
     fn frame(radar: &Radar, kind: MapKind, projection: Projection, rect: Rect) -> Frame<'_> {
         let centre_x_metres = super::super::centre_x_metres(kind, radar);
-        Frame { rect, view: MapView::default(), radar, projection, centre_x_metres }
+        Frame::of(rect, MapView::default(), radar, projection, centre_x_metres)
     }
 
     fn place(map: &Harness<'static, Desk>, object: usize) -> [f64; 2] {

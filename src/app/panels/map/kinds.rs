@@ -257,7 +257,7 @@ pub mod tests {
 
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1024.0, 512.0));
         let (view, projection) = (MapView::default(), Projection::RangeAngle);
-        let frame = Frame { rect, view, radar: &radar, projection, centre_x_metres: 0.0 };
+        let frame = Frame::of(rect, view, &radar, projection, 0.0);
         let ghost = kinds.place(frame, &fates.verdicts[5]).unwrap();
         assert!((ghost - pos2(300.5, 512.0 - 100.5)).length() < 0.1, "{ghost:?}");
     }

@@ -1,9 +1,10 @@
-//! What hatches and marks on a map stand for: rows above it, where there is room for them.
+//! What fills and marks on a map stand for: fills where other maps have their bar of colours, marks in rows above, where there is room.
 
 use super::kinds::{Kinds, Sign};
 use crate::app::widgets::axes;
+use crate::app::widgets::theme;
 use crate::picture::Detection;
-use eframe::egui::{self, Align2, Color32, Mesh, Painter, Pos2, Rect, Sense, Shape, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 /// Height of a row, points.
 const ROW: f32 = 18.0;
@@ -11,19 +12,46 @@ const ROW: f32 = 18.0;
 /// Most rows: more would leave too little of the map.
 const ROWS: usize = 2;
 
-/// Width of a swatch, what is between it and its name, and what is between entries, points.
+/// Width of a mark, what is between it and its name, and what is between entries, points.
 const SWATCH: f32 = 14.0;
 const GAPS: [f32; 2] = [5.0, 12.0];
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Swatch {
-    Cells(Detection),
-    Mark(Sign),
+/// Side of a fill's square, what is left of it, between it and its name, and between two fills, points.
+const SQUARE: f32 = 12.0;
+const BESIDE: [f32; 3] = [8.0, 5.0, 8.0];
+
+/// A fill and what it stands for; a line of the name each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fill {
+    inside: Color32,
+    around: Color32,
+    name: &'static str,
+}
+
+impl Fill {
+    /// Hits, false alarms and misses.
+    pub fn detections(dark: bool) -> Vec<Fill> {
+        let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
+        let fill = |kind: Detection| Fill {
+            inside: colour(kind.fill(dark)),
+            around: colour(kind.outline(dark)),
+            name: kind.name(),
+        };
+        Detection::SEEN.map(fill).to_vec()
+    }
+
+    /// Cells above a threshold and below it.
+    pub fn mask(dark: bool) -> Vec<Fill> {
+        let [below, above] = theme::mask(dark);
+        [(above, "above"), (below, "below")]
+            .map(|(inside, name)| Fill { inside, around: Color32::from_gray(128), name })
+            .to_vec()
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
 struct Entry {
-    swatch: Swatch,
+    sign: Sign,
     name: String,
     /// Left end, and the row.
     at: (f32, usize),
@@ -32,32 +60,29 @@ struct Entry {
 /// A legend, laid out.
 #[derive(Debug, Default)]
 pub struct Legend {
+    fills: Vec<Fill>,
     entries: Vec<Entry>,
     current: bool,
 }
 
 impl Legend {
-    /// Of detections where the map's cells are `told_apart`, and of marks; nothing where more than two rows of `width` points are needed.
-    pub fn new(painter: &Painter, told_apart: bool, kinds: Option<&Kinds<'_>>, width: f32) -> Legend {
-        let detections = Detection::SEEN.into_iter().filter(|_| told_apart);
-        let detections = detections.map(|kind| (Swatch::Cells(kind), kind.name().to_owned()));
-        let counts = kinds.map(Kinds::counts).unwrap_or_default();
-        let marks =
-            counts.into_iter().map(|(sign, count)| (Swatch::Mark(sign), format!("{count} {}", sign.name(count))));
+    /// Of fills, and of marks; no marks where more than two rows of `width` points are needed.
+    pub fn new(painter: &Painter, fills: Vec<Fill>, kinds: Option<&Kinds<'_>>, width: f32) -> Legend {
         let (mut left, mut row) = (0.0, 0);
         let mut entries = Vec::new();
-        for (swatch, name) in detections.chain(marks) {
+        for (sign, count) in kinds.map(Kinds::counts).unwrap_or_default() {
+            let name = format!("{count} {}", sign.name(count));
             let needed = SWATCH + GAPS[0] + axes::width(painter, &name);
             if left > 0.0 && left + needed > width {
                 (left, row) = (0.0, row + 1);
             }
-            entries.push(Entry { swatch, name, at: (left, row) });
+            entries.push(Entry { sign, name, at: (left, row) });
             left += needed + GAPS[1];
         }
         if row >= ROWS {
             entries.clear();
         }
-        Legend { entries, current: kinds.is_none_or(|kinds| kinds.current) }
+        Legend { fills, entries, current: kinds.is_none_or(|kinds| kinds.current) }
     }
 
     /// What it needs above the map, points.
@@ -65,47 +90,38 @@ impl Legend {
         self.entries.last().map_or(0.0, |entry| (entry.at.1 + 1) as f32 * ROW)
     }
 
-    /// Draws it, its upper left corner `at`.
-    pub fn draw(&self, ui: &Ui, painter: &Painter, at: Pos2) {
-        for Entry { swatch, name, at: (left, row) } in &self.entries {
+    /// Draws it above `map` and right of it.
+    pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
+        let at = map.left_top() - vec2(0.0, self.height() + 4.0);
+        let ink = ui.visuals().text_color();
+        for Entry { sign, name, at: (left, row) } in &self.entries {
             let from = at + vec2(*left, *row as f32 * ROW);
             let middle = from + vec2(SWATCH / 2.0, ROW / 2.0);
-            match swatch {
-                Swatch::Cells(kind) => hatched(painter, *kind, middle, ui.visuals().dark_mode),
-                Swatch::Mark(sign) => {
-                    painter.rect_filled(Rect::from_center_size(middle, vec2(18.0, 16.0)), 3.0, Color32::from_gray(70));
-                    sign.draw(painter, middle, vec2(1.0, 0.0), self.current);
-                }
-            }
+            painter.rect_filled(Rect::from_center_size(middle, vec2(18.0, 16.0)), 3.0, Color32::from_gray(70));
+            sign.draw(painter, middle, vec2(1.0, 0.0), self.current);
             let place = pos2(from.x + SWATCH + GAPS[0], middle.y);
-            axes::text(painter, place, Align2::LEFT_CENTER, name, ui.visuals().text_color());
+            axes::text(painter, place, Align2::LEFT_CENTER, name, ink);
         }
-        self.label(ui, at);
+        let mut top = map.top();
+        for Fill { inside, around, name } in &self.fills {
+            let square = Rect::from_min_size(pos2(map.right() + BESIDE[0], top + 1.0), vec2(SQUARE, SQUARE));
+            painter.rect(square, 0.0, *inside, Stroke::new(1.5, *around), StrokeKind::Outside);
+            let lines = name.replace(' ', "\n");
+            let text = axes::text(painter, pos2(square.right() + BESIDE[1], top), Align2::LEFT_TOP, &lines, ink);
+            top = text.bottom().max(square.bottom()) + BESIDE[2];
+        }
+        self.label(ui, map);
     }
 
     /// The same for screen readers.
-    fn label(&self, ui: &Ui, at: Pos2) {
-        let names: Vec<&str> = self.entries.iter().map(|entry| entry.name.as_str()).collect();
+    fn label(&self, ui: &Ui, map: Rect) {
+        let marks = self.entries.iter().map(|entry| entry.name.as_str());
+        let names: Vec<&str> = self.fills.iter().map(|fill| fill.name).chain(marks).collect();
         if !names.is_empty() {
-            let rect = Rect::from_min_size(at, vec2(SWATCH, self.height()));
+            let rect = Rect::from_min_size(map.right_top(), vec2(SWATCH, SQUARE));
             let response = ui.interact(rect, ui.scope_id().with("legend"), Sense::hover());
             let label = format!("Legend: {}", names.join(", "));
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &label));
         }
     }
-}
-
-/// A square of cells of a kind.
-fn hatched(painter: &Painter, kind: Detection, middle: Pos2, dark: bool) {
-    const DOTS: usize = 12;
-    let corner = middle - vec2(DOTS as f32, DOTS as f32) / 2.0;
-    let mut mesh = Mesh::default();
-    for (x, y) in (0..DOTS).flat_map(|y| (0..DOTS).map(move |x| (x, y))) {
-        let [r, g, b] = kind.colour(x, y, dark);
-        let dot = Rect::from_min_size(corner + vec2(x as f32, y as f32), vec2(1.0, 1.0));
-        mesh.add_colored_rect(dot, Color32::from_rgb(r, g, b));
-    }
-    painter.add(Shape::mesh(mesh));
-    let square = Rect::from_center_size(middle, vec2(DOTS as f32, DOTS as f32));
-    painter.rect_stroke(square, 0.0, egui::Stroke::new(1.0, Color32::from_gray(128)), egui::StrokeKind::Outside);
 }

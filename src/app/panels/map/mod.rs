@@ -5,8 +5,10 @@ mod blank;
 mod caption;
 mod frame;
 mod hand;
+mod hatch;
 mod kinds;
 mod legend;
+mod morph;
 mod outline;
 mod overlay;
 mod plot;
@@ -18,6 +20,7 @@ pub use blank::{Problem, Veil};
 pub use caption::{Caption, caption};
 pub use frame::{Cells, Marked, Marks};
 pub use hand::Memory;
+pub use hatch::ToldApart;
 pub use kinds::Kinds;
 pub use swipe::Over;
 pub use theory::Theory;
@@ -38,8 +41,8 @@ use crate::scene::Scene;
 use eframe::egui;
 use eframe::egui::{Align2, Color32, Painter, Rect, Sense, TextureId, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
-use legend::Legend;
-use plot::{draw_axes, navigate, rect_of};
+use legend::{Fill, Legend};
+use plot::{draw_axes, is_wide, navigate, rect_of};
 
 /// What a map shows.
 pub struct Input<'a> {
@@ -53,6 +56,8 @@ pub struct Input<'a> {
     pub selection: &'a Selection,
     /// Over which coordinates.
     pub projection: Projection,
+    /// The visible part of maps over the other coordinates.
+    pub other_view: MapView,
     /// Colours of Lambda.
     pub colours: ColourMap,
     /// What the colour bar counts.
@@ -61,8 +66,12 @@ pub struct Input<'a> {
     pub difference: DifferenceView,
     /// Its picture, if there is one.
     pub texture: Option<TextureId>,
+    /// Over which coordinates that picture is: for a moment after they change, the ones of before.
+    pub pictured: Projection,
     /// Where the scale of that picture ends, Lambda.
     pub end: f32,
+    /// What it shows, for whoever can't see it.
+    pub sentence: Option<&'a str>,
     /// Whether the picture is of an earlier scene, and has been for long enough to be told.
     pub stale: bool,
     /// The numbers behind the picture.
@@ -71,8 +80,8 @@ pub struct Input<'a> {
     pub marks: Marks<'a>,
     /// What became of every object, if that is marked.
     pub kinds: Option<Kinds<'a>>,
-    /// Whether its cells are hits, misses and false alarms.
-    pub told_apart: bool,
+    /// What its cells are, where they are hits, misses and false alarms.
+    pub told_apart: Option<ToldApart<'a>>,
     /// Another map right of an edge.
     pub over: Option<Over<'a>>,
     /// What the formulas say of a reflector, if that is drawn over it.
@@ -107,16 +116,19 @@ impl<'a> Input<'a> {
             scene,
             selection,
             projection,
+            other_view: MapView::default(),
             colours: ColourMap::Grey,
             units: Units::Lambda,
             difference: DifferenceView::default(),
             texture: None,
+            pictured: projection,
             end: 1.0,
+            sentence: None,
             stale: false,
             cells: None,
             marks: Marks { objects: &[], found: &[] },
             kinds: None,
-            told_apart: false,
+            told_apart: None,
             over: None,
             theory: None,
             cursor: None,
@@ -134,51 +146,71 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let is_told = !input.kind.is_above() && input.veil.is_none() && area.width() > 200.0;
+    let is_told = !input.kind.is_above() && input.veil.is_none() && is_wide(area);
     let bar = is_told.then(|| bar_of(&input));
-    let legend = legend_of(ui.painter(), &input, area);
-    let rect = rect_of(ui.painter(), area, bar.as_ref(), input.projection, legend.height());
+    let legend = legend_of(ui, &input, area);
+    let rect = rect_of(area, input.projection, legend.height());
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
-    let frame = Frame {
-        rect,
-        view: *view,
-        radar: input.radar,
-        projection: input.projection,
-        centre_x_metres: centre_x_metres(input.kind, input.radar),
-    };
+    describe(ui, &input, response.id);
+    let centre_x_metres = centre_x_metres(input.kind, input.radar);
+    let frame = Frame::of(rect, *view, input.radar, input.projection, centre_x_metres);
     let is_bare = input.veil.is_none();
     let holds = is_bare && hand::work(ui, input.kind, input.scene, frame, &response, memory, &mut asked);
-    navigate(ui, rect, &response, view, !holds);
+    navigate(ui, rect, &response, view, !holds, input.selection.is_empty());
     if response.has_focus() && !input.selection.is_empty() {
         asked.extend(nudge(ui.ctx(), input.radar.range_resolution_metres()));
     }
+    let morph = morph::morph(ui, area, input.projection, input.other_view, legend.height());
+    // What the pointer does means the place where everything comes to rest.
     let frame = Frame { view: *view, ..frame };
+    point(&input, frame, &response, &mut asked);
+    let frame = Frame { morph, ..frame };
+    let rest = 1.0 - morph.map_or(0.0, |m| m.left);
     let painter = ui.painter().with_clip_rect(area);
-    let inner = ui.painter().with_clip_rect(rect.intersect(area));
+    let inner = ui.painter().with_clip_rect(frame.shown().intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
     if input.axes {
-        draw_axes(ui, &painter, frame);
+        let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
+        let mut appearing = painter.clone();
+        appearing.multiply_opacity(rest);
+        draw_axes(ui, &appearing, frame, free);
     }
-    legend.draw(ui, &painter, rect.left_top() - vec2(0.0, legend.height() + 4.0));
-    point(&input, frame, &response, &mut asked);
+    legend.draw(ui, &painter, frame.shown());
     draw_over(&inner, frame, &input, &response, is_drawn);
     if let Some(bar) = bar {
-        bar.draw(ui, &painter, rect);
+        bar.draw(ui, &painter, frame.shown());
     }
     if let Some(over) = input.over.as_ref().filter(|_| is_bare) {
         over.handle(ui, &inner, rect, &mut asked);
     }
     response.context_menu(|ui| menu(ui, input.kind, &mut asked));
+    if is_bare {
+        morph::button(ui, rect, input.kind, input.projection, &mut asked);
+    }
     asked
 }
 
-/// What hatches and marks stand for, where there is room to say so.
-fn legend_of(painter: &Painter, input: &Input<'_>, area: Rect) -> Legend {
+/// One sentence for screen readers: what kind of map it is, and what is to be seen in it.
+fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
+    let seen = input.sentence.filter(|_| input.veil.is_none()).unwrap_or_default();
+    let old = if input.stale { " Of the previous scene." } else { "" };
+    let description = format!("{}. {seen}{old}", input.kind.describe());
+    ui.ctx().accesskit_node_builder(id, |node| node.set_description(description.trim()));
+}
+
+/// What fills and marks stand for, where there is room to say so.
+fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
     let has_room = input.veil.is_none() && area.height() > 150.0;
-    let told_apart = input.told_apart && has_room;
-    Legend::new(painter, told_apart, input.kinds.as_ref().filter(|_| has_room), area.width() - axes::LEFT - 12.0)
+    let dark = ui.visuals().dark_mode;
+    let fills = match &input.told_apart {
+        _ if !(input.kind.is_above() && has_room && is_wide(area)) => Vec::new(),
+        Some(_) => Fill::detections(dark),
+        None => Fill::mask(dark),
+    };
+    let width = area.width() - axes::LEFT - axes::RIGHT;
+    Legend::new(ui.painter(), fills, input.kinds.as_ref().filter(|_| has_room), width)
 }
 
 /// Marks, the cursor and what is said of an old picture.
@@ -188,6 +220,10 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     if !is_drawn && input.veil.is_none() {
         // What is said in the place of the map stays readable.
         return;
+    }
+    let at_rest = input.veil.is_none() && frame.morph.is_none();
+    if let Some(told_apart) = input.told_apart.as_ref().filter(|_| at_rest) {
+        told_apart.draw(inner, frame, inner.ctx().theme() == egui::Theme::Dark);
     }
     // Beneath all that is to be read.
     if let Some(cursor) = &input.cursor {
@@ -227,15 +263,18 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
         Some(texture) => {
             let uv = Rect::from_min_max(pos2(view.low.x, view.high.y), pos2(view.high.x, view.low.y));
             let tint = if input.stale { Color32::from_gray(120) } else { Color32::WHITE };
-            inner.rect_filled(rect, 0.0, Inks::of(ui.visuals()).beyond);
-            inner.image(texture, rect, uv, tint);
+            inner.rect_filled(frame.shown(), 0.0, Inks::of(ui.visuals()).beyond);
+            match frame.morph.is_none() && input.pictured == input.projection {
+                true => _ = inner.image(texture, rect, uv, tint),
+                false => morph::picture(inner, frame, texture, input.pictured, tint),
+            }
         }
         None if input.veil.is_some() => {
             blank::veil(inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
         }
         None => blank::empty(ui, inner, rect, input.error.as_ref(), asked),
     }
-    if let Some(over) = input.over.as_ref().filter(|_| input.veil.is_none()) {
+    if let Some(over) = input.over.as_ref().filter(|_| input.veil.is_none() && frame.morph.is_none()) {
         over.draw(ui, inner, frame);
     }
     texture.is_some()

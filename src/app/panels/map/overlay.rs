@@ -83,18 +83,44 @@ fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> 
     pieces.map(|piece| Ring::Outline(outline(piece, radius))).collect()
 }
 
-/// Rings around the blobs of what is selected, or outlines of lines.
+/// Rings around the blobs of what is selected; a line as the curve that its blobs lie on.
 pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
     let mut left = MARKS;
     for object in selection.iter().filter_map(|i| scene.objects.get(i)) {
         let reflectors: Vec<Reflector> = object.reflectors().into_iter().take(left).collect();
         left -= reflectors.len();
+        if let (Object::Line(_), [first, .., last]) = (object, reflectors.as_slice()) {
+            curve(painter, frame, first, last);
+            continue;
+        }
         let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
-        let marked = Marked { reflectors, is_line: matches!(object, Object::Line(_)) };
+        let marked = Marked { reflectors, is_line: false };
         for ring in rings(&marked, &blobs, frame.rect.height(), 2.0) {
             for (width, colour) in [(3.0, MARK_EDGE), (1.6, MARK_SELECTED)] {
                 painter.add(ring.shape(Stroke::new(width, colour)));
             }
+        }
+    }
+}
+
+/// Points of a line's curve.
+const CURVE: usize = 96;
+
+/// Where the map has the straight line between two reflectors, with a dot at each end; in pieces where it wraps around the end of the ranges.
+fn curve(painter: &Painter, frame: Frame<'_>, first: &Reflector, last: &Reflector) {
+    let along = |i: usize| {
+        let part = i as f64 / CURVE as f64;
+        let between = |a: f64, b: f64| a + part * (b - a);
+        let [x_metres, y_metres] = [between(first.x_metres, last.x_metres), between(first.y_metres, last.y_metres)];
+        frame.blob(&Reflector { x_metres, y_metres, ..*first })
+    };
+    let path: Vec<Pos2> = (0..=CURVE).map(along).collect();
+    for (width, colour) in [(4.0, MARK_EDGE), (1.8, MARK_SELECTED)] {
+        for piece in path.chunk_by(|a, b| a.distance(*b) <= frame.rect.height() / 2.0) {
+            painter.add(Shape::line(piece.to_vec(), Stroke::new(width, colour)));
+        }
+        for end in [path[0], path[CURVE]] {
+            painter.circle_filled(end, 1.6 + width / 2.0, colour);
         }
     }
 }
@@ -212,7 +238,7 @@ mod tests {
         let scene = Scene { objects: vec![wall], ..Scene::default() };
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(1024.0, 512.0));
         let (view, projection) = (MapView::default(), Projection::RangeAngle);
-        let frame = Frame { rect, view, radar: &radar, projection, centre_x_metres: 0.0 };
+        let frame = Frame::of(rect, view, &radar, projection, 0.0);
         let blob = frame.blob(&objects[0].reflectors[0]);
         let draw = |pointer| {
             let panel = Harness::builder().with_size(rect.size()).build_ui(|ui| {
@@ -229,8 +255,34 @@ mod tests {
             "{}",
             told.text
         );
-        // Four rings at most are drawn around a wall: two for the wall, two for its being selected.
-        let shapes = away.shapes.iter().filter(|s| matches!(s.shape, Shape::Path(_) | Shape::Circle(_))).count();
-        assert_eq!(shapes, 4, "{:?}", away.shapes);
+        // Two outlines of the wall, and its curve with a dot at each end, each in two colours.
+        let count = |is: fn(&Shape) -> bool| away.shapes.iter().filter(|s| is(&s.shape)).count();
+        let [paths, dots] = [count(|s| matches!(s, Shape::Path(_))), count(|s| matches!(s, Shape::Circle(_)))];
+        assert_eq!([paths, dots], [4, 4], "{:?}", away.shapes);
+    }
+
+    #[test]
+    fn a_selected_line_is_drawn_as_the_curve_that_its_blobs_lie_on() {
+        let (radar, wall) = (Radar::default(), Object::Line(Line::vertical(6.0, 8.0, 0.2, 60)));
+        let scene = Scene { objects: vec![wall], ..Scene::default() };
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
+        let bend = |projection| {
+            let frame = Frame::of(rect, MapView::default(), &radar, projection, 0.0);
+            let panel = Harness::builder().with_size(rect.size()).build_ui(|ui| {
+                selected(ui.painter(), frame, &scene, &Selection::of([0]));
+            });
+            let shapes = &panel.output().shapes;
+            let paths = shapes.iter().filter_map(|s| if let Shape::Path(p) = &s.shape { Some(p) } else { None });
+            let path = paths.last().expect("a curve").points.clone();
+            for r in scene.objects[0].reflectors() {
+                let off = path.iter().map(|p| p.distance(frame.blob(&r))).fold(f32::INFINITY, f32::min);
+                assert!(off < 3.0, "{projection:?}: a blob is {off} points from the curve");
+            }
+            // How far its middle is from the straight line between its ends.
+            let (first, last) = (path[0], path[path.len() - 1]);
+            (path[path.len() / 2] - first).dot((last - first).normalized().rot90()).abs()
+        };
+        let [bent, straight] = [Projection::RangeAngle, Projection::Cartesian].map(bend);
+        assert!(bent > 5.0 && straight < 1.5, "{bent} and {straight} points");
     }
 }

@@ -3,15 +3,13 @@
 use super::frame::Frame;
 use crate::app::state::{MapView, Projection};
 use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::nudge::zoom_keys;
+use crate::app::widgets::nudge::{pan_keys, zoom_keys};
 use crate::radar::Carrier;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 
-/// Where the picture goes within the panel, below a legend that is `above` points high.
-pub fn rect_of(painter: &Painter, area: Rect, bar: Option<&Bar>, projection: Projection, above: f32) -> Rect {
-    let height = area.height() - axes::BOTTOM - 8.0 - above;
-    let right = bar.map_or(12.0, |bar| bar.width(painter, height));
+/// Where the picture goes within the panel, below a legend that is `above` points high: between the same margins in every map.
+pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
+    let right = if is_wide(area) { axes::RIGHT } else { 12.0 };
     let rect = Rect::from_min_max(
         area.min + vec2(axes::LEFT, 8.0 + above),
         pos2(
@@ -27,8 +25,14 @@ pub fn rect_of(painter: &Painter, area: Rect, bar: Option<&Bar>, projection: Pro
     Align2::CENTER_CENTER.align_size_within_rect(size, rect)
 }
 
-/// Zooms by wheel, pinch and keys, pans by dragging, and shows the whole map after a double click.
-pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pans: bool) {
+/// Whether a panel has room for a bar of colours beside its map.
+pub fn is_wide(area: Rect) -> bool {
+    area.width() > 200.0
+}
+
+/// Zooms by wheel, pinch and keys, pans by dragging and by arrow keys (where these are `free`, without Ctrl), and shows the whole map
+/// after a double click.
+pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pans: bool, free: bool) {
     if let Some(pos) = response.hover_pos() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = pinch * (scroll / 200.0).exp();
@@ -41,6 +45,9 @@ pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pa
         let middle = view.at(rect, rect.center());
         view.zoom(factor, middle);
     }
+    if let Some(by) = pan_keys(response, free) {
+        view.pan(by * (view.high - view.low));
+    }
     if pans && response.dragged() {
         let before = view.at(rect, rect.min);
         let after = view.at(rect, rect.min + response.drag_delta());
@@ -51,8 +58,8 @@ pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pa
     }
 }
 
-/// Draws both axes of the part that is shown.
-pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
+/// Draws both axes of the part that is shown; the title below leaves `free` points at each end.
+pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
     let Frame { rect, view, radar, projection, .. } = frame;
     let (x, y) = match projection {
         Projection::RangeAngle => {
@@ -65,14 +72,17 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>) {
                         "cos θ (0 straight ahead, 1 at 90° right)",
                         "cos θ",
                     ];
-                    axes::fitting(painter, rect.width(), &titles)
+                    axes::fitting(painter, rect.width() - 2.0 * free, &titles)
                 }
                 Carrier::TwoWay => {
                     let titles = ["cos θ, folded: each column stands for two directions", "cos θ, folded"];
-                    axes::fitting(painter, rect.width(), &titles)
+                    axes::fitting(painter, rect.width() - 2.0 * free, &titles)
                 }
             };
-            let x = Axis::new(cos(view.low.x), cos(view.high.x), title);
+            // A column stands for the direction in its middle: the ends of a whole map are half a column away from a round number.
+            let column = cos(1.0 / radar.elements as f32) - cos(0.0);
+            let slack = if view.high.x - view.low.x == 1.0 { 0.51 * column } else { 0.0 };
+            let x = Axis::new(cos(view.low.x), cos(view.high.x), title).with_slack(slack);
             // The one row of a snapshot stands for no range.
             let y = match radar.samples {
                 1 => Axis { ticks: Some(&[]), ..Axis::new(0.0, 1.0, "one range") },

@@ -32,7 +32,7 @@ impl Scale {
             let table = colour_table(self.colours);
             return match range_db {
                 Some(range) => Bar { told_from: lowest_db(range), ..Bar::new(table, -range, 0.0, "dB") },
-                None => Bar::new(table, 0.0, 1.0, "Λ"),
+                None => Bar::new(table, 0.0, 1.0, "Λ, normalised"),
             };
         }
         let high = f64::from(self.end) * range_db.unwrap_or(1.0);
@@ -60,7 +60,7 @@ mod tests {
     fn a_difference_is_symmetric_and_its_absolute_value_begins_at_nothing() {
         let ends = |bar: Bar| (bar.low, bar.high, bar.title);
         let end = f64::from(0.2f32);
-        assert_eq!(ends(scale(MapKind::Target, Units::Lambda, false)), (0.0, 1.0, "Λ"));
+        assert_eq!(ends(scale(MapKind::Target, Units::Lambda, false)), (0.0, 1.0, "Λ, normalised"));
         assert_eq!(ends(scale(MapKind::Target, Units::Decibels, false)), (-60.0, 0.0, "dB"));
         assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, false)), (-end, end, "ΔΛ"));
         assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, true)), (0.0, end, "|ΔΛ|"));

@@ -12,6 +12,8 @@ use std::sync::LazyLock;
 
 static NOTHING: LazyLock<(Scene, Selection)> = LazyLock::new(Default::default);
 
+static NO_CELLS: LazyLock<RangeAngleMap> = LazyLock::new(|| RangeAngleMap { lambda: Array2::zeros((1, 1)) });
+
 fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
     let (scene, selection) = &*NOTHING;
     Input { error, ..Input::bare(MapKind::Output, radar, Projection::RangeAngle, scene, selection) }
@@ -73,10 +75,36 @@ fn every_label_of_a_map_is_inside_its_panel_whatever_is_counted() {
                 (MapKind::TargetAbove, _) => None,
                 (MapKind::Difference, Units::Lambda) => Some("ΔΛ"),
                 (MapKind::Difference, Units::Decibels) => Some("Δ dB"),
-                (_, Units::Lambda) => Some("Λ"),
+                (_, Units::Lambda) => Some("Λ, normalised"),
                 (_, Units::Decibels) => Some("−200"),
             };
             assert!(bar.is_none_or(|bar| texts.iter().any(|t| t.text == bar)), "{bar:?} at {size:?}: {texts:?}");
+        }
+    }
+}
+
+#[test]
+fn every_map_has_the_same_margins_whatever_stands_beside_it() {
+    for (size, projection) in [([330.0, 170.0], Projection::RangeAngle), ([700.0, 400.0], Projection::Cartesian)] {
+        let rect = |kind: MapKind, units| {
+            let radar = Radar::default();
+            let map = Harness::builder().with_size(size).build_ui(move |ui| {
+                let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
+                let told_apart = told_apart.filter(|_| kind == MapKind::OutputAbove);
+                let texture = Some(TextureId::default());
+                let input = Input { kind, units, projection, texture, told_apart, ..input(&radar, None) };
+                _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+            });
+            seen::assert_readable(map.output());
+            let has_one = seen::texts(map.output()).iter().any(|t| t.text == "1.0");
+            assert!(has_one || projection == Projection::Cartesian, "{kind:?}: the end of the axis has its label");
+            map.get_by_label(&format!("{} map", kind.title())).rect()
+        };
+        let of_input = rect(MapKind::Input0, Units::Lambda);
+        for kind in MapKind::ALL {
+            for units in [Units::Lambda, Units::Decibels] {
+                assert_eq!(rect(kind, units), of_input, "{kind:?} in {units:?}");
+            }
         }
     }
 }
@@ -129,7 +157,8 @@ fn what_became_of_objects_is_told_above_the_map_and_under_the_pointer() {
         let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
             let kinds = Some(Kinds { fates: &fates, current });
             let texture = Some(TextureId::default());
-            let input = Input { kinds, texture, told_apart: true, kind: MapKind::OutputAbove, ..input(&radar, None) };
+            let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
+            let input = Input { kinds, texture, told_apart, kind: MapKind::OutputAbove, ..input(&radar, None) };
             _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
         });
         map.step();

@@ -262,7 +262,7 @@ mod tests {
 
     fn frame(radar: &Radar) -> Frame<'_> {
         let view = MapView::default();
-        Frame { rect: RECT, view, radar, projection: Projection::RangeAngle, centre_x_metres: 0.0 }
+        Frame::of(RECT, view, radar, Projection::RangeAngle, 0.0)
     }
 
     fn theory<'a>(overlay: &'a Overlay, reflector: Reflector) -> Theory<'a> {

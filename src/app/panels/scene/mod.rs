@@ -7,7 +7,7 @@ mod trail;
 
 use crate::app::state::{Command, Cursor, EditCommand, NewObject, SceneView, ViewCommand};
 use crate::app::widgets::entry::entry;
-use crate::app::widgets::nudge::{nudge, zoom_keys};
+use crate::app::widgets::nudge::{focused_steps, nudge, pan_keys, zoom_keys};
 use crate::app::widgets::theme::Inks;
 use crate::interact::{Editor, Grip, Place, SelectionMode, Snap, grips, hit};
 use crate::radar::Radar;
@@ -75,7 +75,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     }
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
     trail::draw(&painter, canvas, input.trails);
-    label_handles(editor, *view, ui, rect);
+    handles(input.radar.range_resolution_metres(), editor, *view, ui, rect);
     if let (Some(start), Some(pos)) = (view.box_start, ui.input(|i| i.pointer.interact_pos())) {
         canvas::selection_box(&painter, canvas, start, pos);
     }
@@ -179,6 +179,11 @@ fn keys(
         view.zoom(f64::from(factor), rect, rect.center());
         view.fitted = None;
     }
+    if let Some(by) = pan_keys(response, editor.selection().is_empty()) {
+        view.centre.x_metres += f64::from(by.x * rect.width()) * view.metres_per_point;
+        view.centre.y_metres += f64::from(by.y * rect.height()) * view.metres_per_point;
+        view.fitted = None;
+    }
     if response.has_focus() && !editor.selection().is_empty() {
         asked.extend(nudge(&response.ctx, radar.range_resolution_metres()));
     }
@@ -235,8 +240,10 @@ fn pointer(
     }
 }
 
-/// Gives every handle a name and a place that screen readers and tests can find.
-fn label_handles(editor: &Editor, view: SceneView, ui: &Ui, rect: Rect) {
+/// Gives every handle a name and a place that screen readers and tests can find. The grips of what is selected take the focus: arrow keys
+/// then drag them by a range bin of `bin_metres`, with Shift by ten, with Alt by a tenth.
+fn handles(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect: Rect) {
+    let mut moved = None;
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let selected = editor.selection().contains(index);
         for g in grips(object, view.metres_per_point) {
@@ -247,15 +254,18 @@ fn label_handles(editor: &Editor, view: SceneView, ui: &Ui, rect: Rect) {
             if !rect.contains(at) {
                 continue;
             }
-            let response = ui.interact(
-                Rect::from_center_size(at, vec2(18.0, 18.0)),
-                Id::unique(("handle", index, g.grip)),
-                Sense::hover(),
-            );
+            // The body moves with the arrow keys whatever has the focus.
+            let sense = if g.grip == Grip::Body { Sense::hover() } else { Sense::focusable_noninteractive() };
+            let place = Rect::from_center_size(at, vec2(18.0, 18.0));
+            let response = ui.interact(place, Id::unique(("handle", index, g.grip)), sense);
             response.widget_info(|| {
                 let name = format!("{} {}: {}", object.kind(), index + 1, g.grip.describe());
                 egui::WidgetInfo::selected(egui::Role::Button, true, selected, name)
             });
+            if let Some((dx, dy)) = focused_steps(&response).filter(|_| g.grip != Grip::Body) {
+                let to = Place::new(g.place.x_metres + dx * bin_metres, g.place.y_metres + dy * bin_metres);
+                moved = Some((hit::Hit { object: index, grip: g.grip, place: g.place }, to));
+            }
             if editor.dragged().is_none() {
                 let [x, y] = object.centre_metres();
                 response.on_hover_text(format!(
@@ -266,6 +276,11 @@ fn label_handles(editor: &Editor, view: SceneView, ui: &Ui, rect: Rect) {
                 ));
             }
         }
+    }
+    if let Some((hit, to)) = moved.filter(|_| editor.dragged().is_none()) {
+        editor.begin_drag(hit, hit.place);
+        editor.drag_to(to, Snap::Off);
+        editor.end_drag();
     }
 }
 

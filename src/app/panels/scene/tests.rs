@@ -255,3 +255,66 @@ fn a_double_click_asks_for_a_point_there() {
     let place = held.view.to_scene(scene.get_by_label("Scene").rect(), at);
     assert!(held.asked.contains(&Command::Edit(EditCommand::Add(NewObject::Point, Some(place)))), "{:?}", held.asked);
 }
+
+#[test]
+fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
+    use crate::scene::{GaussianCluster, Line, Object};
+    let cluster = GaussianCluster {
+        x_metres: -4.0,
+        y_metres: 18.0,
+        x_std_metres: 1.0,
+        y_std_metres: 1.0,
+        count: 20,
+        seed: 1,
+        reflectivity: 1.0,
+    };
+    for (object, key) in [
+        (Object::Line(Line::vertical(4.0, 10.0, 0.5, 20)), egui::Key::ArrowUp),
+        (Object::Gaussian(cluster.clone()), egui::Key::ArrowRight),
+        (Object::Gaussian(cluster), egui::Key::ArrowUp),
+    ] {
+        let mut scene = panel(Scene { objects: vec![object.clone()], ..Scene::default() });
+        scene.state_mut().editor.select([0], SelectionMode::Replace);
+        scene.step();
+        let metres_per_point = scene.state().view.metres_per_point;
+        let mut changed = 0;
+        let names: Vec<String> = grips(&object, metres_per_point)
+            .into_iter()
+            .filter(|g| g.grip != Grip::Body)
+            .map(|g| format!("{} 1: {}", object.kind(), g.grip.describe()))
+            .collect();
+        for name in &names {
+            let before = scene.state().editor.scene().objects[0].clone();
+            scene.get_by_label(name).focus();
+            scene.run_steps(2);
+            scene.key_press_modifiers(egui::Modifiers::SHIFT, key);
+            scene.run_steps(2);
+            assert!(scene.get_by_label(name).is_focused(), "{name}: the arrow doesn't take the focus away");
+            changed += usize::from(scene.state().editor.scene().objects[0] != before);
+        }
+        // Each of a cluster's two grips follows one of the arrows; the grip that turns a line may rest where it is for one along it.
+        assert!(changed >= names.len() / 2, "{changed} of {names:?}");
+        assert_eq!(scene.state().editor.history().depth(), changed, "each is one undo step");
+    }
+}
+
+#[test]
+fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
+    let mut scene = panel(Scene::of_points([(0.0, 20.0)]));
+    scene.get_by_label("Scene").focus();
+    scene.run_steps(2);
+    let centre = |scene: &Harness<'static, Held>| scene.state().view.centre;
+    let before = centre(&scene);
+    scene.key_press(egui::Key::ArrowRight);
+    scene.run_steps(2);
+    let panned = centre(&scene);
+    assert!(panned.x_metres > before.x_metres && panned.y_metres == before.y_metres);
+    scene.state_mut().editor.select([0], SelectionMode::Replace);
+    scene.key_press(egui::Key::ArrowRight);
+    scene.run_steps(2);
+    assert_eq!(centre(&scene), panned, "arrows are the selection's");
+    assert!(scene.state().asked.iter().any(|c| matches!(c, Command::Edit(crate::app::state::EditCommand::Nudge { .. }))));
+    scene.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowUp);
+    scene.run_steps(2);
+    assert!(centre(&scene).y_metres > panned.y_metres, "with Ctrl they pan whatever is selected");
+}

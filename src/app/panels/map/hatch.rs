@@ -1,0 +1,93 @@
+//! Hatches over hits, misses and false alarms, where a cell is large enough on screen: they tell kinds apart without any colour.
+
+use super::frame::Frame;
+use crate::maps::RangeAngleMap;
+use crate::picture::Detection;
+use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+
+/// The least height of a cell that hatches are drawn in, points.
+const LEAST: f32 = 4.0;
+
+/// Between two lines of a hatch, points.
+const STEP: f32 = 7.0;
+
+/// What tells hits, misses and false alarms apart.
+#[derive(Clone, Copy)]
+pub struct ToldApart<'a> {
+    /// Lambda of the output and of the target.
+    pub output: &'a RangeAngleMap,
+    /// Lambda of the target.
+    pub target: &'a RangeAngleMap,
+    /// Their thresholds.
+    pub etas: [f32; 2],
+}
+
+impl ToldApart<'_> {
+    /// What the cell at a place on screen is.
+    fn at(&self, frame: Frame<'_>, pos: Pos2) -> Detection {
+        let (radar, polar) = (frame.radar, frame.polar(pos));
+        let bin = radar.bin_of_range(polar.range_metres).round();
+        let column = (radar.column_of_cos(polar.cos_theta).round() as usize) % radar.elements.max(1);
+        if !(bin >= 0.0 && bin < radar.samples as f64) {
+            return Detection::Nothing;
+        }
+        let cell = (bin as usize, column);
+        let above = |map: &RangeAngleMap, eta: f32| map.lambda.get(cell).is_some_and(|v| *v > eta);
+        Detection::of(above(self.target, self.etas[1]), above(self.output, self.etas[0]))
+    }
+
+    /// Draws them over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
+    pub fn draw(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
+        let rect = frame.rect.intersect(painter.clip_rect());
+        if frame.cell_height() < LEAST {
+            return;
+        }
+        let [across, up] = [rect.width(), rect.height()].map(|side| (side / STEP).ceil() as usize);
+        // On a grid that stays where it is on screen, so that lines of neighbouring cells meet.
+        let squares = (0..up).flat_map(|row| (0..across).map(move |column| (row, column)));
+        let lines = squares.filter_map(|(row, column)| {
+            let square = Rect::from_min_size(rect.min + STEP * vec2(column as f32, row as f32), vec2(STEP, STEP));
+            let kind = self.at(frame, square.center());
+            let ends = match kind {
+                Detection::Miss => [square.left_bottom(), square.right_top()],
+                Detection::FalseAlarm => [square.left_top(), pos2(square.right(), square.bottom())],
+                Detection::Hit | Detection::Nothing => return None,
+            };
+            let [r, g, b] = kind.outline(dark);
+            Some(Shape::line_segment(ends, Stroke::new(1.2, Color32::from_rgb(r, g, b))))
+        });
+        painter.extend(lines.collect::<Vec<_>>());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::{MapView, Projection};
+    use crate::radar::Radar;
+    use eframe::egui::Ui;
+    use egui_kittest::Harness;
+    use ndarray::Array2;
+
+    /// Lines drawn over a map whose upper half is missed, seen as a whole or zoomed in.
+    fn lines(view: MapView) -> usize {
+        let radar = Radar::default();
+        let map = |lambda| RangeAngleMap { lambda: Array2::from_elem((radar.samples, radar.elements), lambda) };
+        let (output, mut target) = (map(0.0f32), map(0.0));
+        target.lambda.slice_mut(ndarray::s![radar.samples / 2.., ..]).fill(1.0);
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 200.0));
+        let harness = Harness::builder().with_size(rect.size()).build_ui(|ui: &mut Ui| {
+            let frame = Frame::of(rect, view, &radar, Projection::RangeAngle, 0.0);
+            ToldApart { output: &output, target: &target, etas: [0.5, 0.9] }.draw(ui.painter(), frame, true);
+        });
+        harness.output().shapes.iter().filter(|s| matches!(s.shape, Shape::LineSegment { .. })).count()
+    }
+
+    #[test]
+    fn hatches_are_drawn_where_cells_are_large_and_only_over_what_is_missed() {
+        assert_eq!(lines(MapView::default()), 0);
+        let near_the_middle = |low: f32| MapView { low: pos2(0.4, low), high: pos2(0.43, low + 0.04) };
+        assert_eq!(lines(near_the_middle(0.2)), 0, "nothing is there");
+        assert!(lines(near_the_middle(0.7)) > 1000);
+    }
+}
