@@ -1,7 +1,7 @@
 //! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
 
 use super::apply::{self, Effect};
-use super::chrome::{file_dialog, menu, messages, palette, save_question, status_bar, tiles};
+use super::chrome::{file_dialog, help, menu, messages, palette, save_question, status_bar, tiles};
 use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
@@ -22,8 +22,17 @@ use std::time::Instant;
 /// Name under which settings and the autosave are kept.
 pub const APP_ID: &str = "apertura";
 
-/// How much larger everything is in a presentation.
-const PRESENTATION_ZOOM: f32 = 1.5;
+/// Height that a presentation is laid out for, points: on a larger screen everything is larger.
+const PRESENTATION_HEIGHT: f32 = 600.0;
+
+/// How much larger everything is in a presentation at least and at most.
+const PRESENTATION_ZOOMS: [f32; 2] = [1.25, 2.5];
+
+/// How much larger everything is in a presentation on a window of a height, points.
+fn presentation_zoom(height: f32) -> f32 {
+    let [least, most] = PRESENTATION_ZOOMS;
+    (height / PRESENTATION_HEIGHT).clamp(least, most)
+}
 
 /// How the app is started.
 #[derive(Default)]
@@ -59,6 +68,17 @@ struct Kept {
     progress: Progress,
     /// Size of the interface before a presentation that was on screen in the end.
     zoom: Option<f32>,
+    /// Whether something has been dragged, so that maps needn't say what they show.
+    captions_seen: bool,
+    /// Names of the commands that the palette ran last.
+    recent_commands: Vec<String>,
+}
+
+/// What was kept, and whether maps say what they show: not where nothing can be kept, as in tests.
+fn kept(storage: Option<&dyn eframe::Storage>) -> (Kept, bool) {
+    let kept: Kept = storage.and_then(|s| eframe::get_value(s, eframe::APP_KEY)).unwrap_or_default();
+    let captions = storage.is_some() && !kept.captions_seen;
+    (kept, captions)
 }
 
 /// The app.
@@ -98,7 +118,7 @@ impl App {
     /// When the system can't start a thread or create the frame log.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
         let ctx = &creation.egui_ctx;
-        let kept: Kept = creation.storage.and_then(|s| eframe::get_value(s, eframe::APP_KEY)).unwrap_or_default();
+        let (kept, captions) = kept(creation.storage);
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
         let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| eframe::storage_dir(APP_ID)));
         let began = options.started.unwrap_or_else(Instant::now);
@@ -120,6 +140,8 @@ impl App {
             before_presenting: None,
             progress: kept.progress,
             recent: kept.recent,
+            captions,
+            help: None,
             dark: ctx.theme() == egui::Theme::Dark,
         };
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
@@ -132,7 +154,8 @@ impl App {
         start(&mut state, &jobs, options.scene);
         let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
         let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v)))).collect();
-        let memory = Memory::default();
+        let palette = palette::Memory::remembering(kept.recent_commands);
+        let memory = Memory { palette, ..Memory::default() };
         Ok(App {
             state,
             jobs,
@@ -174,6 +197,7 @@ impl App {
         let input = input::Input {
             keys_taken: self.memory.palette.is_open()
                 || self.memory.file_dialog.is_open()
+                || self.state.help.is_some()
                 || self.state.save_question.is_some(),
             in_a_field: self.in_a_field,
             selected: !self.state.editor.selection().is_empty(),
@@ -187,7 +211,9 @@ impl App {
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let is_open = |panel| state.arrangement.is_open(panel);
-        let mut commands = menu::show(ui, contents::menu_input(state, jobs, &is_open), &mut memory.menu);
+        let is_on = |command: &Command| state.is_on(command);
+        let input = contents::menu_input(state, jobs, &is_open, &is_on);
+        let mut commands = menu::show(ui, input, &mut memory.menu);
         status_bar::show(ui, contents::status_input(state, jobs));
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
@@ -199,6 +225,7 @@ impl App {
         });
         let input = palette::Input { methods: &state.methods.all };
         commands.extend(palette::show(ui.ctx(), input, &mut memory.palette));
+        commands.extend(help::show(ui.ctx(), help::Input { page: state.help }));
         commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
         let input = save_question::Input { question: state.save_question.as_ref() };
         commands.extend(save_question::show(ui.ctx(), input));
@@ -218,7 +245,8 @@ impl App {
         match (self.state.is_presenting(), self.zoom_before) {
             (true, None) => {
                 self.zoom_before = Some(ctx.zoom_factor());
-                ctx.set_zoom_factor((PRESENTATION_ZOOM * ctx.zoom_factor()).min(3.0));
+                let zoom = presentation_zoom(ctx.content_rect().height());
+                ctx.set_zoom_factor((zoom * ctx.zoom_factor()).min(3.0));
             }
             (false, Some(before)) => {
                 self.zoom_before = None;
@@ -316,6 +344,8 @@ impl eframe::App for App {
             // Panels drawn before the one under it still show the old place.
             ctx.request_repaint();
         }
+        // Whoever drags something has seen what the maps are.
+        self.state.captions &= self.state.editor.dragged().is_none();
         self.jobs.ask(&mut self.state);
         self.update_title(&ctx);
         self.update_full_screen(&ctx);
@@ -337,6 +367,8 @@ impl eframe::App for App {
             arrangement,
             recent: state.recent.clone(),
             progress: state.progress.clone(),
+            captions_seen: !state.captions,
+            recent_commands: self.memory.palette.recent().to_vec(),
             zoom: self.zoom_before_lesson.or(self.zoom_before),
         };
         eframe::set_value(storage, eframe::APP_KEY, &kept);
@@ -349,5 +381,47 @@ impl eframe::App for App {
         if let Err(error) = self.jobs.failures.keep_now() {
             tracing::warn!("the rows could not be kept: {error}");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[derive(Default)]
+    struct InMemory(BTreeMap<String, String>);
+
+    impl eframe::Storage for InMemory {
+        fn get_string(&self, key: &str) -> Option<String> {
+            self.0.get(key).cloned()
+        }
+
+        fn set_string(&mut self, key: &str, value: String) {
+            self.0.insert(key.to_owned(), value);
+        }
+
+        fn remove_string(&mut self, key: &str) {
+            self.0.remove(key);
+        }
+
+        fn flush(&mut self) {}
+    }
+
+    #[test]
+    fn maps_say_what_they_show_until_something_was_dragged() {
+        let mut storage = InMemory::default();
+        assert!(kept(Some(&storage)).1, "a first start");
+        for seen in [false, true] {
+            eframe::set_value(&mut storage, eframe::APP_KEY, &Kept { captions_seen: seen, ..Kept::default() });
+            assert_eq!(kept(Some(&storage)).1, !seen);
+        }
+        assert!(!kept(None).1, "nowhere to keep that it was seen");
+    }
+
+    #[test]
+    fn a_presentation_grows_with_the_screen() {
+        let zooms = [640.0, 900.0, 1440.0, 4320.0].map(presentation_zoom);
+        assert_eq!(zooms, [1.25, 1.5, 2.4, 2.5]);
     }
 }

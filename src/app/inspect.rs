@@ -198,6 +198,11 @@ impl App {
         self.jobs.several.shown().iter().filter(|small| small.is_current && small.made.is_some()).count()
     }
 
+    /// Whether maps and scene say what they show.
+    pub fn shows_captions(&self) -> bool {
+        self.state.shows_captions()
+    }
+
     /// Number of messages on screen.
     pub fn messages(&self) -> usize {
         self.state.notices.len()

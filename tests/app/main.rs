@@ -7,6 +7,7 @@ mod figures;
 mod keyboard;
 mod lessons;
 mod monkey;
+mod names;
 mod panels;
 mod pictures;
 mod presentation;

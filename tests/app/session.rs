@@ -92,6 +92,16 @@ impl Session {
 }
 
 pub fn harness(folder: &Path, scene: Option<&str>, methods: Vec<Arc<dyn Reconstructor>>) -> Harness<'static, App> {
+    harness_of(folder, scene, methods, [1440.0, 900.0])
+}
+
+/// The same in a window of another size.
+pub fn harness_of(
+    folder: &Path,
+    scene: Option<&str>,
+    methods: Vec<Arc<dyn Reconstructor>>,
+    size: [f32; 2],
+) -> Harness<'static, App> {
     let options = Options {
         scene: scene.map(|s| folder.join(s)),
         methods,
@@ -100,7 +110,7 @@ pub fn harness(folder: &Path, scene: Option<&str>, methods: Vec<Arc<dyn Reconstr
         ..Options::default()
     };
     Harness::builder()
-        .with_size([1440.0, 900.0])
+        .with_size(size)
         .with_step_dt(1.0 / 60.0)
         .renderer(Blank)
         .build_eframe(|creation| App::new(creation, options).unwrap())

@@ -47,7 +47,10 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
         EditCommand::DragTo(place) => _ = editor.drag_to(place, state.settings.snap),
         EditCommand::Drop => editor.end_drag(),
         EditCommand::Add(kind, place) => add(state, kind, place),
-        EditCommand::Nudge { dx_metres, dy_metres } => editor.nudge(dx_metres, dy_metres),
+        EditCommand::Nudge { dx_metres, dy_metres } => {
+            editor.nudge(dx_metres, dy_metres);
+            state.captions = false;
+        }
         EditCommand::SetNoiseSeed(seed) => {
             editor.edit("noise seed", Some("noise seed"), |scene, _| scene.noise_seed = seed);
         }

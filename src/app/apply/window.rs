@@ -17,6 +17,9 @@ pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
             state.arrangement = Arrangement::default();
         }
         WindowCommand::Present => state.present(),
+        WindowCommand::ToggleCaptions => state.captions = !state.captions,
+        WindowCommand::Help(page) => state.help = Some(page),
+        WindowCommand::CloseHelp => state.help = None,
         WindowCommand::CloseMessages => state.notices.clear(),
         WindowCommand::ToggleTheme => {
             state.settings.theme = if state.dark { Brightness::Light } else { Brightness::Dark };

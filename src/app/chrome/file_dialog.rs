@@ -2,7 +2,7 @@
 
 use super::file_browser::{Answer, Browser};
 use crate::app::jobs::{Purpose, Question};
-use crate::app::state::{Command, DocumentCommand, ExportCommand};
+use crate::app::state::Command;
 use eframe::egui::{Context, Id, Modal, Ui};
 use std::path::{Path, PathBuf};
 
@@ -75,6 +75,7 @@ fn replace(ui: &mut Ui, path: &Path) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::{DocumentCommand, ExportCommand};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

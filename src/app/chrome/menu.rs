@@ -2,10 +2,10 @@
 
 use super::unsaved;
 use crate::app::state::{
-    Command, DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, Projection, ViewCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, ViewCommand,
     WindowCommand,
 };
-use crate::app::widgets::entry::{arrange, button, entry, entry_called, tooltip};
+use crate::app::widgets::entry::{arrange, button, entry, entry_called, ticked, tooltip};
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
 use crate::picture::ColourMap;
@@ -29,8 +29,6 @@ pub struct Input<'a> {
     pub selected: bool,
     /// Coordinates of the maps.
     pub projection: Projection,
-    /// Colours of the maps.
-    pub colours: ColourMap,
     /// Seed of the next random scene, and its number.
     pub random: (u64, u32),
     /// Files opened or saved lately, latest first.
@@ -45,6 +43,8 @@ pub struct Input<'a> {
     pub left: &'a [Document],
     /// Whether a panel has a visible tile.
     pub is_open: &'a dyn Fn(Panel) -> bool,
+    /// Whether what a command switches is on; `None` where it switches nothing.
+    pub is_on: &'a dyn Fn(&Command) -> Option<bool>,
 }
 
 /// A preset as the menu lists it.
@@ -79,10 +79,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
             ui.menu_button("Scene", |ui| scene(ui, input.random, memory, &mut asked));
             ui.menu_button("View", |ui| view(ui, &input, &mut asked));
-            ui.menu_button("Tools", |ui| {
-                ui.set_min_width(240.0);
-                panels(ui, &Panel::TOOLS, &input, &mut asked);
-            });
+            ui.menu_button("Tools", |ui| tools(ui, &input, memory, &mut asked));
+            ui.menu_button("Help", |ui| help(ui, &input, &mut asked));
             ui.separator();
             for (kind, label) in
                 [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
@@ -201,7 +199,6 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Comma
     );
     ui.separator();
     ui.menu_button("Presets", |ui| presets_of(ui, memory, false, asked));
-    ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
     ui.menu_button("Recordings", |ui| {
         entries(ui, (0..recordings::ALL.len()).map(|v| Command::Document(DocumentCommand::Recording(v))), asked);
     });
@@ -255,63 +252,91 @@ fn is_of_use(panel: Panel, input: &Input<'_>) -> bool {
     has_content || (input.is_open)(panel)
 }
 
-/// The panels that are of use, those for research in a menu of their own.
-fn panels(ui: &mut Ui, panels: &[Panel], input: &Input<'_>, asked: &mut Vec<Command>) {
-    let is_research = |panel: &&Panel| Panel::RESEARCH.contains(panel);
-    checkboxes(ui, panels.iter().filter(|panel| !is_research(panel)), input, asked);
-    ui.separator();
-    ui.menu_button("Research", |ui| checkboxes(ui, panels.iter().filter(is_research), input, asked));
+/// An entry, with a tick where it switches something that is on.
+fn item(ui: &mut Ui, command: Command, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let name = command.entry().map_or("", |listed| listed.name.as_ref());
+    match (input.is_on)(&command) {
+        Some(on) => ticked(ui, name, command.clone(), on, asked),
+        None => entry(ui, command.clone(), true, asked),
+    }
 }
 
-fn checkboxes<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
+fn items<C: Into<Command>>(
+    ui: &mut Ui,
+    commands: impl IntoIterator<Item = C>,
+    input: &Input<'_>,
+    asked: &mut Vec<Command>,
+) {
+    commands.into_iter().for_each(|command| item(ui, command.into(), input, asked));
+}
+
+/// Panels that are of use, each with a tick where it is open, and with its key.
+fn panels<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
     for &panel in panels.filter(|panel| is_of_use(**panel, input)) {
-        let mut open = (input.is_open)(panel);
-        if ui.checkbox(&mut open, panel.title()).on_hover_text(panel.describe()).clicked() {
-            asked.push(if open {
-                Command::Window(WindowCommand::OpenPanel(panel))
-            } else {
-                Command::Window(WindowCommand::ClosePanel(panel))
-            });
-            ui.close();
-        }
+        let open = (input.is_open)(panel);
+        let command = if open { WindowCommand::ClosePanel(panel) } else { WindowCommand::OpenPanel(panel) };
+        ticked(ui, panel.title(), command, open, asked);
     }
+}
+
+/// Tools and what belongs to them; those for research in a menu of their own.
+fn tools(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+    ui.set_min_width(240.0);
+    let is_help = |panel: &&Panel| [Panel::Guide, Panel::Lesson].contains(panel);
+    let is_research = |panel: &&Panel| Panel::RESEARCH.contains(panel);
+    panels(ui, Panel::TOOLS.iter().filter(|panel| !is_help(panel) && !is_research(panel)), input, asked);
+    ui.separator();
+    item(ui, ViewCommand::Flip.into(), input, asked);
+    ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
+    ui.separator();
+    ui.menu_button("Research", |ui| panels(ui, Panel::TOOLS.iter().filter(is_research), input, asked));
+}
+
+fn help(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    ui.set_min_width(240.0);
+    panels(ui, [Panel::Guide, Panel::Lesson].iter(), input, asked);
+    item(ui, WindowCommand::ToggleCaptions.into(), input, asked);
+    ui.separator();
+    items(ui, HelpPage::ALL.map(WindowCommand::Help), input, asked);
 }
 
 fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
-    ui.menu_button("Panels", |ui| panels(ui, &Panel::all(), input, asked));
+    ui.menu_button("Panels", |ui| {
+        let all = Panel::all();
+        panels(ui, all.iter().filter(|panel| !Panel::TOOLS.contains(panel)), input, asked);
+    });
     ui.menu_button("Colours", |ui| {
         for colours in ColourMap::ALL {
-            if ui.radio(input.colours == colours, colours.name()).clicked() {
-                asked.push(ViewCommand::Colours(colours).into());
-            }
+            let command = Command::from(ViewCommand::Colours(colours));
+            let on = (input.is_on)(&command).unwrap_or_default();
+            ticked(ui, colours.name(), command, on, asked);
         }
     });
-    entry(ui, WindowCommand::ResetLayout, true, asked);
+    item(ui, WindowCommand::ResetLayout.into(), input, asked);
     ui.separator();
     let of_maps = [
-        Command::View(ViewCommand::ToggleProjection),
-        Command::View(ViewCommand::ToggleUnits),
-        Command::View(ViewCommand::ResetMaps),
-        Command::View(ViewCommand::ToggleReflectors),
-        Command::View(ViewCommand::ToggleFound),
-        Command::View(ViewCommand::ToggleFieldsOfView),
-        Command::View(ViewCommand::ToggleTheory),
-        Command::View(ViewCommand::ToggleKinds),
-        Command::View(ViewCommand::NextMethod),
-        Command::View(ViewCommand::Flip),
+        ViewCommand::ToggleProjection,
+        ViewCommand::ToggleUnits,
+        ViewCommand::ToggleReflectors,
+        ViewCommand::ToggleFound,
+        ViewCommand::ToggleFieldsOfView,
+        ViewCommand::ToggleTheory,
+        ViewCommand::ToggleKinds,
+        ViewCommand::ResetMaps,
+        ViewCommand::NextMethod,
     ];
-    entries(ui, of_maps, asked);
+    items(ui, of_maps, input, asked);
     ui.separator();
     let of_window = [
-        Command::Window(WindowCommand::Present),
-        Command::Window(WindowCommand::ToggleTheme),
-        Command::Window(WindowCommand::ZoomIn),
-        Command::Window(WindowCommand::ZoomOut),
-        Command::Window(WindowCommand::ZoomReset),
-        Command::Window(WindowCommand::Palette),
+        WindowCommand::Present,
+        WindowCommand::ToggleTheme,
+        WindowCommand::ZoomIn,
+        WindowCommand::ZoomOut,
+        WindowCommand::ZoomReset,
+        WindowCommand::Palette,
     ];
-    entries(ui, of_window, asked);
+    items(ui, of_window, input, asked);
 }
 
 #[cfg(test)]

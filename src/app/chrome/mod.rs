@@ -2,6 +2,7 @@
 
 mod file_browser;
 pub mod file_dialog;
+pub mod help;
 pub mod menu;
 pub mod messages;
 pub mod palette;

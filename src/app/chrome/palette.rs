@@ -1,6 +1,6 @@
 //! The palette: find any command by typing part of its name.
 
-use crate::app::state::{Command, EditCommand, ViewCommand, WindowCommand, listed};
+use crate::app::state::{Command, Panel, ViewCommand, WindowCommand, listed, menu_path, synonyms};
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
 use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
@@ -19,7 +19,12 @@ pub struct Memory {
     text: String,
     chosen: usize,
     just_opened: bool,
+    /// Names of the commands that were run last, the latest first.
+    recent: Vec<String>,
 }
+
+/// How many commands it remembers.
+const RECENT: usize = 8;
 
 impl Memory {
     /// Whether it is on screen.
@@ -29,7 +34,24 @@ impl Memory {
 
     /// Opens it afresh, or closes it.
     pub fn toggle(&mut self) {
-        *self = Memory { open: !self.open, just_opened: !self.open, ..Memory::default() };
+        let recent = std::mem::take(&mut self.recent);
+        *self = Memory { open: !self.open, just_opened: !self.open, recent, ..Memory::default() };
+    }
+
+    /// One that remembers these commands, the latest first.
+    pub fn remembering(recent: Vec<String>) -> Memory {
+        Memory { recent, ..Memory::default() }
+    }
+
+    /// Names of the commands that were run last, the latest first.
+    pub fn recent(&self) -> &[String] {
+        &self.recent
+    }
+
+    fn remember(&mut self, name: String) {
+        self.recent.retain(|before| *before != name);
+        self.recent.insert(0, name);
+        self.recent.truncate(RECENT);
     }
 }
 
@@ -39,6 +61,8 @@ struct Found {
     name: String,
     tooltip: &'static str,
     key: String,
+    /// The menus in which it stands.
+    path: String,
 }
 
 /// The keys that it takes away from everything else.
@@ -69,21 +93,28 @@ fn matches(name: &str, text: &str) -> bool {
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
 }
 
-/// The commands whose names match `text`.
-fn find(ctx: &Context, input: &Input<'_>, text: &str) -> Vec<Found> {
+/// The commands that `text` finds by name, by another word for it, or by the menu it stands in: first those whose name it is, of these
+/// the ones that were run last.
+fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<Found> {
     let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
         command: e.command.clone(),
         name: e.name.to_string(),
         tooltip: e.tooltip,
         key: e.key.map(|key| ctx.format_shortcut(&key)).unwrap_or_default(),
+        path: menu_path(&e.command).join(" › "),
     });
     let methods = input.methods.iter().map(|m| Found {
         command: Command::View(ViewCommand::Method(m.name())),
         name: format!("Method: {}", m.name()),
         tooltip: m.description(),
         key: String::new(),
+        path: Panel::Controls.title().to_owned(),
     });
-    commands.chain(methods).filter(|f| matches(&f.name, text)).collect()
+    let any = |f: &Found| matches(&format!("{} {} {}", f.name, synonyms(&f.command), f.path), text);
+    let mut found: Vec<Found> = commands.chain(methods).filter(any).collect();
+    let since = |name: &str| recent.iter().position(|r| r == name).unwrap_or(recent.len());
+    found.sort_by_key(|f| (!matches(&f.name, text), since(&f.name)));
+    found
 }
 
 /// Draws the palette, if it is open.
@@ -97,10 +128,13 @@ pub fn show(ctx: &Context, input: Input<'_>, memory: &mut Memory) -> Vec<Command
         .resizable(false)
         .collapsible(false)
         .anchor(Align2::CENTER_TOP, [0.0, 60.0])
-        .fixed_size([420.0, 340.0])
+        .fixed_size([ctx.content_rect().width().clamp(240.0, 640.0) - 40.0, 340.0])
         .show(ctx, |ui| contents(ui, &input, memory, &keys));
     let Some(area) = area else { return Vec::new() };
-    let run = area.inner.flatten();
+    let run = area.inner.flatten().map(|found| {
+        memory.remember(found.name);
+        found.command
+    });
     if run.is_some() || keys.escape || area.response.clicked_elsewhere() {
         memory.open = false;
     }
@@ -108,15 +142,16 @@ pub fn show(ctx: &Context, input: Input<'_>, memory: &mut Memory) -> Vec<Command
 }
 
 /// The text first, then what matches it as it is now: Enter may come in the same frame as the last letter.
-fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, keys: &Keys) -> Option<Command> {
+fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, keys: &Keys) -> Option<Found> {
     let before = memory.text.clone();
     if memory.just_opened {
         // The field has no focus yet, but letters may have come already.
         let typed = ui.input(|i| i.events.iter().filter_map(text_of).collect::<String>());
         memory.text += &typed;
     }
-    let edit =
-        TextEdit::singleline(&mut memory.text).hint_text("Type part of a command's name").desired_width(f32::INFINITY);
+    let edit = TextEdit::singleline(&mut memory.text)
+        .hint_text("Type a command, or what you want to do")
+        .desired_width(f32::INFINITY);
     let response = ui.add(edit);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Find a command"));
     if std::mem::take(&mut memory.just_opened) {
@@ -125,7 +160,7 @@ fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, keys: &Keys) ->
     if memory.text != before {
         memory.chosen = 0;
     }
-    let mut found = find(ui.ctx(), input, &memory.text);
+    let mut found = find(ui.ctx(), input, &memory.text, &memory.recent);
     let last = found.len().saturating_sub(1);
     memory.chosen = match (keys.up, keys.down) {
         (true, _) => memory.chosen.saturating_sub(1),
@@ -135,11 +170,11 @@ fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, keys: &Keys) ->
     .min(last);
     ui.separator();
     if found.is_empty() {
-        ui.weak("No command has such a name.");
+        ui.weak("No command is found by these words.");
     }
     let clicked = list(ui, &found, memory.chosen, keys.up || keys.down);
     let run = clicked.or((keys.enter && !found.is_empty()).then_some(memory.chosen))?;
-    Some(found.swap_remove(run).command)
+    Some(found.swap_remove(run))
 }
 
 fn text_of(event: &Event) -> Option<&str> {
@@ -152,7 +187,8 @@ fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usiz
     egui::ScrollArea::vertical().auto_shrink([false, false]).max_height(300.0).show(ui, |ui| {
         for (index, line) in found.iter().enumerate() {
             // An empty key, too, pushes the name to the left.
-            let button = Button::selectable(index == chosen, &line.name).shortcut_text(&line.key);
+            let beside = [line.path.as_str(), line.key.as_str()].join(if line.key.is_empty() { "" } else { "   " });
+            let button = Button::selectable(index == chosen, &line.name).truncate().shortcut_text(beside);
             let response = ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(line.tooltip);
             if index == chosen && moved {
                 response.scroll_to_me(None);
@@ -168,6 +204,7 @@ fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usiz
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::EditCommand;
     use crate::app::state::NewObject;
     use crate::reconstruct::Baseline;
     use egui_kittest::Harness;
@@ -177,6 +214,43 @@ mod tests {
         assert!(matches("Show or hide: Input 0", "input SHOW"));
         assert!(!matches("Show or hide: Input 0", "input 1"));
         assert!(matches("anything", ""));
+    }
+
+    fn names(text: &str, recent: &[&str]) -> Vec<String> {
+        let recent: Vec<String> = recent.iter().map(|name| (*name).to_owned()).collect();
+        find(&Context::default(), &Input { methods: &[] }, text, &recent).into_iter().map(|f| f.name).collect()
+    }
+
+    #[test]
+    fn other_words_find_a_command_too() {
+        for (text, wanted) in [
+            ("help", "Keys and pointer"),
+            ("help", "Show or hide: Guide"),
+            ("projector", "Presentation"),
+            ("colormap", "Colours: viridis"),
+            ("undo drag", "Undo"),
+            ("screenshot", "Export picture…"),
+            ("view colours", "Colours: grey"),
+        ] {
+            let found = names(text, &[]);
+            assert!(found.iter().any(|name| name == wanted), "{text} finds {found:?}");
+        }
+        assert!(names("zzz", &[]).is_empty());
+    }
+
+    #[test]
+    fn commands_that_were_run_last_come_first() {
+        let recent = ["Export maps…", "Redo"];
+        assert_eq!(names("", &recent)[..2], recent);
+        // What is called by the word comes before what is found by another word for it.
+        let found = names("undo", &["Export maps…"]);
+        assert_eq!(found[0], "Undo");
+        let mut memory = Memory::remembering(vec!["Redo".to_owned()]);
+        memory.remember("Undo".to_owned());
+        memory.remember("Redo".to_owned());
+        assert_eq!(memory.recent(), ["Redo", "Undo"]);
+        memory.toggle();
+        assert_eq!(memory.recent(), ["Redo", "Undo"], "they stay when it opens again");
     }
 
     #[test]

@@ -2,10 +2,15 @@
 
 use crate::app::chrome::{menu, status_bar};
 use crate::app::jobs::Jobs;
-use crate::app::state::{Panel, State};
+use crate::app::state::{Command, Panel, State};
 
 /// What the menu bar shows.
-pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) -> bool) -> menu::Input<'a> {
+pub fn menu_input<'a>(
+    state: &'a State,
+    jobs: &Jobs,
+    is_open: &'a dyn Fn(Panel) -> bool,
+    is_on: &'a dyn Fn(&Command) -> Option<bool>,
+) -> menu::Input<'a> {
     let history = state.editor.history();
     menu::Input {
         presents: state.is_presenting(),
@@ -13,7 +18,6 @@ pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) 
         can_redo: history.redo_label().is_some(),
         selected: !state.editor.selection().is_empty(),
         projection: state.settings.projection,
-        colours: state.settings.colours,
         random: (state.settings.random_seed, state.settings.random_number),
         recent: &state.recent,
         finds_reflectors: state.finds_reflectors(),
@@ -21,6 +25,7 @@ pub fn menu_input<'a>(state: &'a State, jobs: &Jobs, is_open: &'a dyn Fn(Panel) 
         is_recording: jobs.recorder.is_at_work() || jobs.exports.is_waiting(),
         left: state.editor.left(),
         is_open,
+        is_on,
     }
 }
 

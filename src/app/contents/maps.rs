@@ -1,6 +1,6 @@
 //! What maps, cuts and the ROC are told.
 
-use super::{Contents, Reflectors, shown_found};
+use super::{Contents, Reflectors, captions, shown_found};
 use crate::app::jobs::{Jobs, TheoryResult};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
@@ -102,6 +102,12 @@ pub(super) fn map_input<'a>(
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
         note: note(state, kind),
+        line: captions::of_map(state, kind),
+        shown: map::Shown {
+            reflectors: settings.show_reflectors,
+            theory: settings.show_theory,
+            kinds: settings.show_kinds,
+        },
         error: error(state, jobs, kind),
         veil: veil(state, kind),
         axes: state.shows_axes(),

@@ -1,6 +1,7 @@
 //! Panel by panel, what each is told: the only place that knows all of them.
 
 mod bars;
+mod captions;
 mod comparison;
 mod failures;
 mod maps;

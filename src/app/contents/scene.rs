@@ -1,6 +1,6 @@
 //! What the panels are told that show the scene, or the radar before it.
 
-use super::{Contents, shown_found};
+use super::{Contents, captions, shown_found};
 use crate::app::panels::{disturbances, elements, inspector, objects, radar, scene};
 use crate::app::state::{Command, MapKind};
 use eframe::egui::Ui;
@@ -21,6 +21,7 @@ impl Contents<'_> {
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
             numbers: state.shows_axes(),
+            hint: captions::of_scene(state),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }

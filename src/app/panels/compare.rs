@@ -1,7 +1,7 @@
 //! Two methods on the scene on screen: side by side, flipped in place, or parted by an edge.
 
 use super::map::{self, Over};
-use crate::app::state::{Command, Compare, EditCommand, Layout, MapKind, MapView, ViewCommand, WorkCommand};
+use crate::app::state::{Command, Compare, Layout, MapKind, MapView, ViewCommand, WorkCommand};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
 use crate::app::widgets::progress::progress;
@@ -145,6 +145,7 @@ fn choose_map(ui: &mut Ui, label: &str, map: &mut MapKind) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::EditCommand;
     use crate::app::state::Projection;
     use crate::app::widgets::seen;
     use crate::interact::Selection;

@@ -197,7 +197,7 @@ pub fn show(ui: &mut Ui, memory: &mut Memory) -> Vec<Command> {
                 for step in *steps {
                     let button = ui.button(step.label);
                     if button.on_hover_text("Set it up; undo brings your scene and your settings back").clicked() {
-                        asked.push((step.commands)().into());
+                        asked.push(Command::Guided((step.commands)()));
                     }
                 }
             });

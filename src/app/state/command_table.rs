@@ -4,6 +4,7 @@ use super::command::{
     Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, RadarCommand, RowsCommand,
     ViewCommand, WindowCommand, WorkCommand,
 };
+use super::help::HelpPage;
 use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
 use crate::interact::{Alignment, Along, Coordinates};
@@ -425,6 +426,12 @@ const TABLE: &[Entry] = {
             "The scene and the maps on the whole screen, in large type; the same key brings everything back",
             key(Key::F11),
         ),
+        entry(
+            Window(WindowCommand::ToggleCaptions),
+            "Captions on the maps",
+            "Say on every map what it shows, until the next drag",
+            None,
+        ),
         entry(Window(WindowCommand::CloseMessages), "Close messages", "Close every message in the corner", None),
         entry(Window(WindowCommand::ToggleTheme), "Light / dark", "Switch between light and dark", command(Key::T)),
         entry(Window(WindowCommand::ZoomIn), "Zoom in", "Larger interface", command(Key::Plus)),
@@ -516,6 +523,9 @@ pub fn listed() -> &'static [Entry] {
         let mut all = TABLE.to_vec();
         all.extend(Kind::all().map(random));
         all.extend(Panel::all().into_iter().map(toggle));
+        all.extend(HelpPage::ALL.map(|page| {
+            named(Command::Window(WindowCommand::Help(page)), page.title().to_owned(), page.describe(), None)
+        }));
         all.extend(Panel::all().into_iter().map(maximise));
         all.extend(MapKind::ALL.map(|kind| {
             let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";

@@ -9,6 +9,7 @@ mod compare;
 mod cuts;
 mod failures;
 mod guided;
+mod help;
 mod lesson_run;
 mod methods;
 mod notices;
@@ -16,6 +17,8 @@ mod panel;
 mod save_question;
 mod settings;
 mod several;
+mod synonyms;
+mod toggles;
 mod view;
 
 pub use arrangement::Arrangement;
@@ -24,11 +27,12 @@ pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
     RowsCommand, ViewCommand, WindowCommand, WorkCommand,
 };
-pub use command_table::{listed, shortcuts};
+pub use command_table::{Entry, listed, shortcuts};
 pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, Pins};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
 pub use guided::{Guided, Setup};
+pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
@@ -36,6 +40,7 @@ pub use panel::{MapKind, MethodSlot, Panel};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
 pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
+pub use synonyms::{menu_path, synonyms};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
@@ -83,6 +88,10 @@ pub struct State {
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
+    /// Whether maps and scene say what they show, until the first drag.
+    pub captions: bool,
+    /// The page of help that is open.
+    pub help: Option<HelpPage>,
     /// Whether the window is dark at the moment.
     pub dark: bool,
 }

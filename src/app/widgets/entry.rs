@@ -1,8 +1,8 @@
 //! Menu entries and buttons of commands: name, tooltip and key come from the one list.
 
-use crate::app::state::{Command, EditCommand};
+use crate::app::state::{Command, EditCommand, Entry};
 use crate::interact::{Alignment, Along};
-use eframe::egui::{Button, Ui};
+use eframe::egui::{Atom, Button, IdSalt, Role, Stroke, Ui, WidgetInfo, vec2};
 
 /// A menu entry; a click asks for the command and closes the menu.
 pub fn entry(ui: &mut Ui, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
@@ -15,11 +15,36 @@ pub fn entry(ui: &mut Ui, command: impl Into<Command>, enabled: bool, asked: &mu
 pub fn entry_called(ui: &mut Ui, name: &str, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
     let command = command.into();
     let Some(listed) = command.entry() else { return };
-    let mut button = Button::new(name);
-    if let Some(key) = &listed.key {
-        button = button.shortcut_text(ui.ctx().format_shortcut(key));
+    if ui.add_enabled(enabled, with_key(ui, Button::new(name), listed)).on_hover_text(listed.tooltip).clicked() {
+        asked.push(command);
+        ui.close();
     }
-    if ui.add_enabled(enabled, button).on_hover_text(listed.tooltip).clicked() {
+}
+
+fn with_key<'a>(ui: &Ui, button: Button<'a>, listed: &Entry) -> Button<'a> {
+    match &listed.key {
+        Some(key) => button.shortcut_text(ui.ctx().format_shortcut(key)),
+        None => button,
+    }
+}
+
+/// Side of the place for a tick, points.
+const TICK: f32 = 12.0;
+
+/// A menu entry of something that is `on` or off, with a tick while it is on.
+pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, asked: &mut Vec<Command>) {
+    let command = command.into();
+    let Some(listed) = command.entry() else { return };
+    let place = IdSalt::new("tick");
+    let button = with_key(ui, Button::new((Atom::custom(place, vec2(TICK, TICK)), name)), listed);
+    let drawn = button.atom_ui(ui);
+    if let Some(rect) = drawn.rect(place).filter(|_| on) {
+        let [left, low, right] = [vec2(1.0, 6.0), vec2(4.5, 9.5), vec2(11.0, 2.0)].map(|at| rect.min + at);
+        ui.painter().line(vec![left, low, right], Stroke::new(1.8, ui.visuals().text_color()));
+    }
+    let response = drawn.response;
+    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, ui.is_enabled(), on, name));
+    if response.on_hover_text(listed.tooltip).clicked() {
         asked.push(command);
         ui.close();
     }
@@ -49,4 +74,36 @@ pub fn tooltip(ui: &Ui, command: &Command) -> String {
     let Some(listed) = command.entry() else { return String::new() };
     let key = listed.key.map(|key| format!(" ({})", ui.ctx().format_shortcut(&key))).unwrap_or_default();
     format!("{}{key}", listed.tooltip)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::ViewCommand;
+    use eframe::egui::Shape;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+
+    #[test]
+    fn an_entry_that_is_on_has_a_tick_and_its_key() {
+        let entry = |on| {
+            let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+                ticked(ui, "Mark true reflectors", ViewCommand::ToggleReflectors, on, asked);
+            };
+            Harness::new_ui_state(draw, Vec::new())
+        };
+        for on in [true, false] {
+            let mut menu = entry(on);
+            let ticks = menu.output().shapes.iter().filter(|s| matches!(s.shape, Shape::Path(_))).count();
+            assert_eq!(ticks, usize::from(on));
+            let node = menu.get_by_role_and_label(Role::CheckBox, "Mark true reflectors");
+            let toggled = eframe::egui::accesskit::Toggled::from(on);
+            assert_eq!(node.accesskit_node().toggled(), Some(toggled), "screen readers hear it");
+            let key = crate::app::widgets::seen::texts(menu.output()).into_iter().find(|t| t.text == "R");
+            assert!(key.is_some(), "its key stands beside it");
+            node.click();
+            menu.step();
+            assert_eq!(menu.state(), &[ViewCommand::ToggleReflectors.into()]);
+        }
+    }
 }

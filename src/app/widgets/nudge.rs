@@ -21,7 +21,8 @@ fn steps(ctx: &Context) -> Option<(f64, f64)> {
 
 /// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
 pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
-    steps(ctx).map(|(dx, dy)| Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
+    steps(ctx)
+        .map(|(dx, dy)| Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
 }
 
 /// The same for something that has the focus, as steps to the right and upwards.

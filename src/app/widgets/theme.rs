@@ -64,6 +64,10 @@ pub const MARK: Color32 = Color32::WHITE;
 pub const MARK_SELECTED: Color32 = Color32::from_rgb(255, 176, 59);
 pub const MARK_EDGE: Color32 = Color32::from_black_alpha(200);
 
+/// Captions over maps and scene: what they are written on, and in what.
+pub const CAPTION: Color32 = Color32::from_rgb(24, 64, 120);
+pub const CAPTION_INK: Color32 = Color32::WHITE;
+
 /// Cells below a threshold, and above it.
 pub fn mask(dark: bool) -> [Color32; 2] {
     match dark {
@@ -124,6 +128,11 @@ mod tests {
         };
         let (a, b) = (luminance(a), luminance(b));
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn captions_are_readable() {
+        assert!(contrast(CAPTION_INK, CAPTION) >= 7.0, "{}", contrast(CAPTION_INK, CAPTION));
     }
 
     #[test]

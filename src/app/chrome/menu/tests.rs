@@ -8,9 +8,8 @@ fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<C
             presents: false,
             can_undo: true,
             can_redo: false,
-            selected: false,
+            selected: true,
             projection: Projection::RangeAngle,
-            colours: ColourMap::Grey,
             random: (0, 0),
             recent: &[],
             finds_reflectors,
@@ -18,6 +17,7 @@ fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<C
             is_recording: false,
             left: &[],
             is_open: &|panel| panel == Panel::Scene,
+            is_on: &|command| (*command == ViewCommand::ToggleTheory.into()).then_some(true),
         };
         let commands = show(ui, input, &mut asked.0);
         asked.1.extend(commands);
@@ -38,16 +38,64 @@ fn open(menu: &mut Harness<'_, (Memory, Vec<Command>)>, labels: &[&str]) {
 
 #[test]
 fn tools_for_research_have_a_menu_of_their_own() {
-    for menus in [&["Tools"][..], &["View", "Panels"]] {
+    let mut menu = bar(900.0);
+    open(&mut menu, &["Tools"]);
+    let _tool = menu.get_by_label("Bounds");
+    for panel in Panel::RESEARCH {
+        assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?}");
+    }
+    open(&mut menu, &["Research", "Training"]);
+    assert_eq!(menu.state().1, [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
+}
+
+#[test]
+fn every_panel_stands_in_one_menu() {
+    let mut found: Vec<Panel> = Vec::new();
+    for menus in [&["View", "Panels"][..], &["Tools"], &["Tools", "Research"], &["Help"]] {
         let mut menu = bar(900.0);
         open(&mut menu, menus);
-        let _tool = menu.get_by_label("Guide");
-        for panel in Panel::RESEARCH {
-            assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?} in {menus:?}");
-        }
-        open(&mut menu, &["Research", "Training"]);
-        assert_eq!(menu.state().1, [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
+        let listed = |panel: &Panel| {
+            menu.query_all_by_role_and_label(egui::accesskit::Role::CheckBox, panel.title()).next().is_some()
+        };
+        // A menu that leads to another stays open beside it.
+        let before = found.len();
+        let own = Panel::all().into_iter().filter(listed).filter(|p| !(menus.len() == 2 && found.contains(p)));
+        found.extend(own.collect::<Vec<_>>());
+        assert!(found.len() > before, "{menus:?} has panels");
     }
+    let all = Panel::all();
+    assert!(all.iter().all(|panel| found.iter().filter(|p| *p == panel).count() == 1), "{found:?}");
+}
+
+#[test]
+fn the_palette_names_the_menus_in_which_a_command_stands() {
+    use crate::app::state::{listed, menu_path};
+    let mut paths: Vec<&[&str]> = listed().iter().map(|e| menu_path(&e.command)).filter(|p| !p.is_empty()).collect();
+    paths.sort();
+    paths.dedup();
+    assert!(paths.len() > 10, "{paths:?}");
+    for path in paths {
+        let mut menu = bar(900.0);
+        open(&mut menu, path);
+        for entry in listed().iter().filter(|e| menu_path(&e.command) == path) {
+            // A menu says in its title what the entries of the palette begin with; presets are called by the names of their scenes.
+            let name = entry.name.split_once(": ").map_or(entry.name.as_ref(), |(_, rest)| rest);
+            let is_preset = matches!(entry.command, Command::Document(DocumentCommand::Preset(_)));
+            let stands = menu.query_all_by_label_contains(name).next().is_some() || is_preset;
+            assert!(stands, "{} in {path:?}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn help_has_the_guide_the_lessons_keys_and_where_figures_come_from() {
+    let mut menu = bar(900.0);
+    open(&mut menu, &["Help"]);
+    for name in ["Guide", "Captions on the maps", "Keys and pointer", "Where figures come from", "About apertura"] {
+        assert!(menu.query_by_label(name).is_some(), "{name}");
+    }
+    open(&mut menu, &["Keys and pointer"]);
+    assert_eq!(menu.state().1, [Command::Window(WindowCommand::Help(HelpPage::Keys))]);
 }
 
 #[test]

@@ -31,9 +31,9 @@ use crate::app::state::{
 };
 use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::entry::entry;
+use crate::app::widgets::entry::{entry, ticked};
 use crate::app::widgets::nudge::nudge;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
 use crate::interact::Selection;
 use crate::picture::ColourMap;
 use crate::radar::{End, Radar};
@@ -90,6 +90,10 @@ pub struct Input<'a> {
     pub cursor: Option<Cursor>,
     /// What is to be known of the method that made it.
     pub note: Option<String>,
+    /// What it shows, in a line over it, at a first start.
+    pub line: Option<String>,
+    /// What is drawn over maps: the menu ticks it.
+    pub shown: Shown,
     /// Why there is no picture.
     pub error: Option<Problem<'a>>,
     /// Hides the picture: a prediction is asked for.
@@ -98,6 +102,17 @@ pub struct Input<'a> {
     pub axes: bool,
     /// The place that was guessed in a lesson, and the true one.
     pub places: Option<(crate::lesson::Cell, crate::lesson::Cell)>,
+}
+
+/// What is drawn over maps.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Shown {
+    /// True reflectors.
+    pub reflectors: bool,
+    /// What the formulas say of the selected one.
+    pub theory: bool,
+    /// What became of every object.
+    pub kinds: bool,
 }
 
 #[cfg(test)]
@@ -133,6 +148,8 @@ impl<'a> Input<'a> {
             theory: None,
             cursor: None,
             note: None,
+            line: None,
+            shown: Shown::default(),
             error: None,
             veil: None,
             axes: true,
@@ -185,7 +202,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     if let Some(over) = input.over.as_ref().filter(|_| is_bare) {
         over.handle(ui, &inner, rect, &mut asked);
     }
-    response.context_menu(|ui| menu(ui, input.kind, &mut asked));
+    response.context_menu(|ui| menu(ui, &input, &mut asked));
     if is_bare {
         morph::button(ui, rect, input.kind, input.projection, &mut asked);
     }
@@ -249,10 +266,21 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         }
     }
     let said = if is_old { Some("Previous scene; updating…") } else { input.note.as_deref() };
-    if let Some(said) = said.filter(|_| input.veil.is_none() || is_old) {
+    if let Some(line) = input.line.as_deref().filter(|_| input.veil.is_none()) {
+        caption_over(inner, rect, line);
+    } else if let Some(said) = said.filter(|_| input.veil.is_none() || is_old) {
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
         axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, said);
     }
+}
+
+/// A line at the foot of a map, left of the button in its corner.
+fn caption_over(painter: &Painter, rect: Rect, line: &str) {
+    let room = (rect.width() - 56.0).max(60.0);
+    let galley = painter.layout(line.to_owned(), egui::FontId::proportional(14.0), CAPTION_INK, room);
+    let at = rect.left_bottom() + vec2(8.0, -8.0 - galley.size().y);
+    painter.rect_filled(Rect::from_min_size(at, galley.size()).expand2(vec2(6.0, 3.0)), 4.0, CAPTION);
+    painter.galley(at, galley, CAPTION_INK);
 }
 
 /// Draws the map itself, or says why there is none; whether there is one.
@@ -306,23 +334,31 @@ fn bar_of(input: &Input<'_>) -> Bar {
     scale::Scale { kind, colours, units, lambda, difference, end }.bar()
 }
 
-fn menu(ui: &mut Ui, kind: MapKind, asked: &mut Vec<Command>) {
+fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let kind = input.kind;
+    let (shown, difference) = (input.shown, input.difference);
+    for (command, on) in [
+        (ViewCommand::ToggleProjection, Some(input.projection == Projection::Cartesian)),
+        (ViewCommand::ToggleUnits, Some(input.units == Units::Decibels)),
+        (ViewCommand::ToggleReflectors, Some(shown.reflectors)),
+        (ViewCommand::ToggleTheory, Some(shown.theory)),
+        (ViewCommand::ToggleKinds, Some(shown.kinds)),
+        (ViewCommand::ToggleAbsoluteDifference, Some(difference.absolute).filter(|_| kind.is_difference())),
+        (ViewCommand::ToggleWholeDifference, Some(!difference.whole).filter(|_| kind.is_difference())),
+    ] {
+        if let (Some(on), command) = (on, Command::from(command)) {
+            let name = command.entry().map_or("", |listed| listed.name.as_ref());
+            ticked(ui, name, command.clone(), on, asked);
+        }
+    }
+    ui.separator();
     for command in [
         Command::Window(WindowCommand::Maximise(Panel::Map(kind))),
-        Command::View(ViewCommand::ToggleProjection),
-        Command::View(ViewCommand::ToggleUnits),
         Command::View(ViewCommand::ResetMaps),
-        Command::View(ViewCommand::ToggleReflectors),
-        Command::View(ViewCommand::ToggleTheory),
-        Command::View(ViewCommand::ToggleKinds),
         Command::Export(ExportCommand::CopyMap(kind)),
         Command::Window(WindowCommand::ClosePanel(Panel::Map(kind))),
     ] {
         entry(ui, command, true, asked);
-    }
-    if kind.is_difference() {
-        entry(ui, ViewCommand::ToggleAbsoluteDifference, true, asked);
-        entry(ui, ViewCommand::ToggleWholeDifference, true, asked);
     }
 }
 

@@ -3,6 +3,7 @@
 mod beyond;
 mod canvas;
 mod disturbances;
+mod hint;
 mod trail;
 
 use crate::app::state::{Command, Cursor, EditCommand, NewObject, SceneView, ViewCommand};
@@ -15,6 +16,7 @@ use crate::scene::Reflector;
 use canvas::{Canvas, Look};
 use eframe::egui;
 use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
+pub use hint::Hint;
 
 /// What the canvas shows beside the scene.
 pub struct Input<'a> {
@@ -38,6 +40,8 @@ pub struct Input<'a> {
     pub error: Option<&'a str>,
     /// Whether ranges, angles and the scale are told.
     pub numbers: bool,
+    /// What to do here, at a first start.
+    pub hint: Option<Hint>,
 }
 
 /// How strong marks are drawn that belong to an earlier scene.
@@ -87,6 +91,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     if input.numbers {
         canvas::scale_bar(&painter, canvas);
         beyond::warn(ui, &painter, canvas, editor.scene());
+    }
+    if let Some(hint) = &input.hint {
+        hint.draw(&painter, canvas);
     }
     say(ui, &painter, rect, editor.scene().objects.is_empty() && input.found.is_empty(), input.error);
     if let Some(hit) = editor.dragged().or(hovered) {

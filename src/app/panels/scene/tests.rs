@@ -24,6 +24,7 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
             cursor: None,
             error: Some("too far"),
             numbers: true,
+            hint: None,
         };
         let commands = show(ui, input, &mut held.editor, &mut held.view);
         held.asked.extend(commands);
@@ -97,6 +98,7 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
                 cursor,
                 error,
                 numbers: true,
+                hint: None,
             };
             _ = show(ui, input, editor, view);
         };
@@ -133,6 +135,7 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
             cursor,
             error,
             numbers: true,
+            hint: None,
         };
         _ = show(ui, input, editor, view);
     };
@@ -313,7 +316,9 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
     scene.key_press(egui::Key::ArrowRight);
     scene.run_steps(2);
     assert_eq!(centre(&scene), panned, "arrows are the selection's");
-    assert!(scene.state().asked.iter().any(|c| matches!(c, Command::Edit(crate::app::state::EditCommand::Nudge { .. }))));
+    assert!(
+        scene.state().asked.iter().any(|c| matches!(c, Command::Edit(crate::app::state::EditCommand::Nudge { .. })))
+    );
     scene.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowUp);
     scene.run_steps(2);
     assert!(centre(&scene).y_metres > panned.y_metres, "with Ctrl they pan whatever is selected");

@@ -1,6 +1,6 @@
 //! Commands that arrange the window.
 
-use crate::app::state::Panel;
+use crate::app::state::{HelpPage, Panel};
 
 /// Commands that arrange the window.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +19,12 @@ pub enum WindowCommand {
     ResetLayout,
     /// The scene and the maps in large type, or everything as before.
     Present,
+    /// Say on the maps and the scene what they show, or no longer.
+    ToggleCaptions,
+    /// Show a page of help.
+    Help(HelpPage),
+    /// Close the page of help that is open.
+    CloseHelp,
     /// Close every message.
     CloseMessages,
     /// Light or dark.

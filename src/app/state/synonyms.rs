@@ -1,0 +1,150 @@
+//! Other words that somebody may type in the palette, and where menus have what is found.
+
+use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, ViewCommand, WindowCommand};
+use super::panel::Panel;
+use crate::scene::presets;
+
+/// Words for a command that its name doesn't hold.
+pub fn synonyms(command: &Command) -> &'static str {
+    match command {
+        Command::Document(command) => match command {
+            DocumentCommand::New => "empty clear",
+            DocumentCommand::Open => "load file import",
+            DocumentCommand::Save | DocumentCommand::SaveAs => "write store file",
+            DocumentCommand::Preset(_) => "example scene demo",
+            DocumentCommand::Recording(_) => "measured data samples real radar",
+            DocumentCommand::RandomScene(_) => "generate test set example",
+            _ => "",
+        },
+        Command::Edit(command) => match command {
+            EditCommand::Undo => "undo drag back revert take mistake",
+            EditCommand::Redo => "again forward",
+            EditCommand::Add(..) => "new insert object reflector wall car target",
+            EditCommand::Delete => "remove erase clear",
+            EditCommand::Duplicate => "clone copy",
+            EditCommand::Align(_) | EditCommand::Distribute(_) => "arrange order space evenly",
+            EditCommand::SetCoordinates(_) => "coordinates polar cartesian units",
+            _ => "",
+        },
+        Command::View(command) => match command {
+            ViewCommand::Colours(_) => "colormap colourmap color palette gray heat",
+            ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => {
+                "polar xy coordinates morph bend projection"
+            }
+            ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
+            ViewCommand::Normalise(_) => "dynamic range contrast normalize",
+            ViewCommand::SetFloor(_) => "noise snr thermal",
+            ViewCommand::ToggleReflectors => "truth ground true rings show objects",
+            ViewCommand::ToggleFound => "detections crosses points",
+            ViewCommand::ToggleKinds => "missed merged ghost wrong tooth failure",
+            ViewCommand::ToggleTheory => "formulas beam lobes bound resolution",
+            ViewCommand::FitScene | ViewCommand::ResetMaps => "zoom reset view all home",
+            ViewCommand::Method(_) | ViewCommand::NextMethod => "reconstruction algorithm network solver",
+            ViewCommand::Flip => "compare blink swap",
+            _ => "",
+        },
+        Command::Lesson(LessonCommand::Present) => "projector beamer class fullscreen teach slides",
+        Command::Lesson(_) => "teach learn tutorial course",
+        Command::Export(command) => match command {
+            ExportCommand::Picture => "screenshot png svg image save print",
+            ExportCommand::Maps => "numpy npz data arrays save",
+            ExportCommand::Metrics => "csv numbers figures save",
+            ExportCommand::RecordDrag => "gif animation video movie",
+            ExportCommand::CopyShared => "share link send",
+            _ => "",
+        },
+        Command::Window(command) => match command {
+            WindowCommand::Present => "projector beamer class fullscreen whole screen large lecture",
+            WindowCommand::ToggleTheme => "dark mode night theme brightness",
+            WindowCommand::ZoomIn | WindowCommand::ZoomOut | WindowCommand::ZoomReset => {
+                "font text size scale bigger smaller"
+            }
+            WindowCommand::ResetLayout => "arrangement windows panels restore",
+            WindowCommand::Help(_) => "help manual shortcuts keyboard mouse version licence sources",
+            WindowCommand::ToggleCaptions => "help explain labels what is this start",
+            WindowCommand::TogglePanel(Panel::Guide) => "help manual explain tutorial",
+            WindowCommand::TogglePanel(Panel::Lesson) => "help teach learn tutorial course",
+            WindowCommand::TogglePanel(Panel::Controls) => "options preferences method threshold",
+            WindowCommand::TogglePanel(Panel::Radar) => "bandwidth elements carrier constants",
+            WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
+            WindowCommand::TogglePanel(_) => "window open close",
+            _ => "",
+        },
+        _ => "",
+    }
+}
+
+/// Menus that lead to a command, from the bar on; nothing for one that only buttons, keys and the palette have.
+pub fn menu_path(command: &Command) -> &'static [&'static str] {
+    match command {
+        Command::Document(command) => match command {
+            DocumentCommand::New | DocumentCommand::Open | DocumentCommand::Save | DocumentCommand::SaveAs => &["File"],
+            DocumentCommand::Preset(index) if presets::ALL.get(*index).is_some_and(presets::Preset::is_failure) => {
+                &["Tools", "Failures explained"]
+            }
+            DocumentCommand::Preset(_) => &["Scene", "Presets"],
+            DocumentCommand::Recording(_) => &["Scene", "Recordings"],
+            DocumentCommand::RandomScene(_) => &["Scene", "Random scene"],
+            _ => &[],
+        },
+        Command::Edit(command) => match command {
+            EditCommand::Undo
+            | EditCommand::Redo
+            | EditCommand::Cut
+            | EditCommand::Copy
+            | EditCommand::Paste
+            | EditCommand::Duplicate
+            | EditCommand::Delete
+            | EditCommand::SelectAll
+            | EditCommand::SelectNext
+            | EditCommand::SelectPrevious => &["Edit"],
+            EditCommand::Align(_) | EditCommand::Distribute(_) => &["Edit", "Arrange"],
+            EditCommand::Add(..) => &["Scene"],
+            _ => &[],
+        },
+        Command::Export(command) => match command {
+            ExportCommand::Picture
+            | ExportCommand::Maps
+            | ExportCommand::Metrics
+            | ExportCommand::RecordDrag
+            | ExportCommand::DrawLesson
+            | ExportCommand::StopRecording
+            | ExportCommand::CopyShared => &["File"],
+            _ => &[],
+        },
+        Command::View(command) => match command {
+            ViewCommand::FitScene => &["Scene"],
+            ViewCommand::Colours(_) => &["View", "Colours"],
+            ViewCommand::ToggleProjection
+            | ViewCommand::ToggleUnits
+            | ViewCommand::ResetMaps
+            | ViewCommand::ToggleReflectors
+            | ViewCommand::ToggleFound
+            | ViewCommand::ToggleFieldsOfView
+            | ViewCommand::ToggleTheory
+            | ViewCommand::ToggleKinds
+            | ViewCommand::NextMethod => &["View"],
+            ViewCommand::Flip => &["Tools"],
+            _ => &[],
+        },
+        Command::Window(command) => match command {
+            WindowCommand::TogglePanel(Panel::Guide | Panel::Lesson)
+            | WindowCommand::Help(_)
+            | WindowCommand::ToggleCaptions => &["Help"],
+            WindowCommand::TogglePanel(panel) if Panel::RESEARCH.contains(panel) => &["Tools", "Research"],
+            WindowCommand::TogglePanel(panel) if Panel::TOOLS.contains(panel) => &["Tools"],
+            WindowCommand::TogglePanel(_) => &["View", "Panels"],
+            WindowCommand::Escape => &["Edit"],
+            WindowCommand::Quit => &["File"],
+            WindowCommand::Present
+            | WindowCommand::ToggleTheme
+            | WindowCommand::ZoomIn
+            | WindowCommand::ZoomOut
+            | WindowCommand::ZoomReset
+            | WindowCommand::ResetLayout
+            | WindowCommand::Palette => &["View"],
+            _ => &[],
+        },
+        _ => &[],
+    }
+}

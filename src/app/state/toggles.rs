@@ -1,0 +1,49 @@
+//! Which commands switch something, and whether it is on: menus tick it.
+
+use super::command::{Command, EditCommand, ViewCommand, WindowCommand};
+use super::settings::{Brightness, Projection, Units};
+use super::{Panel, State};
+
+impl State {
+    /// Whether what a command switches is on; `None` for a command that switches nothing.
+    pub fn is_on(&self, command: &Command) -> Option<bool> {
+        let settings = &self.settings;
+        match command {
+            Command::View(command) => match command {
+                ViewCommand::ToggleProjection => Some(settings.projection == Projection::Cartesian),
+                ViewCommand::SetProjection(projection) => Some(settings.projection == *projection),
+                ViewCommand::ToggleUnits => Some(settings.units == Units::Decibels),
+                ViewCommand::SetUnits(units) => Some(settings.units == *units),
+                ViewCommand::ToggleAbsoluteDifference => Some(settings.difference.absolute),
+                ViewCommand::ToggleWholeDifference => Some(!settings.difference.whole),
+                ViewCommand::Colours(colours) => Some(settings.colours == *colours),
+                ViewCommand::Normalise(normalisation) => Some(settings.normalisation == *normalisation),
+                ViewCommand::ToggleReflectors => Some(settings.show_reflectors),
+                ViewCommand::ToggleFound => Some(settings.show_found),
+                ViewCommand::ToggleFieldsOfView => Some(settings.show_fields_of_view),
+                ViewCommand::ToggleTheory => Some(settings.show_theory),
+                ViewCommand::ToggleKinds => Some(settings.show_kinds),
+                ViewCommand::Method(name) => Some(settings.method == *name),
+                _ => None,
+            },
+            Command::Edit(EditCommand::SetCoordinates(coordinates)) => Some(settings.coordinates == *coordinates),
+            Command::Window(command) => match command {
+                WindowCommand::TogglePanel(panel) => Some(self.arrangement.is_open(*panel)),
+                WindowCommand::Maximise(panel) => Some(self.arrangement.maximised() == Some(*panel)),
+                WindowCommand::Present => Some(self.is_presenting()),
+                WindowCommand::ToggleTheme => Some(match settings.theme {
+                    Brightness::System => self.dark,
+                    chosen => chosen == Brightness::Dark,
+                }),
+                WindowCommand::ToggleCaptions => Some(self.captions),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Whether maps and scene say what they show: not while a lesson does.
+    pub fn shows_captions(&self) -> bool {
+        self.captions && self.lesson.is_none() && !self.arrangement.is_open(Panel::Lesson)
+    }
+}

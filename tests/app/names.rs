@@ -1,0 +1,172 @@
+//! For whoever hears the window, or reads it at twice the size.
+
+use crate::session::Session;
+use apertura::app::{Command, MapKind, Panel, WindowCommand};
+use apertura::interact::SelectionMode;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT, Queryable};
+
+/// What a person works with, and what has to be told in words.
+fn has_to_be_named(role: Role) -> bool {
+    matches!(
+        role,
+        Role::Button
+            | Role::CheckBox
+            | Role::RadioButton
+            | Role::SpinButton
+            | Role::Slider
+            | Role::ComboBox
+            | Role::TextInput
+            | Role::Link
+            | Role::Image
+            | Role::Canvas
+    )
+}
+
+/// Controls and pictures without a name, as the window is.
+fn nameless(s: &Session, what: &str) -> Vec<String> {
+    let nodes = s.app.root().children_recursive().map(|node| node.accesskit_node().clone()).collect::<Vec<_>>();
+    let named = nodes.iter().filter(|n| has_to_be_named(n.role()));
+    assert!(named.clone().count() > 5, "{what}");
+    let silent = named.filter(|n| n.label().is_none_or(|label| label.trim().is_empty()));
+    silent.map(|n| format!("{what}: {:?}, value {:?}", n.role(), n.value())).collect()
+}
+
+#[test]
+fn every_control_has_a_name_in_every_arrangement() {
+    let mut s = Session::start();
+    s.press(Modifiers::COMMAND, Key::A);
+    let mut found = nameless(&s, "at first");
+    for panel in Panel::all() {
+        s.ask(Command::Window(WindowCommand::OpenPanel(panel)));
+        found.extend(nameless(&s, panel.title()));
+    }
+    s.ask(Command::Window(WindowCommand::ResetLayout));
+    for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
+        s.press(modifiers, Key::F11);
+        found.extend(nameless(&s, "presentation"));
+        s.press(modifiers, Key::F11);
+    }
+    found.sort();
+    found.dedup();
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn a_map_is_described_by_its_peaks_and_not_while_a_lesson_asks() {
+    let mut s = Session::start();
+    let described = |s: &Session, kind: MapKind| {
+        let label = format!("{} map", kind.title());
+        s.app.get_by_label(&label).accesskit_node().description().unwrap_or_default()
+    };
+    let target = described(&s, MapKind::Target);
+    assert!(target.starts_with("What all elements see"), "{target}");
+    assert!(target.contains("14.4 m, +3") && target.contains("20.") && target.contains("eak"), "{target}");
+    assert!(described(&s, MapKind::OutputAbove).contains(" hit, "), "{}", described(&s, MapKind::OutputAbove));
+    s.ask(Command::Lesson(apertura::app::LessonCommand::Begin(0)));
+    let hidden = described(&s, MapKind::Target);
+    assert!(!hidden.contains("eak"), "{hidden}");
+}
+
+#[test]
+fn captions_name_every_map_until_the_first_drag() {
+    let mut s = Session::start();
+    assert!(!s.state().shows_captions(), "nothing can be kept here");
+    s.ask(Command::Window(WindowCommand::ToggleCaptions));
+    let texts = |s: &Session| apertura_texts(s);
+    for wanted in ["Input 0: the first", "Input 1: the last", "Target: all 128", "Output: what baseline", "Output > η:"]
+    {
+        assert!(texts(&s).iter().any(|t| t.starts_with(wanted)), "{wanted}: {:?}", texts(&s));
+    }
+    assert!(texts(&s).iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", texts(&s));
+    let at = s.handle("point 1: move");
+    s.drag(at, eframe::egui::vec2(30.0, 0.0), 3);
+    assert!(!s.state().shows_captions());
+    assert!(!texts(&s).iter().any(|t| t.starts_with("Target: all")));
+    s.ask(Command::Window(WindowCommand::ToggleCaptions));
+    assert!(s.state().shows_captions(), "Help brings them back");
+    s.ask(Command::Edit(apertura::app::EditCommand::Select(vec![0], SelectionMode::Replace)));
+    s.press(Modifiers::NONE, Key::ArrowRight);
+    assert!(!s.state().shows_captions(), "arrow keys move it as a drag does");
+}
+
+/// Every text of the last frame.
+fn apertura_texts(s: &Session) -> Vec<String> {
+    use eframe::egui::Shape;
+    fn gather(shape: &Shape, found: &mut Vec<String>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
+            Shape::Text(text) => found.push(text.galley.text().to_owned()),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    s.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
+    found
+}
+
+#[test]
+fn maps_bend_into_cartesian_ones_in_half_a_second_and_back() {
+    let mut s = Session::start();
+    let name = "Target: bend into x and y";
+    s.app.get_by_label(name).click();
+    s.app.step();
+    s.app.step();
+    let axes = |s: &Session| apertura_texts(s).iter().any(|t| t == "x, m");
+    assert!(axes(&s), "the axes appear at once");
+    let repaints = |s: &Session| s.app.output().viewport_output.values().any(|v| v.repaint_delay.is_zero());
+    let mut frames = 0;
+    while repaints(&s) && frames < 200 {
+        s.app.step();
+        frames += 1;
+    }
+    assert!((20..=60).contains(&frames), "{frames} frames of a sixtieth of a second");
+    s.settle();
+    s.app.get_by_label("Target: straighten into cos θ and range").click();
+    s.settle();
+    assert_eq!(s.state().settings().projection, apertura::app::Projection::RangeAngle);
+}
+
+#[test]
+fn nothing_is_cut_off_at_twice_the_size() {
+    use crate::session::harness_of;
+    let folder = tempfile::tempdir().unwrap();
+    let app =
+        harness_of(folder.path(), None, vec![std::sync::Arc::new(apertura::reconstruct::Baseline)], [720.0, 450.0]);
+    let mut s = Session { app, folder };
+    s.settle();
+    for panel in
+        [None, Some(Panel::Controls), Some(Panel::Inspector), Some(Panel::Map(MapKind::Target)), Some(Panel::Cuts)]
+    {
+        if let Some(panel) = panel {
+            s.ask(Command::Window(WindowCommand::Maximise(panel)));
+        }
+        let cut = wider_than_their_place(&s);
+        assert!(cut.is_empty(), "{panel:?}: {cut:?}");
+        if let Some(panel) = panel {
+            s.ask(Command::Window(WindowCommand::Maximise(panel)));
+        }
+    }
+}
+
+/// Texts that reach beyond the left or the right end of what may be drawn to: no scrolling brings them into sight.
+fn wider_than_their_place(s: &Session) -> Vec<String> {
+    use eframe::egui::{Rect, Shape};
+    fn gather(clip: Rect, shape: &Shape, found: &mut Vec<String>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(clip, shape, found)),
+            Shape::Text(text) => {
+                let rect = text.visual_bounding_rect();
+                let out = rect.right() > clip.right() + 1.5 || rect.left() < clip.left() - 1.5;
+                if out && rect.intersects(clip) && !text.galley.text().trim().is_empty() {
+                    found.push(text.galley.text().to_owned());
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    s.app.output().shapes.iter().for_each(|clipped| gather(clipped.clip_rect, &clipped.shape, &mut found));
+    found
+}
