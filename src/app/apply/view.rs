@@ -1,7 +1,7 @@
 //! Commands that change how the scene is looked at.
 
 use crate::app::jobs::Jobs;
-use crate::app::state::{MapViews, Panel, PinnedCut, Projection, State, Units, ViewCommand};
+use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
 use crate::signal::Floor;
 
 /// Does such a command.
@@ -11,19 +11,9 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::Hover(cursor) => state.pointer.hover(cursor),
         ViewCommand::FitScene => state.scene_view.fit = true,
         ViewCommand::ResetMaps => state.map_views = MapViews::default(),
-        ViewCommand::ToggleProjection => {
-            settings.projection = match settings.projection {
-                Projection::RangeAngle => Projection::Cartesian,
-                Projection::Cartesian => Projection::RangeAngle,
-            }
-        }
+        ViewCommand::ToggleProjection => settings.projection = settings.projection.other(),
         ViewCommand::SetProjection(projection) => settings.projection = projection,
-        ViewCommand::ToggleUnits => {
-            settings.units = match settings.units {
-                Units::Lambda => Units::Decibels,
-                Units::Decibels => Units::Lambda,
-            }
-        }
+        ViewCommand::ToggleUnits => settings.units = settings.units.other(),
         ViewCommand::SetUnits(units) => settings.units = units,
         ViewCommand::ToggleAbsoluteDifference => settings.difference.absolute ^= true,
         ViewCommand::ToggleWholeDifference => settings.difference.whole ^= true,

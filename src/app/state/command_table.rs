@@ -467,75 +467,69 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Training, Key::F12),
 ];
 
+fn named(command: Command, name: String, tooltip: &'static str, key: Option<KeyboardShortcut>) -> Entry {
+    Entry { command, name: name.into(), tooltip, key }
+}
+
+fn random(kind: Kind) -> Entry {
+    let keys = [Key::Num1, Key::Num2, Key::Num3];
+    let (tooltip, key) = match kind.test_set() {
+        Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
+        None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
+        None => ("A scene of a kind that the thesis' sets leave out", None),
+    };
+    let name = format!("Random scene: {}", kind.description());
+    named(Command::Document(DocumentCommand::RandomScene(kind)), name, tooltip, key)
+}
+
+/// What shows and hides each panel, pages of help, what lets a panel fill the window, and what copies a map.
+fn of_panels() -> Vec<Entry> {
+    let panel_key = |panel| PANEL_KEYS.iter().find(|(p, _)| *p == panel).and_then(|(_, k)| key(*k));
+    let toggle = |panel: Panel| {
+        let name = format!("Show or hide: {}", panel.title());
+        named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel_key(panel))
+    };
+    let maximise = |panel: Panel| {
+        let name = format!("Maximise: {}", panel.title());
+        named(Command::Window(WindowCommand::Maximise(panel)), name, panel.describe(), None)
+    };
+    let help = |page: HelpPage| {
+        named(Command::Window(WindowCommand::Help(page)), page.title().to_owned(), page.describe(), None)
+    };
+    let copy = |kind: MapKind| {
+        let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
+        named(Command::Export(ExportCommand::CopyMap(kind)), format!("Copy picture: {}", kind.title()), tooltip, None)
+    };
+    let panels = || Panel::all().into_iter();
+    let listed = panels().map(toggle).chain(HelpPage::ALL.map(help)).chain(panels().map(maximise));
+    listed.chain(MapKind::ALL.map(copy)).collect()
+}
+
+fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
+    let name = format!("Preset: {}", preset.id.replace('-', " "));
+    let tooltip = match preset.is_failure() {
+        true => "Open a scene on which a method fails, with the reason in its notes",
+        false => "Open a scene the thesis talks about",
+    };
+    named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
+}
+
 /// Every command of the table, of every panel, of every kind of random scene and of every preset, in the order the palette lists them. The methods are not among
 /// them: they are the app's.
 pub fn listed() -> &'static [Entry] {
     static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
     LISTED.get_or_init(|| {
-        let named = |command, name: String, tooltip, key| Entry { command, name: name.into(), tooltip, key };
-        let panel_key = |panel| PANEL_KEYS.iter().find(|(p, _)| *p == panel).and_then(|(_, k)| key(*k));
-        let toggle = |panel: Panel| {
-            let name = format!("Show or hide: {}", panel.title());
-            named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel_key(panel))
-        };
-        let maximise = |panel: Panel| {
-            named(
-                Command::Window(WindowCommand::Maximise(panel)),
-                format!("Maximise: {}", panel.title()),
-                panel.describe(),
-                None,
-            )
-        };
-        let preset = |(index, preset): (usize, &presets::Preset)| {
-            let name = format!("Preset: {}", preset.id.replace('-', " "));
-            let tooltip = match preset.is_failure() {
-                true => "Open a scene on which a method fails, with the reason in its notes",
-                false => "Open a scene the thesis talks about",
-            };
-            named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
-        };
-        let random = |kind: Kind| {
-            let keys = [Key::Num1, Key::Num2, Key::Num3];
-            let (tooltip, key) = match kind.test_set() {
-                Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
-                None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
-                None => ("A scene of a kind that the thesis' sets leave out", None),
-            };
-            named(
-                Command::Document(DocumentCommand::RandomScene(kind)),
-                format!("Random scene: {}", kind.description()),
-                tooltip,
-                key,
-            )
-        };
         let radar = |(index, preset): (usize, &RadarPreset)| {
             named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
         };
         let recording = |(index, preset): (usize, &recordings::Preset)| {
             let name = format!("Recording: {}", preset.id.replace('-', " "));
-            named(
-                Command::Document(DocumentCommand::Recording(index)),
-                name,
-                "Open samples that a radar measured",
-                None,
-            )
+            let tooltip = "Open samples that a radar measured";
+            named(Command::Document(DocumentCommand::Recording(index)), name, tooltip, None)
         };
         let mut all = TABLE.to_vec();
         all.extend(Kind::all().map(random));
-        all.extend(Panel::all().into_iter().map(toggle));
-        all.extend(HelpPage::ALL.map(|page| {
-            named(Command::Window(WindowCommand::Help(page)), page.title().to_owned(), page.describe(), None)
-        }));
-        all.extend(Panel::all().into_iter().map(maximise));
-        all.extend(MapKind::ALL.map(|kind| {
-            let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
-            named(
-                Command::Export(ExportCommand::CopyMap(kind)),
-                format!("Copy picture: {}", kind.title()),
-                tooltip,
-                None,
-            )
-        }));
+        all.extend(of_panels());
         all.extend(presets::ALL.iter().enumerate().map(preset));
         all.extend(recordings::ALL.iter().enumerate().map(recording));
         all.extend(radar_presets::ALL.iter().enumerate().map(radar));

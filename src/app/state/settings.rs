@@ -42,6 +42,16 @@ pub enum Units {
     Decibels,
 }
 
+impl Units {
+    /// The other one.
+    pub fn other(self) -> Units {
+        match self {
+            Units::Lambda => Units::Decibels,
+            Units::Decibels => Units::Lambda,
+        }
+    }
+}
+
 /// How the difference of output and target is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]

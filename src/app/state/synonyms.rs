@@ -26,23 +26,7 @@ pub fn synonyms(command: &Command) -> &'static str {
             EditCommand::SetCoordinates(_) => "coordinates polar cartesian units",
             _ => "",
         },
-        Command::View(command) => match command {
-            ViewCommand::Colours(_) => "colormap colourmap color palette gray heat",
-            ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => {
-                "polar xy coordinates morph bend projection"
-            }
-            ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
-            ViewCommand::Normalise(_) => "dynamic range contrast normalize",
-            ViewCommand::SetFloor(_) => "noise snr thermal",
-            ViewCommand::ToggleReflectors => "truth ground true rings show objects",
-            ViewCommand::ToggleFound => "detections crosses points",
-            ViewCommand::ToggleKinds => "missed merged ghost wrong tooth failure",
-            ViewCommand::ToggleTheory => "formulas beam lobes bound resolution",
-            ViewCommand::FitScene | ViewCommand::ResetMaps => "zoom reset view all home",
-            ViewCommand::Method(_) | ViewCommand::NextMethod => "reconstruction algorithm network solver",
-            ViewCommand::Flip => "compare blink swap",
-            _ => "",
-        },
+        Command::View(command) => view_words(command),
         Command::Lesson(LessonCommand::Present) => "projector beamer class fullscreen teach slides",
         Command::Lesson(_) => "teach learn tutorial course",
         Command::Export(command) => match command {
@@ -53,23 +37,45 @@ pub fn synonyms(command: &Command) -> &'static str {
             ExportCommand::CopyShared => "share link send",
             _ => "",
         },
-        Command::Window(command) => match command {
-            WindowCommand::Present => "projector beamer class fullscreen whole screen large lecture",
-            WindowCommand::ToggleTheme => "dark mode night theme brightness",
-            WindowCommand::ZoomIn | WindowCommand::ZoomOut | WindowCommand::ZoomReset => {
-                "font text size scale bigger smaller"
-            }
-            WindowCommand::ResetLayout => "arrangement windows panels restore",
-            WindowCommand::Help(_) => "help manual shortcuts keyboard mouse version licence sources",
-            WindowCommand::ToggleCaptions => "help explain labels what is this start",
-            WindowCommand::TogglePanel(Panel::Guide) => "help manual explain tutorial",
-            WindowCommand::TogglePanel(Panel::Lesson) => "help teach learn tutorial course",
-            WindowCommand::TogglePanel(Panel::Controls) => "options preferences method threshold",
-            WindowCommand::TogglePanel(Panel::Radar) => "bandwidth elements carrier constants",
-            WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
-            WindowCommand::TogglePanel(_) => "window open close",
-            _ => "",
-        },
+        Command::Window(command) => window_words(command),
+        _ => "",
+    }
+}
+
+fn view_words(command: &ViewCommand) -> &'static str {
+    match command {
+        ViewCommand::Colours(_) => "colormap colourmap color palette gray heat",
+        ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => "polar xy coordinates morph bend projection",
+        ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
+        ViewCommand::Normalise(_) => "dynamic range contrast normalize",
+        ViewCommand::SetFloor(_) => "noise snr thermal",
+        ViewCommand::ToggleReflectors => "truth ground true rings show objects",
+        ViewCommand::ToggleFound => "detections crosses points",
+        ViewCommand::ToggleKinds => "missed merged ghost wrong tooth failure",
+        ViewCommand::ToggleTheory => "formulas beam lobes bound resolution",
+        ViewCommand::FitScene | ViewCommand::ResetMaps => "zoom reset view all home",
+        ViewCommand::Method(_) | ViewCommand::NextMethod => "reconstruction algorithm network solver",
+        ViewCommand::Flip => "compare blink swap",
+        _ => "",
+    }
+}
+
+fn window_words(command: &WindowCommand) -> &'static str {
+    match command {
+        WindowCommand::Present => "projector beamer class fullscreen whole screen large lecture",
+        WindowCommand::ToggleTheme => "dark mode night theme brightness",
+        WindowCommand::ZoomIn | WindowCommand::ZoomOut | WindowCommand::ZoomReset => {
+            "font text size scale bigger smaller"
+        }
+        WindowCommand::ResetLayout => "arrangement windows panels restore",
+        WindowCommand::Help(_) => "help manual shortcuts keyboard mouse version licence sources",
+        WindowCommand::ToggleCaptions => "help explain labels what is this start",
+        WindowCommand::TogglePanel(Panel::Guide) => "help manual explain tutorial",
+        WindowCommand::TogglePanel(Panel::Lesson) => "help teach learn tutorial course",
+        WindowCommand::TogglePanel(Panel::Controls) => "options preferences method threshold",
+        WindowCommand::TogglePanel(Panel::Radar) => "bandwidth elements carrier constants",
+        WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
+        WindowCommand::TogglePanel(_) => "window open close",
         _ => "",
     }
 }
@@ -87,21 +93,7 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             DocumentCommand::RandomScene(_) => &["Scene", "Random scene"],
             _ => &[],
         },
-        Command::Edit(command) => match command {
-            EditCommand::Undo
-            | EditCommand::Redo
-            | EditCommand::Cut
-            | EditCommand::Copy
-            | EditCommand::Paste
-            | EditCommand::Duplicate
-            | EditCommand::Delete
-            | EditCommand::SelectAll
-            | EditCommand::SelectNext
-            | EditCommand::SelectPrevious => &["Edit"],
-            EditCommand::Align(_) | EditCommand::Distribute(_) => &["Edit", "Arrange"],
-            EditCommand::Add(..) => &["Scene"],
-            _ => &[],
-        },
+        Command::Edit(command) => edit_menus(command),
         Command::Export(command) => match command {
             ExportCommand::Picture
             | ExportCommand::Maps
@@ -112,39 +104,65 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             | ExportCommand::CopyShared => &["File"],
             _ => &[],
         },
-        Command::View(command) => match command {
-            ViewCommand::FitScene => &["Scene"],
-            ViewCommand::Colours(_) => &["View", "Colours"],
-            ViewCommand::ToggleProjection
-            | ViewCommand::ToggleUnits
-            | ViewCommand::ResetMaps
-            | ViewCommand::ToggleReflectors
-            | ViewCommand::ToggleFound
-            | ViewCommand::ToggleFieldsOfView
-            | ViewCommand::ToggleTheory
-            | ViewCommand::ToggleKinds
-            | ViewCommand::NextMethod => &["View"],
-            ViewCommand::Flip => &["Tools"],
-            _ => &[],
-        },
-        Command::Window(command) => match command {
-            WindowCommand::TogglePanel(Panel::Guide | Panel::Lesson)
-            | WindowCommand::Help(_)
-            | WindowCommand::ToggleCaptions => &["Help"],
-            WindowCommand::TogglePanel(panel) if Panel::RESEARCH.contains(panel) => &["Tools", "Research"],
-            WindowCommand::TogglePanel(panel) if Panel::TOOLS.contains(panel) => &["Tools"],
-            WindowCommand::TogglePanel(_) => &["View", "Panels"],
-            WindowCommand::Escape => &["Edit"],
-            WindowCommand::Quit => &["File"],
-            WindowCommand::Present
-            | WindowCommand::ToggleTheme
-            | WindowCommand::ZoomIn
-            | WindowCommand::ZoomOut
-            | WindowCommand::ZoomReset
-            | WindowCommand::ResetLayout
-            | WindowCommand::Palette => &["View"],
-            _ => &[],
-        },
+        Command::View(command) => view_menus(command),
+        Command::Window(command) => window_menus(command),
+        _ => &[],
+    }
+}
+
+fn view_menus(command: &ViewCommand) -> &'static [&'static str] {
+    match command {
+        ViewCommand::FitScene => &["Scene"],
+        ViewCommand::Colours(_) => &["View", "Colours"],
+        ViewCommand::ToggleProjection
+        | ViewCommand::ToggleUnits
+        | ViewCommand::ResetMaps
+        | ViewCommand::ToggleReflectors
+        | ViewCommand::ToggleFound
+        | ViewCommand::ToggleFieldsOfView
+        | ViewCommand::ToggleTheory
+        | ViewCommand::ToggleKinds
+        | ViewCommand::NextMethod => &["View"],
+        ViewCommand::Flip => &["Tools"],
+        _ => &[],
+    }
+}
+
+fn window_menus(command: &WindowCommand) -> &'static [&'static str] {
+    match command {
+        WindowCommand::TogglePanel(Panel::Guide | Panel::Lesson)
+        | WindowCommand::Help(_)
+        | WindowCommand::ToggleCaptions => &["Help"],
+        WindowCommand::TogglePanel(panel) if Panel::RESEARCH.contains(panel) => &["Tools", "Research"],
+        WindowCommand::TogglePanel(panel) if Panel::TOOLS.contains(panel) => &["Tools"],
+        WindowCommand::TogglePanel(_) => &["View", "Panels"],
+        WindowCommand::Escape => &["Edit"],
+        WindowCommand::Quit => &["File"],
+        WindowCommand::Present
+        | WindowCommand::ToggleTheme
+        | WindowCommand::ZoomIn
+        | WindowCommand::ZoomOut
+        | WindowCommand::ZoomReset
+        | WindowCommand::ResetLayout
+        | WindowCommand::Palette => &["View"],
+        _ => &[],
+    }
+}
+
+fn edit_menus(command: &EditCommand) -> &'static [&'static str] {
+    match command {
+        EditCommand::Undo
+        | EditCommand::Redo
+        | EditCommand::Cut
+        | EditCommand::Copy
+        | EditCommand::Paste
+        | EditCommand::Duplicate
+        | EditCommand::Delete
+        | EditCommand::SelectAll
+        | EditCommand::SelectNext
+        | EditCommand::SelectPrevious => &["Edit"],
+        EditCommand::Align(_) | EditCommand::Distribute(_) => &["Edit", "Arrange"],
+        EditCommand::Add(..) => &["Scene"],
         _ => &[],
     }
 }

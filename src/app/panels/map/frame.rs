@@ -1,6 +1,5 @@
 //! A map on screen: where its places are, and the numbers behind them.
 
-use super::morph::{Morph, between};
 use crate::app::state::{Cursor, MapView, Projection};
 use crate::app::widgets::levels;
 use crate::app::widgets::numbers::signed;
@@ -25,6 +24,24 @@ pub struct Frame<'a> {
     pub centre_x_metres: f64,
     /// Where it comes from, while it is on its way from other coordinates.
     pub morph: Option<Morph>,
+}
+
+/// Where a map comes from.
+#[derive(Clone, Copy)]
+pub struct Morph {
+    /// Where the other kind of map is on screen, and which part of it.
+    pub rect: Rect,
+    /// The visible part of it.
+    pub view: MapView,
+    /// Its coordinates.
+    pub projection: Projection,
+    /// How much of the way is left, 0 to 1.
+    pub left: f32,
+}
+
+/// The place between two on screen.
+pub fn between(to: Pos2, from: Pos2, left: f32) -> Pos2 {
+    to + left * (from - to)
 }
 
 impl<'a> Frame<'a> {

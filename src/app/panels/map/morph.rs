@@ -1,6 +1,6 @@
 //! A map on its way from one kind of coordinates to the other: every cell, mark and curve moves along a straight line on screen.
 
-use super::frame::Frame;
+use super::frame::{Frame, Morph};
 use super::plot::rect_of;
 use crate::app::state::{Command, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::icons::{self, Icon};
@@ -13,19 +13,6 @@ pub const SECONDS: f32 = 0.5;
 /// Cells of the mesh that a picture is drawn on, across and up.
 const MESH: [usize; 2] = [160, 64];
 
-/// Where a map comes from.
-#[derive(Clone, Copy)]
-pub struct Morph {
-    /// Where the other kind of map is on screen, and which part of it.
-    pub rect: Rect,
-    /// The visible part of it.
-    pub view: MapView,
-    /// Its coordinates.
-    pub projection: Projection,
-    /// How much of the way is left, 0 to 1.
-    pub left: f32,
-}
-
 /// The way that is left to `projection` at the moment, where there is any.
 pub fn morph(ui: &Ui, area: Rect, projection: Projection, other: MapView, above: f32) -> Option<Morph> {
     let end = if projection == Projection::Cartesian { 1.0 } else { 0.0 };
@@ -33,11 +20,6 @@ pub fn morph(ui: &Ui, area: Rect, projection: Projection, other: MapView, above:
     let left = cubic_in_out((end - now).abs().clamp(0.0, 1.0));
     let from = projection.other();
     (left > 0.0).then(|| Morph { rect: rect_of(area, from, above), view: other, projection: from, left })
-}
-
-/// The place between two on screen.
-pub fn between(to: Pos2, from: Pos2, left: f32) -> Pos2 {
-    to + left * (from - to)
 }
 
 /// Draws a picture in coordinates of its own where `frame` shows its cells.
@@ -77,6 +59,7 @@ pub fn button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Projection, as
 
 #[cfg(test)]
 mod tests {
+    use super::super::frame::between;
     use super::*;
     use crate::radar::{Polar, Radar};
     use crate::scene::Reflector;
