@@ -184,11 +184,7 @@ mod tests {
         };
         let svg = render_svg(&panels).unwrap();
         assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
-        assert_eq!(
-            svg.matches("<image").count(),
-            10,
-            "six maps, the one seen from above and three swatches are one image each"
-        );
+        assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
         let without = render_svg(&Panels { target: None, ..panels }).unwrap();
         assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");
         assert!(without.contains("Output, seen from above") && !without.contains("P_FA"));
