@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn line_breaks_of_a_mail_do_no_harm_and_presets_fit_into_one() {
+    fn line_breaks_of_a_mail_do_no_harm() {
         let text = shared().to_text().unwrap();
         let broken: Vec<&str> = text.as_bytes().chunks(60).map(|c| std::str::from_utf8(c).unwrap()).collect();
         assert_eq!(Shared::from_text(&format!("  {}\r\n", broken.join("\r\n "))), Ok(shared()));

@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn the_whole_array_has_one_peak_and_one_end_a_wide_one() {
+    fn one_end_has_a_wider_peak_than_the_whole_array() {
         let radar = Radar::default();
         let bin = 2.0 / radar.elements as f64;
         let whole = cut(&Layout::uniform(&radar), bin / 4.0, 12);
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn range_bins_part_echoes_and_nothing_is_heard_without_elements() {
+    fn echoes_in_other_range_bins_are_distinguishable() {
         let radar = Radar::default();
         let centre = Polar { range_metres: 20.0, cos_theta: 0.0 };
         let far = [20.0, 20.0 + radar.range_resolution_metres()];

@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn two_ends_repeat_their_main_lobe_and_random_elements_don_t() {
+    fn only_two_ends_repeat_their_main_lobe() {
         let radar = Radar::default();
         assert!(of(&Layout::two_ends(&radar)).highest_side_lobe > 0.98);
         let random = of(&Layout::random(&radar, 24, 1).unwrap());

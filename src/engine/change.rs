@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn one_of_many_active_ones_moves_and_the_others_come_to_rest() {
+    fn unmoved_reflectors_come_to_rest() {
         let change = Change::between(&points([1.0]), &points([2.0, 3.0, 4.0]), &points([1.0, 2.0, 3.1, 4.0]));
         assert!(change.settles);
         assert_eq!(change.staying, points([1.0, 2.0, 4.0]));

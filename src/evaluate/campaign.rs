@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn a_campaign_repeats_itself_and_its_shards_add_up_to_it() {
+    fn the_shards_of_a_campaign_add_up_to_it() {
         let sets = [SceneSet::Generated(Kind::Set1), SceneSet::Generated(Kind::Set2)];
         let run = |shard: &str| {
             let campaign = Campaign { count: 3, seed: 3, shard: shard.parse().unwrap(), ..Campaign::default() };

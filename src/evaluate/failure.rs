@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_missed_and_nothing_else() {
+    fn what_is_left_out_is_missed() {
         let (target, footprints) = scene(&TWO);
         let output = without(&target, &footprints.cells()[1]);
         let found = footprints.judge(&target, &output, TARGET_ETA);
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shift_by_a_few_columns_is_the_wrong_tooth_and_no_ghost() {
+    fn a_shift_by_a_few_columns_is_the_wrong_tooth() {
         let (target, footprints) = scene(&[(5.0, 20.0)]);
         for by in [-3, 1, 6] {
             let found = footprints.judge(&target, &shifted(&target, by), TARGET_ETA);

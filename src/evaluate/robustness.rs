@@ -136,7 +136,7 @@ mod tests {
     use crate::reconstruct::{MatchedFilter, Omp};
 
     #[test]
-    fn worse_elements_cost_and_calibration_pays() {
+    fn calibration_lowers_the_cost_of_element_errors() {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 40.0, position_millimetres: 0.0 };
         let robustness = Robustness {
             radar: Radar { elements: 256, samples: 256, ..Radar::default() },

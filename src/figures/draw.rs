@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_cell_under_a_pixel_shows_and_rows_rise() {
+    fn the_brightest_cell_under_a_pixel_shows() {
         let Content::Cells(mut cells) = sheet().panels[1].content.clone() else { panic!("cells") };
         cells.values = array![[0.0, 1.0], [0.2, 0.4]];
         assert_eq!(paint(&cells, 1, 2), [102, 102, 102, 255, 255, 255]);

@@ -72,7 +72,7 @@ mod tests {
     use crate::reconstruct::Baseline;
 
     #[test]
-    fn an_entry_names_its_figure_and_picture() {
+    fn an_entry_shows_its_picture() {
         let text = entry(by_number("5-1").unwrap(), "figures");
         assert!(text.starts_with("### Figure 5-1") && text.contains("(figures/5-1.png)"));
     }

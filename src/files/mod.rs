@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+    fn a_failed_write_leaves_only_the_old_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         write_bytes(&path, b"old").unwrap();
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn folders_and_missing_folders_are_told() {
+    fn unusable_destinations_are_errors() {
         let folder = tempfile::tempdir().unwrap();
         assert!(write_bytes(folder.path(), b"").unwrap_err().to_string().contains("folder"));
         let message = write_bytes(&folder.path().join("no/where.txt"), b"").unwrap_err().to_string();
@@ -157,7 +157,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_and_permissions_stay() {
+    fn a_replaced_file_keeps_its_permissions() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().unwrap();
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));

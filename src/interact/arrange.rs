@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_middles_are_aligned_and_it_is_undone_in_one_step() {
+    fn an_alignment_is_one_undo_step() {
         let before = centres(&editor());
         for (alignment, x, y) in [
             (Alignment::Left, Some([-6.0, -5.0, -5.0]), None),

@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_blob_of_any_object_is_hit_and_its_whole_object_moves() {
+    fn a_hit_blob_moves_its_whole_object() {
         let radar = Radar::default();
         let mut scene = Scene::of_points([(-3.0, 10.0), (3.0, 10.0)]);
         scene.objects.push(Object::Line(Line::vertical(0.0, 20.0, 0.5, 5)));

@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edit_undone_by_hand_is_no_edit_and_the_radar_counts() {
+    fn an_edit_undone_by_hand_is_no_edit() {
         let mut document = Document::default();
         document.scene_mut().name = "a".to_owned();
         assert!(document.is_modified());

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn range_and_direction_leave_each_other_alone() {
+    fn editing_the_range_keeps_the_direction() {
         let mut p = Object::Point(Point::new(3.0, -4.0));
         Field::Range.set(&mut p, 10.0);
         assert_eq!(p.anchor_metres(), [6.0, -8.0]);

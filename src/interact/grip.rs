@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_change_the_count_and_the_other_end_stays() {
+    fn dragging_an_end_keeps_the_other() {
         let Object::Line(l) = move_grip(&line(), Grip::FarEnd, Place::new(1.0, 20.1)) else { panic!() };
         assert_eq!((l.count, l.y_start_metres, l.x_metres), (21, 10.0, 1.0));
         let Object::Line(l) = move_grip(&line(), Grip::NearEnd, Place::new(1.0, 12.6)) else { panic!() };

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_and_objects_are_bounded() {
+    fn the_history_is_bounded() {
         let (one, ten) = (step(1), step(10));
         assert_eq!(newest(&vec![one.clone(); 8], 5, 100), 5);
         assert_eq!(newest(&vec![ten.clone(); 8], 500, 10), 8, "one scene, however many steps look at it");

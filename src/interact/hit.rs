@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn anywhere_on_a_line_is_its_body_and_its_ends_show_when_selected() {
+    fn a_selected_line_shows_its_ends() {
         let end = Place::new(-5.0, 15.0);
         let body = test(&scene(), &Selection::default(), end, 0.05).unwrap();
         assert_eq!((body.object, body.grip, body.place), (2, Grip::Body, Place::new(-5.0, 10.0)));

@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_are_whole_bins_and_columns() {
+    fn snapped_places_are_whole_cells() {
         let radar = Radar::default();
         let p = Snap::Cells.apply(&radar, Place::new(4.321, 12.345));
         let polar = radar.polar_of(p.x_metres, p.y_metres);
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_rounds_and_off_does_nothing() {
+    fn a_grid_rounds_places() {
         let radar = Radar::default();
         assert_eq!(Snap::Metres(0.5).apply(&radar, Place::new(1.3, -0.8)), Place::new(1.5, -1.0));
         assert_eq!(Snap::Off.apply(&radar, Place::new(1.3, 0.8)), Place::new(1.3, 0.8));

@@ -202,7 +202,7 @@ answer = { kind = "click", map = "target", object = 1, within_columns = 30.0, wi
     }
 
     #[test]
-    fn mistakes_name_line_and_key() {
+    fn mistakes_name_their_line() {
         let error = |from: &str, to: &str| Lesson::from_toml(&GOOD.replace(from, to)).unwrap_err();
         let e = error("about = \"A.\"", "abuot = \"A.\"");
         assert!(e.message.contains("abuot") && e.line == 4, "{e}");

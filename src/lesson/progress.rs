@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn learners_keep_apart_and_the_first_guess_counts() {
+    fn the_first_guess_counts() {
         let mut p = Progress::default();
         p.set_learner(" Ada ");
         p.note_guess("range", 0, false);

@@ -26,7 +26,7 @@ fn guesses(question: &Question, truth: Truth, stage: &Stage) -> (Guess, Guess) {
 }
 
 #[test]
-fn every_lesson_has_its_steps_and_every_file_is_listed() {
+fn every_lesson_file_is_listed() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/lessons");
     assert_eq!(std::fs::read_dir(folder).unwrap().count(), shipped::ALL.len());
     for (id, lesson) in lessons() {
@@ -37,7 +37,7 @@ fn every_lesson_has_its_steps_and_every_file_is_listed() {
 }
 
 #[test]
-fn every_prediction_can_be_right_and_wrong() {
+fn every_prediction_can_be_wrong() {
     for (id, lesson) in lessons() {
         for (number, step) in lesson.steps.iter().enumerate() {
             let Some(question) = &step.predict else { continue };
@@ -80,7 +80,7 @@ fn the_thresholds_named_in_a_verdict_are_right() {
 }
 
 #[test]
-fn lessons_use_output_and_threshold_where_they_ask_for_them() {
+fn lessons_use_only_what_they_ask_for() {
     let used = |id: &str| lessons().find(|(name, _)| *name == id).unwrap().1.uses();
     assert_eq!(used("range-and-bandwidth"), Uses { output: false, threshold: false });
     assert_eq!(used("the-floor"), Uses { output: false, threshold: true });

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_found_between_cells_and_across_the_edges() {
+    fn peaks_are_found_between_cells() {
         let map = lobes([(7.3, 20.8), (31.6, 47.7)], 1.0);
         let found = peaks(map.view(), 1.5, 9);
         assert_eq!(found.len(), 2);
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_maps_have_none_and_plateaus_one() {
+    fn a_plateau_has_one_peak() {
         assert_eq!(peaks(Array2::zeros((4, 4)).view(), 1.0, 9), []);
         let mut map = Array2::zeros((4, 6));
         map[[1, 2]] = 1.0;

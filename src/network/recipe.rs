@@ -294,7 +294,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shipped_recipes_are_sound_and_say_what_the_thesis_says() {
+    fn shipped_recipes_follow_the_thesis() {
         for (name, text) in SHIPPED {
             let recipe = Recipe::parse(name, text).unwrap();
             assert_eq!(recipe.name, name);

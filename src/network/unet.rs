@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shape_and_range() {
+    fn the_output_has_shape_with_values_in_range() {
         let device = Device::flex();
         let config = UnetConfig { channels: 2, levels: 2, rows: 16 };
         let x = Tensor::<4>::ones([1, 2, 16, 32], &device);

@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn shipped_weights_name_their_optimisers_and_every_map_they_saw() {
+    fn shipped_weights_record_their_training() {
         for (bytes, optimiser, maps) in [
             (include_bytes!("../../assets/weights/live.safetensors").as_slice(), "AdamW", 11_172 + 55_124),
             (include_bytes!("../../assets/weights/thesis-1.safetensors"), "SGD, then Muon", 3872 + 14_966),
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn renaming_back_and_forth_keeps_the_weights() {
+    fn renaming_round_trips() {
         let file = WeightFile::parse("test", WEIGHTS).unwrap();
         let there = file.renamed(|n| format!("x.{n}")).unwrap();
         let there = WeightFile::parse("there", &there).unwrap();

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_strange_values() {
+    fn strange_values_have_a_colour() {
         for map in ColourMap::ALL {
             assert_eq!(map.name().parse(), Ok(map));
             let (first, last) = (map.table()[0], map.table()[255]);

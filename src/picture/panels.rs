@@ -164,7 +164,7 @@ mod tests {
     use crate::signal::BeatSignal;
 
     #[test]
-    fn pictures_are_drawn_and_known_as_ours() {
+    fn drawn_pictures_are_known_as_ours() {
         let radar = Radar { samples: 32, elements: 64, ..Radar::default() };
         let maps = LogMaps::of_signal(&radar, &BeatSignal::silence(&radar));
         let flat = maps.full.normalise(Normalisation::MinMax);

@@ -186,7 +186,7 @@ mod tests {
     use crate::recording::presets::Preset;
 
     #[test]
-    fn the_whole_array_sees_both_directions_and_one_end_a_hump() {
+    fn only_the_whole_array_separates_both_directions() {
         let recording = Preset::by_id("cascade-86").unwrap().load().unwrap();
         let tops = |points: &[(f64, f64)]| -> Vec<f64> {
             let top = |w: &&[(f64, f64)]| w[1].1 > -6.0 && w[1].1 > w[0].1 && w[1].1 > w[2].1;
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn recordings_with_and_without_a_target_are_drawn() {
+    fn recordings_are_drawn_with_or_without_a_target() {
         let mut recording = Preset::by_id("chip-8").unwrap().load().unwrap();
         let svg = |r: &Recording| {
             let bytes = compose_recording(r, &Baseline, &Style::default(), Format::Svg).unwrap();

@@ -277,7 +277,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tolerances_are_standard_deviations_and_scale() {
+    fn tolerances_are_standard_deviations() {
         let radar = Radar::default();
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.2 };
         let array = tolerances.build(&radar, 7);
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn responses_and_places() {
+    fn responses_follow_the_errors() {
         let radar = Radar::default();
         let off = ElementError { gain: Decibels(20.0), phase_degrees: 90.0, position_millimetres: 3.0, dead: false };
         assert!((off.response() - Complex64::new(0.0, 10.0)).norm() < 1e-12);
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_estimated_is_taken_off_and_files_give_back_the_rest() {
+    fn what_was_estimated_is_taken_off() {
         let radar = Radar { elements: 16, ..Radar::default() };
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 100.0, position_millimetres: 0.0 };
         let mut array = tolerances.build(&radar, 3);

@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_ends_are_the_first_and_the_last_elements() {
+    fn two_ends_are_the_outermost_elements() {
         let radar = Radar::default();
         let ends = Layout::two_ends(&radar);
         assert_eq!(ends.len(), 24);
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn random_layouts_repeat_span_the_aperture_and_hold_no_element_twice() {
+    fn random_layouts_hold_no_element_twice() {
         let radar = Radar::default();
         for count in [2, 3, 24, 1023, 1024] {
             let layout = Layout::random(&radar, count, 7).unwrap();

@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_and_layouts_belong_together() {
+    fn every_layout_has_its_name() {
         let radar = Radar::default();
         for (name, elements) in
             [("full", 1024), ("two-ends", 24), ("one-end", 12), ("random=24:7", 24), ("mimo=3x4", 12)]

@@ -42,7 +42,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_bytes_and_the_bound_are_told() {
+    fn the_error_gives_the_bytes_with_the_bound() {
         let large = Radar { elements: 65536, samples: 65536, ..Radar::default() };
         let message = large.validate().unwrap_err().to_string();
         for part in ["65536 elements", "65536 samples", "1.0 TiB", "4.0 GiB"] {

@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_and_cosines_are_inverse() {
+    fn columns_convert_to_cosines_without_loss() {
         let r = Radar::default();
         for k in [0.0, 1.0, 511.5, 512.0, 1023.0] {
             assert!((r.column_of_cos(r.cos_of_column(k)) - k).abs() < 1e-9);

@@ -36,7 +36,7 @@ mod tests {
     use crate::radar::Carrier;
 
     #[test]
-    fn blobs_stand_nearer_to_broadside_one_way_and_farther_two_way() {
+    fn the_carriers_squint_to_opposite_sides() {
         let radar = Radar::default();
         let (x, y) = (-0.832 * 20.0, 20.0 * (1.0f64 - 0.832 * 0.832).sqrt());
         let blob = radar.blob_of(0.0, x, y);

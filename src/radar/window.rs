@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hann_is_symmetric_and_zero_at_both_ends() {
+    fn hann_falls_to_zero_at_both_ends() {
         let w = hann(12);
         assert_eq!(w[0], 0.0);
         assert!(w[11].abs() < 1e-15);

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn real_and_imaginary_parts_may_have_their_axis() {
+    fn iq_may_have_its_own_axis() {
         let parts = array![[[1.0, 2.0]], [[3.0, 4.0]]].into_dyn();
         let found = arrange(Numbers::Real(parts.clone()), &[Element, Sample, Iq], None).unwrap();
         assert_eq!(found, array![[Complex64::new(1.0, 2.0)], [Complex64::new(3.0, 4.0)]]);

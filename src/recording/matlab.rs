@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn real_and_complex_packed_and_not_narrow_and_wide() {
+    fn every_number_format_is_read() {
         let complex = array![[Complex64::new(1.0, -1.0), Complex64::new(2.0, 0.5)]].into_dyn();
         assert_eq!(read_mat(sample().as_slice(), "data").unwrap(), Numbers::Complex(complex));
         let real = array![[1.0, 3.0], [-2.0, 4.0]].into_dyn();

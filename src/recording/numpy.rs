@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_the_key_and_what_was_expected() {
+    fn faults_name_the_key_with_the_expectation() {
         let error = |key: &str| read_npz(Cursor::new(npz()), key).unwrap_err().to_string();
         assert!(error("b").contains("\"b\"") && error("b").contains("a, text"), "{}", error("b"));
         assert!(error("text").contains("|u1") && error("text").contains("complex"), "{}", error("text"));

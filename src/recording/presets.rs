@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_preset_loads_and_says_where_it_comes_from() {
+    fn every_preset_names_its_source() {
         for preset in ALL {
             let recording = preset.load().unwrap_or_else(|e| panic!("{e}"));
             assert!(!recording.name.is_empty() && recording.notes.len() > 80, "{}", preset.id);

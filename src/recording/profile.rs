@@ -239,7 +239,7 @@ sensorStart
 ";
 
     #[test]
-    fn a_profile_is_read_in_hertz_and_seconds() {
+    fn a_profile_is_read_in_si_units() {
         let profile = RadarProfile::parse(CFG).unwrap();
         assert_eq!((profile.samples, profile.receivers, profile.loops, profile.frames), (8, 4, 2, 0));
         assert_eq!(profile.chirp_transmitters, [1, 4]);
@@ -249,7 +249,7 @@ sensorStart
     }
 
     #[test]
-    fn faults_name_line_and_command() {
+    fn faults_name_line_with_command() {
         let with = |from: &str, to: &str| RadarProfile::parse(&CFG.replace(from, to)).unwrap_err().to_string();
         for (from, to, parts) in [
             ("frameCfg 0 1 2 0 100 1 0\n", "", ["\"frameCfg\"", "expected profileCfg"]),

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_along_the_road_mirrors_across_it_and_ghosts_stand_where_geometry_says() {
+    fn mirror_ghosts_stand_where_geometry_says() {
         let mirror = Mirror { x_metres: -5.0, reflection: 0.5, ..Mirror::default() };
         let [x, y] = mirror.image_metres(3.0, 20.0);
         assert!((x + 13.0).abs() < 1e-12 && (y - 20.0).abs() < 1e-12);

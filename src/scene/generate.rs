@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_repeat_and_purposes_differ() {
+    fn scenes_follow_from_purpose_seed_index() {
         let test = generator(Purpose::Test);
         assert_eq!(test.scene(Kind::Set2, 9), test.scene(Kind::Set2, 9));
         assert_ne!(test.scene(Kind::Set2, 9).objects, test.scene(Kind::Set2, 10).objects);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_of_noise_are_empty_and_differ_in_their_noise() {
+    fn scenes_of_noise_differ_in_their_noise() {
         let [a, b] = [0, 1].map(|number| generator(Purpose::Test).scene(Kind::Noise, number));
         assert!(a.objects.is_empty() && a.is_silent() && a.noise_seed != b.noise_seed);
     }
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_have_any_slant_and_spacings_none() {
+    fn only_walls_are_slanted() {
         let bin = Radar::default().range_resolution_metres();
         let slanted: Vec<Line> = scenes(Kind::Walls).iter().flat_map(|s| lines(s)).collect();
         let quadrant = |q: f64| slanted.iter().filter(|l| (l.direction_degrees / 90.0).floor() == q).count();
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_and_reflectivities_are_as_described() {
+    fn every_kind_is_as_described() {
         assert!(scenes(Kind::Crowd).iter().all(|s| (12..=40).contains(&s.len())));
         for objects in scenes(Kind::Dynamic) {
             let sigma: Vec<f64> = objects.iter().flat_map(Object::reflectors).map(|r| r.reflectivity).collect();

@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn far_behind_and_wrapping_reflectors_are_allowed() {
+    fn reflectors_outside_the_map_are_allowed() {
         Scene::of_points([(0.0, 1e9), (3.0, -4.0), (0.0, 60.0)]).validate(&Radar::default()).unwrap();
     }
 }

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cluster_is_the_same_every_time_and_moves_as_one() {
+    fn a_cluster_is_the_same_every_time() {
         let mut g = Object::Gaussian(GaussianCluster {
             x_metres: 0.0,
             y_metres: 10.0,

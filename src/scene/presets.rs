@@ -78,7 +78,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn every_preset_loads_and_teaches() {
+    fn every_preset_has_notes() {
         let mut names = HashSet::new();
         for preset in ALL {
             let file = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.id));

@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ideal_array_hears_what_is_simulated_and_a_dead_element_nothing() {
+    fn a_dead_element_hears_nothing() {
         let (radar, scene) = (small(), two_points());
         let ideal = simulate(&radar, &scene, Floor::Thesis, 3).unwrap();
         let same = simulate_built(&radar, &scene, &BuiltArray::default(), Floor::Thesis, 3).unwrap();
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn calibrating_on_a_reflector_finds_gains_and_phases_and_takes_them_off() {
+    fn calibration_takes_off_what_it_finds() {
         let (radar, scene) = (small(), two_points());
         let tolerances = Tolerances { gain: Decibels(1.5), phase_degrees: 20.0, position_millimetres: 0.0 };
         let array = tolerances.build(&radar, 2);
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disturbed_scene_is_simulated_disturbed_and_an_undisturbed_one_keeps_its_bits() {
+    fn an_undisturbed_scene_keeps_its_bits() {
         let (radar, plain) = (small(), two_points());
         let mut scene = plain.clone();
         scene.disturbances.elements = BuiltArray { elements: vec![ElementError::default(); 64] };

@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_at_and_beside_the_kernels_centres_keep_every_digit() {
+    fn ranges_near_the_kernels_centres_keep_every_digit() {
         // Elements as good as in one place, so that all see the same range: whole bins, and the centres of the outer kernels.
         let radar =
             Radar { elements: 8, end_elements: 3, element_spacing_metres: 1e-9, samples: 64, ..Radar::default() };

@@ -226,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_round_trip_and_bad_names_are_told() {
+    fn names_round_trip() {
         for name in ["thesis", "exact", "snr=20", "snr=-3.5", "dbm=-20", "dbm=17.96"] {
             assert_eq!(name.parse::<Floor>().unwrap().to_string(), name);
         }
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_has_unit_variance_and_repeats() {
+    fn noise_has_unit_variance() {
         let a: Vec<_> = unit_noise(1, 3).take(20_000).collect();
         let power = a.iter().map(Complex64::norm_sqr).sum::<f64>() / a.len() as f64;
         assert!((power - 1.0).abs() < 0.03, "{power}");

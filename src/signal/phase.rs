@@ -193,7 +193,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_exact_product_is_the_same_with_and_without_fused_multiply_add() {
+    fn the_exact_product_does_not_depend_on_fused_multiply_add() {
         let mut v = 0.3f64;
         for _ in 0..1000 {
             v = (v * 1.7 + 0.1) % 3e5;

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn the_two_way_carrier_and_wrapping_ranges_keep_the_promise() {
+    fn unusual_scenes_keep_the_promise() {
         let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
         let max = radar.max_range_metres();
         let reflectors =

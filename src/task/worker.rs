@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn the_latest_request_wins_and_nothing_between_is_started() {
+    fn the_latest_request_wins() {
         let (gate, entered) = (mpsc::channel::<()>(), mpsc::channel::<()>());
         let (wake, woken) = mpsc::channel();
         let worker = Worker::spawn(
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_is_a_message_and_the_worker_starts_afresh() {
+    fn the_worker_survives_a_panic() {
         let (wake, woken) = mpsc::channel();
         let work = |count: &mut u32, n: u32, _: &Task| {
             *count += 1;

@@ -31,7 +31,7 @@ pub fn wrap_partners(radar: &Radar, place: Polar, farthest_metres: f64) -> Vec<P
 #[cfg(test)]
 mod tests {
     use super::super::Blob;
-    use super::super::blob::tests::radar_and_place;
+    use super::super::blob::tests::any_place_of_any_radar;
     use super::*;
     use crate::maps::Aperture;
     use crate::radar::{Carrier, End};
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_wavelength_folds_nothing_and_the_two_way_carrier_does() {
+    fn only_the_two_way_carrier_folds_at_half_a_wavelength() {
         let radar = Radar::default();
         assert!(fold_partners(&radar, 0.9).is_empty());
         let two_way = Radar { carrier: Carrier::TwoWay, ..radar.clone() };
@@ -68,7 +68,7 @@ mod tests {
 
         /// What is said to share a cell does, within half a cell of one end's map, where ranges don't migrate.
         #[test]
-        fn partners_share_the_cell((radar, reflector) in radar_and_place()) {
+        fn partners_share_the_cell((radar, reflector) in any_place_of_any_radar()) {
             let end = Aperture::End(End::First);
             let blob = |r: &Reflector| Blob::of(&radar, r, end).unwrap();
             let x = radar.end_centre_metres(End::First);

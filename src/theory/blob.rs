@@ -174,7 +174,7 @@ pub(super) mod tests {
     const APERTURES: [Aperture; 3] = [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)];
 
     /// A small valid radar of any kind, and a reflector no nearer than its array is long, ranges beyond the last bin included.
-    pub fn radar_and_place() -> impl Strategy<Value = (Radar, Reflector)> {
+    pub fn any_place_of_any_radar() -> impl Strategy<Value = (Radar, Reflector)> {
         let radar = (24e9..81e9f64, 8.2..9.3f64, 0.25..1.0f64, 16..=80usize, 16..=80usize, 3..=8usize, 0..8usize)
             .prop_map(|(carrier_hz, bandwidth, spacing, elements, samples, end_elements, kind)| Radar {
                 carrier_hz,
@@ -343,7 +343,7 @@ pub(super) mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(6))]
         #[test]
-        fn blobs_stand_where_the_map_has_them((radar, reflector) in radar_and_place()) {
+        fn blobs_stand_where_the_map_has_them((radar, reflector) in any_place_of_any_radar()) {
             for aperture in APERTURES {
                 hold(&radar, &reflector, aperture)?;
             }
@@ -354,7 +354,7 @@ pub(super) mod tests {
         #![proptest_config(ProptestConfig::with_cases(200))]
         #[test]
         #[ignore = "200 radars and places take a minute"]
-        fn two_hundred_blobs_stand_where_the_map_has_them((radar, reflector) in radar_and_place()) {
+        fn two_hundred_blobs_stand_where_the_map_has_them((radar, reflector) in any_place_of_any_radar()) {
             for aperture in APERTURES {
                 hold(&radar, &reflector, aperture)?;
             }

@@ -84,7 +84,7 @@ impl Consequences {
 #[cfg(test)]
 mod tests {
     use super::super::Blob;
-    use super::super::blob::tests::radar_and_place;
+    use super::super::blob::tests::any_place_of_any_radar;
     use super::*;
     use crate::maps::Aperture;
     use crate::radar::End;
@@ -108,7 +108,7 @@ mod tests {
 
         /// Far ahead of the array, blobs are as wide as the constants say, within half a cell over both sides.
         #[test]
-        fn far_blobs_are_as_wide_as_the_beam((radar, _) in radar_and_place()) {
+        fn far_blobs_are_as_wide_as_the_beam((radar, _) in any_place_of_any_radar()) {
             let c = Consequences::of(&radar);
             let y_metres = 50.0 * c.full_far_field_metres.max(c.max_range_metres);
             for (aperture, beam) in [(Aperture::Full, c.full_beam), (Aperture::End(End::First), c.end_beam)] {

@@ -51,7 +51,7 @@ mod tests {
     use crate::scene::Reflector;
 
     #[test]
-    fn its_spread_along_range_and_across_is_the_bound() {
+    fn the_ellipse_is_the_bound_in_both_directions() {
         let radar = Radar { samples: 64, ..Radar::default() };
         let layout = Layout::two_ends(&radar);
         for (range, cos) in [(20.0, 0.3), (3.0, -0.8), (1.5, 0.0)] {

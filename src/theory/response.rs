@@ -86,7 +86,7 @@ impl Row {
 
 #[cfg(test)]
 mod tests {
-    use super::super::blob::tests::{radar_and_place, simulated};
+    use super::super::blob::tests::{any_place_of_any_radar, simulated};
     use super::*;
     use crate::radar::End;
     use proptest::prelude::*;
@@ -96,7 +96,7 @@ mod tests {
 
         /// Cell for cell, the response is the simulated map.
         #[test]
-        fn every_cell_is_that_of_the_map((radar, reflector) in radar_and_place()) {
+        fn every_cell_is_that_of_the_map((radar, reflector) in any_place_of_any_radar()) {
             for aperture in [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)] {
                 let map = simulated(&radar, &reflector, aperture);
                 let peak = map.iter().fold(0.0f64, |m, v| m.max(*v));

@@ -69,7 +69,7 @@ fn extent(peak: Cell, size: [usize; 2], level: f64, mut cell: impl FnMut(usize, 
 
 #[cfg(test)]
 mod tests {
-    use super::super::blob::tests::{radar_and_place, simulated};
+    use super::super::blob::tests::{any_place_of_any_radar, simulated};
     use super::*;
     use crate::radar::End;
     use proptest::prelude::*;
@@ -100,7 +100,7 @@ mod tests {
 
         /// The cells joined to the peak of the simulated map reach as far as predicted.
         #[test]
-        fn streaks_reach_as_far_as_on_the_map((radar, reflector) in radar_and_place()) {
+        fn streaks_reach_as_far_as_on_the_map((radar, reflector) in any_place_of_any_radar()) {
             for aperture in [Aperture::Full, Aperture::End(End::Last)] {
                 let map = simulated(&radar, &reflector, aperture);
                 let blob = Blob::of(&radar, &reflector, aperture).unwrap();

@@ -37,7 +37,7 @@ fn largest_difference(a: &RangeAngleMap, b: &RangeAngleMap) -> f32 {
 }
 
 #[test]
-fn the_second_output_is_what_its_method_makes_and_its_figures_are_those_of_the_command_line() {
+fn the_second_outputs_figures_are_those_of_the_command_line() {
     let mut s = with_capon();
     assert!(s.state().second_output().is_none(), "nobody looks at it");
     s.ask(WindowCommand::OpenPanel(Panel::Compare));
@@ -78,7 +78,7 @@ impl Reconstructor for Slow {
 }
 
 #[test]
-fn the_second_method_works_only_while_the_panel_is_open_and_says_when_it_is_behind() {
+fn the_second_method_works_only_while_the_panel_is_open() {
     let (finished, milliseconds) = (Arc::<AtomicU32>::default(), Arc::<AtomicU32>::default());
     let slow = Slow { finished: finished.clone(), milliseconds: milliseconds.clone() };
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(slow)]);
@@ -114,7 +114,7 @@ impl Reconstructor for Refuses {
 }
 
 #[test]
-fn a_second_method_that_refuses_says_so_and_the_first_stays() {
+fn a_second_method_that_refuses_leaves_the_first() {
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(Refuses)]);
     s.ask(WindowCommand::Maximise(Panel::Compare));
     assert!(s.app.query_all_by_label_contains("it never works").next().is_some());
@@ -123,7 +123,7 @@ fn a_second_method_that_refuses_says_so_and_the_first_stays() {
 }
 
 #[test]
-fn one_key_opens_the_panel_and_flips_two_maps_in_place() {
+fn one_key_flips_two_maps_in_place() {
     let mut s = with_capon();
     s.press(Modifiers::NONE, Key::X);
     assert!(s.state().arrangement().is_open(Panel::Compare));
@@ -143,7 +143,7 @@ fn one_key_opens_the_panel_and_flips_two_maps_in_place() {
 }
 
 #[test]
-fn the_edge_between_two_maps_is_swiped_by_pointer_and_keys() {
+fn the_edge_between_two_maps_can_be_moved() {
     let mut s = with_capon();
     s.ask(ViewCommand::SetCompare(Box::new(Compare { layout: Layout::Swipe, ..Compare::default() })));
     s.ask(WindowCommand::Maximise(Panel::Compare));
@@ -196,7 +196,7 @@ fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
 }
 
 #[test]
-fn kinds_of_failure_are_marked_and_are_those_of_the_evaluation() {
+fn marks_of_failure_are_those_of_the_evaluation() {
     let mut s = Session::start();
     assert!(s.state().failures().is_none());
     s.press(Modifiers::NONE, Key::H);

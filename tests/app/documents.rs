@@ -35,7 +35,7 @@ fn points(path: &Path) -> usize {
 }
 
 #[test]
-fn undo_of_open_and_save_write_each_scene_into_its_own_file() {
+fn each_scene_is_saved_into_its_own_file() {
     let mut s = Session::start();
     let (a, b) = (s.folder.path().join("scene.toml"), write(&s, "b.toml", 5));
     s.ask(EditCommand::Add(NewObject::Point, None));
@@ -48,7 +48,7 @@ fn undo_of_open_and_save_write_each_scene_into_its_own_file() {
 }
 
 #[test]
-fn a_new_scene_has_the_usual_radar_and_undo_brings_back_the_other() {
+fn a_new_scene_has_the_usual_radar() {
     let mut s = Session::start();
     s.ask(DocumentCommand::New);
     assert_eq!((title(&s).as_str(), **s.state().editor().radar() == Radar::default()), ("untitled", true));
@@ -57,7 +57,7 @@ fn a_new_scene_has_the_usual_radar_and_undo_brings_back_the_other() {
 }
 
 #[test]
-fn carrier_and_window_are_edits() {
+fn a_change_of_the_radar_is_an_edit() {
     let mut s = Session::start();
     s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
     assert_eq!(title(&s), "scene.toml •");

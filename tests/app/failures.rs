@@ -65,7 +65,7 @@ fn write(s: &mut Session, text: &str) {
 }
 
 #[test]
-fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
+fn the_worst_row_can_be_found_changed_kept() {
     let mut s = tried();
     s.ask(WindowCommand::Maximise(Panel::Failures));
     s.app.get_by_label("squared_error").click();
@@ -122,7 +122,7 @@ fn rows_are_sorted_filtered_and_the_worst_is_opened_dragged_and_kept() {
 }
 
 #[test]
-fn arrow_keys_walk_through_rows_and_one_undo_takes_the_walk_back() {
+fn one_undo_takes_a_walk_through_rows_back() {
     let mut s = tried();
     let before = (s.state().editor().document().id(), s.state().settings().method.clone());
     s.ask(ViewCommand::SetFloor(Floor::Exact));
@@ -150,7 +150,7 @@ fn arrow_keys_walk_through_rows_and_one_undo_takes_the_walk_back() {
 }
 
 #[test]
-fn rows_are_saved_opened_brought_back_and_there_after_a_restart() {
+fn rows_outlive_a_restart() {
     let mut s = tried();
     let rows = s.state().rows().to_vec();
     let path = s.folder.path().join("saved.csv");
@@ -182,7 +182,7 @@ fn rows_are_saved_opened_brought_back_and_there_after_a_restart() {
 }
 
 #[test]
-fn a_search_goes_on_beside_the_window_and_its_find_is_one_step() {
+fn what_a_search_finds_is_one_undo_step() {
     let mut s = tried();
     // Where the error is least, there is most to make worse.
     let rows = s.state().rows().iter().enumerate();

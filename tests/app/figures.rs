@@ -144,7 +144,7 @@ impl Reconstructor for Watched {
 }
 
 #[test]
-fn a_drag_is_followed_and_at_rest_the_answer_is_that_from_scratch() {
+fn at_rest_the_answer_is_that_from_scratch() {
     let asked = Arc::new([AtomicU32::new(0), AtomicU32::new(0)]);
     let count = |i: usize| asked[i].load(Ordering::SeqCst);
     // Work enough for two points.

@@ -54,7 +54,7 @@ fn tab_comes_to_every_control_in_the_window() {
 }
 
 #[test]
-fn one_key_goes_from_object_to_object_and_arrows_move_what_it_found() {
+fn objects_are_reached_by_the_keyboard() {
     let mut s = Session::start();
     let selected = |s: &Session| s.state().editor().selection().single();
     s.press(Modifiers::NONE, Key::O);

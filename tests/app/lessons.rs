@@ -109,13 +109,13 @@ fn take_all(right: impl Fn(usize, usize) -> bool) {
 
 #[test]
 #[ignore = "long: minutes in an unoptimised build"]
-fn every_lesson_is_taken_with_right_and_wrong_answers_in_turn() {
+fn every_lesson_can_be_taken_to_its_end() {
     take_all(|lesson, step| (lesson + step) % 2 == 0);
 }
 
 #[test]
 #[ignore = "long: every step of every lesson twice"]
-fn every_step_is_answered_right_and_wrong() {
+fn every_step_judges_its_answers() {
     take_all(|_, _| true);
     take_all(|_, _| false);
 }
@@ -183,7 +183,7 @@ fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
 }
 
 #[test]
-fn previous_and_next_keep_the_verdict() {
+fn going_back_keeps_the_verdict() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 4);
     predict(&mut s, Guess::Choice(1), "Not quite: the answer is “It stays”.");
@@ -196,7 +196,7 @@ fn previous_and_next_keep_the_verdict() {
 }
 
 #[test]
-fn guess_and_truth_stay_drawn_on_the_map() {
+fn the_guess_stays_drawn_beside_the_truth() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 1);
     let drawn = |s: &Session| ["your guess", "truth"].map(|text| painted(s).iter().any(|t| t == text));
@@ -284,7 +284,7 @@ fn a_lesson_file_whose_solution_fails_is_refused() {
 }
 
 #[test]
-fn a_lesson_is_shared_with_its_step_and_scene() {
+fn a_lesson_is_shared_at_its_step() {
     let mut s = Session::start();
     s.ask(LessonCommand::Begin(3));
     s.ask(LessonCommand::Step(2));
@@ -300,7 +300,7 @@ fn a_lesson_is_shared_with_its_step_and_scene() {
 }
 
 #[test]
-fn a_shared_scene_comes_with_its_view_and_can_be_undone() {
+fn a_shared_scene_comes_with_its_view() {
     let mut s = Session::start();
     s.ask(ViewCommand::ToggleProjection);
     s.ask(ViewCommand::ToggleTheory);
@@ -321,7 +321,7 @@ fn a_shared_scene_comes_with_its_view_and_can_be_undone() {
 }
 
 #[test]
-fn several_maps_and_theory_are_computed_while_they_are_looked_at() {
+fn hidden_tools_compute_nothing() {
     let mut s = Session::start();
     s.ask(ViewCommand::ToggleTheory);
     s.ask(WindowCommand::OpenPanel(apertura::app::Panel::Several));

@@ -14,7 +14,7 @@ use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 
 #[test]
-fn all_maps_are_there_soon_after_the_start_and_idling_computes_nothing() {
+fn idling_computes_nothing() {
     let mut s = Session::start();
     use MapKind::*;
     let first = [Input0, Input1, Target, Output, TargetAbove, OutputAbove];
@@ -25,7 +25,7 @@ fn all_maps_are_there_soon_after_the_start_and_idling_computes_nothing() {
 }
 
 #[test]
-fn another_normalisation_computes_no_signal_and_no_map() {
+fn another_normalisation_simulates_nothing() {
     let mut s = Session::start();
     for normalisation in [
         Normalisation::DynamicRange(Decibels(60.0)),
@@ -104,7 +104,7 @@ fn the_palette_runs_a_command_by_name() {
 }
 
 #[test]
-fn the_palette_knows_every_preset_and_every_method() {
+fn the_palette_knows_every_name() {
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)]);
     let by_palette = |s: &mut Session, text: &str| {
         s.press(Modifiers::COMMAND, Key::K);
@@ -130,7 +130,7 @@ fn messages_can_be_closed() {
 }
 
 #[test]
-fn the_window_reaches_the_maps_and_comes_back() {
+fn the_window_function_reaches_the_maps() {
     let mut s = Session::start();
     let (requests, painted) = s.state().work_done();
     s.app.get_by_label("hamming").scroll_to_me();
@@ -145,7 +145,7 @@ fn the_window_reaches_the_maps_and_comes_back() {
 }
 
 #[test]
-fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
+fn bounds_follow_the_selected_reflector() {
     let mut s = Session::start();
     assert_eq!(s.state().bounds_asked(), 0);
     s.ask(WindowCommand::OpenPanel(Panel::Bounds));
@@ -162,7 +162,7 @@ fn bounds_follow_the_selected_reflector_and_are_only_computed_while_visible() {
 }
 
 #[test]
-fn cuts_are_pinned_by_a_key_and_stay_when_the_scene_goes() {
+fn pinned_cuts_outlive_their_scene() {
     let mut s = Session::start();
     s.ask(WindowCommand::OpenPanel(Panel::Cuts));
     s.press(Modifiers::NONE, Key::K);

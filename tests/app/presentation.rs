@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 #[test]
-fn one_key_begins_a_presentation_and_the_same_brings_everything_back() {
+fn one_key_toggles_a_presentation() {
     let mut s = Session::start();
     s.ask(WindowCommand::Maximise(Panel::Cuts));
     s.ask(WindowCommand::Maximise(Panel::Cuts));
@@ -164,7 +164,7 @@ fn a_map_is_copied_upright_a_pixel_a_cell() {
 }
 
 #[test]
-fn a_blob_in_a_map_is_selected_by_a_click_and_moved_by_a_drag() {
+fn a_blob_in_a_map_stands_for_its_reflector() {
     let mut s = Session::start();
     let rect = s.app.get_by_label("Target map").rect();
     let radar = s.state().radar().clone();

@@ -49,7 +49,7 @@ fn recorded(s: &Session, radar: &Radar) -> PathBuf {
 }
 
 #[test]
-fn five_radars_are_recorded_opened_and_seen_by_every_model_based_method() {
+fn every_model_based_method_works_on_five_radars() {
     let model_based = methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name()));
     let mut s = Session::with_methods(model_based.collect());
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(40.0))));
@@ -81,7 +81,7 @@ fn five_radars_are_recorded_opened_and_seen_by_every_model_based_method() {
 }
 
 #[test]
-fn the_same_radars_are_chosen_in_the_panel_and_every_map_follows() {
+fn every_map_follows_the_chosen_radar() {
     let mut s = Session::start();
     for (what, radar) in radars() {
         s.ask(RadarCommand::Set(Box::new(radar.clone())));

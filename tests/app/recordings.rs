@@ -38,7 +38,7 @@ fn copied(s: &Session, name: &str) -> PathBuf {
 }
 
 #[test]
-fn a_snapshot_shows_target_and_output_and_lists_both_directions() {
+fn a_snapshot_lists_both_directions() {
     let mut s = with_iaa();
     s.ask(DocumentCommand::Recording(CASCADE));
     assert_eq!((s.state().radar().elements, s.state().radar().samples), (86, 1));
@@ -52,7 +52,7 @@ fn a_snapshot_shows_target_and_output_and_lists_both_directions() {
 }
 
 #[test]
-fn the_scene_before_a_recording_is_one_undo_away_and_nothing_is_unsaved() {
+fn the_scene_before_a_recording_is_one_undo_away() {
     let mut s = Session::start();
     s.ask(EditCommand::Add(NewObject::Point, None));
     let path = copied(&s, "chip-8.toml");
@@ -68,7 +68,7 @@ fn the_scene_before_a_recording_is_one_undo_away_and_nothing_is_unsaved() {
 }
 
 #[test]
-fn reflectors_laid_over_a_recording_explain_part_of_it_and_are_saved_as_a_scene() {
+fn reflectors_laid_over_a_recording_explain_part_of_it() {
     let mut s = with_iaa();
     s.ask(DocumentCommand::Recording(CHIP));
     s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Unexplained)));
@@ -88,7 +88,7 @@ fn reflectors_laid_over_a_recording_explain_part_of_it_and_are_saved_as_a_scene(
 }
 
 #[test]
-fn what_is_laid_over_a_recording_is_saved_beside_it_and_never_in_its_place() {
+fn what_is_laid_over_a_recording_never_replaces_it() {
     let mut s = Session::start();
     let path = copied(&s, "chip-8.toml");
     let data = path.with_extension("npz");
@@ -127,7 +127,7 @@ fn what_is_laid_over_a_recording_is_saved_beside_it_and_never_in_its_place() {
 }
 
 #[test]
-fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
+fn a_recordings_constants_cannot_be_edited() {
     let mut s = Session::start();
     s.ask(DocumentCommand::Recording(CASCADE));
     let measured = s.state().radar().clone();
@@ -144,7 +144,7 @@ fn a_recordings_constants_stay_and_its_ends_and_window_are_free() {
 }
 
 #[test]
-fn maps_and_drawing_of_a_recording_are_exported() {
+fn a_recording_is_exported() {
     let mut s = Session::start();
     s.ask(DocumentCommand::Recording(CHIP));
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
@@ -176,7 +176,7 @@ fn an_overlay_comes_back_over_its_recording_after_a_kill() {
 }
 
 #[test]
-fn a_recording_is_opened_at_the_start_and_a_broken_one_keeps_the_scene() {
+fn a_recording_is_opened_at_the_start() {
     let mut s = Session::start();
     let path = copied(&s, "cascade-86.toml");
     let text = std::fs::read_to_string(&path).unwrap();
@@ -194,7 +194,7 @@ fn a_recording_is_opened_at_the_start_and_a_broken_one_keeps_the_scene() {
 }
 
 #[test]
-fn dead_elements_interferer_and_mirror_are_edits_of_the_scene_and_are_saved() {
+fn disturbances_are_edits_of_the_scene() {
     let mut s = Session::start();
     let before = s.state().metrics();
     let mut elements = BuiltArray { elements: vec![ElementError::default(); 128] };

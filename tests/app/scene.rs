@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 #[test]
-fn a_drag_moves_one_object_from_its_first_pixel_and_undo_brings_it_back() {
+fn a_drag_moves_one_object_from_its_first_pixel() {
     let mut s = Session::start();
     let (requests, painted) = s.state().work_done();
     let (a, b) = (s.handle("point 1: move"), s.handle("point 2: move"));
@@ -30,7 +30,7 @@ fn a_drag_moves_one_object_from_its_first_pixel_and_undo_brings_it_back() {
 }
 
 #[test]
-fn boxes_select_and_keys_nudge_duplicate_and_delete() {
+fn keys_edit_what_a_box_selected() {
     let mut s = Session::start();
     let (a, b) = (s.handle("point 1: move"), s.handle("point 2: move"));
     let corner = a.min(b) - vec2(25.0, 25.0);
@@ -65,7 +65,7 @@ fn objects_travel_through_the_clipboard_as_toml() {
 }
 
 #[test]
-fn a_bad_file_is_told_and_nothing_is_lost() {
+fn a_bad_file_loses_nothing() {
     let mut s = Session::start();
     let scene = s.state().editor().scene().clone();
     for (name, text) in [
@@ -120,7 +120,7 @@ fn an_unsaved_scene_comes_back_after_a_crash() {
 }
 
 #[test]
-fn two_windows_keep_apart_and_a_killed_one_leaves_its_scene_to_the_next() {
+fn a_killed_window_leaves_its_scene_to_the_next() {
     let mut first = Session::start();
     first.press(Modifiers::COMMAND, Key::A);
     first.press(Modifiers::NONE, Key::Delete);

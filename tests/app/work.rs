@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 #[test]
-fn an_evaluation_runs_beside_the_app_and_can_be_cancelled() {
+fn an_evaluation_runs_beside_the_app() {
     let mut s = Session::start();
     s.ask(WindowCommand::Maximise(Panel::Evaluation));
     s.app.get_by_label("Evaluate").click();
@@ -62,7 +62,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 #[test]
-fn a_training_log_is_followed_and_a_broken_one_is_told() {
+fn a_training_log_is_followed() {
     let mut s = Session::start();
     let log = s.folder.path().join("log.csv");
     std::fs::write(&log, "step,loss\n1,4.25\n").unwrap();
@@ -89,7 +89,7 @@ impl Reconstructor for Fragile {
 }
 
 #[test]
-fn a_method_that_panics_is_a_message_and_the_app_goes_on() {
+fn a_method_that_panics_is_a_message() {
     let fails = Arc::new(AtomicBool::new(true));
     let mut s = Session::with_methods(vec![Arc::new(Fragile(fails.clone()))]);
     assert_eq!(s.state().messages(), 1);
@@ -116,7 +116,7 @@ impl Reconstructor for Trained {
 }
 
 #[test]
-fn a_method_that_refuses_leaves_nothing_of_its_last_output_and_offers_another() {
+fn a_method_that_refuses_leaves_no_old_output() {
     let mut s = Session::with_methods(vec![Arc::new(Trained), Arc::new(Baseline)]);
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
     s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
@@ -149,7 +149,7 @@ impl Reconstructor for Slow {
 }
 
 #[test]
-fn figures_are_of_one_pair_of_maps_and_a_slow_output_is_marked_as_old() {
+fn figures_are_of_one_pair_of_maps() {
     let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
     let before = s.state().metrics().unwrap();
     assert!(!s.state().output_is_outdated());
@@ -197,7 +197,7 @@ fn nothing_found_in_one_scene_is_marked_over_the_next() {
 }
 
 #[test]
-fn a_drag_lets_a_slow_method_finish_now_and_then() {
+fn a_drag_lets_a_slow_method_finish_sometimes() {
     let finished = Arc::new(AtomicU32::new(0));
     let mut s = Session::with_methods(vec![Arc::new(Slow(finished.clone()))]);
     let at = s.handle("point 1: move");

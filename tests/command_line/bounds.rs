@@ -41,7 +41,7 @@ fn the_table_names_the_gain_an_end() {
 }
 
 #[test]
-fn bounds_fall_with_the_noise_and_rise_with_a_neighbour() {
+fn bounds_follow_noise_level() {
     let report = json(&["bounds", "--layout", "two-ends,full", "--snr", "0,20", "--apart", "1", "--json"]);
     let bound = |layout: usize, row: usize, which: &str| {
         report["layouts"][layout]["bounds"][row][which]["position_millimetres"].as_f64().unwrap()
@@ -90,7 +90,7 @@ fn what_is_wrong_is_named() {
 }
 
 #[test]
-fn robustness_prints_a_line_for_each_method_and_scale() {
+fn robustness_prints_a_line_for_each_case() {
     let folder = tempfile::tempdir().unwrap();
     let run = apertura(&["robustness", "--method", "bartlett,baseline", "--count", "1", "--scale", "0,2", "--output"])
         .arg(folder.path())

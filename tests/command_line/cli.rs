@@ -58,7 +58,7 @@ fn the_environment_picks_the_instructions_or_is_refused() {
 }
 
 #[test]
-fn maps_have_the_keys_and_shapes_of_the_authors_program() {
+fn maps_have_the_layout_of_the_authors_program() {
     let folder = folder();
     std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
     apertura(&folder).args(["maps", "scene.toml", "-o", "maps.npz"]).assert().success().stdout(contains("maps.npz"));
@@ -87,7 +87,7 @@ fn maps_have_the_keys_and_shapes_of_the_authors_program() {
 }
 
 #[test]
-fn the_samples_of_the_ends_are_the_first_and_last_elements() {
+fn the_ends_are_the_outermost_elements() {
     let folder = folder();
     std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
     apertura(&folder).args(["maps", "scene.toml", "-o", "m.npz", "--floor", "exact"]).assert().success();
@@ -202,7 +202,7 @@ fn evaluate_shows_ours_beside_the_printed() {
 }
 
 #[test]
-fn bad_input_is_named_and_leaves_nothing() {
+fn bad_input_leaves_no_file() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("good.toml", TWO_POINTS);

@@ -86,7 +86,7 @@ fn weights_from_a_file_are_used_or_refused() {
 }
 
 #[test]
-fn recipes_are_listed_and_unknown_ones_refused() {
+fn unknown_recipes_are_refused() {
     apertura().args(["train", "--list"]).assert().success().stdout(contains("experiment-2-small"));
     apertura().args(["train", "no-such"]).assert().failure().stderr(contains("neither a file nor a shipped recipe"));
 }

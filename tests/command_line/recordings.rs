@@ -17,7 +17,7 @@ use tempfile::TempDir;
 const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/recordings");
 
 #[test]
-fn a_recording_gives_its_maps_and_no_positions() {
+fn a_recording_gives_its_maps_without_positions() {
     let folder = folder();
     apertura(&folder).arg("maps").arg(format!("{SHIPPED}/chip-8.toml")).args(["-o", "m.npz"]).assert().success();
     let mut found = Npz::open(&folder.path().join("m.npz")).unwrap();
@@ -141,7 +141,7 @@ fn apart(radar: &Radar, cos: f64, range: f64, (x, y): (f64, f64)) -> (f64, f64) 
 }
 
 #[test]
-fn every_radar_goes_through_maps_and_every_model_based_method() {
+fn every_radar_goes_through_every_command() {
     let folder = folder();
     let mut refused = Vec::new();
     for (name, text, places) in RADARS {

@@ -53,7 +53,7 @@ fn without_times(table: &[u8]) -> Vec<String> {
 }
 
 #[test]
-fn the_printed_means_are_those_of_the_rows_and_shards_add_up() {
+fn the_printed_means_are_those_of_the_rows() {
     let folder = folder();
     let evaluate = "evaluate --method bartlett,baseline --set 1,3 --count 5 --seed 4";
     let whole = json(&folder, &format!("{evaluate} --json --rows whole.csv"));
@@ -358,7 +358,7 @@ fn a_networks_rows_say_which_weights_it_had() {
 }
 
 #[test]
-fn worsen_repeats_itself_and_what_it_writes_is_as_bad_as_it_says() {
+fn worsen_writes_a_scene_as_bad_as_it_says() {
     let folder = folder();
     apertura(&folder, "scenes --set 2 --seed 3 --index 1 -o s.toml").assert().success();
     let worsen = "worsen s.toml --method baseline --tries 24 --within 1.5 --seed 5 -o";

@@ -48,7 +48,7 @@ fn forty() -> Campaign {
 }
 
 #[test]
-fn sets_1_and_2_reproduce_the_printed_baseline() {
+fn sets_of_points_reproduce_the_printed_baseline() {
     for set in [1, 2] {
         let found = differences(&run(&forty(), set), set);
         assert_eq!(reproduces(found, ON_FORTY), [true; 3], "set {set}: SE, P_D, P_FA off by {found:.3?}");

@@ -127,7 +127,7 @@ fn the_two_way_carrier_folds_the_scene() {
 }
 
 #[test]
-fn an_empty_scene_is_flat_and_dark() {
+fn an_empty_scene_is_dark() {
     let radar = Radar::default();
     let signal = simulate(&radar, &Scene::default(), Floor::Thesis, 0).unwrap();
     let maps = LogMaps::of_signal(&radar, &signal);

@@ -15,7 +15,7 @@ fn scene(interferer: Interferer) -> Scene {
 }
 
 #[test]
-fn it_is_heard_for_its_part_of_the_chirp_and_from_its_direction() {
+fn an_interferer_is_heard_where_its_settings_say() {
     let interferer = Interferer { x_metres: 30.0, y_metres: 40.0, crossing: 0.5, duration: 0.25, strength: 0.1 };
     let signal = simulate(&radar(), &scene(interferer), Floor::Exact, 0).unwrap();
     let amplitude = 100.0 * 0.1 / 50.0;

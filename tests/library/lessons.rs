@@ -66,7 +66,7 @@ fn db(ratio: f64) -> f64 {
 }
 
 #[test]
-fn the_floor_teaches_the_gain_of_whole_array_and_end() {
+fn the_floor_teaches_the_right_processing_gain() {
     let radar = Radar::default();
     let scene = Scene::of_points([(0.0, 20.0)]);
     let signal = simulate(&radar, &scene, Floor::Exact, 0).unwrap();

@@ -81,7 +81,7 @@ fn check(work: &str, radar: &Radar) {
 }
 
 #[test]
-fn maps_and_exports_stay_below_what_is_counted() {
+fn memory_stays_below_what_is_counted() {
     let radar = Radar { elements: 1024, samples: 1024, ..Radar::default() };
     for work in ["export", "engine"] {
         check(work, &radar);

@@ -61,7 +61,7 @@ fn largest_difference(a: &Reconstruction, b: &Reconstruction) -> f32 {
 }
 
 #[test]
-fn names_are_unique_and_described() {
+fn every_method_has_a_name_of_its_own() {
     let all = methods::all();
     for (i, method) in all.iter().enumerate() {
         assert!(all[..i].iter().all(|m| m.name() != method.name()), "{} is there twice", method.name());
@@ -70,7 +70,7 @@ fn names_are_unique_and_described() {
 }
 
 #[test]
-fn gain_leaves_no_trace_and_runs_repeat() {
+fn the_scale_of_the_samples_does_not_change_the_answer() {
     let ends = ends_of(&two_points(), Floor::Thesis);
     for method in methods::all() {
         let name = method.name();

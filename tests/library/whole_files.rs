@@ -201,7 +201,7 @@ fn save_too_much(folder: &Path) -> String {
 
 #[cfg(unix)]
 #[test]
-fn a_file_that_does_not_fit_leaves_the_old_one_and_says_so() {
+fn a_file_that_does_not_fit_leaves_the_old_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     file::save(&path, &numbered(3)).unwrap();
@@ -214,7 +214,7 @@ fn a_file_that_does_not_fit_leaves_the_old_one_and_says_so() {
 /// A real full disk: a small file system in memory, where this user may mount one.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_leaves_the_old_file_and_says_so() {
+fn a_full_disk_leaves_the_old_file() {
     let folder = tempfile::tempdir().unwrap();
     let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"]).arg(folder.path()).output();
     if !mount.as_ref().is_ok_and(|m| m.status.success()) {
@@ -262,7 +262,7 @@ fn a_read_only_folder_is_named() {
 }
 
 #[test]
-fn a_folder_that_vanishes_is_told_and_nothing_is_written_elsewhere() {
+fn a_folder_that_vanishes_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("inner");
     std::fs::create_dir(&inner).unwrap();

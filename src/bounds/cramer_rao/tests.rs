@@ -133,7 +133,7 @@ fn far_ahead_the_closed_forms_hold() {
 }
 
 #[test]
-fn the_covariance_of_x_and_y_gives_the_range_back() {
+fn cartesian_covariance_gives_the_range_bound_back() {
     let bound = alone(&Layout::two_ends(&Radar::default()), at(15.0, 0.6));
     let (cos, sin) = (0.6, 0.8);
     let along = cos * cos * bound.x_metres.powi(2)
@@ -143,7 +143,7 @@ fn the_covariance_of_x_and_y_gives_the_range_back() {
 }
 
 #[test]
-fn noise_scales_it_and_gain_does_not() {
+fn the_bound_scales_with_noise() {
     let radar = Radar::default();
     let layout = Layout::two_ends(&radar);
     let r = at(12.0, -0.4);

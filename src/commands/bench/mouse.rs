@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_scene_is_dragged_and_timed() {
+    fn every_drag_is_timed() {
         let rows = measure().unwrap();
         assert_eq!(rows.len(), 4);
         for row in rows {

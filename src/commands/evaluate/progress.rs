@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_says_how_much_is_done_and_left() {
+    fn a_line_says_how_much_is_left() {
         let progress = Progress { done: 30, ..Progress::new(120, Duration::from_secs(30)) };
         let line = progress.line("walls", Duration::from_secs(60));
         assert_eq!(line, "30 of 120 maps, now set walls; 60 seconds so far, about 3 minutes left");

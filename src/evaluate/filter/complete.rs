@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_methods_and_columns_of_methods_are_offered() {
+    fn every_known_name_is_offered() {
         assert_eq!(at("mi"), (0, ["milliseconds", "missed", "min_range_metres"].map(String::from).into()));
         assert_eq!(at("objects > 3 & li"), (14, vec!["live.".into(), "milliseconds".into()]));
         assert_eq!(at("matched-f"), (0, vec!["matched-filter-coherent.".into()]));

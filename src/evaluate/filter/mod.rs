@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_chosen_by_their_figures_and_other_methods() {
+    fn rows_are_chosen_by_figures_of_any_method() {
         for (text, expected) in [
             ("squared_error > 800", &[3, 4, 5][..]),
             ("live.squared_error >= 800 & objects >= 4", &[2, 3, 4, 5]),

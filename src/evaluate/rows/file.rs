@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_may_be_elsewhere_and_others_beside_them() {
+    fn columns_may_stand_in_any_order() {
         let table = text(&[row("1", 0, "live")]);
         let turned: String = table
             .lines()
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_line_and_column() {
+    fn faults_name_their_place() {
         let good = text(&[row("1", 0, "live"), row("1", 1, "live")]);
         assert_eq!(
             error(&good.replace("34.333333333333336", "inf")),

@@ -66,7 +66,7 @@ fn a_repair_is_the_smallest_move_that_helps() {
 }
 
 #[test]
-fn a_search_that_makes_no_sense_is_refused_and_one_that_is_stopped_keeps_what_it_has() {
+fn a_stopped_search_keeps_what_it_has() {
     let refuse =
         |search: &Search, scene: &Scene| search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err();
     let worsen = search(Aim::Worsen, Measure::SquaredError);

@@ -27,7 +27,7 @@ fn found(folder: &Path) -> Restored {
 }
 
 #[test]
-fn two_windows_keep_two_copies_and_the_next_two_find_them() {
+fn two_windows_keep_two_copies() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = Autosave::claim(folder.path()).unwrap();
     let mut second = Autosave::claim(folder.path()).unwrap();
@@ -134,7 +134,7 @@ fn the_first_start_with_a_file_keeps_the_unsaved_scene_one_step_behind() {
 }
 
 #[test]
-fn unreadable_copies_are_set_aside_and_the_others_come_back() {
+fn unreadable_copies_are_set_aside() {
     let folder = tempfile::tempdir().unwrap();
     Autosave::claim(folder.path()).unwrap().keep_now(&edited(street())).unwrap();
     std::fs::write(folder.path().join("autosave.behind-7.toml"), "neither").unwrap();

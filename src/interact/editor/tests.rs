@@ -14,7 +14,7 @@ fn place_of(editor: &Editor, index: usize) -> [f64; 2] {
 }
 
 #[test]
-fn a_drag_keeps_the_distance_to_the_pointer_and_is_one_step() {
+fn a_drag_keeps_the_distance_to_the_pointer() {
     let mut e = editor();
     let pointer = Place::new(0.3, 10.2);
     let hit = e.hit(pointer, 0.1).unwrap();
@@ -42,7 +42,7 @@ fn a_click_that_moves_nothing_leaves_no_step() {
 }
 
 #[test]
-fn a_selection_moves_together_and_a_cancelled_drag_comes_back() {
+fn a_selection_moves_together() {
     let mut e = editor();
     e.select_all();
     let hit = e.hit(Place::new(3.0, 12.0), 0.1).unwrap();
@@ -116,7 +116,7 @@ fn count(path: &Path) -> usize {
 }
 
 #[test]
-fn undoing_open_gives_back_the_document_before_and_no_file_is_overwritten_by_another() {
+fn undoing_open_gives_back_the_document_before() {
     let (_folder, a, b) = two_files();
     let mut e = Editor::of(Document::default());
     e.open("open", Document::read(&a).unwrap());
@@ -135,7 +135,7 @@ fn undoing_open_gives_back_the_document_before_and_no_file_is_overwritten_by_ano
 }
 
 #[test]
-fn the_radar_is_edited_undone_and_saved() {
+fn the_radar_is_part_of_the_document() {
     let (_folder, a, _) = two_files();
     let mut e = Editor::of(Document::read(&a).unwrap());
     assert_eq!(e.edit_radar("carrier", None, |r| r.carrier = Carrier::TwoWay), Ok(true));
@@ -158,7 +158,7 @@ fn the_radar_is_edited_undone_and_saved() {
 }
 
 #[test]
-fn saving_under_another_name_moves_the_document_and_all_its_steps() {
+fn saving_under_another_name_moves_the_document() {
     let (folder, a, b) = two_files();
     let mut e = Editor::of(Document::read(&a).unwrap());
     e.add(Object::Point(Point::new(5.0, 5.0)));

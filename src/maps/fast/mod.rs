@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_are_left_out_stay_and_silent_rows_are_silent() {
+    fn rows_that_are_left_out_stay() {
         let radar = Radar { elements: 64, samples: 128, end_elements: 4, ..Radar::default() };
         let reflectors = Scene::of_points([(0.1, 1.0)]).reflectors();
         let mut profiles = BlockProfiles::<f64, LANES_F64>::silence(&radar);

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn module_engine_and_twin_agree() {
+    fn the_three_implementations_agree() {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
         let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
         let input = input(&reference, 1.0);

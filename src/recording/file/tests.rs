@@ -93,7 +93,7 @@ fn two_ends_stand_in_one_array_or_in_two() {
 }
 
 #[test]
-fn elements_are_turned_around_conjugated_and_calibrated() {
+fn elements_are_corrected_as_the_text_says() {
     let folder = folder_with("d.npz", &[("a", all().into_dyn())]);
     let gains = "[recording.calibration]\ngain_db = [20, 0, 0, 0, 0, 0, 0, 0]";
     let recording = read(&folder, &usual(&format!("conjugate = true\nreverse_elements = true\n{gains}"))).unwrap();
@@ -157,7 +157,7 @@ fn a_raw_capture_takes_its_radar_from_the_cfg() {
 }
 
 #[test]
-fn faults_name_file_key_shape_and_what_was_expected() {
+fn faults_name_file_key_shape_expectation() {
     let folder = folder_with("d.npz", &[("a", all().into_dyn()), ("cube", Array3::zeros((2, 8, 4)).into_dyn())]);
     fs::write(folder.path().join("real.npy"), b"no array at all").unwrap();
     let mut nan = all();

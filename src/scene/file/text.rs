@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_their_place_and_what_was_expected() {
+    fn faults_name_place_with_expectation() {
         let point = "[[object]]\nkind = \"point\"\nx_metres = 1\n";
         let crowd =
             |kind: &str, keys| format!("[[object]]\nkind = \"{kind}\"\nx_metres = 1\n{keys}\ncount = 1000000000000\n");

@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_round_trip_and_what_can_not_be_used_is_refused() {
+    fn unusable_instructions_are_refused() {
         for set in Simd::ALL {
             assert_eq!(set.name().parse(), Ok(set));
             match Simd::on_this_processor(set.name()) {

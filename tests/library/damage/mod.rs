@@ -69,14 +69,14 @@ fn try_all(count: u64, only: Option<&str>) {
 }
 
 #[test]
-fn damaged_files_are_told_in_bounded_memory_and_time() {
+fn damaged_files_fail_within_bounds() {
     try_all(2_000, None);
 }
 
 /// `DAMAGED=1000000` tries a million of each, `READER=scene` only that reader.
 #[test]
 #[ignore = "long: hundreds of thousands of inputs"]
-fn many_damaged_files_are_told_in_bounded_memory_and_time() {
+fn many_damaged_files_fail_within_bounds() {
     let count = std::env::var("DAMAGED").ok().and_then(|n| n.parse().ok()).unwrap_or(200_000);
     try_all(count, std::env::var("READER").ok().as_deref());
 }
