@@ -7,12 +7,11 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// What lies beneath the reflectors of the maps.
+/// The floor: the noise of the maps.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FloorArgs {
-    /// What lies beneath the reflectors: thesis (its f64 rounding noise), exact (nothing), snr=DB (thermal noise, DB from -100 to
-    /// 300) or dbm=LEVEL (thermal noise of LEVEL dBm a sample whatever the scene, from -300 to 200; a reflector of sigma 1 at 20 m is
-    /// +18 dBm)
+    /// Noise: thesis (its f64 rounding noise), exact (none), snr=DB (thermal noise at a signal-to-noise ratio, -100 to 300) or dbm=LEVEL
+    /// (thermal noise of LEVEL dBm a sample in every scene, -300 to 200; a reflector of sigma 1 at 20 m has +18 dBm)
     #[arg(long, value_name = "thesis|exact|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
     pub floor: Floor,
 }

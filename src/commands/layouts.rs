@@ -1,4 +1,4 @@
-//! `apertura layouts`: two ends against as many elements at random places, and against others.
+//! `apertura layouts`: the two ends compared with as many elements at random places, and with other layouts.
 
 use super::arguments::whole;
 use super::figure::{Drawn, Figure, save};
@@ -19,8 +19,8 @@ use std::path::PathBuf;
 
 /// Compare element layouts: side lobes of one reflector, and the squared error of the matched filter on random scenes
 ///
-/// Every layout is heard over the same scenes and floor, and drawn by the same near-field matched filter. Layouts must stand on the
-/// radar's own half-wavelength grid. P_D is read where the false-alarm rate is 1 %.
+/// Every layout sees the same scenes over the same floor. The same near-field matched filter draws its map. A layout's elements must stand on the
+/// radar's half-wavelength grid. P_D is at a false-alarm rate of 1 %.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Layouts: two-ends, one-end, random=N, random=N:SEED

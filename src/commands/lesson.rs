@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Begin a lesson from a file
 ///
-/// Reads and checks the lesson, then opens the app on it; without a display it says what the lesson holds. docs/lessons.md describes
+/// Reads and checks the lesson, then opens it in the window. Without a display it prints what the lesson contains. docs/lessons.md describes
 /// the format.
 #[derive(Debug, clap::Args)]
 pub struct Args {

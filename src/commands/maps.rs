@@ -19,17 +19,17 @@ use std::sync::Arc;
 
 /// Compute the maps of a scene or a recording, to an .npz archive or a .png or .svg picture
 ///
-/// The archive holds all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
+/// The archive has all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
-/// (f64 [4, 512, 1024], the network's input): the keys of the thesis author's program. That of a recording lacks what is not known:
-/// positions always, polar_full where the two ends alone were recorded. With --method it also holds output (f32 [1, 512, 1024],
-/// Lambda as that method estimates it), as the window's "Export maps" does.
+/// (f64 [4, 512, 1024], the network's input). These are the keys of the thesis author's program. The archive of a recording has no
+/// positions, and no polar_full where only the two ends were recorded. With --method it also has output (f32 [1, 512, 1024]), the method's
+/// estimate of Lambda. The window's "Export maps" writes the same.
 ///
-/// Beside them stand the axes: range_metres (f64 [512]), cos_theta (f64 [1024], 0 straight ahead, 1 along the array to the right),
+/// Further keys are the axes: range_metres (f64 [512]), cos_theta (f64 [1024], 0 straight ahead, 1 along the array to the right),
 /// element_x_metres (f64 [1024]; sub0 has the first of them, sub1 the last); the weights of the two transforms: sample_window
 /// (f64 [512]), element_window (f64 [1024]); and each of the radar's constants as a number: carrier_hz, bandwidth_hz,
 /// element_spacing_metres, transmit_power_watts, carrier_turns_per_wavelength (-1 one-way, +2 two-way), elements, end_elements,
-/// samples. format_version is 2; archives of version 1 have neither axes nor constants, and are read as before.
+/// samples. format_version is 2; archives of version 1 have neither axes nor constants and are still read.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene (.toml or .npz) or recording (.toml with [recording]) to look at
@@ -46,11 +46,11 @@ pub struct Args {
     #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way")]
     carrier: Option<Carrier>,
 
-    /// Picture and output: how decades become Lambda, min-max (the thesis) or db=RANGE (below the peak)
+    /// Picture and output: scale of Lambda, min-max (the thesis) or db=RANGE (below the peak)
     #[arg(long, value_name = "min-max|db=RANGE", default_value_t = Normalisation::MinMax)]
     normalisation: Normalisation,
 
-    /// Reconstruction to show as the output [default: the best at hand]; in an archive there is an output only with --method
+    /// Reconstruction to show as the output [default: live, or iaa for a recording of another radar]; an archive has an output only with --method
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
@@ -58,7 +58,7 @@ pub struct Args {
     #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
     colours: ColourMap,
 
-    /// Recording: take the echoes of this scene's reflectors off first, their gains fitted; what they leave unexplained is drawn
+    /// Recording: fit the gains of this scene's reflectors, subtract their echoes, and draw the residual
     #[arg(long, value_name = "SCENE")]
     explain: Option<PathBuf>,
 

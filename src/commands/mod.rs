@@ -37,7 +37,7 @@ use std::process::ExitCode;
 
 /// See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
 ///
-/// Without a command the app opens, on a scene or a recording where one is given. Where there is no display, its panels are drawn to
+/// Without a command the window opens, on a scene or a recording if one is given. Without a display its panels are drawn to
 /// apertura.png instead.
 #[derive(Debug, Parser)]
 #[command(version, about, args_conflicts_with_subcommands = true, after_help = ENVIRONMENT)]
@@ -49,10 +49,10 @@ struct Cli {
     command: Option<Command>,
 }
 
-/// What the environment decides.
+/// Environment variables, told below the help.
 const ENVIRONMENT: &str = "Environment:
-  APERTURA_SIMD  portable, avx2 or avx512: compute with these instructions (default: the best that the processor has)
-  APERTURA_LOG   what is told on standard error, such as debug (default: warnings)";
+  APERTURA_SIMD  portable, avx2 or avx512: instructions to compute with (default: the best that the processor has)
+  APERTURA_LOG   messages on standard error, such as debug (default: warnings)";
 
 /// What the program can do beside opening its window.
 #[derive(Debug, Subcommand)]

@@ -8,14 +8,14 @@ use std::sync::Arc;
 /// Which weights the networks have, and what computes them.
 #[derive(Debug, Clone, clap::Args)]
 pub struct NetworkArgs {
-    /// Weights to use in place of the shipped ones: safetensors, or a PyTorch checkpoint (.pt) of the thesis' or the live
-    /// network: a state_dict, by itself or under model, state_dict or model_state_dict; of a checkpoint of the training programs the
-    /// averaged weights
+    /// Weights in place of the shipped ones: safetensors, or a PyTorch checkpoint (.pt) of the thesis' or the live network. A
+    /// checkpoint holds a state_dict, by itself or under model, state_dict or model_state_dict. Of a checkpoint of the training programs
+    /// the averaged weights are used
     #[cfg(feature = "network")]
     #[arg(long, value_name = "FILE")]
     weights: Option<std::path::PathBuf>,
 
-    /// What computes the thesis' networks (live has an engine of its own)
+    /// Backend of the thesis' networks (live has its own)
     #[cfg(feature = "network")]
     #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", crate::network::backend::Backend::NAMES.join(", ")))]
     backend: crate::network::backend::Backend,

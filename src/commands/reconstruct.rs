@@ -22,13 +22,13 @@ use std::time::Instant;
 
 /// Estimate the whole array's map from the samples of the two ends
 ///
-/// IN holds sub0 and sub1 (complex128 [512, 12], any gain, or [samples, elements of an end] of another radar); for the thesis'
-/// networks it may hold polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` brings its radar along. OUT gets net_output (f32 [512, 1024] or
-/// [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and milliseconds; and of what the method
-/// found, the strongest first, found_cos_theta, found_range_metres (NaN for a snapshot whose range nobody told), found_db (relative to
-/// the strongest) and found_confidence (0 to 1: of the energy around its range that the other echoes leave unexplained, the part that
-/// this one explains; NaN where the method does not say): its reflectors, or the peaks of its map within 20 dB. A recording's .toml in
-/// place of IN.npz brings its radar along.
+/// IN has sub0 and sub1: complex128 [512, 12], or [samples, elements of an end] of another radar, of any gain. For the thesis' networks it may have
+/// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` and a recording's .toml name their own radar.
+///
+/// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and
+/// milliseconds. It also gets the echoes found, the strongest first: the method's reflectors, or the peaks of its map within 20 dB. These are found_cos_theta,
+/// found_range_metres (NaN for a snapshot of unknown range), found_db (relative to the strongest) and found_confidence (0 to 1: the
+/// fraction that this echo explains of the energy around its range that the other echoes leave; NaN where the method has none).
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Archive with the samples (.npz), or a recording (.toml)
@@ -189,7 +189,7 @@ impl Args {
     }
 }
 
-/// Confidence beneath which an echo is called doubtful.
+/// Confidence below which an echo is called doubtful.
 const DOUBTFUL: f64 = 0.5;
 
 /// What is read.

@@ -1,4 +1,4 @@
-//! `apertura robustness`: each method's error over how far the array's elements are off.
+//! `apertura robustness`: each method's error over the size of the elements' errors.
 
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::figure::{Drawn, Figure, save, save_numbers, tick};
@@ -17,11 +17,11 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Measure methods on arrays whose elements are not as they should be: gain, phase and place drawn for each element
+/// Measure methods on arrays with element errors: gain, phase and place drawn for each element
 ///
 /// Prints CSV, one line a method and scale: method, scale, gain_decibels, phase_degrees, position_millimetres (standard deviations),
-/// squared_error, squared_error_standard_error, detection, false_alarm. Maps are compared with that of the array as it should be;
-/// every scale meets the same scenes and the same errors but for their size.
+/// squared_error, squared_error_standard_error, detection, false_alarm. Maps are compared with that of the array without errors.
+/// Every scale has the same scenes, and the same draw of errors times the scale.
 ///
 /// With --json one object is printed: set, count, seed, floor, calibrated, and rows with the columns of the CSV, where squared_error,
 /// detection and false_alarm are objects of mean and standard_error. Rates are fractions, not percent.
@@ -43,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "MM", default_value_t = 0.0, value_parser = real(0.0..=MOST))]
     position_millimetres: f64,
 
-    /// What these are multiplied with
+    /// Factors on all three
     #[arg(long, value_name = "FACTOR,..", value_delimiter = ',', default_value = "0,0.5,1,2,4", value_parser = real(0.0..=MOST))]
     scale: Vec<f64>,
 

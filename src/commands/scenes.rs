@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic,
-    /// near; or noise, whose scenes are empty: give --floor dbm=LEVEL to what opens them
+    /// near; or noise (empty scenes: give --floor dbm=LEVEL to the command that reads them)
     #[arg(long, value_name = "1|2|3|KIND")]
     set: Kind,
 
@@ -19,7 +19,7 @@ pub struct Args {
     #[arg(long, value_name = "N", required_unless_present = "index", value_parser = whole(1..=1_000_000u32))]
     count: Option<u32>,
 
-    /// This scene alone: the one in the row of `apertura evaluate --rows` with this index
+    /// Write only the scene with this index, as in the rows of `apertura evaluate --rows`
     #[arg(long, value_name = "I", conflicts_with_all = ["count", "format"], value_parser = whole(0..=u32::MAX))]
     index: Option<u32>,
 

@@ -7,8 +7,8 @@ use crate::radar::Radar;
 
 /// Try scenes built to break numerics by every algorithm, and many random edits
 ///
-/// Exit status 0 means: every number is finite, every algorithm keeps the error it promises, edits end where a fresh build does, and
-/// memory stays flat. Takes a few minutes.
+/// Exit status 0 means that every number is finite, every algorithm keeps its tolerance, edits give the same maps as a fresh start, and
+/// memory does not grow. Takes a few minutes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Print one JSON object instead of a table
@@ -20,7 +20,7 @@ pub struct Args {
           value_parser = whole(1..=1_000_000u32))]
     edits: u32,
 
-    /// Picks the edits
+    /// Seed of the edits
     #[arg(long, value_name = "SEED", default_value_t = StressRequest::default().seed, value_parser = seed)]
     seed: u64,
 

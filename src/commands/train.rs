@@ -20,14 +20,14 @@ use std::time::Duration;
 
 /// Train a network by a recipe
 ///
-/// The folder gets log.csv, a checkpoint (replaced in one step) and, at the end, weights.safetensors with its record.
+/// The folder gets log.csv, a checkpoint, and at the end weights.safetensors with the record of the run.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Recipe: the name of a shipped one, or a .toml file [with --resume: that of the run]
     #[arg(required_unless_present_any = ["list", "resume"])]
     recipe: Option<String>,
 
-    /// Name the shipped recipes
+    /// List the shipped recipes
     #[arg(long)]
     list: bool,
 
@@ -35,23 +35,23 @@ pub struct Args {
     #[arg(long, value_name = "DIR", conflicts_with = "resume")]
     output: Option<PathBuf>,
 
-    /// Go on with the run in this folder
+    /// Resume the run in this folder
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
 
-    /// Stop, with a checkpoint, after so many steps in all
+    /// Stop with a checkpoint after this many steps in all
     #[arg(long, value_name = "N", value_parser = whole(0..=u64::MAX))]
     steps: Option<u64>,
 
-    /// Stop, with a checkpoint, after so many minutes
+    /// Stop with a checkpoint after this many minutes
     #[arg(long, value_name = "M", value_parser = real(0.0..=MOST_MINUTES))]
     minutes: Option<f64>,
 
-    /// Write weights even where no step was taken, so that they are random
+    /// Write random weights if no step was taken
     #[arg(long)]
     untrained: bool,
 
-    /// Where tensors are computed
+    /// Backend that computes tensors
     #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::NAMES.join(", ")))]
     backend: Backend,
 }

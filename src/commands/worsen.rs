@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 
 /// Search near a scene for one on which a method does worse, or for the smallest move after which it is right
 ///
-/// Objects move by at most --within; their echoes change by up to 6 dB against each other; other noise is drawn. The same seed gives the same
-/// scene as long as --tries ends the search, not --minutes. With --repair objects move and nothing else changes; right is an output that
-/// misses no object (--measure missed), has no ghost (ghosts), or has a fifth of the squared error. Prints before and after; OUT.toml
-/// is written when something was found.
+/// Objects move by at most --within. Their echoes change by up to 6 dB against each other, and new noise is drawn. The same seed gives the same
+/// scene if --tries ends the search, and not --minutes. With --repair only objects move. An output is right if it misses no object
+/// (--measure missed), has no ghost (ghosts), or has a fifth of the squared error. Prints figures before and after. Writes OUT.toml if the search
+/// succeeds.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene to start from (.toml or .npz)
@@ -26,11 +26,11 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     method: String,
 
-    /// What worse means
+    /// The figure that should get worse
     #[arg(long, value_name = "squared-error|missed|ghosts", default_value_t)]
     measure: Measure,
 
-    /// Look for the smallest move after which the method is right instead
+    /// Search for the smallest move after which the method is right instead
     #[arg(long)]
     repair: bool,
 
@@ -39,15 +39,15 @@ pub struct Args {
           value_parser = real(LEAST_REACH..=1000.0))]
     within: f64,
 
-    /// Scenes to try; 256, or as many as there is time for where --minutes is given
+    /// Scenes to try [default: 256; no limit with --minutes]
     #[arg(long, value_name = "N", value_parser = whole(1..=u32::MAX))]
     tries: Option<u32>,
 
-    /// Stop after so many minutes; 10 where nothing is said
+    /// Stop after this many minutes [default: 10]
     #[arg(long, value_name = "T", value_parser = real(0.001..=MOST_MINUTES))]
     minutes: Option<f64>,
 
-    /// Picks the scenes that are tried
+    /// Seed of the scenes that are tried
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 

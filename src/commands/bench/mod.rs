@@ -24,13 +24,13 @@ use std::path::PathBuf;
 
 /// Measure run time against error of every algorithm
 ///
-/// Times are for three Lambda maps ready, on all threads; the bare two-dimensional transform they are compared with runs on one.
+/// Times end when three Lambda maps are ready. All threads are used. The bare two-dimensional transform that they are compared with runs on one.
 ///
 /// methods.json, and --methods --json, are one object: threads, scenes (of each set), methods, each with method (its name), squared_error
 /// (mean and standard_error) and median_milliseconds, both by set; crowds, each with method, reflectors, what, scenes, median_milliseconds,
-/// worst_milliseconds, squared_error; followed (method, points, scenes, moves, median_milliseconds, most_milliseconds, which nine of ten moves
-/// keep to, worst_milliseconds); and left_out, what the live network leaves out, by kind of scene: scenes, computed (part of the side lobes in
-/// range), largest_error (of Lambda), median_milliseconds, whole_median_milliseconds (with nothing left out).
+/// worst_milliseconds, squared_error; followed (method, points, scenes, moves, median_milliseconds, most_milliseconds: the 90th percentile,
+/// worst_milliseconds); and left_out, what the live network leaves out, by kind of scene: scenes, computed (fraction of the side lobes
+/// in range), largest_error (of Lambda), median_milliseconds, whole_median_milliseconds (with nothing left out).
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Print one JSON object instead of a table
@@ -46,7 +46,7 @@ pub struct Args {
           value_parser = whole(1..=10_000u32))]
     reflectors: Vec<u32>,
 
-    /// Who takes part: plan, or the name of an algorithm; everybody where nobody is named
+    /// Algorithms to measure: plan, or an algorithm's name [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     algorithms: Vec<Entrant>,
 
@@ -54,8 +54,8 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = whole(1..=1000u32))]
     repeats: u32,
 
-    /// Our script of other tools (comparisons/maps.py), run beside on the same tasks, one thread on both sides; tools that are not
-    /// installed are named
+    /// Script that runs other tools on the same tasks (comparisons/maps.py), one thread each; tools that are not installed are
+    /// named
     #[arg(long, value_name = "FILE")]
     others: Option<PathBuf>,
 

@@ -1,4 +1,4 @@
-//! `apertura bounds`: what no unbiased estimator can beat, for any element layout.
+//! `apertura bounds`: the Cramer-Rao bound and the ambiguity function of any element layout.
 
 mod chart;
 mod report;
@@ -15,16 +15,16 @@ use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
 use report::{Bound, BoundRow, LayoutReport, Report, columns_to_cos};
 use std::path::PathBuf;
 
-/// Bound the error of any unbiased position estimate, and show which places sound alike, for several element layouts
+/// Bound the error of any unbiased position estimate, and show which places are nearly indistinguishable, for several element layouts
 ///
-/// Prints the Cramer-Rao bound of one reflector's place and amplitude, alone and with a second one beside it, and the lobes of the ambiguity function along
-/// cos(theta). Angles are in columns of the whole array's map, 1/512 of cos(theta). With -o DIR the bound is drawn to bounds.svg and
-/// the ambiguity function over range and cos(theta) to ambiguity.png; with --monte-carlo the errors that the Newton search makes to
-/// monte-carlo.svg; and all numbers are written to bounds.json.
+/// Prints the Cramer-Rao bound of one reflector's place and amplitude, alone and with a second reflector beside it. Prints the lobes of the
+/// ambiguity function along cos(theta). Angles are in columns of the whole array's map, 1/512 of cos(theta). With -o DIR draws the bound to
+/// bounds.svg and the ambiguity function over range and cos(theta) to ambiguity.png, and writes all numbers to bounds.json. With
+/// --monte-carlo also draws the errors of the Newton search to monte-carlo.svg.
 ///
 /// That file and --json are one object: x_metres, y_metres (the reflector), apart_columns (from there to the second), layouts, each with
-/// layout (its name), elements, lobes (null where there are none; main_lobe_cos, highest_side_lobe and side_lobe_rms as parts of the
-/// reflector's own likeness, highest_side_lobe_offset in cos(theta)) and bounds, one a ratio: snr_db, alone and beside_another (null where
+/// layout (its name), elements, lobes (null where there are none; main_lobe_cos, highest_side_lobe and side_lobe_rms relative to the
+/// main lobe's peak, highest_side_lobe_offset in cos(theta)) and bounds, one a ratio: snr_db, alone and beside_another (null where
 /// the samples don't determine the positions; range_millimetres, columns, position_millimetres: standard deviations); and monte_carlo, one
 /// a ratio: snr_db, bound_metres, error_metres and near_error_metres (root mean square; the second without draws on another tooth; null where
 /// no draw counts), trials, miscounted, off_by_a_tooth (numbers of draws).
@@ -43,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "X,Y", default_value = "5,18", value_parser = place, allow_hyphen_values = true)]
     at: Place,
 
-    /// Columns from there to the second reflector, at the same range
+    /// Columns from the reflector to the second one, at the same range
     #[arg(long, value_name = "COLUMNS", default_value_t = 8.0, value_parser = apart, allow_hyphen_values = true)]
     apart: f64,
 
@@ -52,11 +52,11 @@ pub struct Args {
           allow_hyphen_values = true)]
     snr: Vec<Decibels>,
 
-    /// Also bound it where the phase between the ends is unknown: one complex gain for the elements of either half of each layout
+    /// Also bound the error with unknown phase between the ends: one complex gain for each half of a layout
     #[arg(long)]
     gain_per_end: bool,
 
-    /// Also let the Newton search place the reflector in this many draws of noise at every ratio
+    /// Also run the Newton search on this many draws of noise at every ratio
     #[arg(long, value_name = "N", value_parser = whole(1..=100_000u64))]
     monte_carlo: Option<u64>,
 

@@ -1,4 +1,4 @@
-//! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values; row by row, in parts, and on scenes of one's own.
+//! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values. Also writes rows, runs shards, and takes your own scenes.
 
 mod kept;
 mod progress;
@@ -24,16 +24,15 @@ use std::time::Duration;
 
 /// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
 ///
-/// P_D and P_FA are at the threshold that each method ships with, chosen on validation scenes: what a user gets. Beside them stands
-/// P_D where every scene has a threshold of its own that holds its P_FA to the printed one; the thesis' own P_D, at one fixed threshold, is
-/// no figure of that column. Beneath each mean stands the median over the scenes. An object is missed when less than half of where
-/// the whole array sees it is above the threshold; a ghost is a blob where the whole array sees nothing. "Near best" is the part of the
-/// scenes on which the squared error is at most 1.2 times the least of the other methods'. Behind the name of a method that has learned
-/// weights stand the optimisers that trained them.
+/// P_D and P_FA are at the threshold that each method ships with, which was chosen on validation scenes. A further column gives P_D
+/// with a threshold for each scene that holds its P_FA to the printed one. The thesis' P_D is at one fixed threshold and cannot be compared with
+/// that column. Below each mean stands the median over the scenes. An object is missed when less than half of the cells in which the whole
+/// array shows it exceed the threshold. A ghost is a blob where the whole array shows nothing. "Near best" is the fraction of scenes on
+/// which the squared error is at most 1.2 times the smallest of the other methods'. The optimisers that trained a network stand behind
+/// its name.
 ///
-/// With --rows each row is appended as soon as it is found. A run that was stopped goes on where its rows end when the same command is given
-/// again; rows of anything else are refused. --merge joins the rows of several runs that were made alike, and fails where scenes lack of
-/// what these runs were to find.
+/// With --rows each row is appended as soon as it is found. The same command resumes a stopped run. Rows of another run are
+/// refused. --merge joins the rows of the parts of one run, and fails where scenes are missing.
 ///
 /// With --json one object is printed: count, seed, floor, normalisation, carrier, reading and radar (what made the rows; null where older rows
 /// don't say, the last three also for the scenes of a folder; radar is empty for table 3.1's), missing (what lacks of the whole run: set,
@@ -62,32 +61,32 @@ pub struct Args {
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
-    /// The scene files of this folder in place of random scenes
+    /// Folder of scene files, in place of random scenes
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["set", "count", "seed", "carrier", "thesis_text"])]
     scenes: Option<PathBuf>,
 
-    /// Append one row a scene and method to this CSV file, and go on where its rows end; the figures printed are means of these rows
+    /// Append one row a scene and method to this CSV file, and resume where its rows end; tables are printed from these rows
     #[arg(long, value_name = "FILE.csv")]
     rows: Option<PathBuf>,
 
-    /// Write over the file of --rows, whatever it holds
+    /// Replace the file of --rows, whatever it contains
     #[arg(long, requires = "rows")]
     overwrite: bool,
 
-    /// Try every N-th scene only, from scene I on
+    /// Only every N-th scene, from scene I on
     #[arg(long, value_name = "I/N", default_value_t)]
     shard: Shard,
 
-    /// Print the tables of rows that were written before, all together
+    /// Print the tables of rows from these files together
     #[arg(long, value_name = "FILE.csv", num_args = 1..,
           conflicts_with_all = ["method", "set", "count", "seed", "scenes", "shard", "floor", "carrier", "thesis_text"])]
     merge: Vec<PathBuf>,
 
-    /// Print the tables of --merge although scenes lack
+    /// Print the tables of --merge even if scenes are missing
     #[arg(long, requires = "merge")]
     partial: bool,
 
-    /// Seconds between lines of progress where standard error is no terminal
+    /// Seconds between lines of progress if standard error is no terminal
     #[arg(long, value_name = "SECONDS", default_value_t = 30)]
     progress: u32,
 
@@ -111,7 +110,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// Runs every method over every set, or reads what was found before, and prints the tables.
+    /// Runs every method over every set, or reads rows, and prints the tables.
     pub fn run(self) -> Result<(), CommandError> {
         let (rows, missing) = if self.merge.is_empty() { (self.measure()?, Vec::new()) } else { self.merged()? };
         let report = Report::of(&rows, missing);
