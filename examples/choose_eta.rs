@@ -152,7 +152,7 @@ fn live() -> Outcome {
         let mut rates = [[0.0; 2]; PARTS.len()];
         for number in 0..SCENES {
             let trial = Trial::new(&radar, &generator.scene(kind, number), floor, Request::default().normalisation)?;
-            let answer = trial.ask(method.as_ref(), &Request { floor, ..Request::default() })?;
+            let answer = trial.ask(method.as_ref(), &Request { noise: floor.into(), ..Request::default() })?;
             for (rates, part) in rates.iter_mut().zip(PARTS) {
                 let eta = 1.0 - part as f32 * (1.0 - answer.eta);
                 let (detection, false_alarm) = detection_rates(&trial.target, &answer.found.lambda, eta);

@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
     let radar = Radar::default();
     let floor = args.snr_db.map_or(Floor::Thesis, |db| Floor::Snr(Decibels(db)));
-    let request = Request { floor, ..Request::default() };
+    let request = Request { noise: floor.into(), ..Request::default() };
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
     let methods = args.method.iter().map(|name| methods::by_name(name)).collect::<Result<Vec<_>, _>>()?;
     for kind in &args.set {

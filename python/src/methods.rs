@@ -6,8 +6,7 @@ use crate::radar::{Radar, or_default};
 use crate::scene::named;
 use crate::work::{self, Progress};
 use apertura::maps::Normalisation;
-use apertura::reconstruct::{self, Reconstructor, Request};
-use apertura::signal::Floor;
+use apertura::reconstruct::{self, NoisePrior, Reconstructor, Request};
 use ndarray::{Array1, Array2};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -75,7 +74,8 @@ impl Method {
     /// Args:
     ///     ends: Complex numbers `[2, end_elements, samples]`, of any gain; they are copied.
     ///     radar: The radar that sampled them; that of table 3.1 where none is given.
-    ///     floor: What lies beneath them: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
+    ///     floor: What lies beneath them: "thesis", "exact", "snr=DB", "dbm=LEVEL", "white" or "white=SIGMA". SIGMA is the root mean
+    ///         square of the noise in a sample; the level of any other white noise the method measures.
     ///     normalisation: How the map is normalised: "min-max" or "db=RANGE".
     ///     snapshot_range_metres: Where the echoes of a single sample come from, if anybody knows.
     ///     progress: Called with the part that is done, 0 to 1.
@@ -94,13 +94,13 @@ impl Method {
         snapshot_range_metres: Option<f64>,
         progress: Progress<'_, '_>,
     ) -> PyResult<Reconstruction> {
-        let (floor, normalisation): (Floor, Normalisation) = (named(floor)?, named(normalisation)?);
+        let (noise, normalisation): (NoisePrior, Normalisation) = (named(floor)?, named(normalisation)?);
         let radar = or_default(radar);
         let ends = self::ends(ends, &radar)?;
         let method = &self.0;
         let answer = work::run(py, progress, |task| {
             let request =
-                Request { floor, normalisation, snapshot_range_metres, task: task.clone(), ..Request::default() };
+                Request { noise, normalisation, snapshot_range_metres, task: task.clone(), ..Request::default() };
             method.reconstruct(&radar, &ends, &request)
         })?
         .map_err(value)?;

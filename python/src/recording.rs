@@ -5,9 +5,9 @@ use crate::errors;
 use crate::maps::Maps;
 use crate::radar::Radar;
 use crate::scene::named;
-use apertura::recording::file::load;
+use apertura::reconstruct::NoisePrior;
 use apertura::recording::presets::{ALL, Preset};
-use apertura::recording::{self, FLOOR};
+use apertura::recording::{self, file::load};
 use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -95,10 +95,10 @@ impl Recording {
         self.0.doubts.clone()
     }
 
-    /// The floor that methods are told of: its level they measure themselves.
+    /// What methods are told of its noise: that it is white. Its level they measure themselves.
     #[getter]
     fn floor(&self) -> String {
-        FLOOR.to_string()
+        NoisePrior::UNKNOWN.to_string()
     }
 
     /// Maps of the samples of all elements.

@@ -22,7 +22,8 @@ pub struct Ambiguity {
 ///
 /// A layout without elements hears nothing: its likeness is 0 everywhere.
 pub fn ambiguity(radar: &Radar, layout: &Layout, centre: Polar, ranges_metres: &[f64], cosines: &[f64]) -> Ambiguity {
-    let atom = |range, cos| ArrayEcho::heard_by(radar, &layout.x_metres, range, cos);
+    let pairs = layout.pairs();
+    let atom = |range, cos| ArrayEcho::heard_by(radar, &pairs, range, cos);
     let reflector = atom(centre.range_metres, centre.cos_theta);
     let likeness: Vec<f64> = ranges_metres
         .par_iter()

@@ -7,12 +7,13 @@
 //!
 //! It is said of unbiased estimators alone. One that knows something of the scene beforehand, and so is biased, may err less.
 
-use crate::radar::{Decibels, Layout, Radar};
+use crate::radar::{Decibels, Layout, Pair, Radar};
 use crate::scene::Reflector;
+use crate::signal::path::{By, Change};
+use crate::signal::phase::{Echo, EchoModel};
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 
 /// Standard deviations below which no unbiased estimate of one reflector's position can stay.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +77,8 @@ pub enum BoundsError {
 /// Variance of the white complex noise that leaves this signal-to-noise ratio a sample, averaged over the samples of `layout`,
 /// for `reflector` alone.
 pub fn noise_variance(radar: &Radar, layout: &Layout, reflector: &Reflector, snr: Decibels) -> f64 {
-    let power: f64 = layout.x_metres.iter().map(|&x| Echo::new(radar, x, reflector).amplitude.powi(2)).sum();
+    let model = EchoModel::new(radar);
+    let power: f64 = layout.pairs().into_iter().map(|pair| model.echo(pair, reflector).amplitude.powi(2)).sum();
     power / layout.len().max(1) as f64 / snr.power_ratio()
 }
 
@@ -152,45 +154,26 @@ const COS: usize = 1;
 const GAIN: usize = 2;
 
 /// One reflector's echo at one element, and how it changes with the reflector's place.
-struct Echo {
-    amplitude: f64,
-    carrier_turns: f64,
-    turns_per_sample: f64,
-    /// Relative change of the signal for a metre of distance: `decay + j (carrier_rate + beat_rate n1)`.
-    decay: f64,
-    carrier_rate: f64,
-    beat_rate: f64,
-    /// Change of the distance with range and with cos(theta).
-    by: [f64; 2],
+struct PlacedEcho {
+    echo: Echo,
+    /// Change with range and with cos(theta).
+    by: [Change; 2],
+    carrier_turns_per_metre: f64,
+    beat_turns_per_metre: f64,
 }
 
-impl Echo {
-    fn new(radar: &Radar, element_x: f64, r: &Reflector) -> Echo {
-        let polar = radar.polar_of(r.x_metres, r.y_metres);
-        let distance = (r.x_metres - element_x).hypot(r.y_metres);
-        let carrier = radar.carrier.turns_per_wavelength() / radar.wavelength_metres();
-        let beat = 1.0 / radar.max_range_metres();
-        Echo {
-            amplitude: radar.transmit_power_watts * r.reflectivity / distance.powi(2),
-            carrier_turns: (carrier * distance).fract(),
-            turns_per_sample: (beat * distance).fract(),
-            decay: -2.0 / distance,
-            carrier_rate: TAU * carrier,
-            beat_rate: TAU * beat,
-            // distance^2 = range^2 - 2 range x cos + x^2
-            by: [
-                (polar.range_metres - element_x * polar.cos_theta) / distance,
-                -polar.range_metres * element_x / distance,
-            ],
+impl PlacedEcho {
+    fn new(radar: &Radar, model: &EchoModel, pair: Pair, r: &Reflector) -> Self {
+        PlacedEcho {
+            echo: model.echo(pair, r),
+            by: [By::Range, By::CosTheta].map(|by| Change::of_point(pair, [r.x_metres, r.y_metres], by)),
+            carrier_turns_per_metre: radar.carrier_turns_per_metre(),
+            beat_turns_per_metre: radar.beat_turns_per_metre(1.0),
         }
     }
 
-    fn signal(&self, sample: usize) -> Complex64 {
-        Complex64::from_polar(self.amplitude, TAU * (self.carrier_turns + self.turns_per_sample * sample as f64))
-    }
-
     fn relative_change(&self, sample: f64, parameter: usize) -> Complex64 {
-        Complex64::new(self.decay, self.carrier_rate + self.beat_rate * sample) * self.by[parameter]
+        self.by[parameter].of_sample(self.carrier_turns_per_metre + self.beat_turns_per_metre * sample)
     }
 }
 
@@ -201,7 +184,7 @@ impl Echo {
 /// times for each metre, and all of that belongs to the unknown gain.
 struct Model {
     /// `[reflectors][elements]`.
-    echoes: Vec<Vec<Echo>>,
+    echoes: Vec<Vec<PlacedEcho>>,
     /// Which gain each element has, from 0.
     group: Vec<usize>,
     groups: usize,
@@ -211,18 +194,21 @@ struct Model {
 
 impl Model {
     fn new(radar: &Radar, layout: &Layout, reflectors: &[Reflector], gains: Gains) -> Model {
-        let echoes: Vec<Vec<Echo>> =
-            reflectors.iter().map(|r| layout.x_metres.iter().map(|&x| Echo::new(radar, x, r)).collect()).collect();
+        let model = EchoModel::new(radar);
+        let pairs = layout.pairs();
+        let of_one = |r: &Reflector| pairs.iter().map(|pair| PlacedEcho::new(radar, &model, *pair, r)).collect();
+        let echoes: Vec<Vec<PlacedEcho>> = reflectors.iter().map(of_one).collect();
         let has_both = layout.x_metres.iter().any(|x| *x < 0.0) && layout.x_metres.iter().any(|x| *x >= 0.0);
         let parts = gains == Gains::PerEnd && has_both;
         let group: Vec<usize> = layout.x_metres.iter().map(|x| usize::from(parts && *x >= 0.0)).collect();
         let groups = if parts { 2 } else { 1 };
         let middle = (radar.samples as f64 - 1.0) / 2.0;
-        let own_of = |elements: &Vec<Echo>, g: usize| {
+        let own_of = |elements: &Vec<PlacedEcho>, g: usize| {
             let of_group = || elements.iter().zip(&group).filter(|(_, of)| **of == g).map(|(e, _)| e);
-            let power: f64 = of_group().map(|e| e.amplitude.powi(2)).sum();
+            let power: f64 = of_group().map(|e| e.echo.amplitude.powi(2)).sum();
             [RANGE, COS].map(|p| {
-                let weighted: Complex64 = of_group().map(|e| e.relative_change(middle, p) * e.amplitude.powi(2)).sum();
+                let weighted: Complex64 =
+                    of_group().map(|e| e.relative_change(middle, p) * e.echo.amplitude.powi(2)).sum();
                 weighted / power
             })
         };
@@ -255,7 +241,7 @@ impl Model {
             for sample in 0..radar.samples {
                 for (l, (elements, own)) in self.echoes.iter().zip(&self.own).enumerate() {
                     let echo = &elements[element];
-                    let signal = echo.signal(sample);
+                    let signal = echo.echo.sample(sample);
                     for p in [RANGE, COS] {
                         row[each * l + p] = signal * (echo.relative_change(sample as f64, p) - own[*group][p]);
                     }

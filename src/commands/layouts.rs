@@ -9,7 +9,7 @@ use crate::maps::LogMaps;
 use crate::radar::{Layout, LayoutKind, Polar, Radar, counted};
 use crate::reconstruct::{Request, layout_matched_filter};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::{BeatSignal, simulate};
+use crate::signal::{BeatSignal, Floor, simulate};
 use ndarray::Array2;
 use num_complex::Complex64;
 use plotters::coord::Shift;
@@ -85,7 +85,7 @@ impl Args {
             let mut rocs = vec![Roc::default(); layouts.len()];
             for number in 0..self.count {
                 let scene = generator.scene(kind, number);
-                let signal = simulate(&radar, &scene, request.floor, scene.noise_seed).map_err(CommandError::failed)?;
+                let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).map_err(CommandError::failed)?;
                 let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
                 for (i, layout) in layouts.iter().enumerate() {
                     let samples = heard(&radar, &self.layout[i], layout, &signal)?;

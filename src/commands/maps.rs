@@ -9,11 +9,11 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
 use crate::radar::{Carrier, Radar};
-use crate::reconstruct::{Reconstructor, Request};
+use crate::reconstruct::{NoisePrior, Reconstructor, Request};
+use crate::recording::Recording;
 use crate::recording::explain::explain;
-use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
-use crate::signal::{self, TwoEnds};
+use crate::signal::{self, Floor, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -90,7 +90,7 @@ impl Args {
         match output {
             Output::Archive => {
                 let request =
-                    Request { floor: self.floor.floor, normalisation: self.normalisation, ..Request::default() };
+                    Request { noise: self.floor.floor.into(), normalisation: self.normalisation, ..Request::default() };
                 let output = self.estimate(&radar, &signal.two_ends(&radar), &request)?;
                 write_maps(&self.output, &radar, &scene, &signal, output.as_ref())
                     .map_err(CommandError::on(&self.output))
@@ -117,9 +117,9 @@ impl Args {
             Output::Archive => {
                 let (_, full) = maps_of(&recording);
                 let (radar, ends) = (&recording.radar, recording.two_ends());
-                let (floor, normalisation) = (recording::FLOOR, self.normalisation);
+                let (noise, normalisation) = (NoisePrior::UNKNOWN, self.normalisation);
                 let snapshot_range_metres = recording.range_metres;
-                let request = Request { floor, normalisation, snapshot_range_metres, ..Request::default() };
+                let request = Request { noise, normalisation, snapshot_range_metres, ..Request::default() };
                 let output = self.estimate(radar, &ends, &request)?;
                 write_recorded_maps(&self.output, radar, &ends, full.as_ref(), output.as_ref())
                     .map_err(CommandError::on(&self.output))
@@ -152,7 +152,7 @@ impl Args {
 
     /// How a recording is drawn; a scene's floor is its own.
     fn style(&self) -> Style {
-        Style { floor: recording::FLOOR, normalisation: self.normalisation, colours: self.colours, eta: None }
+        Style { floor: Floor::default(), normalisation: self.normalisation, colours: self.colours, eta: None }
     }
 
     fn write(&self, bytes: &[u8]) -> Result<(), CommandError> {

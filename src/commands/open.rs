@@ -5,7 +5,6 @@ use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::methods;
 use crate::picture::{Format, Style, compose, compose_recording, is_our_png};
-use crate::recording;
 use crate::scene::file::SceneFile;
 use crate::scene::presets;
 use crate::signal;
@@ -103,7 +102,6 @@ fn draw_instead(input: &Input) -> Result<(), CommandError> {
             compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
         }
         Input::Recording(recording) => {
-            let style = Style { floor: recording::FLOOR, ..style };
             let method = methods::preferred_for(&recording.radar);
             compose_recording(recording, method.as_ref(), &style, Format::Png)
         }

@@ -11,10 +11,10 @@ use crate::maps::archive::read_radar;
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
-use crate::reconstruct::{Detection, ReconstructError, Reconstructor, Request};
+use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
 use crate::recording;
 use crate::scene::file;
-use crate::signal::{Floor, TwoEnds};
+use crate::signal::TwoEnds;
 use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -100,7 +100,7 @@ impl Args {
             let recording = load_recording(&self.input)?;
             let samples = Samples::Ends(recording.two_ends());
             let (radar, range_metres) = (recording.radar, recording.range_metres);
-            return Ok(Input { radar, range_metres, floor: recording::FLOOR, samples });
+            return Ok(Input { radar, range_metres, noise: NoisePrior::UNKNOWN, samples });
         }
         let (asked, range_metres) = self.radar.load()?;
         let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
@@ -119,7 +119,7 @@ impl Args {
         } else {
             Samples::Ends(self.two_ends(&mut archive, &radar)?)
         };
-        Ok(Input { radar, range_metres, floor: self.floor.floor, samples })
+        Ok(Input { radar, range_metres, noise: self.floor.floor.into(), samples })
     }
 
     /// The error of an input that is no archive: what it is, where that is recognised.
@@ -162,8 +162,8 @@ impl Args {
     }
 
     fn answer(&self, method: &dyn Reconstructor, input: &Input, ends: &TwoEnds) -> Result<Answer, ReconstructError> {
-        let Input { radar, range_metres, floor, .. } = input;
-        let request = Request { floor: *floor, snapshot_range_metres: *range_metres, ..Request::default() };
+        let Input { radar, range_metres, noise, .. } = input;
+        let request = Request { noise: *noise, snapshot_range_metres: *range_metres, ..Request::default() };
         let started = Instant::now();
         let answer = method.reconstruct(radar, ends, &request)?;
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
@@ -197,7 +197,7 @@ struct Input {
     radar: Radar,
     /// Of a snapshot, where anybody knows it.
     range_metres: Option<f64>,
-    floor: Floor,
+    noise: NoisePrior,
     samples: Samples,
 }
 

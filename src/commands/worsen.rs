@@ -158,10 +158,9 @@ fn changes(before: &Scene, after: &Scene) -> String {
     for (i, (a, b)) in before.objects.iter().zip(&after.objects).enumerate() {
         let ([ax, ay], [bx, by]) = (a.centre_metres(), b.centre_metres());
         let (dx, dy) = (bx - ax, by - ay);
-        let strength = |o: &crate::scene::Object| o.reflectors().first().map_or(0.0, |r| r.reflectivity.abs());
         let mut line =
             format!("object {} ({}): moved by {dx:+.3} m, {dy:+.3} m ({:.3} m)", i + 1, a.kind(), dx.hypot(dy));
-        let db = 20.0 * (strength(b) / strength(a)).log10();
+        let db = 20.0 * (b.reflectivity() / a.reflectivity()).abs().log10();
         if db.abs() > 0.005 {
             line += &format!(", echo {db:+.2} dB");
         }

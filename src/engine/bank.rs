@@ -251,7 +251,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 0.0
             } else {
                 // What is taken away was evaluated another way than when it was added.
-                let leaving = amplitude(job.radar, &change.leaving);
+                let leaving = plan::amplitude_bound_of(job.radar, &change.leaving);
                 2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * leaving
             };
             (built.rounding + more <= limit).then_some((change, built.rounding + more))
@@ -336,8 +336,4 @@ impl<T: Real, const W: usize> Bank<T, W> {
 
 fn reflectors(objects: &[Object]) -> Vec<Reflector> {
     objects.iter().flat_map(Object::reflectors).collect()
-}
-
-fn amplitude(radar: &Radar, objects: &[Object]) -> f64 {
-    objects.iter().map(|o| plan::amplitude_bound(radar, &o.reflectors())).sum()
 }

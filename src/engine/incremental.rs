@@ -227,7 +227,7 @@ impl Engine {
         shown: &mut Shown,
         report: &mut Report,
     ) -> Result<(), Cancelled> {
-        let amplitude = scene_amplitude(&self.radar, scene);
+        let amplitude = plan::amplitude_bound_of(&self.radar, &scene.objects);
         let mut chosen = Plan::cheapest(scene.reflector_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
             let algorithm = self.forced.algorithm.unwrap_or(chosen.algorithm);
@@ -253,10 +253,6 @@ impl Engine {
         shown.current = [0, 1, 2].map(|i| shown.current[i] || missing[i]);
         Ok(())
     }
-}
-
-fn scene_amplitude(radar: &Radar, scene: &Scene) -> f64 {
-    scene.objects.iter().map(|o| plan::amplitude_bound(radar, &o.reflectors())).sum()
 }
 
 #[cfg(test)]

@@ -198,9 +198,9 @@ impl Campaign {
         mut on_row: impl FnMut(&Row, &Trial, &Answer),
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
-        let request = |floor| {
+        let request = |floor: Floor| {
             let normalisation = self.normalisation;
-            Request { floor, normalisation, task: task.clone(), ..Request::default() }
+            Request { noise: floor.into(), normalisation, task: task.clone(), ..Request::default() }
         };
         let mut rows = Vec::new();
         let mut warm = false;

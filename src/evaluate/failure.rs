@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Columns that a wrong tooth is looked for to either side. The two ends' ambiguity has a peak about every column.
 const MOST_TEETH: i32 = 8;
 /// An output belongs to another tooth when the target moved there leaves at most this part of the squared error.
-const EXPLAINED: f64 = 0.5;
+const LEFT_BY_TOOTH: f64 = 0.5;
 /// Cells that a detection may lie from a footprint without being a ghost: side lobes and smeared edges.
 const GHOST_MARGIN: usize = 3;
 /// Smaller specks are no ghosts, cells.
@@ -198,7 +198,7 @@ fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: 
     let best = (-MOST_TEETH..=MOST_TEETH)
         .map(|shift| (shift, error(shift)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|(shift, error)| *shift != 0 && *error <= EXPLAINED * here && covered(*shift) >= FOUND);
+        .filter(|(shift, error)| *shift != 0 && *error <= LEFT_BY_TOOTH * here && covered(*shift) >= FOUND);
     let fate = match best {
         Some((columns, _)) => Fate::WrongTooth { columns },
         None if part >= FOUND => Fate::Found,

@@ -3,10 +3,10 @@
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::radar::{Decibels, End, Layout, Radar};
 use crate::reconstruct::nomp::{Settings, find};
-use crate::reconstruct::{ReconstructError, Request};
+use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::scene::Reflector;
 use crate::signal::exact;
-use crate::signal::floor::{Floor, add_noise_from};
+use crate::signal::floor::add_noise_from;
 use crate::task::Task;
 
 /// Position errors of one reflector over independent draws of thermal noise.
@@ -53,7 +53,7 @@ pub fn placement(
         .map_err(|e| ReconstructError::Unusable { method: "nomp", reason: e.to_string() })?;
     let bound_metres = bounds[0].position_metres();
     let clean = exact::beat_signal(radar, &[reflector]).two_ends(radar);
-    let request = Request { floor: Floor::Snr(snr), task: task.clone(), ..Request::default() };
+    let request = Request { noise: NoisePrior::UNKNOWN, task: task.clone(), ..Request::default() };
     let mut squares = Vec::new();
     for trial in 0..trials {
         let (mut noisy, seed) = (clean.clone(), noise_seed(snr, trial));

@@ -67,7 +67,7 @@ impl Robustness {
         mut on_map: impl FnMut(),
     ) -> Result<Vec<RobustnessRow>, CampaignError> {
         let mut metrics = vec![vec![Vec::new(); self.scales.len()]; methods.len()];
-        let request = Request { floor: self.floor, task: task.clone(), ..Request::default() };
+        let request = Request { noise: self.floor.into(), task: task.clone(), ..Request::default() };
         let set = || format!("{:?}", self.kind);
         for index in 0..self.count {
             let (mut trial, ends) =

@@ -20,7 +20,7 @@ pub enum Quantity {
     /// Columns of one beam of an end: the map's columns over the end's elements.
     EndBeamColumns,
     /// Distance in cos(theta) from a reflector to its grating lobe: wavelength over spacing and over the carrier's turns per wavelength,
-    /// at the frequency that the middle of the chirp has ([`Radar::squint`]). `theory::fold_period_cos` says the same.
+    /// at the frequency that the middle of the chirp has ([`Radar::fold_period_cos`]).
     GratingLobeCos,
     /// The range at which an object appears: its own, wrapped at the maximum, metres.
     ApparentRangeMetres,
@@ -59,10 +59,7 @@ impl Quantity {
             Quantity::ApertureMetres => radar.aperture_metres(),
             Quantity::FarFieldMetres => radar.far_field_metres(),
             Quantity::EndBeamColumns => radar.elements as f64 / radar.end_elements as f64,
-            Quantity::GratingLobeCos => {
-                let turns = radar.carrier.turns_per_wavelength() * radar.squint();
-                radar.wavelength_metres() / radar.element_spacing_metres / turns.abs()
-            }
+            Quantity::GratingLobeCos => radar.fold_period_cos(),
             Quantity::ApparentRangeMetres => {
                 let [x, y] = centre()?;
                 x.hypot(y).rem_euclid(radar.max_range_metres())

@@ -84,7 +84,7 @@ impl Stage {
         let method = methods::by_name(&view.method).map_err(|e| e.to_string());
         let mut eta = method.as_ref().map_or(crate::evaluate::TARGET_ETA, |m| m.eta());
         let output = if with_output {
-            let request = Request { floor: view.floor, normalisation: view.normalisation, ..Request::default() };
+            let request = Request { noise: view.floor.into(), normalisation: view.normalisation, ..Request::default() };
             method.and_then(|m| {
                 let answer = m.reconstruct(radar, &signal.two_ends(radar), &request).map_err(|e| e.to_string())?;
                 eta = m.eta_of(&answer);

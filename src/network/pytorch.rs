@@ -14,7 +14,7 @@ const MAX_BYTES: u64 = 1 << 30;
 /// `training` keeps the averaged weights: those that it validates and ships.
 const STATES: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
 /// States within states that are looked into.
-const DEEPEST: usize = 4;
+const DEEPEST_STATE: usize = 4;
 /// What `DataParallel` puts before every name.
 const PARALLEL: &str = "module.";
 
@@ -48,7 +48,7 @@ fn is_pytorch(bytes: &[u8]) -> bool {
 /// What stands before the names of the network's own tensors among `names`: "" for a bare `state_dict`, such as "model." for one beside others.
 fn state_prefix(names: &[&str]) -> String {
     let mut prefix = String::new();
-    for _ in 0..DEEPEST {
+    for _ in 0..DEEPEST_STATE {
         let under = |state: &&&str| {
             let start = format!("{prefix}{state}.");
             names.iter().any(|name| name.starts_with(&start))

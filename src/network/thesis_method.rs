@@ -32,6 +32,7 @@ pub struct ThesisMethod {
     name: &'static str,
     description: &'static str,
     weights: Weights,
+    trained: Radar,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -57,6 +58,7 @@ impl ThesisMethod {
             name,
             description,
             weights: file.weights(),
+            trained: file.provenance.radar(file.name())?,
             provenance: file.provenance,
         })
     }
@@ -93,7 +95,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        check_radar(self.name, radar)
+        check_radar(self.name, &self.trained, radar)
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
@@ -107,7 +109,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
-        check_radar(self.name, radar)?;
+        check_radar(self.name, &self.trained, radar)?;
         let size = [radar.samples, radar.elements];
         let expected = vec![4, size[0], size[1]];
         if input.shape() != expected {
@@ -127,6 +129,7 @@ pub struct UnetMethod {
     config: UnetConfig,
     device: Device,
     weights: Weights,
+    trained: Radar,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -141,7 +144,8 @@ impl UnetMethod {
         let config = UnetConfig::default();
         let mut network = Unet::new(&config, &device);
         file.load_into(&mut network, |_| false)?;
-        Ok(UnetMethod { network, config, device, weights: file.weights(), provenance: file.provenance })
+        let trained = file.provenance.radar(file.name())?;
+        Ok(UnetMethod { network, config, device, weights: file.weights(), trained, provenance: file.provenance })
     }
 }
 
@@ -160,7 +164,7 @@ impl Reconstructor for UnetMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        check_radar(Unet::NAME, radar)
+        check_radar(Unet::NAME, &self.trained, radar)
     }
 
     fn weights(&self) -> Option<Weights> {

@@ -1,21 +1,87 @@
-//! The radar that networks were trained for.
+//! The radar that a network was trained for.
 
-use crate::radar::Radar;
+use crate::radar::{Carrier, Radar};
 use crate::reconstruct::ReconstructError;
 
-/// Refuses every radar but table 3.1's with its one-way carrier and Hann window: the weights know no other, and what they would
-/// draw of its samples means nothing.
+/// Quantities that differ by less than this part of themselves are the same.
+const SAME_QUANTITY: f64 = 1e-9;
+
+/// What makes the samples of `radar` others than those of `trained`: of each quantity what the network was trained with, and what it is now.
+/// The transmit power only makes samples louder, which no network hears.
+fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
+    // A new constant must be named here, or the networks would not know of it.
+    let Radar {
+        transmit_power_watts: _,
+        bandwidth_hz,
+        carrier_hz,
+        element_spacing_metres,
+        elements,
+        end_elements,
+        samples,
+        carrier,
+        window,
+    } = radar;
+    let carrier_name = |c: &Carrier| if *c == Carrier::OneWay { "the one-way carrier" } else { "the two-way carrier" };
+    let count = |a: usize, b: usize, what: &str| (a != b).then(|| [a, b].map(|n| format!("{n} {what}")));
+    let quantity = |a: f64, b: f64, scale: f64, what: &str| {
+        ((a - b).abs() > SAME_QUANTITY * a.abs()).then(|| [a, b].map(|v| format!("{:.4} {what}", v / scale)))
+    };
+    let named = |a: &str, b: &str| (a != b).then(|| [a.to_owned(), b.to_owned()]);
+    [
+        count(trained.elements, *elements, "elements"),
+        count(trained.end_elements, *end_elements, "elements an end"),
+        count(trained.samples, *samples, "samples"),
+        quantity(trained.bandwidth_hz, *bandwidth_hz, 1e9, "GHz of bandwidth"),
+        quantity(trained.carrier_hz, *carrier_hz, 1e9, "GHz of carrier"),
+        quantity(trained.element_spacing_metres, *element_spacing_metres, 1e-3, "mm between elements"),
+        named(carrier_name(&trained.carrier), carrier_name(carrier)),
+        named(&format!("the {} window", trained.window.name()), &format!("the {} window", window.name())),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Whether the samples of `radar` are as those of `trained`.
+pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
+    differences(trained, radar).is_empty()
+}
+
+/// Refuses every radar whose samples are others than those that `method` was trained with: its weights know no other, and what they would
+/// draw means nothing.
 ///
 /// # Errors
-/// [`ReconstructError::Unusable`] names the radar that `method` needs.
-pub(super) fn check_radar(method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
-    if *radar == Radar::default() {
+/// [`ReconstructError::Unusable`] names what differs.
+pub(super) fn check_radar(method: &'static str, trained: &Radar, radar: &Radar) -> Result<(), ReconstructError> {
+    let differences = differences(trained, radar);
+    if differences.is_empty() {
         return Ok(());
     }
-    Err(ReconstructError::Unusable {
-        method,
-        reason: "the network works only with the default radar (table 3.1: 1024 elements, 512 samples, 2 GHz at 77 GHz, one-way carrier, \
-                 Hann window)"
-            .into(),
-    })
+    let list = |which: usize| differences.iter().map(|d| d[which].as_str()).collect::<Vec<_>>().join(", ");
+    let reason = format!("the network was trained with {}; this radar has {}", list(0), list(1));
+    Err(ReconstructError::Unusable { method, reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(radar: &Radar) -> Option<String> {
+        check_radar("live", &Radar::default(), radar).err().map(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_louder_radar_is_no_other_radar() {
+        assert_eq!(refused(&Radar { transmit_power_watts: 7.0, ..Radar::default() }), None);
+    }
+
+    #[test]
+    fn what_differs_is_named() {
+        let told = refused(&Radar { elements: 512, carrier: Carrier::TwoWay, ..Radar::default() }).unwrap();
+        let expected =
+            "trained with 1024 elements, the one-way carrier; this radar has 512 elements, the two-way carrier";
+        assert!(told.contains(expected), "{told}");
+        let told = refused(&Radar { carrier_hz: 76e9, ..Radar::default() }).unwrap();
+        assert!(told.contains("77.0000 GHz of carrier; this radar has 76.0000 GHz"), "{told}");
+    }
 }

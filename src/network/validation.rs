@@ -4,6 +4,7 @@ use super::lesson::lesson;
 use super::recipe::Recipe;
 use super::run::{Progress, Run, TrainError};
 use super::students::Student;
+use super::weights::RADAR_ENTRY;
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
 use crate::evaluate::{Roc, squared_error};
 use crate::radar::counted;
@@ -97,6 +98,8 @@ pub fn export<S: Student>(
         .collect();
     let parts = serde_json::to_string(&progress.parts)
         .map_err(|e| TrainError::Checkpoint { path: path.clone(), reason: e.to_string() })?;
+    let radar = serde_json::to_string(&run.radar)
+        .map_err(|e| TrainError::Checkpoint { path: path.clone(), reason: e.to_string() })?;
     let mut store = SafetensorsStore::from_file(&path)
         .overwrite(true)
         .with_to_adapter(BurnToPyTorchAdapter)
@@ -111,6 +114,7 @@ pub fn export<S: Student>(
         .metadata("loss", format!("{:.6}", progress.loss))
         .metadata("commit", &run.origin.commit)
         .metadata("parts", &parts)
+        .metadata(RADAR_ENTRY, &radar)
         .metadata("eta", format!("{:.4}", validation.eta))
         .metadata(
             "validation",

@@ -5,12 +5,16 @@
 
 use crate::files::kind::kind_of;
 use crate::files::sha256;
+use crate::radar::Radar;
 use crate::reconstruct::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 #[cfg(feature = "network")]
 mod load;
+
+/// Entry of a weight file with the radar of its training scenes, as JSON.
+pub const RADAR_ENTRY: &str = "radar";
 
 /// Most tensors of a weight file; the thesis' network has some 70.
 const MAX_TENSORS: usize = 10_000;
@@ -34,6 +38,20 @@ impl Provenance {
         match self.get("optimiser") {
             "" => "not recorded",
             named => named,
+        }
+    }
+
+    /// The radar of the training scenes: that of the entry [`RADAR_ENTRY`], table 3.1's where the file `name` says nothing.
+    ///
+    /// # Errors
+    /// [`WeightsError::Store`] where the entry can't be read.
+    pub fn radar(&self, name: &str) -> Result<Radar, WeightsError> {
+        match self.get(RADAR_ENTRY) {
+            "" => Ok(Radar::default()),
+            text => serde_json::from_str(text).map_err(|error| WeightsError::Store {
+                file: name.to_owned(),
+                reason: format!("its entry \"{RADAR_ENTRY}\" is no radar: {error}"),
+            }),
         }
     }
 
@@ -382,5 +400,22 @@ mod tests {
         let back = there.renamed(|n| n.trim_start_matches("x.").to_owned()).unwrap();
         load(&back, [4, 6, 8, 10]).unwrap();
         assert_eq!(WeightFile::parse("back", &back).unwrap().provenance, file.provenance);
+    }
+
+    #[test]
+    fn weights_without_a_radar_were_trained_for_table_3_1() {
+        assert_eq!(Provenance::default().radar("w").unwrap(), Radar::default());
+    }
+
+    #[test]
+    fn weights_carry_their_radar() {
+        let radar = Radar { bandwidth_hz: 1e9, ..Radar::default() };
+        let of = |text: String| {
+            let entries = [(RADAR_ENTRY.to_owned(), text)].into_iter().collect();
+            Provenance { entries }.radar("w.safetensors")
+        };
+        assert_eq!(of(serde_json::to_string(&radar).unwrap()).unwrap(), radar);
+        let told = of("{\"elements\": \"many\"}".into()).unwrap_err().to_string();
+        assert!(told.contains("w.safetensors") && told.contains("no radar"), "{told}");
     }
 }

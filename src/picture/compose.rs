@@ -31,7 +31,7 @@ impl Format {
 /// How the maps are made and painted.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Style {
-    /// The floor beneath the signal.
+    /// The floor beneath a scene's signal; a recording has noise of its own.
     pub floor: Floor,
     /// How decades become Lambda.
     pub normalisation: Normalisation,
@@ -66,7 +66,7 @@ pub fn compose(
 ) -> Result<Vec<u8>, ComposeError> {
     let Style { floor, normalisation, colours, eta } = *style;
     let maps = LogMaps::of_signal(radar, signal);
-    let request = Request { floor, normalisation, ..Request::default() };
+    let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
     let carrier = match radar.carrier {
         Carrier::OneWay => "one-way carrier",

@@ -7,7 +7,7 @@ use super::{Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
 use crate::radar::{Carrier, Decibels, End, Radar};
 use crate::reconstruct::found::reconstruct_and_find;
-use crate::reconstruct::{Detection, Reconstructor, Request};
+use crate::reconstruct::{Detection, NoisePrior, Reconstructor, Request};
 use crate::recording::{Recorded, Recording};
 use crate::scene::{Object, Point, Reflector, Scene};
 use ndarray::{ArrayView1, Axis};
@@ -65,7 +65,12 @@ fn bytes_of(drawing: &impl Drawing, format: Format) -> Result<Vec<u8>, ComposeEr
 
 fn request(recording: &Recording, style: &Style) -> Request {
     let snapshot_range_metres = recording.range_metres;
-    Request { floor: style.floor, normalisation: style.normalisation, snapshot_range_metres, ..Request::default() }
+    Request {
+        noise: NoisePrior::UNKNOWN,
+        normalisation: style.normalisation,
+        snapshot_range_metres,
+        ..Request::default()
+    }
 }
 
 fn panels(

@@ -1,6 +1,6 @@
 //! Where the elements of a line array stand: the whole array, its two ends, random places, or the virtual elements of a MIMO radar.
 
-use super::{End, Radar};
+use super::{End, Pair, Radar};
 use ndarray::{Array2, Axis};
 use rand::SeedableRng;
 use rand::seq::index;
@@ -75,6 +75,11 @@ impl Layout {
         };
         let elements: Option<Vec<usize>> = self.x_metres.iter().map(element).collect();
         Some(samples.select(Axis(0), &elements?))
+    }
+
+    /// Each element as a pair of antennas.
+    pub fn pairs(&self) -> Vec<Pair> {
+        self.x_metres.iter().map(|x| Pair::at(*x)).collect()
     }
 
     /// Number of elements.

@@ -6,15 +6,18 @@ mod elements;
 mod layout;
 mod layout_kind;
 mod memory;
+mod pair;
 pub mod presets;
 mod squint;
 mod units;
+mod wave;
 mod window;
 
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
 pub use memory::MAX_MEMORY_BYTES;
+pub use pair::Pair;
 pub use units::{Bytes, DecibelMilliwatts, Decibels, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 

@@ -13,9 +13,7 @@ use super::{Polar, Radar};
 impl Radar {
     /// cos(theta) of a blob over cos(theta) of its reflector: `1 + B / (s q f)`, 0.974 for table 3.1.
     pub fn squint(&self) -> f64 {
-        // Samples are counted from 0: the middle of the chirp is half a sample before half of them.
-        let middle = (self.samples as f64 - 1.0) / self.samples as f64;
-        1.0 + middle * self.bandwidth_hz / (self.carrier.turns_per_wavelength() * self.carrier_hz)
+        1.0 + self.beat_turns_per_metre(self.middle_sample()) / self.carrier_turns_per_metre()
     }
 
     /// Range (not wrapped) and cos(theta) at which the map of elements around (`centre_x_metres`, 0) has a reflector at (x, y).

@@ -1,17 +1,17 @@
 //! What a reconstruction is asked for, and what it answers.
 
+use super::prior::NoisePrior;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
-use crate::signal::Floor;
 use crate::task::Task;
 use ndarray::Array2;
 
 /// What a reconstruction is told beside the samples.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The floor that lies beneath the samples.
-    pub floor: Floor,
+    /// The noise beneath the samples.
+    pub noise: NoisePrior,
     /// How the map it is compared with is normalised.
     pub normalisation: Normalisation,
     /// Where the echoes of a single sample come from, metres, if anybody knows: one sample has no ranges of its own. They count as
@@ -28,7 +28,7 @@ impl Default for Request {
     /// The thesis' conventions.
     fn default() -> Self {
         Request {
-            floor: Floor::Thesis,
+            noise: NoisePrior::Rounding,
             normalisation: Normalisation::MinMax,
             snapshot_range_metres: None,
             may_follow: false,

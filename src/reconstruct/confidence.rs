@@ -13,7 +13,7 @@ use rayon::prelude::*;
 const AROUND_BINS: i64 = 2;
 
 /// Added to the Gram matrix of unit echoes: two echoes that differ by less than this are one, and neither is needed.
-const RIDGE: f64 = 1e-11;
+const ONE_ECHO_RIDGE: f64 = 1e-11;
 
 /// [`Detection::confidence`](super::Detection::confidence) of every one of `found` in `ends`, over noise of this variance a sample; one
 /// entry an echo.
@@ -33,7 +33,7 @@ pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], no
         (0..count).into_par_iter().map(|i| echoes[..=i].iter().map(|other| echoes[i].inner(other)).collect()).collect();
     let gram = Mat::from_fn(count, count, |i, j| {
         let value = if i >= j { rows[i][j] } else { rows[j][i].conj() };
-        value + if i == j { RIDGE } else { 0.0 }
+        value + if i == j { ONE_ECHO_RIDGE } else { 0.0 }
     });
     let Ok(factor) = Llt::new(gram.as_ref(), Side::Lower) else { return vec![0.0; count] };
     let inverse = factor.inverse();

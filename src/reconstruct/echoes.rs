@@ -6,6 +6,7 @@ use super::power::lambda_of_power;
 use crate::maps::{Aperture, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scene::Reflector;
+use crate::signal::path::Pairs;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
@@ -36,8 +37,8 @@ pub(super) fn of_echoes(
     let mut signal = BeatSignal::silence(radar);
     signal.samples.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each(|(block, mut rows)| {
         let element = |lane: usize| (block * W + lane).min(radar.elements - 1);
-        let element_x = Lanes(std::array::from_fn(|lane| radar.element_x_metres(element(lane))));
-        let sum = Simd::chosen().run(Sum { model: &model, element_x, found, samples: radar.samples });
+        let pairs = Pairs::new(|lane| radar.pair(element(lane)));
+        let sum = Simd::chosen().run(Sum { model: &model, pairs, found, samples: radar.samples });
         for (lane, mut row) in rows.outer_iter_mut().enumerate() {
             for (out, v) in row.iter_mut().zip(&sum) {
                 *out = Complex64::new(v.re.0[lane], v.im.0[lane]);
@@ -56,7 +57,7 @@ pub(super) fn of_echoes(
 /// Echoes added up at neighbouring elements.
 struct Sum<'a> {
     model: &'a EchoModel,
-    element_x: Lanes<f64, W>,
+    pairs: Pairs<W>,
     found: &'a [Gained],
     samples: usize,
 }
@@ -70,7 +71,7 @@ impl Kernel for Sum<'_> {
         let mut sum = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
         for chunk in self.found.chunks(CHUNK) {
             for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
-                fill_factors::<f64, W, FMA>(self.model, self.element_x, reflector, &mut f.rows, &mut f.columns);
+                fill_factors::<f64, W, FMA>(self.model, self.pairs, reflector, &mut f.rows, &mut f.columns);
                 let gain = ComplexLanes { re: Lanes::splat(gain.re), im: Lanes::splat(gain.im) };
                 for row in &mut f.rows {
                     *row = row.times::<FMA>(gain);

@@ -1,16 +1,17 @@
 //! How much of the samples is noise: what their quietest range bins hold, and no more than the floor beneath the echoes can be.
 
 use super::noise::noise_heard;
+use super::prior::NoisePrior;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
+use crate::signal::TwoEnds;
 use crate::signal::floor::thesis_noise_of_echo;
-use crate::signal::{Floor, TwoEnds};
 use ndarray::{ArrayView1, ArrayView2};
 use num_complex::Complex64;
 
-/// Variance of the white complex noise of a sample of either end, over `floor`.
-pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -> f64 {
-    Hearing::beneath(radar, ends, floor).ends_noise_variance(radar, ends)
+/// Variance of the white complex noise of a sample of either end, of which `noise` is known.
+pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> f64 {
+    Hearing::beneath(radar, ends, noise).ends_noise_variance(radar, ends)
 }
 
 /// Noise beneath the samples of both ends.
@@ -18,19 +19,21 @@ pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, floor: Floor) -
 pub struct Hearing {
     /// Variance a sample that is believed where more than [`MARGIN`] times as much is heard.
     expected: f64,
+    /// Variance a sample, where somebody knows it.
+    known: Option<f64>,
 }
 
 impl Hearing {
     /// Of any noise.
     pub fn any() -> Self {
-        Hearing { expected: f64::INFINITY }
+        Hearing { expected: f64::INFINITY, known: None }
     }
 
     /// Of what lies beneath the samples of `ends`: where that is rounding, the echoes themselves tell how much of it there is, even
     /// where they fill every range bin.
-    pub fn beneath(radar: &Radar, ends: &TwoEnds, floor: Floor) -> Self {
-        if floor.is_thermal() {
-            return Hearing::any();
+    pub fn beneath(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> Self {
+        if noise.is_white() {
+            return Hearing { known: noise.variance(), ..Hearing::any() };
         }
         let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();
         let channels = (ends.first.nrows() + ends.last.nrows()).max(1) as f64;
@@ -40,7 +43,7 @@ impl Hearing {
         };
         let of_end =
             |end: End| range_energy(radar, ends.end(end).view()).into_iter().enumerate().map(of_bin).sum::<f64>();
-        Hearing { expected: End::BOTH.into_iter().map(of_end).sum() }
+        Hearing { expected: End::BOTH.into_iter().map(of_end).sum(), known: None }
     }
 
     /// Variance of the white noise in a sample of either end.
@@ -54,6 +57,9 @@ impl Hearing {
     }
 
     fn variance<'a>(&self, radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
+        if let Some(variance) = self.known {
+            return variance;
+        }
         let heard = noise_heard(radar, channels);
         let is_echo = !heard.is_even && heard.variance > MARGIN * self.expected;
         if is_echo { self.expected } else { heard.variance }
@@ -75,22 +81,22 @@ mod tests {
     use crate::radar::Decibels;
     use crate::scene::{Line, Object, Scene};
     use crate::signal::floor::{snr_noise_variance, thesis_noise_variance};
-    use crate::signal::simulate;
+    use crate::signal::{Floor, simulate};
 
-    /// Walls in nearly every range bin.
-    fn walls() -> Scene {
-        let wall = |x, y, step, count| Object::Line(Line::vertical(x, y, step, count));
-        Scene { objects: vec![wall(-3.0, 2.0, 0.16, 100), wall(6.0, 14.0, 0.2, 110)], ..Scene::default() }
+    /// Lines in nearly every range bin.
+    fn lines() -> Scene {
+        let line = |x, y, step, count| Object::Line(Line::vertical(x, y, step, count));
+        Scene { objects: vec![line(-3.0, 2.0, 0.16, 100), line(6.0, 14.0, 0.2, 110)], ..Scene::default() }
     }
 
     #[test]
-    fn walls_in_every_range_bin_are_no_noise() {
+    fn lines_in_every_range_bin_are_no_noise() {
         let radar = Radar::default();
-        let ends = simulate(&radar, &walls(), Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let true_variance = thesis_noise_variance(&radar, &walls().reflectors())[0];
+        let ends = simulate(&radar, &lines(), Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let true_variance = thesis_noise_variance(&radar, &lines().reflectors())[0];
         let heard = |hearing: Hearing| hearing.ends_noise_variance(&radar, &ends) / true_variance;
         assert!(heard(Hearing::any()) > 1e3, "{}", heard(Hearing::any()));
-        let bounded = heard(Hearing::beneath(&radar, &ends, Floor::Thesis));
+        let bounded = heard(Hearing::beneath(&radar, &ends, NoisePrior::Rounding));
         assert!((0.5..2.0).contains(&bounded), "{bounded}");
     }
 
@@ -100,7 +106,7 @@ mod tests {
         let scene = Scene::of_points([(2.0, 10.0), (-6.0, 17.0)]);
         let ends = simulate(&radar, &scene, Floor::Snr(Decibels(20.0)), 1).unwrap().two_ends(&radar);
         let true_variance = snr_noise_variance(&radar, &scene.reflectors(), Decibels(20.0))[0];
-        let heard = ends_noise_variance(&radar, &ends, Floor::Thesis) / true_variance;
+        let heard = ends_noise_variance(&radar, &ends, NoisePrior::Rounding) / true_variance;
         assert!((heard - 1.0).abs() < 0.2, "{heard}");
     }
 }

@@ -23,6 +23,7 @@ mod noise;
 mod noise_test;
 pub mod nomp;
 mod power;
+mod prior;
 mod profiles;
 mod reconstructor;
 mod rows;
@@ -37,6 +38,7 @@ pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
 pub use hybrid::{Hybrid, on_one_scale};
 #[cfg(feature = "live")]
 pub(crate) use noise_test::level_above_mean_decades;
+pub use prior::{NoisePrior, NoisePriorError};
 pub use reconstructor::{About, Reconstructor, Weights, check_ends, untrained_noise};
 pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,

@@ -121,7 +121,7 @@ mod tests {
         for snr in [60.0, 0.0] {
             let signal = simulate(&radar, &scene, Floor::Snr(Decibels(snr)), 3).unwrap();
             let expected = snr_noise_variance(&radar, &scene.reflectors(), Decibels(snr))[0];
-            let found = ends_noise_variance(&radar, &signal.two_ends(&radar), Floor::Snr(Decibels(snr)));
+            let found = ends_noise_variance(&radar, &signal.two_ends(&radar), Floor::Snr(Decibels(snr)).into());
             assert!((found / expected - 1.0).abs() < 0.15, "{snr} dB: {found:e} {expected:e}");
         }
         let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
@@ -129,7 +129,7 @@ mod tests {
         let ends: Vec<f64> =
             End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).map(|n| of_elements[n]).collect();
         let expected = ends.iter().sum::<f64>() / ends.len() as f64;
-        let found = ends_noise_variance(&radar, &signal.two_ends(&radar), Floor::Thesis);
+        let found = ends_noise_variance(&radar, &signal.two_ends(&radar), Floor::Thesis.into());
         assert!((found / expected - 1.0).abs() < 0.2, "{found:e} {expected:e}");
     }
 
@@ -141,7 +141,7 @@ mod tests {
             let scene = Scene::of_points([(0.3 * metres, metres)]);
             let ends = simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar);
             let power = ends.first.iter().map(Complex64::norm_sqr).sum::<f64>() / ends.first.len() as f64;
-            let noise = ends_noise_variance(&radar, &ends, Floor::Exact);
+            let noise = ends_noise_variance(&radar, &ends, Floor::Exact.into());
             // Side lobes of few elements and samples: 55 dB beneath the echoes.
             assert!(noise <= 3e-6 * power, "{samples} samples: {noise:e} of {power:e}");
         }

@@ -126,7 +126,7 @@ mod tests {
 
     fn holds(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> bool {
         let ends = simulate(radar, scene, floor, seed).unwrap().two_ends(radar);
-        holds_echo(radar, &ends, ends_noise_variance(radar, &ends, floor))
+        holds_echo(radar, &ends, ends_noise_variance(radar, &ends, floor.into()))
     }
 
     #[test]

@@ -40,8 +40,7 @@ impl Profiles {
         Profiles {
             profiles,
             rows_per_metre: rows as f64 / radar.max_range_metres(),
-            turns_per_metre: radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
-                + middle / radar.max_range_metres(),
+            turns_per_metre: radar.turns_per_metre(middle),
         }
     }
 

@@ -77,11 +77,12 @@ pub trait Reconstructor: Send + Sync {
         self.check_radar(radar)?;
         self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
+        let request = &Request { noise: request.noise.scaled(gain), ..request.clone() };
         // From within, a parallel step is handed to whoever is idle; from without, its caller would sleep through each one.
         let found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
         // What was cancelled while it was drawn is no answer.
         request.task.check()?;
-        let noise_variance = ends_noise_variance(radar, &ends, request.floor);
+        let noise_variance = ends_noise_variance(radar, &ends, request.noise);
         let mut found = tested(radar, &ends, noise_variance, self.eta(), found);
         found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
         let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);

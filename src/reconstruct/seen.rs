@@ -53,17 +53,17 @@ pub(super) fn directions(radar: &Radar) -> Vec<Direction> {
     let of_column = |column: usize| {
         let cos = radar.cos_of_column(column as f64);
         // Rounding must not push a column that is the axis itself off it.
-        let lowest = cos - ((cos + 1.0 + ROUNDING) / period).floor() * period;
+        let lowest = cos - ((cos + 1.0 + ROUNDING_COS) / period).floor() * period;
         (0..=MOST_FOLDS)
             .map(move |fold| lowest + fold as f64 * period)
-            .take_while(|cos| *cos < 1.0 - ROUNDING)
+            .take_while(|cos| *cos < 1.0 - ROUNDING_COS)
             .map(move |cos| Direction { cos_theta: cos.max(-1.0), column })
     };
     (0..radar.elements).flat_map(of_column).collect()
 }
 
 /// What a cosine of a column may be wrong by.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING_COS: f64 = 1e-9;
 
 /// Distance in cos(theta) after which directions share a column.
 pub(super) fn cos_period(radar: &Radar) -> f64 {

@@ -1,7 +1,7 @@
 //! What reflectors explain of a recording, and what they leave.
 
 use super::{Recorded, Recording};
-use crate::radar::{End, Radar};
+use crate::radar::{End, Pair, Radar};
 use crate::scene::{Reflector, Scene, SceneError};
 use crate::signal::echo::{ArrayEcho, add_echo};
 use crate::signal::phase::EchoModel;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub const MAX_EXPLAINING: usize = 512;
 
 /// What is added to the diagonal of the fit, relative to it: reflectors that no element tells apart share their gain.
-const RIDGE: f64 = 1e-10;
+const SHARED_GAIN_RIDGE: f64 = 1e-10;
 
 /// A recording explained by reflectors.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +66,7 @@ pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, Expl
         let Some(samples) = row.as_slice_mut() else { return };
         for (reflector, gain) in reflectors.iter().zip(&gains) {
             let unit = Reflector { reflectivity: 1.0, ..*reflector };
-            add_echo(&model, radar.element_x_metres(*element), &unit, -gain, samples);
+            add_echo(&model, radar.pair(*element), &unit, -gain, samples);
         }
     });
     let explained = if before > 0.0 { (1.0 - power(&rows) / before).clamp(0.0, 1.0) } else { 0.0 };
@@ -132,17 +132,17 @@ fn fit(
     if reflectors.is_empty() {
         return Ok(Vec::new());
     }
-    let xs: Vec<f64> = elements.iter().map(|n| radar.element_x_metres(*n)).collect();
+    let pairs: Vec<Pair> = elements.iter().map(|n| radar.pair(*n)).collect();
     let echoes: Vec<ArrayEcho> = reflectors
         .par_iter()
         .map(|r| {
             let place = radar.polar_of(r.x_metres, r.y_metres);
-            ArrayEcho::heard_by(radar, &xs, place.range_metres, place.cos_theta)
+            ArrayEcho::heard_by(radar, &pairs, place.range_metres, place.cos_theta)
         })
         .collect();
     let y: Vec<Complex64> = rows.iter().copied().collect();
     let heard: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&y)).collect();
-    let ridge = |i: usize, j: usize| if i == j { RIDGE } else { 0.0 };
+    let ridge = |i: usize, j: usize| if i == j { SHARED_GAIN_RIDGE } else { 0.0 };
     let gram = Mat::from_fn(echoes.len(), echoes.len(), |i, j| echoes[i].inner(&echoes[j]) + ridge(i, j));
     let factor = gram.llt(Side::Lower).map_err(|e| ExplainError::Unsolvable(format!("{e:?}")))?;
     let solved = factor.solve(Mat::from_fn(echoes.len(), 1, |i, _| heard[i]));

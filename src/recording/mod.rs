@@ -40,11 +40,8 @@ pub use numpy::NumpyError;
 pub use profile::{ProfileError, RadarProfile};
 pub use signs::FORMAT;
 
-use crate::radar::{Decibels, End, Radar};
-use crate::signal::{BeatSignal, Floor, TwoEnds};
-
-/// What lies beneath the reflectors of a recording: thermal noise, whose level methods measure themselves.
-pub const FLOOR: Floor = Floor::Snr(Decibels(40.0));
+use crate::radar::{End, Radar};
+use crate::signal::{BeatSignal, TwoEnds};
 
 /// Samples of a radar's elements, and the radar.
 #[derive(Debug, Clone, PartialEq)]

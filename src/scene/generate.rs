@@ -262,7 +262,7 @@ mod tests {
         let bin = Radar::default().range_resolution_metres();
         let slanted: Vec<Line> = scenes(Kind::Walls).iter().flat_map(|s| lines(s)).collect();
         let quadrant = |q: f64| slanted.iter().filter(|l| (l.direction_degrees / 90.0).floor() == q).count();
-        assert!((0..4).all(|q| quadrant(f64::from(q)) > 5), "every quadrant gets its walls");
+        assert!((0..4).all(|q| quadrant(f64::from(q)) > 5), "every quadrant gets its lines");
         let other: Vec<Line> = scenes(Kind::Spacings).iter().flat_map(|s| lines(s)).collect();
         assert!(other.iter().all(|l| l.direction_degrees == 90.0 && (l.spacing_metres / bin - 1.5).abs() > 0.09));
         for l in slanted.iter().chain(&other) {
@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn corners_are_right_angles_that_share_an_end() {
         for objects in scenes(Kind::Corner) {
-            let [a, b] = &lines(&objects)[..] else { panic!("two walls") };
+            let [a, b] = &lines(&objects)[..] else { panic!("two lines") };
             assert_eq!((a.x_metres, a.y_start_metres), (b.x_metres, b.y_start_metres));
             let ([ax, ay], [bx, by]) = (a.step_metres(), b.step_metres());
             assert!((ax * bx + ay * by).abs() < 1e-12);

@@ -46,8 +46,8 @@ pub(super) fn simulate_built_for(
             if array.element(n).position_millimetres != 0.0 && !task.is_cancelled() {
                 samples.fill(Complex64::default());
                 let Some(samples) = samples.as_slice_mut() else { return };
-                let x = array.element_x_metres(radar, n);
-                reflectors.iter().for_each(|r| add_echo(&model, x, r, Complex64::from(1.0), samples));
+                let pair = array.pair(radar, n);
+                reflectors.iter().for_each(|r| add_echo(&model, pair, r, Complex64::from(1.0), samples));
             }
         });
         if let Some(interferer) = &scene.disturbances.interferer {
@@ -100,7 +100,7 @@ pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> O
         .outer_iter()
         .enumerate()
         .map(|(n, samples)| {
-            let echo = ArrayEcho::heard_by(radar, &[radar.element_x_metres(n)], polar.range_metres, polar.cos_theta);
+            let echo = ArrayEcho::heard_by(radar, &[radar.pair(n)], polar.range_metres, polar.cos_theta);
             let samples: Vec<Complex64> = samples.iter().copied().collect();
             let weighted: Vec<Complex64> = samples.iter().zip(&window).map(|(v, w)| v * w).collect();
             let share = echo.correlate(&weighted) / mean_weight;

@@ -12,6 +12,7 @@
 //! where no digits cancel but at the kernels' centres, `d = 0` and `d = +-N/(N-1)`, around which `z - 1` and the small factor of `g` are
 //! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins either side for 1e-3, 110 for 1e-6.
 
+use super::path::{Pairs, range_span_metres};
 use super::phase::EchoModel;
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
@@ -66,10 +67,8 @@ impl<T: Real> ClosedForm<T> {
     /// Every row that [`ClosedForm::add_block`] may write to, for elements up to `elements`, in blocks of any width.
     pub fn rows(&self, radar: &Radar, reflectors: &[Reflector], elements: usize) -> Rows {
         let mut rows = Rows::none(self.samples);
-        let (left, right) = (radar.element_x_metres(0), radar.element_x_metres(elements));
         for r in reflectors {
-            let nearest = (r.x_metres.clamp(left, right) - r.x_metres).hypot(r.y_metres);
-            let farthest = (left - r.x_metres).abs().max((right - r.x_metres).abs()).hypot(r.y_metres);
+            let (nearest, farthest) = range_span_metres(radar, elements, r);
             let bins = |metres: f64| metres / radar.range_resolution_metres();
             // The last bits of a very far range may be whole bins.
             let unsure = 2.0 + bins(farthest) * 1e-15;
@@ -79,17 +78,17 @@ impl<T: Real> ClosedForm<T> {
         rows
     }
 
-    /// Adds the range profiles of `reflectors` at the `W` elements at `element_x_metres` metres to `cells`, `[range bins]`.
+    /// Adds the range profiles of `reflectors` at `pairs` to `cells`, `[range bins]`.
     #[inline(always)]
     pub fn add_block<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
-        element_x_metres: Lanes<f64, W>,
+        pairs: Pairs<W>,
         reflectors: &[Reflector],
         cells: &mut [ComplexLanes<T, W>],
     ) {
         for r in reflectors {
-            self.add::<W, FMA>(model, element_x_metres, r, cells);
+            self.add::<W, FMA>(model, pairs, r, cells);
         }
     }
 
@@ -97,13 +96,13 @@ impl<T: Real> ClosedForm<T> {
     fn add<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
-        element_x_metres: Lanes<f64, W>,
+        pairs: Pairs<W>,
         r: &Reflector,
         cells: &mut [ComplexLanes<T, W>],
     ) {
         let of = Lanes::<f64, W>::splat;
         let bins = self.samples as f64;
-        let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
+        let echo = model.echo_lanes::<W, FMA>(pairs, r);
         // Range in bins, on the same side of the wrap as the first lane's, from the bin nearest to that.
         let position = echo.beat_turns * of(bins);
         let wraps = ((position - of(position.0[0])) * of(1.0 / bins)).nearest();

@@ -3,6 +3,7 @@
 //! Phases reach 6e4 rad, so every sample carries a rounding error of about 1e-11 of its amplitude. Normalised by its minimum, a
 //! map shows that error as its floor: it is part of what the thesis' tables measure.
 
+use super::path::thesis_path;
 use super::samples::BeatSignal;
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -20,11 +21,9 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
     let carrier = radar.carrier.turns_per_wavelength();
     let samples = radar.samples as f64;
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
-        let element_x_metres = radar.element_x_metres(n);
+        let pair = radar.pair(n);
         for r in reflectors {
-            let dx = element_x_metres - r.x_metres;
-            let distance = (dx * dx + r.y_metres * r.y_metres).sqrt();
-            let amplitude = radar.transmit_power_watts * r.reflectivity / (distance * distance);
+            let (distance, amplitude) = thesis_path(radar, pair, r);
             let carrier_phase = carrier * 2.0 * PI * distance / wavelength;
             let bins = distance * bins_per_metre;
             for (n1, sample) in row.iter_mut().enumerate() {

@@ -1,6 +1,6 @@
 //! The exact near-field echo of a single reflector, as any line of elements samples it.
 
-use crate::radar::{End, Radar};
+use crate::radar::{End, Pair, Radar};
 use crate::scene::Reflector;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
@@ -10,18 +10,12 @@ use std::f64::consts::TAU;
 /// Samples after which a running phasor is taken afresh, so that its rounding error stays at a few parts in 1e16.
 const RESTART: usize = 32;
 
-/// Adds `gain` times the echo of a unit reflector to `samples` of the element at `element_x_metres` metres.
-pub fn add_echo(
-    model: &EchoModel,
-    element_x_metres: f64,
-    reflector: &Reflector,
-    gain: Complex64,
-    samples: &mut [Complex64],
-) {
-    let echo = model.echo(element_x_metres, reflector);
+/// Adds `gain` times the echo of a unit reflector to `samples` of `pair`.
+pub fn add_echo(model: &EchoModel, pair: Pair, reflector: &Reflector, gain: Complex64, samples: &mut [Complex64]) {
+    let echo = model.echo(pair, reflector);
     let step = Complex64::cis(TAU * echo.turns_at(1) - TAU * echo.turns_at(0));
     for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
-        let mut phasor = gain * Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(block * RESTART));
+        let mut phasor = gain * echo.sample(block * RESTART);
         for sample in samples {
             *sample += phasor;
             phasor *= step;
@@ -49,20 +43,16 @@ pub struct ArrayEcho {
     norm: f64,
 }
 
-/// Positions of the elements of both ends, metres.
-fn element_xs(radar: &Radar) -> impl Iterator<Item = f64> + '_ {
-    End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).map(|n| radar.element_x_metres(n))
-}
-
 impl ArrayEcho {
     /// The echo of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`), as both ends hear it.
     pub fn at(radar: &Radar, range_metres: f64, cos_theta: f64) -> Self {
-        let xs: Vec<f64> = element_xs(radar).collect();
-        ArrayEcho::heard_by(radar, &xs, range_metres, cos_theta)
+        let ends = End::BOTH.into_iter().flat_map(|end| radar.end_range(end));
+        let pairs: Vec<Pair> = ends.map(|n| radar.pair(n)).collect();
+        ArrayEcho::heard_by(radar, &pairs, range_metres, cos_theta)
     }
 
-    /// The same as the elements at `element_x_metres` hear it.
-    pub fn heard_by(radar: &Radar, element_x_metres: &[f64], range_metres: f64, cos_theta: f64) -> Self {
+    /// The same as `pairs` hear it.
+    pub fn heard_by(radar: &Radar, pairs: &[Pair], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
         let reflector = Reflector {
             x_metres: range_metres * cos,
@@ -70,12 +60,12 @@ impl ArrayEcho {
             reflectivity: 1.0,
         };
         let model = EchoModel::new(radar);
-        let series: Vec<Series> = element_x_metres
+        let series: Vec<Series> = pairs
             .iter()
-            .map(|&x| {
-                let echo = model.echo(x, &reflector);
+            .map(|pair| {
+                let echo = model.echo(*pair, &reflector);
                 Series {
-                    start: Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(0)),
+                    start: echo.sample(0),
                     step: Complex64::cis(TAU * (echo.turns_at(1) - echo.turns_at(0))),
                     last: Complex64::cis(TAU * (echo.turns_at(radar.samples) - echo.turns_at(0))),
                 }
@@ -141,7 +131,7 @@ impl ArrayEcho {
 /// Samples side by side, and groups of them: as many as hide how long a multiplication takes.
 const W: usize = LANES_F64;
 const GROUPS: usize = 4;
-const STRIDE: usize = W * GROUPS;
+const SUMS: usize = W * GROUPS;
 
 /// `sum conj(echo) y`.
 struct Correlate<'a> {
@@ -162,16 +152,16 @@ impl Kernel for Correlate<'_> {
     }
 }
 
-/// `sum y[n] z^n` by Horner's rule from the last sample, [`STRIDE`] interleaved sums at once; `z` lies on the unit circle.
+/// `sum y[n] z^n` by Horner's rule from the last sample, [`SUMS`] interleaved sums at once; `z` lies on the unit circle.
 #[inline(always)]
 fn polynomial<const FMA: bool>(z: Complex64, y: &[Complex64]) -> Complex64 {
-    let mut powers = [Complex64::from(1.0); STRIDE];
+    let mut powers = [Complex64::from(1.0); SUMS];
     powers[1] = z;
-    (2..STRIDE).for_each(|i| powers[i] = powers[i / 2] * powers[i.div_ceil(2)]);
-    let stride = powers[STRIDE / 2] * powers[STRIDE / 2];
+    (2..SUMS).for_each(|i| powers[i] = powers[i / 2] * powers[i.div_ceil(2)]);
+    let stride = powers[SUMS / 2] * powers[SUMS / 2];
     let stride = ComplexLanes { re: Lanes::splat(stride.re), im: Lanes::splat(stride.im) };
     let mut sums = [ComplexLanes::<f64, W>::zero(); GROUPS];
-    let whole = y.chunks_exact(STRIDE);
+    let whole = y.chunks_exact(SUMS);
     let rest = whole.remainder();
     let lanes = |y: &[Complex64], group: usize| ComplexLanes {
         re: Lanes(std::array::from_fn(|l| y.get(group * W + l).map_or(0.0, |v| v.re))),
@@ -208,7 +198,7 @@ mod tests {
         assert!((echo.correlate(&exact) / echo.norm() - 1.0).norm() < 1e-12);
         let mut added = vec![Complex64::default(); 512];
         let model = EchoModel::new(&radar);
-        add_echo(&model, radar.element_x_metres(0), &echo.reflector, Complex64::from(1.0), &mut added);
+        add_echo(&model, radar.pair(0), &echo.reflector, Complex64::from(1.0), &mut added);
         for (a, e) in added.iter().zip(&exact) {
             assert!((a - e).norm() < 1e-13 * echo.norm());
         }

@@ -4,9 +4,7 @@ use super::phase::EchoModel;
 use super::samples::BeatSignal;
 use crate::radar::Radar;
 use crate::scene::Reflector;
-use num_complex::Complex64;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// Beat signal of `reflectors`, `[elements, samples]`, within 1e-13 of its peak.
 ///
@@ -15,11 +13,11 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
     let mut signal = BeatSignal::silence(radar);
     let model = EchoModel::new(radar);
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
-        let element_x_metres = radar.element_x_metres(n);
+        let pair = radar.pair(n);
         for r in reflectors {
-            let echo = model.echo(element_x_metres, r);
+            let echo = model.echo(pair, r);
             for (n1, sample) in row.iter_mut().enumerate() {
-                *sample += Complex64::from_polar(echo.amplitude, TAU * echo.turns_at(n1));
+                *sample += echo.sample(n1);
             }
         }
     });

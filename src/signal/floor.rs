@@ -7,6 +7,7 @@
 //! watts, so its level is `10 log10(|y|^2 / 1 mW)`. A reflector of sigma 1 at 20 m before a radar of 100 W has amplitude 0.25, which is
 //! +18 dBm. The number says nothing of the watts in anybody's receiver; it makes noise the same for every scene.
 
+use super::path::{Pairs, plain_path};
 use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{DecibelMilliwatts, Decibels, Radar};
@@ -55,10 +56,7 @@ impl Floor {
         match self {
             Floor::Thesis | Floor::Exact => None,
             Floor::Snr(snr) => Some(snr).filter(|_| reflectors.iter().any(|r| r.reflectivity != 0.0)),
-            Floor::Level(level) => {
-                let ratio = mean_power(radar, reflectors) / level.watts();
-                (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))
-            }
+            Floor::Level(level) => snr_over(radar, reflectors, level.watts()),
         }
     }
 }
@@ -112,7 +110,7 @@ const THESIS_ROUNDING: f64 = 1.5 / 12.0;
 
 /// Phase that the thesis' program rounds, for each metre.
 fn thesis_radians_per_metre(radar: &Radar) -> f64 {
-    std::f64::consts::TAU * radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres()
+    radar.carrier_radians_per_metre().abs()
 }
 
 /// Mean power over both ends' channels of the rounding that [`thesis_noise_variance`] gives an echo of this power from this range.
@@ -124,6 +122,12 @@ pub fn thesis_noise_of_echo(radar: &Radar, power: f64, range_metres: f64) -> f64
 /// array, over the ratio. Whether their echoes happen to interfere does not change the noise; silence has none.
 pub fn snr_noise_variance(radar: &Radar, reflectors: &[Reflector], snr: Decibels) -> Vec<f64> {
     vec![mean_power(radar, reflectors) / snr.power_ratio(); radar.elements]
+}
+
+/// Signal-to-noise ratio of `reflectors` over noise of `variance` a sample, over the whole array; `None` where nothing reflects.
+pub fn snr_over(radar: &Radar, reflectors: &[Reflector], variance: f64) -> Option<Decibels> {
+    let ratio = mean_power(radar, reflectors) / variance;
+    (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))
 }
 
 /// Variance of thermal noise of `level` a sample, the same for every element and every scene: the level in watts.
@@ -171,15 +175,12 @@ impl Kernel for BlockPowers<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let element_x_metres = Lanes(std::array::from_fn(|i| self.radar.element_x_metres(self.first_element + i)));
+        let pairs = Pairs::new(|i| self.radar.pair(self.first_element + i));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
-            let dx = element_x_metres - Lanes::splat(r.x_metres);
-            let square = dx * dx + Lanes::splat(r.y_metres * r.y_metres);
-            let scale = self.radar.transmit_power_watts * r.reflectivity;
-            let mut amplitude = square.map(|s| scale / s);
+            let (range, mut amplitude) = plain_path(self.radar.transmit_power_watts, &pairs, r);
             if let Some(rate) = self.radians_per_metre {
-                amplitude = amplitude * square.sqrt().map(|distance| ulp(rate * distance));
+                amplitude = amplitude * range.map(|range| ulp(rate * range));
             }
             total = total + amplitude * amplitude;
         }

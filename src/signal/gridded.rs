@@ -5,6 +5,7 @@
 //! samples. The cost of a reflector is a dozen cells instead of 512 samples.
 
 use super::lane_fft::LaneFft;
+use super::path::Pairs;
 use super::phase::EchoModel;
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::radar::Radar;
@@ -36,16 +37,16 @@ impl Kernel {
 
     /// Integrals of `value(x) cos(2 pi frequency x)`: with `2x = width sin(t)` the trapezoidal rule converges geometrically.
     fn transforms(&self, frequencies: impl Iterator<Item = f64>) -> Vec<f64> {
-        const STEPS: u32 = 200;
+        const TRANSFORM_STEPS: u32 = 200;
         let half = self.width as f64 / 2.0;
-        let step = PI / 2.0 / f64::from(STEPS);
+        let step = PI / 2.0 / f64::from(TRANSFORM_STEPS);
         // The integrand is even: the middle counts once, what is beside it twice; at the ends it vanishes.
         let node = |i: u32| {
             let (sin, cos) = (f64::from(i) * step).sin_cos();
             let times = if i == 0 { 1.0 } else { 2.0 };
             [TAU * half * sin, times * step * half * (self.beta * (cos - 1.0)).exp() * cos]
         };
-        let nodes: Vec<[f64; 2]> = (0..STEPS).map(node).collect();
+        let nodes: Vec<[f64; 2]> = (0..TRANSFORM_STEPS).map(node).collect();
         let transform = |frequency: f64| nodes.iter().map(|[x, weight]| weight * (frequency * x).cos()).sum();
         frequencies.map(transform).collect()
     }
@@ -129,17 +130,17 @@ impl<T: Real> Gridding<T> {
 }
 
 /// Reflectors that are added up at a time in f64: sums of sums lose fewer digits than one long sum.
-const CHUNK: usize = 64;
+const SUMMED_AT_ONCE: usize = 64;
 /// Reflectors up to which f32 keeps its promise without more ado, even where all roundings agree as they do for coincident points. Beyond,
 /// what every addition rounds off is kept and added at the end (Kahan, Commun. ACM 8, 1965): a sum of any length is as good as a short one.
 const SHORT: usize = 16;
 
-/// Beat signal of `reflectors` at the `W` elements at `element_x_metres` metres, written to `out`, one vector a sample.
+/// Beat signal of `reflectors` at `pairs`, written to `out`, one vector a sample.
 #[inline(always)]
 pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
-    element_x_metres: Lanes<f64, W>,
+    pairs: Pairs<W>,
     reflectors: &[Reflector],
     scratch: &mut Scratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
@@ -151,11 +152,11 @@ pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
     }
     if T::EPSILON > f64::EPSILON && reflectors.len() > SHORT {
         for r in reflectors {
-            spread::<T, W, FMA, true>(plan, model, element_x_metres, r, grid, spare);
+            spread::<T, W, FMA, true>(plan, model, pairs, r, grid, spare);
         }
         grid.iter_mut().zip(spare.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
     } else {
-        for (i, chunk) in reflectors.chunks(CHUNK).enumerate() {
+        for (i, chunk) in reflectors.chunks(SUMMED_AT_ONCE).enumerate() {
             if i > 0 {
                 for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
                     *total = *total + *cell;
@@ -163,10 +164,10 @@ pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
                 }
             }
             for r in chunk {
-                spread::<T, W, FMA, false>(plan, model, element_x_metres, r, grid, &mut []);
+                spread::<T, W, FMA, false>(plan, model, pairs, r, grid, &mut []);
             }
         }
-        if reflectors.len() > CHUNK {
+        if reflectors.len() > SUMMED_AT_ONCE {
             grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
         }
     }
@@ -222,14 +223,14 @@ fn kernel_values<T: Real, const W: usize, const FMA: bool>(
 fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
-    element_x_metres: Lanes<f64, W>,
+    pairs: Pairs<W>,
     r: &Reflector,
     grid: &mut [ComplexLanes<T, W>],
     lost: &mut [ComplexLanes<T, W>],
 ) {
     let of = Lanes::<f64, W>::splat;
     let cells = plan.grid as f64;
-    let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
+    let echo = model.echo_lanes::<W, FMA>(pairs, r);
     // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
     let middle = (plan.samples / 2) as f64;
     let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);

@@ -25,7 +25,7 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
             Complex64::from_polar(gain, TAU * (0.5 * sweep * since * since).fract())
         })
         .collect();
-    let way = radar.carrier.turns_per_wavelength().signum();
+    let way = radar.carrier_turns_per_metre().signum();
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut heard)| {
         let distance = (interferer.x_metres - array.element_x_metres(radar, n)).hypot(interferer.y_metres);
         let amplitude = radar.transmit_power_watts * interferer.strength / distance;

@@ -3,7 +3,7 @@
 //! Slow and simple. Its own trust comes from known values and from agreeing with [`super::direct`] where phases are small.
 
 use super::samples::BeatSignal;
-use crate::radar::Radar;
+use crate::radar::{Pair, Radar};
 use crate::scene::Reflector;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -22,14 +22,20 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
 
 /// Beat signal of one element, `[samples]`.
 pub fn element_signal(radar: &Radar, reflectors: &[Reflector], element: usize) -> Vec<Complex64> {
+    pair_signal(radar, reflectors, radar.pair(element))
+}
+
+/// Beat signal of one pair of antennas, `[samples]`.
+pub fn pair_signal(radar: &Radar, reflectors: &[Reflector], pair: Pair) -> Vec<Complex64> {
     let zero = TwoFloat::from(0.0);
     let mut sums = vec![Phasor { re: zero, im: zero }; radar.samples];
-    let element_x_metres = radar.element_x_metres(element);
     for r in reflectors {
-        let dx = TwoFloat::new_sub(element_x_metres, r.x_metres);
-        let square = dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres);
-        let distance = root(square);
-        let amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / square;
+        let [there, back] = [pair.transmitter_x_metres, pair.receiver_x_metres].map(|antenna| {
+            let dx = TwoFloat::new_sub(antenna, r.x_metres);
+            root(dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres))
+        });
+        let distance = (there + back) / 2.0;
+        let amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / (there * back);
         let carrier = distance / radar.wavelength_metres() * radar.carrier.turns_per_wavelength();
         let bins = distance / radar.range_resolution_metres();
         for (n1, sum) in sums.iter_mut().enumerate() {

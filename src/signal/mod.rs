@@ -9,6 +9,9 @@
 //! | [`closed_form`] | range profiles from three Dirichlet kernels, on the rows that matter | one or few reflectors, loose tolerances |
 //! | [`judge`] | equation 3.3 in double-double | holding all others to their promise |
 //!
+//! [`path`] says which range and which amplitude an echo has at a pair of antennas, [`phase`] which phases that gives: the forward
+//! model, which everything that simulates, fits or bounds samples calls.
+//!
 //! A [`Plan`] says which of them, in which precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! [`simulate`] goes from a scene to samples over a floor.
 //!
@@ -22,6 +25,7 @@ mod algorithm;
 pub mod built;
 pub mod closed_form;
 pub mod direct;
+mod double;
 pub mod echo;
 pub mod exact;
 pub mod floor;
@@ -30,6 +34,7 @@ mod interference;
 pub mod judge;
 pub mod lane_fft;
 mod over_floor;
+pub mod path;
 pub mod phase;
 pub mod plan;
 pub mod rows;

@@ -4,77 +4,25 @@
 //! therefore kept as a sum of two f64 (error-free transformations, Dekker 1971) until the whole turns are gone.
 //! The radar's constants (wavelength, range resolution, element positions) count as exact in their f64 values.
 //!
-//! Everything is written over [`Lanes`], one lane an element, so that it can be compiled for wide vectors; one reflector at one
-//! element is the case of a single lane.
+//! Everything is written over [`Lanes`], one lane a pair of antennas, so that it can be compiled for wide vectors; one echo at one pair
+//! is the case of a single lane.
 
+use super::double::{Double, product, rest};
+use super::path::{Pairs, Path};
 use super::simd::Lanes;
-use crate::radar::Radar;
+use crate::radar::{Pair, Radar};
 use crate::scene::Reflector;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
 
-/// An unevaluated sum `hi + lo` with `|lo|` at most half an ulp of `hi`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Pair<V> {
-    hi: V,
-    lo: V,
-}
-
-impl Pair<f64> {
-    fn splat<const W: usize>(self) -> Pair<Lanes<f64, W>> {
-        Pair { hi: Lanes::splat(self.hi), lo: Lanes::splat(self.lo) }
-    }
-}
-
-#[inline(always)]
-fn sum<const W: usize>(a: Lanes<f64, W>, b: Lanes<f64, W>) -> Pair<Lanes<f64, W>> {
-    let hi = a + b;
-    let t = hi - a;
-    Pair { hi, lo: (a - (hi - t)) + (b - t) }
-}
-
-/// `a * b` exactly: one fused multiply-add where that is an instruction, else both factors cut in halves (Veltkamp, Dekker).
-#[inline(always)]
-fn product<const W: usize, const FMA: bool>(a: Lanes<f64, W>, b: Lanes<f64, W>) -> Pair<Lanes<f64, W>> {
-    let hi = a * b;
-    if FMA {
-        return Pair { hi, lo: a.mul_add::<true>(b, -hi) };
-    }
-    let cut = |v: Lanes<f64, W>| {
-        let c = v * Lanes::splat(134_217_729.0); // 2^27 + 1
-        let high = c - (c - v);
-        (high, v - high)
-    };
-    let ((ah, al), (bh, bl)) = (cut(a), cut(b));
-    Pair { hi, lo: ((ah * bh - hi) + ah * bl + al * bh) + al * bl }
-}
-
-/// `rate * distance` less the nearest multiple of `period`, a small whole number.
-#[inline(always)]
-fn rest<const W: usize, const FMA: bool>(
-    distance: Pair<Lanes<f64, W>>,
-    rate: Pair<f64>,
-    period: f64,
-) -> Pair<Lanes<f64, W>> {
-    let rate = rate.splat();
-    let p = product::<W, FMA>(distance.hi, rate.hi);
-    let low = p.lo + distance.hi * rate.lo + distance.lo * rate.hi;
-    let turns = (p.hi * Lanes::splat(1.0 / period)).nearest();
-    // The product of two whole numbers is exact.
-    Pair { hi: p.hi - turns * Lanes::splat(period), lo: low }
-}
-
-fn reciprocal(a: f64) -> Pair<f64> {
-    let hi = 1.0 / a;
-    Pair { hi, lo: (-hi).mul_add(a, 1.0) / a }
-}
-
-/// Echo of one reflector at one element: amplitude, and phase as turns.
+/// One echo at one pair of antennas: amplitude, and phase as turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Echo {
-    /// `P_out * reflectivity / R^2`.
+    /// Amplitude: `P_out * reflectivity / R^2` for a reflector.
     pub amplitude: f64,
-    /// Distance R in metres.
+    /// Range R in metres.
     pub distance_metres: f64,
-    /// Turns of the carrier, in [-1/2, 1/2] times the carrier's turns per wavelength.
+    /// Turns of the carrier, in [-1/2, 1/2] times the carrier's turns per wavelength, and those of a complex amplitude.
     pub carrier_turns: f64,
     /// Turns from one sample to the next, in [-1/2, 1/2].
     pub beat_turns: f64,
@@ -94,9 +42,14 @@ impl Echo {
         };
         (lanes.beat_turns_at::<false>(n1 as f64) + lanes.carrier_turns).0[0]
     }
+
+    /// Sample `n1`.
+    pub fn sample(&self, n1: usize) -> Complex64 {
+        Complex64::from_polar(self.amplitude, TAU * self.turns_at(n1))
+    }
 }
 
-/// Echo of one reflector at `W` elements; fields as in [`Echo`].
+/// One echo at `W` pairs of antennas; fields as in [`Echo`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EchoLanes<const W: usize> {
     /// See [`Echo::amplitude`].
@@ -111,6 +64,19 @@ pub struct EchoLanes<const W: usize> {
     pub beat_turns_low: Lanes<f64, W>,
 }
 
+impl EchoLanes<1> {
+    /// The only lane.
+    pub fn first(&self) -> Echo {
+        Echo {
+            amplitude: self.amplitude.0[0],
+            distance_metres: self.distance_metres.0[0],
+            carrier_turns: self.carrier_turns.0[0],
+            beat_turns: self.beat_turns.0[0],
+            beat_turns_low: self.beat_turns_low.0[0],
+        }
+    }
+}
+
 impl<const W: usize> EchoLanes<W> {
     /// Turns of the beat alone from sample 0 to sample `n1`, whole turns taken off: in about [-1/2, 1/2], exact to about 1e-16.
     #[inline(always)]
@@ -121,12 +87,12 @@ impl<const W: usize> EchoLanes<W> {
     }
 }
 
-/// Constants of a radar prepared for [`EchoModel::echo`].
+/// The forward model: what a radar's samples hold of an echo. Constants of one radar, prepared.
 #[derive(Debug, Clone, Copy)]
 pub struct EchoModel {
-    power: f64,
-    per_wavelength: Pair<f64>,
-    per_bin: Pair<f64>,
+    power_watts: f64,
+    per_wavelength: Double<f64>,
+    per_bin: Double<f64>,
     samples: f64,
     carrier: f64,
 }
@@ -135,70 +101,44 @@ impl EchoModel {
     /// Prepares the constants of `radar`.
     pub fn new(radar: &Radar) -> Self {
         EchoModel {
-            power: radar.transmit_power_watts,
-            per_wavelength: reciprocal(radar.wavelength_metres()),
-            per_bin: reciprocal(radar.range_resolution_metres()),
+            power_watts: radar.transmit_power_watts,
+            per_wavelength: Double::reciprocal(radar.wavelength_metres()),
+            per_bin: Double::reciprocal(radar.range_resolution_metres()),
             samples: radar.samples as f64,
             carrier: radar.carrier.turns_per_wavelength(),
         }
     }
 
-    /// Echo of `r` at the element at `element_x_metres` metres.
-    pub fn echo(&self, element_x_metres: f64, r: &Reflector) -> Echo {
-        let e = self.echo_lanes::<1, false>(Lanes([element_x_metres]), r);
-        Echo {
-            amplitude: e.amplitude.0[0],
-            distance_metres: e.distance_metres.0[0],
-            carrier_turns: e.carrier_turns.0[0],
-            beat_turns: e.beat_turns.0[0],
-            beat_turns_low: e.beat_turns_low.0[0],
-        }
+    /// Echo of `r` between the antennas of `pair`.
+    pub fn echo(&self, pair: Pair, r: &Reflector) -> Echo {
+        self.echo_lanes::<1, false>(pair, r).first()
     }
 
-    /// Echo of `r` at the elements at `element_x_metres` metres.
+    /// Echo of `r` between the antennas of `pairs`; lanes of positions are elements that hear what they sent.
     #[inline(always)]
     pub fn echo_lanes<const W: usize, const FMA: bool>(
         &self,
-        element_x_metres: Lanes<f64, W>,
+        pairs: impl Into<Pairs<W>>,
         r: &Reflector,
     ) -> EchoLanes<W> {
-        let of = Lanes::<f64, W>::splat;
-        let dx = sum(element_x_metres, of(-r.x_metres));
-        let x2 = product::<W, FMA>(dx.hi, dx.hi);
-        let y2 = product::<W, FMA>(of(r.y_metres), of(r.y_metres));
-        let s = sum(x2.hi, y2.hi);
-        let low = s.lo + x2.lo + y2.lo + of(2.0) * dx.hi * dx.lo;
-        let root = s.hi.sqrt();
-        let square = product::<W, FMA>(root, root);
-        let residual = (s.hi - square.hi) - square.lo + low;
-        let distance = sum(root, residual.zip(root, |a, b| a / (2.0 * b)));
+        self.heard::<W, FMA>(Path::of_point::<FMA>(self.power_watts, &pairs.into(), r))
+    }
 
-        let carrier = rest::<W, FMA>(distance, self.per_wavelength, 1.0);
-        let bins = rest::<W, FMA>(distance, self.per_bin, self.samples);
+    /// The echo that came along `path`.
+    #[inline(always)]
+    pub fn heard<const W: usize, const FMA: bool>(&self, path: Path<W>) -> EchoLanes<W> {
+        let of = Lanes::<f64, W>::splat;
+        let carrier = rest::<W, FMA>(path.range_metres, self.per_wavelength, 1.0);
+        let bins = rest::<W, FMA>(path.range_metres, self.per_bin, self.samples);
         let beat = bins.hi.map(|v| v / self.samples);
         let back = product::<W, FMA>(beat, of(self.samples));
-        let scale = self.power * r.reflectivity;
+        let carrier_turns = of(self.carrier) * (carrier.hi + carrier.lo);
         EchoLanes {
-            amplitude: distance.hi.map(|d| scale / (d * d)),
-            distance_metres: distance.hi,
-            carrier_turns: of(self.carrier) * (carrier.hi + carrier.lo),
+            amplitude: path.amplitude,
+            distance_metres: path.range_metres.hi,
+            carrier_turns: path.turns.map_or(carrier_turns, |turns| carrier_turns + turns),
             beat_turns: beat,
             beat_turns_low: ((bins.hi - back.hi) - back.lo + bins.lo).map(|v| v / self.samples),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_exact_product_does_not_depend_on_fused_multiply_add() {
-        let mut v = 0.3f64;
-        for _ in 0..1000 {
-            v = (v * 1.7 + 0.1) % 3e5;
-            let (a, b) = (Lanes([v]), Lanes([v * v + 1.0 / 3.0]));
-            assert_eq!(product::<1, true>(a, b), product::<1, false>(a, b));
         }
     }
 }

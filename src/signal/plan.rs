@@ -2,9 +2,10 @@
 
 use super::algorithm::{Algorithm, Precision};
 use super::closed_form;
+use super::path::largest_amplitude;
 use super::simd::Simd;
 use crate::radar::Radar;
-use crate::scene::Reflector;
+use crate::scene::{Object, Reflector};
 use serde::Serialize;
 
 /// What is to be computed, and how: the planner's answer. Any field may be changed before it runs ([`super::beat_signal`]).
@@ -105,11 +106,10 @@ fn holds(amplitude: f64) -> bool {
 
 /// Sum of the largest amplitude each reflector can have at the array: the scale that tolerances refer to.
 pub fn amplitude_bound(radar: &Radar, reflectors: &[Reflector]) -> f64 {
-    let half = radar.aperture_metres() / 2.0;
-    let of_one = |r: &Reflector| {
-        let beside = (r.x_metres.abs() - half).max(0.0);
-        let square = (beside * beside + r.y_metres * r.y_metres).max(crate::scene::MIN_ELEMENT_DISTANCE_METRES.powi(2));
-        radar.transmit_power_watts * r.reflectivity.abs() / square
-    };
-    reflectors.iter().map(of_one).sum()
+    reflectors.iter().map(|r| largest_amplitude(radar, r)).sum()
+}
+
+/// [`amplitude_bound`] of all that `objects` reflect, object by object.
+pub fn amplitude_bound_of(radar: &Radar, objects: &[Object]) -> f64 {
+    objects.iter().map(|o| amplitude_bound(radar, &o.reflectors())).sum()
 }

@@ -3,8 +3,9 @@
 //! Recurrences drift as they run; this does not: every phasor is the product of four that were evaluated from their exact phase.
 //! Summed over reflectors it is a matrix product, carried out in registers, one lane an element.
 
+use super::path::Pairs;
 use super::phase::EchoModel;
-use super::simd::{ComplexLanes, Lanes, Real, phasor};
+use super::simd::{ComplexLanes, Real, phasor};
 use crate::scene::Reflector;
 
 /// Samples in a row of the split.
@@ -69,11 +70,11 @@ impl<T: Real, const W: usize> Scratch<T, W> {
     }
 }
 
-/// Beat signal of `reflectors` at the `W` elements at `element_x_metres` metres, one vector a sample.
+/// Beat signal of `reflectors` at `pairs`, one vector a sample.
 #[inline(always)]
 pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
-    element_x_metres: Lanes<f64, W>,
+    pairs: Pairs<W>,
     reflectors: &[Reflector],
     samples: usize,
     scratch: &'s mut Scratch<T, W>,
@@ -82,7 +83,7 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     padded.fill(ComplexLanes::zero());
     for chunk in reflectors.chunks(CHUNK) {
         for (r, f) in chunk.iter().zip(factors.iter_mut()) {
-            fill_factors::<T, W, FMA>(model, element_x_metres, r, &mut f.rows, &mut f.columns);
+            fill_factors::<T, W, FMA>(model, pairs, r, &mut f.rows, &mut f.columns);
         }
         let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
         add_products::<T, W, FMA>(&products[..chunk.len()], padded);
@@ -90,16 +91,16 @@ pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     &mut padded[..samples]
 }
 
-/// Phasors of `r` at the `W` elements at `element_x_metres` metres, see [`Factors`].
+/// Phasors of `r` at `pairs`, see [`Factors`].
 #[inline(always)]
 pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
-    element_x_metres: Lanes<f64, W>,
+    pairs: impl Into<Pairs<W>>,
     r: &Reflector,
     rows: &mut [ComplexLanes<T, W>],
     columns: &mut [ComplexLanes<T, W>; STRIDE],
 ) {
-    let echo = model.echo_lanes::<W, FMA>(element_x_metres, r);
+    let echo = model.echo_lanes::<W, FMA>(pairs, r);
     let mut fine = [ComplexLanes::zero(); STEP];
     for (i, fine) in fine.iter_mut().enumerate() {
         *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64));

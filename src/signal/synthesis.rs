@@ -7,6 +7,7 @@ use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
 use super::lane_fft::LaneFft;
+use super::path::Pairs;
 use super::phase::EchoModel;
 use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
@@ -110,15 +111,15 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
         let s = self.synthesis;
-        let element_x_metres = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
+        let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
         let samples = s.radar.samples;
         match (self.scratch, &s.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
-                gridded::block_signal::<T, W, FMA>(gridding, &s.model, element_x_metres, self.reflectors, scratch, out);
+                gridded::block_signal::<T, W, FMA>(gridding, &s.model, pairs, self.reflectors, scratch, out);
                 out
             }
             (Scratch::Split(scratch), _) => {
-                split::block_signal::<T, W, FMA>(&s.model, element_x_metres, self.reflectors, samples, scratch)
+                split::block_signal::<T, W, FMA>(&s.model, pairs, self.reflectors, samples, scratch)
             }
             (Scratch::Gridded(_, out), _) => out,
         }
@@ -179,8 +180,8 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let s = self.synthesis;
-        let element_x_metres = Lanes(std::array::from_fn(|i| s.radar.element_x_metres(self.first_element + i)));
-        self.plan.add_block::<W, FMA>(&s.model, element_x_metres, self.reflectors, self.cells);
+        let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
+        self.plan.add_block::<W, FMA>(&s.model, pairs, self.reflectors, self.cells);
     }
 }
 

@@ -1,17 +1,15 @@
 //! Places that look the same: ranges wrap around at the last bin, directions fold where elements stand far apart.
 
-use super::squint::mid_chirp_turns_per_metre;
 use crate::radar::{Polar, Radar};
 
-/// Difference of cos(theta) after which directions share a column again: one turn of phase from element to element. 2 would be all
-/// directions; table 3.1 has 2.05, spacing of one wavelength half of it (its grating lobes).
+/// [`Radar::fold_period_cos`]: the difference of cos(theta) after which directions share a column again.
 pub fn fold_period_cos(radar: &Radar) -> f64 {
-    1.0 / (mid_chirp_turns_per_metre(radar).abs() * radar.element_spacing_metres)
+    radar.fold_period_cos()
 }
 
 /// The other directions, as cos(theta) in [-1, 1] from the lowest, whose blobs stand in the same column as that of `cos_theta`.
 pub fn fold_partners(radar: &Radar, cos_theta: f64) -> Vec<f64> {
-    let period = fold_period_cos(radar);
+    let period = radar.fold_period_cos();
     let first = ((-1.0 - cos_theta) / period).ceil() as i64;
     let last = ((1.0 - cos_theta) / period).floor() as i64;
     (first..=last).filter(|fold| *fold != 0).map(|fold| cos_theta + fold as f64 * period).collect()

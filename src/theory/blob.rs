@@ -135,7 +135,7 @@ impl Blob {
 /// Bins from the nearest to the farthest element of `aperture`, not wrapped.
 fn bins_heard(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> (f64, f64) {
     let elements = elements(radar, aperture);
-    let bin = |n| radar.bin_of_range((reflector.x_metres - radar.element_x_metres(n)).hypot(reflector.y_metres));
+    let bin = |n| radar.bin_of_range(radar.pair(n).range_metres(reflector.x_metres, reflector.y_metres));
     elements.map(bin).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
 }
 

@@ -1,6 +1,5 @@
 //! The comb of two ends that listen together: directions between which their phases can't decide.
 
-use super::squint::mid_chirp_turns_per_metre;
 use crate::radar::{End, Polar, Radar};
 
 /// Change of cos(theta) from one tooth to the next, for a reflector at `place`: one turn more between the middles of both ends.
@@ -13,13 +12,13 @@ pub fn tooth_spacing_cos(radar: &Radar, place: Polar) -> f64 {
         let centre = radar.end_centre_metres(end);
         centre / (x - centre).hypot(y)
     });
-    1.0 / (mid_chirp_turns_per_metre(radar).abs() * place.range_metres * (last - first))
+    1.0 / (radar.middle_turns_per_metre().abs() * place.range_metres * (last - first))
 }
 
 /// Directions, as cos(theta) in [-1, 1] from the lowest, of the teeth up to `count` on either side of a reflector at `place`, itself not
 /// counted: where the distances to the middles of both ends differ by whole turns more or less, so that both together hear much the same.
 pub fn comb_teeth(radar: &Radar, place: Polar, count: usize) -> Vec<f64> {
-    let turn_metres = 1.0 / mid_chirp_turns_per_metre(radar).abs();
+    let turn_metres = 1.0 / radar.middle_turns_per_metre().abs();
     let here = ends_difference_metres(radar, place);
     let count = count as i64;
     let others = (-count..=count).filter(|turns| *turns != 0);

@@ -8,7 +8,7 @@ use crate::scene::Reflector;
 /// How far below its peak a streak is followed.
 pub const STREAK: Decibels = Decibels(20.0);
 /// Teeth of the comb on either side.
-const TEETH: usize = 3;
+const TEETH_DRAWN: usize = 3;
 /// Wrap partners are looked for up to so many maximum ranges.
 const WRAPS: f64 = 3.0;
 
@@ -52,7 +52,7 @@ fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<Cell> {
         let (x_metres, y_metres) = (place.range_metres * cos, place.range_metres * (1.0 - cos * cos).max(0.0).sqrt());
         blob_cell(radar, x_metres, y_metres, Aperture::Full)
     };
-    comb_teeth(radar, place, TEETH).into_iter().map(cell).collect()
+    comb_teeth(radar, place, TEETH_DRAWN).into_iter().map(cell).collect()
 }
 
 #[cfg(test)]
@@ -66,7 +66,7 @@ mod tests {
         let reflector = Reflector { x_metres: 1.0, y_metres: 6.0, reflectivity: 1.0 };
         let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
         assert_eq!(Some(overlay.blob), Blob::of(&radar, &reflector, Aperture::Full));
-        assert_eq!(overlay.teeth.len(), 2 * TEETH);
+        assert_eq!(overlay.teeth.len(), 2 * TEETH_DRAWN);
         let max = radar.max_range_metres();
         let range = 37f64.sqrt();
         let expected: Vec<f64> = [range - max, range + max].into_iter().filter(|r| *r > 0.0).collect();

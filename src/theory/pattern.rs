@@ -6,7 +6,7 @@ use crate::radar::{Decibels, WindowFunction};
 use std::f64::consts::PI;
 
 /// Steps to a bin while looking for lobes.
-const STEPS: f64 = 64.0;
+const FINE_STEPS: f64 = 64.0;
 
 /// The transform of a symmetric window over a few points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,7 @@ impl Pattern {
     pub fn main_lobe_bins(&self, down: Decibels) -> Option<f64> {
         let level = self.at(0.0) / 10f64.powf(down.amplitude_decades());
         let outside = self.first(|at| self.at(at) < level)?;
-        let (mut low, mut high) = (outside - 1.0 / STEPS, outside);
+        let (mut low, mut high) = (outside - 1.0 / FINE_STEPS, outside);
         for _ in 0..40 {
             let middle = (low + high) / 2.0;
             if self.at(middle) < level { high = middle } else { low = middle }
@@ -66,10 +66,10 @@ impl Pattern {
     /// The highest side lobe; `None` where there is none.
     pub fn highest_side_lobe(&self) -> Option<Lobe> {
         let size = |at: f64| self.at(at).abs();
-        let valley = self.first(|at| size(at + 1.0 / STEPS) > size(at))?;
-        let steps = (valley * STEPS) as usize..(self.len as f64 / 2.0 * STEPS) as usize;
-        let peak = steps.map(|step| step as f64 / STEPS).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
-        let (mut low, mut high) = (peak - 1.0 / STEPS, peak + 1.0 / STEPS);
+        let valley = self.first(|at| size(at + 1.0 / FINE_STEPS) > size(at))?;
+        let steps = (valley * FINE_STEPS) as usize..(self.len as f64 / 2.0 * FINE_STEPS) as usize;
+        let peak = steps.map(|step| step as f64 / FINE_STEPS).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+        let (mut low, mut high) = (peak - 1.0 / FINE_STEPS, peak + 1.0 / FINE_STEPS);
         for _ in 0..40 {
             let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
             if size(a) < size(b) { low = a } else { high = b }
@@ -80,7 +80,7 @@ impl Pattern {
 
     /// The first step away from the main lobe's middle, and at most half the period, that `is`.
     fn first(&self, is: impl Fn(f64) -> bool) -> Option<f64> {
-        (1..(self.len as f64 / 2.0 * STEPS) as usize).map(|step| step as f64 / STEPS).find(|at| is(*at))
+        (1..(self.len as f64 / 2.0 * FINE_STEPS) as usize).map(|step| step as f64 / FINE_STEPS).find(|at| is(*at))
     }
 }
 

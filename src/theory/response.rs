@@ -7,6 +7,7 @@ use super::{Pattern, elements};
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::Radar;
 use crate::scene::Reflector;
+use crate::signal::phase::EchoModel;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -33,12 +34,10 @@ impl Response {
         let elements = elements(radar, aperture);
         let window = radar.window.weights(elements.len());
         let scale = ((radar.samples * radar.elements) as f64).sqrt().recip();
-        let carrier = radar.carrier.turns_per_wavelength() / radar.wavelength_metres();
+        let model = EchoModel::new(radar);
         let heard = |(n, weight): (usize, f64)| {
-            let distance = (reflector.x_metres - radar.element_x_metres(n)).hypot(reflector.y_metres);
-            let amplitude = weight * scale * radar.transmit_power_watts * reflector.reflectivity / distance.powi(2);
-            let phase = Complex64::cis(TAU * (carrier * distance).fract());
-            (radar.bin_of_range(distance), phase * amplitude)
+            let echo = model.echo(radar.pair(n), reflector);
+            (radar.bin_of_range(echo.distance_metres), echo.sample(0) * (weight * scale))
         };
         Response {
             samples: radar.samples,

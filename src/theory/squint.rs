@@ -10,13 +10,6 @@ use super::{Cell, centre_metres};
 use crate::maps::Aperture;
 use crate::radar::Radar;
 
-/// Turns of phase for each metre of distance in the middle of the chirp, signed.
-pub(super) fn mid_chirp_turns_per_metre(radar: &Radar) -> f64 {
-    let samples = radar.samples as f64;
-    let beat = (samples - 1.0) / (2.0 * samples) / radar.range_resolution_metres();
-    radar.carrier.turns_per_wavelength() / radar.wavelength_metres() + beat
-}
-
 /// The cosine at which a blob stands over the true cosine of its reflector: 0.974 for table 3.1, 1.013 with the two-way carrier.
 pub fn squint_factor(radar: &Radar) -> f64 {
     radar.squint()

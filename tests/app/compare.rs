@@ -43,7 +43,7 @@ fn the_second_outputs_figures_are_those_of_the_command_line() {
     s.ask(WindowCommand::OpenPanel(Panel::Compare));
     for round in 0..2 {
         let trial = trial(&s);
-        let answer = trial.ask(&CAPON, &Request { floor: Floor::Thesis, ..Request::default() }).unwrap();
+        let answer = trial.ask(&CAPON, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
         let shown = s.state().second_output().expect("capon's output");
         assert!(largest_difference(shown, &answer.found.lambda) < 1e-5, "round {round}");
         let metrics = s.state().second_metrics().expect("its figures");
@@ -176,7 +176,7 @@ fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
 
     let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).unwrap();
     let maps = LogMaps::of_signal(&radar, &signal);
-    let request = Request { floor: Floor::Thesis, ..Request::default() };
+    let request = Request { noise: Floor::Thesis.into(), ..Request::default() };
     let output = Baseline.reconstruct(&radar, &signal.two_ends(&radar), &request).unwrap().lambda;
     let [first, last, target] = [&maps.first, &maps.last, &maps.full].map(|map| map.normalise(Normalisation::MinMax));
     let scale = maps.full.scale(Normalisation::MinMax);
@@ -202,7 +202,7 @@ fn marks_of_failure_are_those_of_the_evaluation() {
     s.press(Modifiers::NONE, Key::H);
     for round in 0..2 {
         let trial = trial(&s);
-        let answer = trial.ask(&Baseline, &Request { floor: Floor::Thesis, ..Request::default() }).unwrap();
+        let answer = trial.ask(&Baseline, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
         assert_eq!(s.state().failures(), Some(&trial.failures(&answer)), "round {round}");
         assert!(s.app.query_all_by_label_contains("Legend: hit, false alarm, miss, ").next().is_some());
         let at = s.handle("point 2: move");

@@ -5,9 +5,9 @@ use apertura::app::{DocumentCommand, MapKind, Panel, RadarCommand, ViewCommand, 
 use apertura::maps::Normalisation;
 use apertura::methods;
 use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT, presets};
-use apertura::recording::{FLOOR, Recording};
+use apertura::recording::Recording;
 use apertura::scene::Scene;
-use apertura::signal::simulate;
+use apertura::signal::{Floor, simulate};
 use std::path::PathBuf;
 
 /// Methods that know one radar only.
@@ -32,7 +32,8 @@ fn radars() -> [(&'static str, Radar); 5] {
 fn recorded(s: &Session, radar: &Radar) -> PathBuf {
     let range = 0.5 * radar.max_range_metres();
     let scene = Scene::of_points([(0.28 * range, 0.96 * range)]);
-    let recording = Recording::of_signal(radar.clone(), simulate(radar, &scene, FLOOR, 1).unwrap());
+    let recording =
+        Recording::of_signal(radar.clone(), simulate(radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap());
     ndarray_npy::write_npy(s.folder.path().join("samples.npy"), &recording.signal().unwrap().samples).unwrap();
     let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, carrier, .. } =
         radar;

@@ -179,7 +179,7 @@ fn detection_by_hand(false_alarm: f64, above: f32) -> f64 {
     let campaign = Campaign { seed: 3, ..Campaign::default() };
     let of_scene = |index| {
         let trial = campaign.trial(&SceneSet::Generated(Kind::Set1), &campaign.generator(), index).unwrap();
-        let answer = trial.ask(&Baseline, &Request { floor: campaign.floor, ..Request::default() }).unwrap();
+        let answer = trial.ask(&Baseline, &Request { noise: campaign.floor.into(), ..Request::default() }).unwrap();
         let cells = || trial.target.lambda.iter().zip(&answer.found.lambda.lambda);
         let mut dark: Vec<f32> = cells().filter(|(t, _)| **t <= 0.9).map(|(_, o)| *o).collect();
         dark.sort_by(|a, b| b.total_cmp(a));

@@ -12,7 +12,7 @@ use apertura::signal::Floor;
 
 /// A trial of `scene`, and what a method is told of it.
 fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {
-    let request = Request { floor, normalisation, ..Request::default() };
+    let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     (Trial::new(&Radar::default(), scene, floor, normalisation).unwrap(), request)
 }
 

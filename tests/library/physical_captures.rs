@@ -3,9 +3,9 @@
 use apertura::files::npz::write_npz;
 use apertura::maps::{Aperture, angle_transform, range_transform};
 use apertura::methods;
-use apertura::reconstruct::Request;
 use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::recording::{self, Recording, file};
+use apertura::reconstruct::{NoisePrior, Request};
+use apertura::recording::{Recording, file};
 use ndarray::{Array2, Array3};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -123,7 +123,7 @@ fn peak_cos(recording: &Recording, range_metres: f64) -> f64 {
 fn errors(recording: &Recording) -> (f64, f64) {
     let radar = &recording.radar;
     let method = methods::by_name("iaa").unwrap_or_else(|e| panic!("{e}"));
-    let request = Request { floor: recording::FLOOR, ..Request::default() };
+    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
     let (_, found) = reconstruct_and_find(method.as_ref(), radar, &recording.two_ends(), &request).unwrap();
     let (mut columns, mut degrees) = (0.0f64, 0.0f64);
     for (range, cos) in PLACES {

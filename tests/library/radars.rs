@@ -49,8 +49,11 @@ fn a_reflector_is_where_the_whole_array_sees_it_or_the_method_says_why_not() {
         radar.validate().unwrap();
         let signal = simulate(&radar, &one_reflector(&radar), floor, 0).unwrap();
         let target = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::DynamicRange(Decibels(30.0)));
-        let request =
-            Request { floor, normalisation: Normalisation::DynamicRange(Decibels(30.0)), ..Request::default() };
+        let request = Request {
+            noise: floor.into(),
+            normalisation: Normalisation::DynamicRange(Decibels(30.0)),
+            ..Request::default()
+        };
         for method in methods::all() {
             let name = method.name();
             let found = match method.reconstruct(&radar, &signal.two_ends(&radar), &request) {
@@ -115,7 +118,7 @@ proptest! {
         let scene = Scene::of_points(points.collect::<Vec<_>>());
         let floor = Floor::Snr(Decibels(snr));
         let ends = simulate(&radar, &scene, floor, 1).unwrap().two_ends(&radar);
-        let request = Request { floor, ..Request::default() };
+        let request = Request { noise: floor.into(), ..Request::default() };
         for method in methods::all() {
             let start = Instant::now();
             match method.reconstruct(&radar, &ends, &request) {
@@ -142,7 +145,7 @@ fn found(method: &str, radar: &Radar, places: &[(f64, f64)]) -> Result<Vec<Detec
     let scene = Scene::of_points(places.iter().map(|(range, cos)| (range * cos, range * (1.0 - cos * cos).sqrt())));
     let floor = Floor::Snr(Decibels(40.0));
     let ends = simulate(radar, &scene, floor, 1).unwrap().two_ends(radar);
-    let request = Request { floor, ..Request::default() };
+    let request = Request { noise: floor.into(), ..Request::default() };
     Ok(methods::by_name(method).unwrap().reconstruct(radar, &ends, &request)?.detections(radar))
 }
 
@@ -220,7 +223,7 @@ fn an_element_that_measured_nothing_makes_no_ghosts() {
     let mut ends = simulate(&radar, &scene, floor, 1).unwrap().two_ends(&radar);
     ends.first.row_mut(3).fill(Default::default());
     ends.last.row_mut(9).fill(Default::default());
-    let request = Request { floor, ..Request::default() };
+    let request = Request { noise: floor.into(), ..Request::default() };
     for name in ["nomp", "iaa", "sbl"] {
         let found = methods::by_name(name).unwrap().reconstruct(&radar, &ends, &request).unwrap().detections(&radar);
         assert!(begins_with(&found, &radar, &places, (0.1, 0.002)), "{name}: {found:?}");

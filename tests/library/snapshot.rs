@@ -2,16 +2,16 @@
 
 use apertura::methods;
 use apertura::radar::Radar;
-use apertura::reconstruct::Request;
 use apertura::reconstruct::found::reconstruct_and_find;
+use apertura::reconstruct::{NoisePrior, Request};
+use apertura::recording::Recording;
 use apertura::recording::presets::Preset;
-use apertura::recording::{self, Recording};
 
 /// Directions in degrees that come within 8 dB of the strongest, rising, as `method` sees them with `end_elements` at either end.
 fn seen(recording: &Recording, method: &str, end_elements: usize) -> Vec<f64> {
     let radar = Radar { end_elements, ..recording.radar.clone() };
     let ends = recording.signal().unwrap().two_ends(&radar);
-    let request = Request { floor: recording::FLOOR, ..Request::default() };
+    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
     let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
     let (_, found) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request).unwrap_or_else(|e| panic!("{e}"));
     let strong = found.iter().filter(|f| f.relative_power.0 > -8.0);

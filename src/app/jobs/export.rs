@@ -9,8 +9,8 @@ use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::picture::{Format, Style, compose, compose_recording, maps_of};
-use crate::reconstruct::{Reconstructor, Request};
-use crate::recording::{self, Recording};
+use crate::reconstruct::{NoisePrior, Reconstructor, Request};
+use crate::recording::Recording;
 use crate::signal;
 use crate::task::panic_message;
 use eframe::egui::{ColorImage, Context};
@@ -127,9 +127,9 @@ impl Exports {
             return Err("There is no method to draw the output of.".to_owned());
         };
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
-        let recording = seen_recording(state);
+        let (recording, floor) = (seen_recording(state), state.settings.floor);
         let style = Style {
-            floor: if recording.is_some() { recording::FLOOR } else { state.settings.floor },
+            floor,
             normalisation: state.settings.normalisation,
             colours: state.settings.colours,
             eta: state.settings.method_eta.get(method.name()).copied(),
@@ -139,7 +139,7 @@ impl Exports {
                 Some(recording) => compose_recording(&recording, method.as_ref(), &style, Format::Svg),
                 None => {
                     let seed = scene.noise_seed;
-                    let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
+                    let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
                     compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg)
                 }
             };
@@ -162,7 +162,7 @@ impl Exports {
         }
         self.begin(path, move |path| {
             let signal = signal::simulate(&radar, &scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
-            let request = Request { floor, normalisation, ..Request::default() };
+            let request = Request { noise: floor.into(), normalisation, ..Request::default() };
             let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
             let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
             write_maps(path, &radar, &scene, &signal, output).map_err(|e| e.to_string())?;
@@ -222,7 +222,7 @@ fn write_recording(
     let (_, full) = maps_of(recording);
     let ends = recording.two_ends();
     let snapshot_range_metres = recording.range_metres;
-    let request = Request { floor: recording::FLOOR, normalisation, snapshot_range_metres, ..Request::default() };
+    let request = Request { noise: NoisePrior::UNKNOWN, normalisation, snapshot_range_metres, ..Request::default() };
     let found = method.map(|m| m.reconstruct(&recording.radar, &ends, &request)).transpose();
     let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
     write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), output).map_err(|e| e.to_string())?;

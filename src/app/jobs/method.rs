@@ -4,10 +4,9 @@ use super::scene_maps::{MapsRequest, MapsResult, Pair};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
-use crate::reconstruct::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::recording;
+use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::Reflector;
-use crate::signal::{Floor, TwoEnds};
+use crate::signal::TwoEnds;
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -21,7 +20,7 @@ const PATIENCE: Duration = Duration::from_millis(400);
 pub struct Basis {
     radar: Radar,
     ends: Arc<TwoEnds>,
-    floor: Floor,
+    noise: NoisePrior,
     normalisation: Normalisation,
     snapshot_range_metres: Option<f64>,
 }
@@ -33,7 +32,7 @@ impl Basis {
         Some(Basis {
             radar: radar.clone(),
             ends: result.frame.ends.clone()?,
-            floor: if recording.is_some() { recording::FLOOR } else { wanted.floor },
+            noise: if recording.is_some() { NoisePrior::UNKNOWN } else { wanted.floor.into() },
             normalisation: wanted.normalisation,
             snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
         })
@@ -41,7 +40,7 @@ impl Basis {
 
     fn same(&self, other: &Basis) -> bool {
         Arc::ptr_eq(&self.ends, &other.ends)
-            && (self.floor, self.normalisation) == (other.floor, other.normalisation)
+            && (self.noise, self.normalisation) == (other.noise, other.normalisation)
             && self.snapshot_range_metres == other.snapshot_range_metres
             && self.radar == other.radar
     }
@@ -281,9 +280,9 @@ impl MethodJob {
 }
 
 fn reconstruct(q: &MethodRequest, method: &dyn Reconstructor, task: &Task) -> Result<Answer, ReconstructError> {
-    let Basis { radar, ends, floor, normalisation, snapshot_range_metres } = &q.basis;
+    let Basis { radar, ends, noise, normalisation, snapshot_range_metres } = &q.basis;
     let request = Request {
-        floor: *floor,
+        noise: *noise,
         normalisation: *normalisation,
         snapshot_range_metres: *snapshot_range_metres,
         may_follow: !q.at_rest,

@@ -175,7 +175,8 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
         MapKind::Input1 => Aperture::End(End::Last),
         MapKind::Output => {
             let method = method.as_ref().ok_or("there is no method")?;
-            let wanted = MethodRequest { floor: *floor, normalisation, task: task.clone(), ..MethodRequest::default() };
+            let wanted =
+                MethodRequest { noise: (*floor).into(), normalisation, task: task.clone(), ..MethodRequest::default() };
             let made = method.reconstruct(radar, &signal.two_ends(radar), &wanted);
             return made.map(|made| made.lambda).map_err(|e| e.to_string());
         }

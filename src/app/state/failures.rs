@@ -122,7 +122,7 @@ mod tests {
         let Case { radar, scene } = conditions.case(&rows[1]).unwrap();
         let (floor, normalisation) = (conditions.floor, conditions.normalisation);
         let trial = crate::evaluate::trial::Trial::new(&radar, &scene, floor, normalisation).unwrap();
-        let request = Request { floor, normalisation, ..Request::default() };
+        let request = Request { noise: floor.into(), normalisation, ..Request::default() };
         let answer = trial.ask(&Baseline, &request).unwrap();
         assert_eq!(answer.metrics.squared_error, rows[1].squared_error);
         assert_eq!(**conditions.document(&rows[1]).unwrap().scene(), scene);

@@ -1,5 +1,6 @@
 use super::*;
 use crate::radar::End;
+use std::f64::consts::TAU;
 
 fn at(range: f64, cos: f64) -> Reflector {
     Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).sqrt(), reflectivity: 1.0 }

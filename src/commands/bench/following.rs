@@ -6,7 +6,7 @@ use crate::radar::{Radar, counted};
 use crate::reconstruct::Request;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Object, Scene};
-use crate::signal::simulate;
+use crate::signal::{Floor, simulate};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -65,7 +65,7 @@ pub fn measure(count: u32, on_map: impl Fn()) -> Result<Followed, CommandError> 
         let method = methods::by_name(METHOD).map_err(CommandError::failed)?;
         let method = method.following().unwrap_or(method);
         let ask = |scene: &Scene, seed: u64| {
-            let signal = simulate(&radar, scene, request.floor, seed).map_err(CommandError::failed)?;
+            let signal = simulate(&radar, scene, Floor::Thesis, seed).map_err(CommandError::failed)?;
             let ends = signal.two_ends(&radar);
             let start = Instant::now();
             method.reconstruct(&radar, &ends, &request).map_err(CommandError::failed)?;

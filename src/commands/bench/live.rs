@@ -5,9 +5,8 @@ use crate::network;
 use crate::network::live::engine::Scratch;
 use crate::network::live::features::FeatureExtractor;
 use crate::radar::{Radar, counted};
-use crate::reconstruct::Request;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::simulate;
+use crate::signal::{Floor, simulate};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -44,7 +43,7 @@ pub fn run(json: bool) -> Result<(), CommandError> {
 
 fn measure(scenes: u32) -> Result<Pass, CommandError> {
     let live = network::live().ok_or_else(|| CommandError::Usage("the live network's weights can't be used".into()))?;
-    let (radar, request) = (Radar::default(), Request::default());
+    let radar = Radar::default();
     let extractor = FeatureExtractor::new(&radar).map_err(CommandError::failed)?;
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
     let mut scratch = Scratch::default();
@@ -52,7 +51,7 @@ fn measure(scenes: u32) -> Result<Pass, CommandError> {
     // The first scene warms up, and isn't counted.
     for number in 0..=scenes {
         let scene = generator.scene(Kind::Set2, number);
-        let signal = simulate(&radar, &scene, request.floor, scene.noise_seed).map_err(CommandError::failed)?;
+        let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).map_err(CommandError::failed)?;
         let ends = signal.two_ends(&radar);
         let start = Instant::now();
         let input = extractor.extract(&ends).map_err(CommandError::failed)?;

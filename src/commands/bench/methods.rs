@@ -16,6 +16,7 @@ use crate::methods;
 use crate::radar::{Radar, counted};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::Floor;
 use crate::task::Task;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -168,7 +169,7 @@ fn crowds_of(
     let mut times = vec![Vec::new(); methods.len()];
     let mut errors = vec![Vec::new(); methods.len()];
     for (number, scene) in scenes.take(count as usize).enumerate() {
-        let trial = Trial::new(&radar, &scene, request.floor, request.normalisation).map_err(CommandError::failed)?;
+        let trial = Trial::new(&radar, &scene, Floor::Thesis, request.normalisation).map_err(CommandError::failed)?;
         for (method, (times, errors)) in methods.iter().zip(times.iter_mut().zip(&mut errors)) {
             if number == 0 {
                 // Warmed up, as the methods above were.

@@ -6,15 +6,15 @@ use crate::evaluate::rows::Column;
 use std::fmt::Write;
 
 /// Brackets and signs may be nested so deep.
-const DEEPEST: usize = 50;
+const DEEPEST_NESTING: usize = 50;
 /// Longest expression, characters.
-const LONGEST: usize = 2000;
+const LONGEST_EXPRESSION: usize = 2000;
 
 /// Reads a whole expression about rows of `methods`.
 pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Truth, FilterError> {
     let characters: Vec<char> = text.chars().collect();
-    if characters.len() > LONGEST {
-        return error(LONGEST, format!("an expression may have {LONGEST} characters"));
+    if characters.len() > LONGEST_EXPRESSION {
+        return error(LONGEST_EXPRESSION, format!("an expression may have {LONGEST_EXPRESSION} characters"));
     }
     let tokens = tokens(&characters)?;
     let mut parser = Parser { tokens: &tokens, methods, next: 0, depth: 0 };
@@ -193,8 +193,8 @@ impl Parser<'_> {
     }
 
     fn deeper(&mut self, inner: fn(&mut Self) -> Result<Part, FilterError>) -> Result<Part, FilterError> {
-        if self.depth == DEEPEST {
-            return error(self.at(), format!("brackets and signs are nested more than {DEEPEST} deep"));
+        if self.depth == DEEPEST_NESTING {
+            return error(self.at(), format!("brackets and signs are nested more than {DEEPEST_NESTING} deep"));
         }
         self.depth += 1;
         let found = inner(self);

@@ -39,8 +39,12 @@ impl Search {
         if !(self.within_metres > 0.0 && self.within_metres <= 1000.0) {
             return Err(WorsenError::Reach(self.within_metres));
         }
-        let request =
-            Request { floor: self.floor, normalisation: self.normalisation, task: task.clone(), ..Request::default() };
+        let request = Request {
+            noise: self.floor.into(),
+            normalisation: self.normalisation,
+            task: task.clone(),
+            ..Request::default()
+        };
         let trial = self.trial(scene)?;
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
         let mut state = State { step: FIRST_STEP, path: vec![start], tries: 0 };

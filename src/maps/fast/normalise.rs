@@ -6,7 +6,7 @@ use crate::signal::simd::{Kernel, Simd};
 use rayon::prelude::*;
 
 /// Cells that a thread takes at a time.
-const CHUNK: usize = 1 << 15;
+const CELLS_AT_ONCE: usize = 1 << 15;
 
 /// Writes Lambda of every cell of each map to the map beside it, which has the same shape.
 pub fn normalise_into(maps: Vec<(&FastLogMap, &mut RangeAngleMap)>, normalisation: Normalisation) {
@@ -16,7 +16,7 @@ pub fn normalise_into(maps: Vec<(&FastLogMap, &mut RangeAngleMap)>, normalisatio
         let range = (scale.peak - scale.floor) as f32;
         let (floor, slope) = (scale.floor as f32, if range > 0.0 { 1.0 / range } else { 0.0 });
         if let (Some(cells), Some(lambda)) = (decades.cells.as_slice(), map.lambda.as_slice_mut()) {
-            let chunks = cells.chunks(CHUNK).zip(lambda.chunks_mut(CHUNK));
+            let chunks = cells.chunks(CELLS_AT_ONCE).zip(lambda.chunks_mut(CELLS_AT_ONCE));
             parts.extend(chunks.map(|(cells, lambda)| Part { cells, lambda, floor, slope }));
         }
     }

@@ -56,7 +56,7 @@ impl FeatureExtractor {
     /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements half a wavelength apart and ends of 12, which the
     /// network was trained for.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
-        check_radar("live", radar)?;
+        check_radar("live", &Radar::default(), radar)?;
         let ends = End::BOTH.map(|end| radar.end_centre_metres(end));
         let table = |from: f64, to: f64| Registration::new(radar, from, to);
         Ok(FeatureExtractor {

@@ -5,6 +5,7 @@ use super::engine::{Decades, LiveEngine, Scratch};
 use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COLUMNS, ROWS};
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::network::trained_for::{check_radar, is_alike};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
 use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
@@ -31,6 +32,7 @@ pub struct LiveMethod {
     idle: Mutex<Vec<Scratch>>,
     eta: f32,
     weights: Weights,
+    trained: Radar,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -47,6 +49,7 @@ impl LiveMethod {
             idle: Mutex::default(),
             eta: file.provenance.eta().unwrap_or(0.8),
             weights: file.weights(),
+            trained: file.provenance.radar(file.name())?,
             provenance: file.provenance,
         })
     }
@@ -80,8 +83,9 @@ impl LiveMethod {
     ) -> Result<Decades, ReconstructError> {
         let made;
         let extractor = match self.extractor.get() {
-            Some(extractor) if *radar == Radar::default() => extractor,
+            Some(extractor) if is_alike(&self.trained, radar) => extractor,
             _ => {
+                check_radar(NAME, &self.trained, radar)?;
                 made = FeatureExtractor::new(radar)?;
                 self.extractor.get_or_init(|| made)
             }
@@ -112,12 +116,12 @@ const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 const BELOW_PEAK_DECADES: f64 = 2.6;
 
 /// One cell in so many is looked at for the median.
-const STRIDE: usize = 17;
+const CELLS_A_LOOK: usize = 17;
 
 /// The level that no noise cell exceeds, decades of the network's own map: above the median cell, which is the network's mean of noise where
 /// that is what most cells hold. Over the rounding floor it lies far below every echo.
 fn noise_level_decades(map: &[f32]) -> f64 {
-    let mut cells: Vec<f32> = map.iter().copied().step_by(STRIDE).collect();
+    let mut cells: Vec<f32> = map.iter().copied().step_by(CELLS_A_LOOK).collect();
     if cells.is_empty() {
         return f64::NEG_INFINITY;
     }
@@ -154,7 +158,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        crate::network::trained_for::check_radar("live", radar)
+        check_radar(NAME, &self.trained, radar)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

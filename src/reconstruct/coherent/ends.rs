@@ -7,7 +7,7 @@ use crate::signal::simd::{LANES_F64, Lanes};
 use num_complex::Complex64;
 
 /// Rows of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
-const ROWS_PER_BIN: usize = 16;
+const PROFILE_ROWS_PER_BIN: usize = 16;
 
 /// Elements side by side.
 const W: usize = LANES_F64;
@@ -42,7 +42,7 @@ impl Ends {
         }
         let lanes = |x: &[f64]| Lanes(std::array::from_fn(|i| x[i.min(x.len() - 1)]));
         let x_lanes = x_metres.chunks(W).map(lanes).collect();
-        Ends { profiles: Profiles::new(radar, &channels, ROWS_PER_BIN), x_metres, first_count, x_lanes }
+        Ends { profiles: Profiles::new(radar, &channels, PROFILE_ROWS_PER_BIN), x_metres, first_count, x_lanes }
     }
 
     /// Number of elements.

@@ -61,7 +61,7 @@ impl Reconstructor for CoherentMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let task = &request.task;
-        let hearing = Hearing::beneath(radar, ends, request.floor);
+        let hearing = Hearing::beneath(radar, ends, request.noise);
         let found = if radar.samples == 1 {
             // A single sample tells no range to move reflectors along.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?

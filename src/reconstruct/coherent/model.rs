@@ -180,7 +180,7 @@ fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
 /// Directions beside the sector, relative to its middle, from which one end may hear a plane wave at the place's range: those that sound
 /// different at its elements.
 fn beside(radar: &Radar, place: &Place) -> Vec<f64> {
-    let turns_per_metre = radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
+    let turns_per_metre = radar.carrier_turns_per_metre().abs();
     let period_cos = 1.0 / (turns_per_metre * radar.element_spacing_metres);
     let width_cos = period_cos / radar.end_elements as f64;
     let clear_cos = place.sector.half_width_cos + CLEAR_WIDTHS * width_cos;

@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
-const SAME: (f64, f64) = (1.0, 0.75);
+const SAME_PEAK: (f64, f64) = (1.0, 0.75);
 
 /// Most peaks of one model: two ends of a dozen elements tell no more apart.
 const MOST_A_PLACE: usize = 8;
@@ -22,7 +22,7 @@ const MOST_A_PLACE: usize = 8;
 const MOST_REFLECTORS: usize = 400;
 
 /// Added to the Gram matrix of unit echoes, so that gains of close ones don't grow against each other.
-const RIDGE: f64 = 1e-3;
+const CLOSE_GAINS_RIDGE: f64 = 1e-3;
 
 /// Energy of an echo, relative to the strongest, beneath which it is left out.
 const LEAST_ENERGY: f64 = 1e-6;
@@ -67,8 +67,8 @@ pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, fringe_cos: f64) -> Vec
     let mut kept: Vec<Peak> = Vec::new();
     for peak in peaks {
         let same = |k: &Peak| {
-            radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME.0
-                && (k.cos_theta - peak.cos_theta).abs() < SAME.1 * fringe_cos
+            radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME_PEAK.0
+                && (k.cos_theta - peak.cos_theta).abs() < SAME_PEAK.1 * fringe_cos
         };
         if kept.len() < MOST_REFLECTORS && !kept.iter().any(same) {
             kept.push(peak);
@@ -105,7 +105,7 @@ pub(in crate::reconstruct) fn gains(
     task.check()?;
     let gram = Mat::from_fn(count, count, |i, j| {
         let value = if i >= j { gram[i * count + j] } else { gram[j * count + i].conj() };
-        value + if i == j { RIDGE } else { 0.0 }
+        value + if i == j { CLOSE_GAINS_RIDGE } else { 0.0 }
     });
     let Ok(factor) = Llt::new(gram.as_ref(), Side::Lower) else { return Ok(Vec::new()) };
     let gains = factor.solve(Mat::from_fn(count, 1, |i, _| heard[i]));

@@ -18,10 +18,10 @@ const PER_BIN: usize = 4;
 const BINS_BEYOND: usize = 1;
 
 /// Power by which a place must stand above the noise of one beam.
-const LEAST_OVER_NOISE: f64 = 10.0;
+const LEAST_PLACE_OVER_NOISE: f64 = 10.0;
 
 /// Power of a place relative to the strongest other direction at its range, beneath which it is taken for an end's side lobe.
-const LEAST_BESIDE: f64 = 0.05;
+const LEAST_OF_DIRECTION: f64 = 0.05;
 
 /// Range side lobes are expected to lie this much, in power, above what the window gives a single reflector.
 const SIDE_LOBE_ROOM: f64 = 8.0;
@@ -54,7 +54,7 @@ impl Beams {
     /// As many beams as leave no gap within the sectors.
     fn new(radar: &Radar, ends: &Ends, half_width_cos: f64) -> Self {
         let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
-        let beam_cos = radar.wavelength_metres() / (end_metres * radar.carrier.turns_per_wavelength().abs());
+        let beam_cos = radar.beam_cos(end_metres);
         let count = (4.0 * half_width_cos / beam_cos).ceil().max(1.0);
         let step = |i: usize| (2 * i + 1) as f64 * half_width_cos / count - half_width_cos;
         let weights = |i: usize| ends.x_metres.iter().map(|x| ends.profiles.phase(x * step(i))).collect();
@@ -135,7 +135,7 @@ pub(super) fn places(
         .collect::<Result<_, ReconstructError>>()?;
     let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
     let least = side_lobes(&strongest, PER_BIN * radar.samples);
-    let noise = LEAST_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
+    let noise = LEAST_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
     let mut found = Vec::new();
     for (sector, heard) in sectors.all.iter().zip(&heard) {
         for i in 1..count.saturating_sub(1) {
@@ -162,7 +162,7 @@ fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
             let bins = i as f64 / PER_BIN as f64;
             // Beyond the main lobe the highest of each side lobe, at half bins.
             let level = range_response(bins.floor() + 0.5);
-            if bins < 2.0 { LEAST_BESIDE } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_BESIDE) }
+            if bins < 2.0 { LEAST_OF_DIRECTION } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_OF_DIRECTION) }
         })
         .collect();
     let apart = |i: usize, j: usize| {
@@ -196,7 +196,7 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let heard = Ends::new(&radar, &ends);
         let sectors = Sectors::new(&radar, &heard);
-        let noise = ends_noise_variance(&radar, &ends, Floor::Thesis) * 1.5 / radar.samples as f64;
+        let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into()) * 1.5 / radar.samples as f64;
         let found = places(&radar, &heard, &sectors, noise, &Task::default()).unwrap();
         let range = 2f64.hypot(9.0);
         assert!(!found.is_empty() && found.len() < 4 * sectors.all.len(), "{} places", found.len());

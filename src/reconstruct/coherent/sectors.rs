@@ -47,7 +47,7 @@ impl Sectors {
         let count = (1.0 / widest.min(1.0)).ceil() as usize;
         let half_width_cos = 1.0 / count as f64;
         let sector = |i: usize| Sector { middle_cos: (2 * i + 1) as f64 * half_width_cos - 1.0, half_width_cos };
-        let turns_per_cos = span_metres * radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres();
+        let turns_per_cos = span_metres * radar.carrier_turns_per_metre().abs();
         let per_fringe = if count == 1 { PER_FRINGE_ALONE } else { PER_FRINGE };
         let fringe_cos = 1.0 / turns_per_cos.max(f64::MIN_POSITIVE);
         // A fringe more to either side, so that no maximum stands on an edge.

@@ -27,23 +27,23 @@ const MOST_TIED: usize = 48;
 const TIED_COST: f64 = 4.0;
 
 /// Of peaks nearer than this in range at either end the strongest is taken first.
-const APART_BINS: f64 = 4.0;
+const BESIDE_STRONGER_BINS: f64 = 4.0;
 
 /// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
 const NEAREST_BETWEEN: f64 = 0.25;
 
 /// Most rounds of taking peaks from one look.
-const ROUNDS: usize = 8;
+const ROUNDS_A_LOOK: usize = 8;
 
 /// Part of what the strongest peak explains that one must explain to be taken in the same round: what stronger ones leave while they
 /// are not yet in their places looks like many weak ones.
-const LEAST_BESIDE: f64 = 0.03;
+const LEAST_OF_STRONGEST: f64 = 0.03;
 
 /// A reflector must explain this many times the energy that noise gives to one more gain.
-const LEAST_OVER_NOISE: f64 = 16.0;
+const LEAST_GAIN_OVER_NOISE: f64 = 16.0;
 
 /// A peak of which this part is left has been explained by others.
-const EXPLAINED: f64 = 0.05;
+const LEFT_OF_EXPLAINED: f64 = 0.05;
 
 /// Another look needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.9;
@@ -141,14 +141,14 @@ impl<'a> Settled<'a> {
         let mut waiting: Vec<Waiting> = peaks.iter().filter_map(|p| Waiting::new(self.radar, p)).collect();
         let first = self.heard(&waiting);
         waiting.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
-        for _ in 0..ROUNDS {
+        for _ in 0..ROUNDS_A_LOOK {
             self.task.check()?;
-            let noise = LEAST_OVER_NOISE * self.bench.gain_noise(self.radar, &self.fit);
+            let noise = LEAST_GAIN_OVER_NOISE * self.bench.gain_noise(self.radar, &self.fit);
             let now = self.heard(&waiting);
             let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
-            left.retain(|(now, w)| *now > noise.max(EXPLAINED * w.energy));
+            left.retain(|(now, w)| *now > noise.max(LEFT_OF_EXPLAINED * w.energy));
             left.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let least = left.first().map_or(0.0, |(strongest, _)| LEAST_BESIDE * strongest);
+            let least = left.first().map_or(0.0, |(strongest, _)| LEAST_OF_STRONGEST * strongest);
             let mut later = left.split_off(left.partition_point(|(now, _)| *now >= least));
             let taken = strongest_apart(self.radar, &mut left);
             left.append(&mut later);
@@ -212,7 +212,7 @@ impl<'a> Settled<'a> {
 /// `peaks` without those that stand where an earlier one does.
 fn once_each(radar: &Radar, peaks: Vec<Peak>) -> Vec<Peak> {
     let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
-    let beam_cos = radar.wavelength_metres() / (end_metres * radar.carrier.turns_per_wavelength().abs());
+    let beam_cos = radar.beam_cos(end_metres);
     let mut kept: Vec<Peak> = Vec::with_capacity(peaks.len());
     for peak in peaks {
         let is_same = |k: &Peak| {
@@ -250,7 +250,7 @@ impl Waiting {
 fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(Rows, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {
-        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > APART_BINS);
+        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > BESIDE_STRONGER_BINS);
         if is_apart {
             taken.push((w.rows, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
         }

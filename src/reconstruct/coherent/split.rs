@@ -59,7 +59,7 @@ impl Settled<'_> {
     /// Width of an end's beam in cos(theta).
     fn beam_cos(&self) -> f64 {
         let end_metres = self.radar.end_elements as f64 * self.radar.element_spacing_metres;
-        self.radar.wavelength_metres() / (end_metres * self.radar.carrier.turns_per_wavelength().abs())
+        self.radar.beam_cos(end_metres)
     }
 
     /// Whether something is left at the range of an echo, or a weak one stands beside a strong one: either may be two that were found as

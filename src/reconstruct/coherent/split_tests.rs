@@ -26,7 +26,7 @@ fn found(method: CoherentMethod, places: &[Place], floor: Floor) -> Vec<Detectio
     let at = |(degrees, range): &Place| (range * degrees.to_radians().sin(), range * degrees.to_radians().cos());
     let scene = Scene::of_points(places.iter().map(at));
     let ends = simulate(&radar(), &scene, floor, 1).unwrap().two_ends(&radar());
-    let answer = method.reconstruct(&radar(), &ends, &Request { floor, ..Request::default() }).unwrap();
+    let answer = method.reconstruct(&radar(), &ends, &Request { noise: floor.into(), ..Request::default() }).unwrap();
     answer.detections(&radar())
 }
 

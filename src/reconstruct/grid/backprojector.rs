@@ -29,7 +29,7 @@ const BLOCK: usize = 16;
 const NEAR_PART: f64 = 1.0 / 64.0;
 
 /// Most bytes that the tables of places may fill.
-const MOST_BYTES: usize = 1 << 30;
+const MOST_TABLE_BYTES: usize = 1 << 30;
 
 /// Where one cell of the centre's grid lies in one block's spectrum.
 #[derive(Clone, Copy, Default)]
@@ -82,8 +82,8 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
 pub(super) fn too_large(radar: &Radar, cells: &Cells<'_>) -> Option<String> {
     let (bins, directions) = cells.dim();
     let bytes = 2 * blocks(radar).len() * bins * directions * size_of::<Place>();
-    (bytes > MOST_BYTES).then(|| {
-        format!("its tables for {bins} range bins and {directions} directions would fill {bytes} bytes; at most {MOST_BYTES}")
+    (bytes > MOST_TABLE_BYTES).then(|| {
+        format!("its tables for {bins} range bins and {directions} directions would fill {bytes} bytes; at most {MOST_TABLE_BYTES}")
     })
 }
 
@@ -140,10 +140,9 @@ impl Backprojector {
 
 /// Where a block around element `origin` sees every cell.
 fn places(radar: &Radar, cells: &Cells<'_>, origin: usize, rows: usize, columns: usize) -> Array2<Place> {
-    let carrier = radar.carrier.turns_per_wavelength() / radar.wavelength_metres();
-    let beat = (radar.samples / 2) as f64 / radar.max_range_metres();
+    let turns_per_metre = radar.turns_per_metre((radar.samples / 2) as f64);
     // Turns from one element to the next for cos(theta) = 1.
-    let per_element = -carrier * radar.element_spacing_metres;
+    let per_element = -radar.carrier_turns_per_metre() * radar.element_spacing_metres;
     let origin_metres = radar.element_x_metres(origin);
     let mut places = Array2::from_elem(cells.dim(), Place::default());
     places.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).for_each(|(mut row, range_metres)| {
@@ -154,7 +153,7 @@ fn places(radar: &Radar, cells: &Cells<'_>, origin: usize, rows: usize, columns:
             *place = Place {
                 row: ((bins * ROWS_PER_BIN as f64) % rows as f64) as f32,
                 column: turns as f32,
-                phase: Complex64::cis(-TAU * ((carrier + beat) * seen.range_metres).fract()),
+                phase: Complex64::cis(-TAU * (turns_per_metre * seen.range_metres).fract()),
             };
         }
     });

@@ -44,14 +44,14 @@ impl Default for Fista {
 const MOST_CANDIDATES: usize = 4096;
 
 /// Rounds of adding cells, and most of them in a round.
-const ROUNDS: usize = 2;
+const ADDING_ROUNDS: usize = 2;
 const MOST_ADDED: usize = 512;
 
 /// A cell is added where it is left more than this many times the penalty: so far the look-up of a cell may be wrong.
 const WRONGLY_ZERO: f64 = 1.1;
 
 /// Most reflectors that are drawn; the strongest of what the penalty left.
-const MOST_DRAWN: usize = 200;
+const MOST_REFLECTORS_DRAWN: usize = 200;
 
 /// The problem in the coordinates that iterations need: Gram matrix and correlations.
 #[derive(Clone)]
@@ -249,7 +249,7 @@ impl Reconstructor for Fista {
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
-        let noise_variance = ends_noise_variance(radar, ends, request.floor);
+        let noise_variance = ends_noise_variance(radar, ends, request.noise);
         // At least what noise alone explains in no cell: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial adaptation
         // by wavelet shrinkage", Biometrika 81, 1994, at the chance of the other thresholds.
         let (bins, directions) = cells.dim();
@@ -257,7 +257,7 @@ impl Reconstructor for Fista {
         let penalty = Penalty::Part { part: self.penalty, least };
         let mut problem = Problem::new(&cells, &chosen, ends, penalty, request)?;
         let mut x = problem.solve(self.iterations, request, |_| {})?;
-        for _ in 0..ROUNDS {
+        for _ in 0..ADDING_ROUNDS {
             let left = backprojector.amplitudes(&problem.left(radar, ends, &x));
             let (penalty, room) = (problem.penalty, MOST_ADDED.min(MOST_CANDIDATES.saturating_sub(chosen.len())));
             let more = candidates(radar, &cells, left, room, &chosen, WRONGLY_ZERO * penalty);
@@ -276,7 +276,7 @@ impl Reconstructor for Fista {
             .map(|(atom, x)| Gained { reflector: atom.reflector, gain: x / atom.norm() })
             .collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
-        found.truncate(MOST_DRAWN);
+        found.truncate(MOST_REFLECTORS_DRAWN);
         Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }
 }

@@ -14,7 +14,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Rows of an element's padded range profile for each range bin: enough for linear interpolation.
-const ROWS_PER_BIN: usize = 8;
+const LAYOUT_ROWS_PER_BIN: usize = 8;
 
 /// Lambda of the whole array as the coherent matched filter of a few elements estimates it: every cell of the centre's polar grid
 /// looks up each element's range profile at its own distance and takes off the phase that distance gives.
@@ -45,7 +45,7 @@ pub fn layout_matched_filter(
     }
     let samples = samples.mapv(|v| v / peak);
     let channels: Vec<_> = samples.outer_iter().collect();
-    let profiles = Profiles::new(radar, &channels, ROWS_PER_BIN);
+    let profiles = Profiles::new(radar, &channels, LAYOUT_ROWS_PER_BIN);
     request.task.check()?;
     let scale = focused_gain(radar) / layout.len() as f64;
     let cells = Cells::new(radar);

@@ -61,7 +61,7 @@ impl Reconstructor for MatchedFilter {
                 MatchedFilter::Incoherent => (a.norm_sqr() + b.norm_sqr()) / 2.0,
             }
         });
-        Ok(of_power(radar, cells.folded(&power), ends_noise_variance(radar, ends, request.floor), request))
+        Ok(of_power(radar, cells.folded(&power), ends_noise_variance(radar, ends, request.noise), request))
     }
 }
 

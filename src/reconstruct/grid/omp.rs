@@ -36,19 +36,19 @@ impl Default for Omp {
 }
 
 /// Picks of one look stand this far apart in range at least, and hear little of each other.
-const APART_BINS: usize = 40;
+const PICKS_APART_BINS: usize = 40;
 
 /// Power of a pick as a part of the strongest's of its look, beneath which it waits for another.
-const LEAST_BESIDE: f64 = 0.1;
+const LEAST_PICK: f64 = 0.1;
 
 /// Steps by which a pick is moved off the grid.
-const STEPS: usize = 32;
+const CLIMBING_STEPS: usize = 32;
 
 /// The same for each of the directions that are compared.
 const TOOTH_STEPS: usize = 12;
 
 /// Directions to each side of a pick's that are compared: the phase between the ends is the same in all of them.
-const TEETH: i32 = 6;
+const TEETH_BESIDE: i32 = 6;
 
 /// Most times that they are compared anew around the outermost of them, where that is the best.
 const WALKS: usize = 8;
@@ -70,7 +70,7 @@ const MOVING_STEPS: usize = 24;
 
 /// Part of the energy that rounding leaves unexplained where phases of 6e4 rad were evaluated in f64: about 1e-11 of each sample's
 /// amplitude. It is not white, so that the measured noise understates it.
-const ROUNDING: f64 = 1e-22;
+const ROUNDING_ENERGY: f64 = 1e-22;
 
 /// Least part of an atom that the atoms picked before don't hold: less is no new atom.
 const LEAST_NEW: f64 = 1e-7;
@@ -117,10 +117,10 @@ impl Pursuit<'_> {
     fn refined(&self, mut atom: ArrayEcho, samples: &[Complex64]) -> ArrayEcho {
         let (radar, cells) = (self.radar, &self.cells);
         let apart_metres = (radar.elements - radar.end_elements) as f64 * radar.element_spacing_metres;
-        let tooth_cos = 1.0 / (apart_metres * turns_per_metre(radar));
+        let tooth_cos = 1.0 / (apart_metres * radar.carrier_turns_per_metre().abs());
         for _ in 0..WALKS {
             let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
-            let best = (-TEETH..=TEETH)
+            let best = (-TEETH_BESIDE..=TEETH_BESIDE)
                 .into_par_iter()
                 .filter_map(|tooth| {
                     let cos = place.cos_theta + f64::from(tooth) * tooth_cos;
@@ -130,11 +130,11 @@ impl Pursuit<'_> {
                 .reduce_with(|a, b| if b.0 > a.0 { b } else { a });
             let Some((_, tooth, better)) = best else { break };
             atom = better;
-            if tooth.abs() < TEETH {
+            if tooth.abs() < TEETH_BESIDE {
                 break;
             }
         }
-        climbed(cells, atom, samples, STEPS).1
+        climbed(cells, atom, samples, CLIMBING_STEPS).1
     }
 
     /// Moves every pick once more, now that the others' shares of `samples` are known: side lobes of an echo that was not yet picked
@@ -212,7 +212,7 @@ impl Omp {
         let samples = ends.flat();
         let noise = noise_variance * samples.len() as f64 * 1.1;
         let all = energy(&samples);
-        let enough = noise.max(all * ROUNDING);
+        let enough = noise.max(all * ROUNDING_ENERGY);
         let mut cells = Cells::heard_by(radar, ends);
         // Nothing stands at the centre: what is heard in bin 0 stands one range period beyond.
         if radar.samples > 1 {
@@ -271,18 +271,13 @@ impl Omp {
             if (2..=MOST_RELAXED).contains(&pursuit.picks.len()) {
                 pursuit.relax(samples, true);
             }
-            least = f64::max(least, LEAST_BESIDE * power);
+            least = f64::max(least, LEAST_PICK * power);
             let bins = heard.nrows();
-            let near = bin.saturating_sub(APART_BINS)..(bin + APART_BINS).min(bins);
+            let near = bin.saturating_sub(PICKS_APART_BINS)..(bin + PICKS_APART_BINS).min(bins);
             heard.slice_mut(s![near, ..]).fill(0.0);
         }
         true
     }
-}
-
-/// Turns that the carrier's phase makes for each metre of distance.
-fn turns_per_metre(radar: &Radar) -> f64 {
-    radar.carrier.turns_per_wavelength().abs() / radar.wavelength_metres()
 }
 
 /// `atom` moved to the nearest place where it explains most of `samples`, and its share there; in at most `steps` steps, which get
@@ -292,7 +287,8 @@ fn climbed(cells: &Cells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps:
     let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
     let (mut range, mut cos) = (place.range_metres, place.cos_theta);
     let aperture_metres = radar.elements as f64 * radar.element_spacing_metres;
-    let mut step = (radar.range_resolution_metres() / 4.0, 0.25 / (aperture_metres * turns_per_metre(radar)));
+    let mut step =
+        (radar.range_resolution_metres() / 4.0, 0.25 / (aperture_metres * radar.carrier_turns_per_metre().abs()));
     let mut heard = atom.correlate(samples).norm();
     for _ in 0..steps {
         let around = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)];
@@ -356,7 +352,7 @@ impl Reconstructor for Omp {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let noise_variance = ends_noise_variance(radar, ends, request.floor);
+        let noise_variance = ends_noise_variance(radar, ends, request.noise);
         let found = self.pursue(radar, ends, noise_variance, request)?;
         Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }

@@ -6,13 +6,12 @@
 use super::atom::Atom;
 use super::over_noise::{EULER, OverNoise};
 use crate::maps::fast::{FastLogMap, MapMaker, Sources};
-use crate::maps::tolerance::tolerance_for;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::reconstruct::Request;
 use crate::reconstruct::noise_test::decades_above_cells;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
-use crate::signal::floor::thesis_noise_variance;
+use crate::signal::floor::{snr_over, thesis_noise_variance};
 use crate::signal::plan::amplitude_bound;
 use crate::signal::simd::{LANES_F32, LANES_F64, Real};
 use crate::signal::synthesis::{BlockProfiles, Synthesis};
@@ -62,7 +61,11 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
         // The simulator takes reflectors that touch no element.
         .map(|r| Reflector { y_metres: r.y_metres.max(MIN_ELEMENT_DISTANCE_METRES), ..r })
         .collect();
-    let tolerance = tolerance_for(request.floor, request.normalisation);
+    let snr = match noise {
+        Noise::Variance(variance) => snr_over(radar, &reflectors, variance),
+        Noise::Rounding | Noise::RoundingHeard(_) => None,
+    };
+    let tolerance = request.noise.tolerance(request.normalisation, snr);
     let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance);
     let map = match plan.precision {
         Precision::F64 => log_map::<f64, LANES_F64>(radar, &reflectors, plan, &request.task),

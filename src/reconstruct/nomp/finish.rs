@@ -4,8 +4,7 @@ use super::atom::Atom;
 use super::echoes::Samples;
 use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Request};
-use crate::signal::Floor;
+use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -99,7 +98,7 @@ pub(super) fn finish(
     let mut best = apart.clone();
     if complete && reflectors <= MOST_TIED {
         let mut tied = bench.refine(samples, apart.atoms.clone(), apart.gains.clone(), Tie::Both, TIED);
-        if request.floor.is_thermal() && tied.atoms.len() <= MOST_COMBED {
+        if request.noise.is_white() && tied.atoms.len() <= MOST_COMBED {
             tied = combed(bench, samples, tied);
         }
         // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
@@ -119,7 +118,7 @@ pub(super) fn finish(
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,
-        not_agreed: if complete { residual } else { not_agreed(bench, &best, request.floor) },
+        not_agreed: if complete { residual } else { not_agreed(bench, &best, request.noise) },
         atoms: best.atoms,
         gains: best.gains,
         scale,
@@ -135,8 +134,8 @@ const MOST_DISAGREED_IN_NOISE: f64 = 0.3;
 
 /// What `fit` leaves, with the echoes of those atoms that the ends don't agree on: a reflector sounds alike at both, what merely makes up
 /// for others that were not told apart seldom does.
-fn not_agreed(bench: &Workbench, fit: &Fit, floor: Floor) -> Vec<Complex64> {
-    let most = if floor.is_thermal() { MOST_DISAGREED_IN_NOISE } else { MOST_DISAGREED };
+fn not_agreed(bench: &Workbench, fit: &Fit, noise: NoisePrior) -> Vec<Complex64> {
+    let most = if noise.is_white() { MOST_DISAGREED_IN_NOISE } else { MOST_DISAGREED };
     let disagrees = |i: &usize| {
         let [a, b] = fit.gains[*i].map(|g| g.norm());
         (a - b).abs() > most * a.max(b)

@@ -105,10 +105,11 @@ pub use settings::Settings;
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
+use super::prior::NoisePrior;
 use super::reconstructor::{About, Reconstructor};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
-use crate::signal::{Floor, TwoEnds};
+use crate::signal::TwoEnds;
 use draw::{Noise, Weighted, expected_lambda};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
@@ -176,13 +177,13 @@ impl Found {
         if self.atoms.is_empty() {
             return Expected { map: Reconstruction::silence(radar).lambda, decades: 1.0, least_eta: 0.0 };
         }
-        let noise = match request.floor {
-            Floor::Thesis if self.complete => Noise::Rounding,
+        let noise = match request.noise {
+            NoisePrior::Rounding if self.complete => Noise::Rounding,
             // What was found may be far from what rounds there.
-            Floor::Thesis => Noise::RoundingHeard(self.noise_variance),
-            Floor::Exact => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
-            Floor::Snr(_) | Floor::Level(_) if self.complete => Noise::Variance(self.residual_variance),
-            Floor::Snr(_) | Floor::Level(_) => Noise::Variance(self.noise_variance),
+            NoisePrior::Rounding => Noise::RoundingHeard(self.noise_variance),
+            NoisePrior::Nothing => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
+            NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
+            NoisePrior::White { .. } => Noise::Variance(self.noise_variance),
         };
         expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
     }

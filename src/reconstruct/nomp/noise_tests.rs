@@ -8,7 +8,7 @@ use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::floor::snr_noise_variance;
-use crate::signal::simulate;
+use crate::signal::{Floor, simulate};
 
 /// Most error of the search, over that of who is told the scene and the noise's variance.
 const MOST: f64 = 1.1;
@@ -19,7 +19,7 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
     let generator = Generator::new(&radar, Reading::Program, purpose, 0);
     for snr_db in [40.0, 20.0] {
         let floor = Floor::Snr(Decibels(snr_db));
-        let request = Request { floor, ..Request::default() };
+        let request = Request { noise: floor.into(), ..Request::default() };
         for kind in Kind::TEST_SETS {
             let [mut told, mut searched] = [0.0; 2];
             for number in 0..count {

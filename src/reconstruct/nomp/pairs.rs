@@ -253,7 +253,7 @@ mod tests {
         let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 3);
         let scene: Scene = generator.scene(Kind::Crowd, 0);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let noise = ends_noise_variance(&radar, &ends, Floor::Thesis);
+        let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into());
         let found = paired_points(&radar, &ends.flat(), noise, usize::MAX).unwrap().points;
         let near = |x: f64, y: f64| {
             let distance = |a: &Paired| {

@@ -52,7 +52,7 @@ fn find_with(
     let window = hann(radar.samples);
     let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
         .hearing(&flat)
-        .over(Hearing::beneath(radar, &ends, request.floor));
+        .over(Hearing::beneath(radar, &ends, request.noise));
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let search = Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings };

@@ -5,7 +5,7 @@ use crate::maps::{LogMaps, Normalisation};
 use crate::radar::Decibels;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Line, Object, Point, Scene};
-use crate::signal::simulate;
+use crate::signal::{Floor, simulate};
 use crate::task::Task;
 use num_complex::Complex64;
 
@@ -120,7 +120,7 @@ fn under_thermal_noise_it_finds_what_is_there_and_little_else() {
     for snr in [0.0, 20.0, 40.0, 60.0] {
         let floor = Floor::Snr(Decibels(snr));
         let ends = simulate(&radar, &scene, floor, 3).unwrap().two_ends(&radar);
-        let request = Request { floor, ..Request::default() };
+        let request = Request { noise: floor.into(), ..Request::default() };
         let found = Nomp::default().reconstruct(&radar, &ends, &request).unwrap();
         assert_eq!(found.reflectors.len(), 3, "{snr} dB: {:?}", found.reflectors);
         // A tooth of the comb is 4 cm wide; the bound lies far below.
@@ -187,7 +187,8 @@ fn an_array_too_small_to_see_curvature_puts_nothing_beyond_the_maximum_range() {
     for seed in 0..6 {
         let floor = Floor::Snr(Decibels(30.0));
         let ends = simulate(&radar, &scene, floor, seed).unwrap().two_ends(&radar);
-        let found = Nomp::default().reconstruct(&radar, &ends, &Request { floor, ..Request::default() }).unwrap();
+        let found =
+            Nomp::default().reconstruct(&radar, &ends, &Request { noise: floor.into(), ..Request::default() }).unwrap();
         let ranges: Vec<f64> = found.reflectors.iter().map(|r| r.x_metres.hypot(r.y_metres)).collect();
         assert!(ranges.iter().all(|range| *range < radar.max_range_metres()), "{seed}: {ranges:?}");
         // Two directions that the ends' fringes don't tell apart lie metres from each other.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::reconstruct::{Baseline, Hybrid, Reconstructor};
 use crate::scene::Scene;
-use crate::signal::simulate;
+use crate::signal::{Floor, simulate};
 use rayon::prelude::*;
 use std::sync::Arc;
 

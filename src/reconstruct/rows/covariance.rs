@@ -8,11 +8,11 @@ use super::row::Row;
 use crate::maps::Spectrum;
 
 /// Longest sub-array: work grows with the cube of its elements.
-const LONGEST: usize = 64;
+const LONGEST_SUBARRAY: usize = 64;
 
 /// Elements of the sub-arrays over which a line of `elements` is smoothed: two thirds leave enough of both, aperture and averages.
 pub(super) fn subarray_len(elements: usize) -> usize {
-    (2 * elements / 3).clamp(2, LONGEST)
+    (2 * elements / 3).clamp(2, LONGEST_SUBARRAY)
 }
 
 /// Covariance over sub-arrays of `subarray` neighbouring elements, forward and backward, averaged over all their places and over

@@ -51,7 +51,7 @@ const MOST_PEAKS: usize = 256;
 const LEAST_NOT_PLANE: f64 = 1e-12;
 
 /// Power by which a peak must stand above the noise of one beam.
-const LEAST_OVER_NOISE: f64 = 10.0;
+const LEAST_PEAK_OVER_NOISE: f64 = 10.0;
 
 /// A method that estimates power over angle of one end and one range row at a time.
 #[derive(Debug, Clone, Copy)]
@@ -73,13 +73,13 @@ impl Reconstructor for RowMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let noise_variance = ends_noise_variance(radar, ends, request.floor);
+        let noise_variance = ends_noise_variance(radar, ends, request.noise);
         if self.render == Render::Spectrum {
             return Ok(of_power(radar, self.power(radar, ends, noise_variance, request)?, noise_variance, request));
         }
         // What reports progress is the whole, not one look.
         let quiet = Request { task: request.task.quiet(), ..request.clone() };
-        let hearing = Hearing::beneath(radar, ends, request.floor);
+        let hearing = Hearing::beneath(radar, ends, request.noise);
         let look = |left: &TwoEnds| -> Result<Vec<Peak>, ReconstructError> {
             let noise_variance = hearing.ends_noise_variance(radar, left);
             Ok(self.peaks(radar, &self.power(radar, left, noise_variance, &quiet)?, noise_variance))
@@ -119,7 +119,7 @@ impl RowMethod {
         let square_mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
         let angle_gain = (radar.window.weights(radar.elements).iter().sum::<f64>()).powi(2) / radar.elements as f64;
         let of_beam = noise_variance * square_mean(radar.samples) * angle_gain / radar.end_elements as f64;
-        let least = LEAST_OVER_NOISE * of_beam;
+        let least = LEAST_PEAK_OVER_NOISE * of_beam;
         let decades = power.mapv(|p| p.max(f64::MIN_POSITIVE).log10());
         let found =
             map_peaks(decades.view(), SPAN_DECADES, MOST_PEAKS).into_iter().filter(|p| 10f64.powf(p.value) > least);

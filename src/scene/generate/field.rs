@@ -34,7 +34,7 @@ impl Field {
                 let mut objects: Vec<_> = (0..rng.random_range(1..=3))
                     .map(|_| {
                         let direction = rng.random_range(0.0..360.0);
-                        self.wall(direction, self.spacing(rng, 3.0), 20..=100, rng)
+                        self.line(direction, self.spacing(rng, 3.0), 20..=100, rng)
                     })
                     .collect();
                 objects.extend(self.some_points(rng));
@@ -42,7 +42,7 @@ impl Field {
             }
             Kind::Spacings => {
                 let mut objects: Vec<_> = (0..rng.random_range(1..=3))
-                    .map(|_| self.wall(90.0, self.other_spacing(rng), 20..=100, rng))
+                    .map(|_| self.line(90.0, self.other_spacing(rng), 20..=100, rng))
                     .collect();
                 objects.extend(self.some_points(rng));
                 objects
@@ -110,8 +110,8 @@ impl Field {
             && (NEAREST_METRES..=FARTHEST * self.max_range_metres).contains(&x.hypot(y))
     }
 
-    /// A wall whose two ends lie in the field. Where 100 starts in a row leave its end outside, it gets shorter.
-    fn wall(
+    /// A line whose two ends lie in the field. Where 100 starts in a row leave its end outside, it gets shorter.
+    fn line(
         &self,
         direction_degrees: f64,
         spacing_metres: f64,
@@ -133,10 +133,10 @@ impl Field {
         }
     }
 
-    /// Two walls from one place, at right angles.
+    /// Two lines from one place, at right angles.
     fn corner(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
         loop {
-            let first = self.wall(rng.random_range(0.0..360.0), self.spacing(rng, 2.0), 20..=80, rng);
+            let first = self.line(rng.random_range(0.0..360.0), self.spacing(rng, 2.0), 20..=80, rng);
             let Object::Line(first) = first else { continue };
             let second = Line {
                 direction_degrees: (first.direction_degrees + 90.0) % 360.0,

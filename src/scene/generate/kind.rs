@@ -20,11 +20,11 @@ pub enum Kind {
     Set3,
     /// 1 to 3 Gaussian clusters of 15 to 40 points, each with a standard deviation of 0.2 to 1 m along x and along y, and 1 to 3 points.
     Clusters,
-    /// 1 to 3 walls at any slant, each of 20 to 100 points at 0.5 to 3 range bins, and 1 to 3 points. Both ends lie in the field.
+    /// 1 to 3 lines at any slant, each of 20 to 100 points at 0.5 to 3 range bins, and 1 to 3 points. Both ends lie in the field.
     Walls,
-    /// 1 to 3 vertical walls of 20 to 100 points at 0.5 to 3 range bins, not at the 1 and 1.5 bins of the thesis' lines, and 1 to 3 points.
+    /// 1 to 3 vertical lines of 20 to 100 points at 0.5 to 3 range bins, not at the 1 and 1.5 bins of the thesis' lines, and 1 to 3 points.
     Spacings,
-    /// A corner: two perpendicular walls that share an end, each of 20 to 80 points at 0.5 to 2 range bins; a cluster of 15 to 40 points and one point.
+    /// A corner: two perpendicular lines that share an end, each of 20 to 80 points at 0.5 to 2 range bins; a cluster of 15 to 40 points and one point.
     Corner,
     /// 12 to 40 points.
     Crowd,
@@ -70,9 +70,9 @@ impl Kind {
             Kind::Set2 => "3 to 6 points",
             Kind::Set3 => "3 to 6 points and lines",
             Kind::Clusters => "Gaussian clusters and points",
-            Kind::Walls => "walls at any slant and points",
-            Kind::Spacings => "vertical walls at other spacings and points",
-            Kind::Corner => "two perpendicular walls, a cluster and a point",
+            Kind::Walls => "lines at any slant and points",
+            Kind::Spacings => "vertical lines at other spacings and points",
+            Kind::Corner => "two perpendicular lines, a cluster and a point",
             Kind::Crowd => "12 to 40 points",
             Kind::Dynamic => "5 points up to 40 dB apart",
             Kind::Near => "points from 0.3 m",

@@ -203,7 +203,7 @@ fn one<'a>(
             last.insert((row, trial))
         }
     };
-    let request = Request { floor, normalisation, task: teller.task.clone(), ..Request::default() };
+    let request = Request { noise: floor.into(), normalisation, task: teller.task.clone(), ..Request::default() };
     let answer = trial.ask(method, &request).map_err(|e| e.to_string())?;
     Ok(Arc::new(Thumbnail::of(trial, &answer)))
 }

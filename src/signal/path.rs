@@ -1,0 +1,308 @@
+//! The path of an echo: which range and which complex amplitude a pair of antennas gives to what stands before it.
+//!
+//! This is the one place where geometry becomes an echo. [`EchoModel`](super::phase::EchoModel) makes phases of it, for every carrier;
+//! simulation, fits, bounds and theory take both from here. A point of reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude
+//! `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from the transmitter and from the receiver; where both are one antenna, that is
+//! the distance and `P g / R^2`.
+//!
+//! A kind of object that isn't made of points is added here: as range and complex amplitude of each of its echoes ([`Path::new`]).
+
+use super::double::{Double, product, sum};
+use super::simd::Lanes;
+use crate::radar::{Pair, Radar};
+use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Pairs of antennas, one a lane.
+#[derive(Debug, Clone, Copy)]
+pub struct Pairs<const W: usize> {
+    transmitter_x_metres: Lanes<f64, W>,
+    receiver_x_metres: Lanes<f64, W>,
+    /// Whether every pair is one antenna.
+    is_monostatic: bool,
+}
+
+impl<const W: usize> Pairs<W> {
+    /// The pairs that `pair` tells for lanes 0, 1 and so on.
+    pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
+        let pairs: [Pair; W] = std::array::from_fn(pair);
+        Pairs {
+            transmitter_x_metres: Lanes(pairs.map(|p| p.transmitter_x_metres)),
+            receiver_x_metres: Lanes(pairs.map(|p| p.receiver_x_metres)),
+            is_monostatic: pairs.iter().all(|p| p.transmitter_x_metres == p.receiver_x_metres),
+        }
+    }
+}
+
+/// Elements that hear what they sent.
+impl<const W: usize> From<Lanes<f64, W>> for Pairs<W> {
+    #[inline(always)]
+    fn from(element_x_metres: Lanes<f64, W>) -> Self {
+        let (transmitter_x_metres, receiver_x_metres) = (element_x_metres, element_x_metres);
+        Pairs { transmitter_x_metres, receiver_x_metres, is_monostatic: true }
+    }
+}
+
+impl From<Pair> for Pairs<1> {
+    fn from(pair: Pair) -> Self {
+        Pairs::new(|_| pair)
+    }
+}
+
+/// Range and complex amplitude of one echo at `W` pairs.
+#[derive(Debug, Clone, Copy)]
+pub struct Path<const W: usize> {
+    /// Half the way there and back, metres.
+    pub(super) range_metres: Double<Lanes<f64, W>>,
+    /// Amplitude, real.
+    pub(super) amplitude: Lanes<f64, W>,
+    /// Turns by which the amplitude's phase is not 0; `None` where it is 0 in every lane.
+    pub(super) turns: Option<Lanes<f64, W>>,
+}
+
+impl<const W: usize> Path<W> {
+    /// An echo of any kind: its range in metres and its complex amplitude, one a lane.
+    pub fn new(range_metres: [f64; W], amplitude: [Complex64; W]) -> Self {
+        Path {
+            range_metres: Double { hi: Lanes(range_metres), lo: Lanes::splat(0.0) },
+            amplitude: Lanes(amplitude.map(|a| a.norm())),
+            turns: Some(Lanes(amplitude.map(|a| a.arg() / TAU))),
+        }
+    }
+
+    /// The echo of a point under a transmit power of `power_watts`.
+    #[inline(always)]
+    pub(super) fn of_point<const FMA: bool>(power_watts: f64, pairs: &Pairs<W>, r: &Reflector) -> Self {
+        let scale = power_watts * r.reflectivity;
+        let there = leg::<W, FMA>(pairs.transmitter_x_metres, r);
+        if pairs.is_monostatic {
+            let amplitude = there.hi.map(|d| scale / (d * d));
+            return Path { range_metres: there, amplitude, turns: None };
+        }
+        let back = leg::<W, FMA>(pairs.receiver_x_metres, r);
+        let amplitude = there.hi.zip(back.hi, |t, r| scale / (t * r));
+        Path { range_metres: Double::mean(there, back), amplitude, turns: None }
+    }
+}
+
+/// Distance of `r` from antennas.
+#[inline(always)]
+fn leg<const W: usize, const FMA: bool>(antenna_x_metres: Lanes<f64, W>, r: &Reflector) -> Double<Lanes<f64, W>> {
+    let of = Lanes::<f64, W>::splat;
+    let dx = sum(antenna_x_metres, of(-r.x_metres));
+    let x2 = product::<W, FMA>(dx.hi, dx.hi);
+    let y2 = product::<W, FMA>(of(r.y_metres), of(r.y_metres));
+    let s = sum(x2.hi, y2.hi);
+    let low = s.lo + x2.lo + y2.lo + of(2.0) * dx.hi * dx.lo;
+    let root = s.hi.sqrt();
+    let square = product::<W, FMA>(root, root);
+    let residual = (s.hi - square.hi) - square.lo + low;
+    sum(root, residual.zip(root, |a, b| a / (2.0 * b)))
+}
+
+/// Range and amplitude of a point in plain f64, for whatever forms no phase of them.
+#[inline(always)]
+pub(super) fn plain_path<const W: usize>(
+    power_watts: f64,
+    pairs: &Pairs<W>,
+    r: &Reflector,
+) -> (Lanes<f64, W>, Lanes<f64, W>) {
+    let scale = power_watts * r.reflectivity;
+    let square = |antenna_x_metres: Lanes<f64, W>| {
+        let dx = antenna_x_metres - Lanes::splat(r.x_metres);
+        dx * dx + Lanes::splat(r.y_metres * r.y_metres)
+    };
+    let there = square(pairs.transmitter_x_metres);
+    if pairs.is_monostatic {
+        return (there.sqrt(), there.map(|s| scale / s));
+    }
+    let (there, back) = (there.sqrt(), square(pairs.receiver_x_metres).sqrt());
+    ((there + back) * Lanes::splat(0.5), there.zip(back, |t, r| scale / (t * r)))
+}
+
+/// Range in metres and amplitude of a point for one pair, rounded as the thesis' program rounds them.
+pub(super) fn thesis_path(radar: &Radar, pair: Pair, r: &Reflector) -> (f64, f64) {
+    let leg = |antenna_x_metres: f64| {
+        let dx = antenna_x_metres - r.x_metres;
+        (dx * dx + r.y_metres * r.y_metres).sqrt()
+    };
+    let (there, back) = (leg(pair.transmitter_x_metres), leg(pair.receiver_x_metres));
+    ((there + back) / 2.0, radar.transmit_power_watts * r.reflectivity / (there * back))
+}
+
+/// The smallest and the largest range of `r` from elements of `radar` up to `elements`, metres.
+pub(super) fn range_span_metres(radar: &Radar, elements: usize, r: &Reflector) -> (f64, f64) {
+    let (left, right) = (radar.element_x_metres(0), radar.element_x_metres(elements));
+    let nearest = (r.x_metres.clamp(left, right) - r.x_metres).hypot(r.y_metres);
+    let farthest = (left - r.x_metres).abs().max((right - r.x_metres).abs()).hypot(r.y_metres);
+    (nearest, farthest)
+}
+
+/// The largest amplitude that `r` can have at the array.
+pub(super) fn largest_amplitude(radar: &Radar, r: &Reflector) -> f64 {
+    let half = radar.aperture_metres() / 2.0;
+    let beside = (r.x_metres.abs() - half).max(0.0);
+    let square = (beside * beside + r.y_metres * r.y_metres).max(MIN_ELEMENT_DISTANCE_METRES.powi(2));
+    radar.transmit_power_watts * r.reflectivity.abs() / square
+}
+
+/// What moves when a point's echo changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// The point's x, in metres.
+    X,
+    /// The point's y, in metres.
+    Y,
+    /// The point's range from the array's centre, in metres, in the same direction.
+    Range,
+    /// cos(theta) of the point as the array's centre sees it, at the same range.
+    CosTheta,
+}
+
+/// How much an echo changes for each unit of what moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Change of the range, metres.
+    pub range_metres: f64,
+    /// Relative change of the amplitude.
+    pub amplitude: f64,
+}
+
+impl Change {
+    /// How the echo of a point at (`x_metres`, `y_metres`) changes, whatever its reflectivity.
+    pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
+        let range_metres = x_metres.hypot(y_metres);
+        let [there, back] = [pair.transmitter_x_metres, pair.receiver_x_metres].map(|antenna| {
+            let leg = (x_metres - antenna).hypot(y_metres);
+            // Half the square of the leg is (range^2 - 2 range cos(theta) antenna + antenna^2) / 2.
+            let half_square = match by {
+                By::X => x_metres - antenna,
+                By::Y => y_metres,
+                By::Range if range_metres == 0.0 => 0.0,
+                By::Range => range_metres - antenna * (x_metres / range_metres),
+                By::CosTheta => -range_metres * antenna,
+            };
+            let change = half_square / leg;
+            [change, -change / leg]
+        });
+        Change { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
+    }
+
+    /// Relative change of the sample where an echo's phase turns by `turns_per_metre`.
+    pub fn of_sample(&self, turns_per_metre: f64) -> Complex64 {
+        Complex64::new(self.amplitude, TAU * turns_per_metre * self.range_metres)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::judge;
+    use super::super::phase::EchoModel;
+    use super::*;
+    use crate::radar::Carrier;
+
+    const APART: Pair = Pair { transmitter_x_metres: -0.4, receiver_x_metres: 0.7 };
+
+    fn radars() -> [Radar; 2] {
+        [Carrier::OneWay, Carrier::TwoWay].map(|carrier| Radar { carrier, ..Radar::default() })
+    }
+
+    fn point(x_metres: f64, y_metres: f64) -> Reflector {
+        Reflector { x_metres, y_metres, reflectivity: 0.7 }
+    }
+
+    #[test]
+    fn the_echo_between_antennas_apart_is_the_judges() {
+        for radar in radars() {
+            for r in [point(2.0, 11.0), point(-7.0, 0.3), point(0.1, 60.0)] {
+                let echo = EchoModel::new(&radar).echo(APART, &r);
+                let judged = judge::pair_signal(&radar, &[r], APART);
+                for (n1, judged) in judged.iter().enumerate() {
+                    let off = (echo.sample(n1) - judged).norm();
+                    assert!(off < 1e-14 * echo.amplitude, "{r:?}, sample {n1}: {off:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn swapping_transmitter_and_receiver_changes_nothing() {
+        let radar = Radar::default();
+        let model = EchoModel::new(&radar);
+        let swapped = Pair { transmitter_x_metres: 0.7, receiver_x_metres: -0.4 };
+        let r = point(2.0, 11.0);
+        assert_eq!(model.echo(APART, &r), model.echo(swapped, &r));
+    }
+
+    #[test]
+    fn antennas_at_one_place_are_one_element_bit_for_bit() {
+        let model = EchoModel::new(&Radar::default());
+        let (x, r) = (0.3, point(2.0, 11.0));
+        let apart = Pairs::<1> { is_monostatic: false, ..Pairs::from(Lanes([x])) };
+        assert_eq!(model.echo_lanes::<1, false>(apart, &r), model.echo_lanes::<1, false>(Lanes([x]), &r));
+    }
+
+    #[test]
+    fn a_complex_amplitude_turns_the_samples() {
+        for radar in radars() {
+            let model = EchoModel::new(&radar);
+            let r = point(2.0, 11.0);
+            let (range, amplitude) = thesis_path(&radar, APART, &r);
+            let factor = Complex64::from_polar(1.5, 2.0);
+            let plain = model.heard::<1, false>(Path::new([range], [Complex64::from(amplitude)])).first();
+            let turned = model.heard::<1, false>(Path::new([range], [factor * amplitude])).first();
+            for n1 in [0, 1, 200, 511] {
+                let off = (turned.sample(n1) - plain.sample(n1) * factor).norm();
+                assert!(off < 1e-14 * turned.amplitude, "sample {n1}: {off:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn changes_are_derivatives_of_samples() {
+        const STEP: f64 = 1e-7;
+        let (x, y) = (2.0, 11.0);
+        let range = f64::hypot(x, y);
+        let polar = |range: f64, cos: f64| [range * cos, range * (1.0 - cos * cos).sqrt()];
+        let moved = |by, step| match by {
+            By::X => [x + step, y],
+            By::Y => [x, y + step],
+            By::Range => polar(range + step, x / range),
+            By::CosTheta => polar(range, x / range + step),
+        };
+        for radar in radars() {
+            let model = EchoModel::new(&radar);
+            for by in [By::X, By::Y, By::Range, By::CosTheta] {
+                for pair in [APART, Pair::at(0.3)] {
+                    for n1 in [0, 300] {
+                        let at = |step| {
+                            let [x, y] = moved(by, step);
+                            model.echo(pair, &point(x, y)).sample(n1)
+                        };
+                        let expected = (at(STEP) - at(-STEP)) / (2.0 * STEP) / at(0.0);
+                        let change = Change::of_point(pair, [x, y], by);
+                        let found = change.of_sample(radar.turns_per_metre(n1 as f64));
+                        assert!((found - expected).norm() < 1e-6 * expected.norm(), "{by:?}: {found}, {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn plain_paths_agree_with_exact_ones() {
+        let radar = Radar::default();
+        let r = point(2.0, 11.0);
+        for pair in [APART, Pair::at(0.3)] {
+            let echo = EchoModel::new(&radar).echo(pair, &r);
+            let (range, amplitude) = plain_path(radar.transmit_power_watts, &Pairs::from(pair), &r);
+            let thesis = thesis_path(&radar, pair, &r);
+            for (range, amplitude) in [(range.0[0], amplitude.0[0]), thesis] {
+                assert!((range - echo.distance_metres).abs() < 1e-14 * range);
+                assert!((amplitude / echo.amplitude - 1.0).abs() < 1e-14);
+            }
+            assert!((pair.range_metres(r.x_metres, r.y_metres) - echo.distance_metres).abs() < 1e-14 * thesis.0);
+        }
+    }
+}
