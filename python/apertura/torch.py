@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Sequence
 from ._apertura import Examples
 
 if TYPE_CHECKING:
-    import torch
+    import torch as _torch
 
 _TENSORS = ("ends", "fine", "coarse", "rows", "scalars", "target")
 
@@ -63,7 +63,7 @@ class Scenes:
     def __len__(self) -> int:
         return self._length
 
-    def __getitem__(self, index: int) -> dict[str, torch.Tensor]:
+    def __getitem__(self, index: int) -> dict[str, _torch.Tensor]:
         """Example `index`; negative numbers count from the end.
 
         Raises:
@@ -72,7 +72,7 @@ class Scenes:
         """
         return self.__getitems__([index])[0]
 
-    def __getitems__(self, indices: Sequence[int]) -> list[dict[str, torch.Tensor]]:
+    def __getitems__(self, indices: Sequence[int]) -> list[dict[str, _torch.Tensor]]:
         """Several examples, made in parallel: what a DataLoader asks for."""
         import torch
 
