@@ -93,7 +93,6 @@ pub fn cramer_rao<'py>(
 ///     ValueError: A name is unknown, a number is not finite, or more than a million places are asked for.
 #[pyfunction]
 #[pyo3(signature = (x_metres, y_metres, range_metres, cos_theta, radar=None, *, layout="two-ends"))]
-#[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn ambiguity<'py>(
     py: Python<'py>,
     x_metres: f64,

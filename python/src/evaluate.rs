@@ -20,6 +20,9 @@ use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// One number a threshold, float64.
+type Column<'py> = Bound<'py, PyArray1<f64>>;
+
 const SHAPE: &str = "[range bins, columns]";
 
 /// Lambda of every cell, all of them finite.
@@ -91,7 +94,7 @@ pub fn roc<'py>(
     py: Python<'py>,
     target: &Bound<'py, PyAny>,
     output: &Bound<'py, PyAny>,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+) -> PyResult<(Column<'py>, Column<'py>, Column<'py>)> {
     let [target, output] = both(target, output)?;
     let roc = work::run(py, None, |_| Roc::of(&target, &output))?;
     let column = |of: fn(apertura::evaluate::RocPoint) -> f64| owned(py, roc.points().map(of).collect::<Array1<f64>>());
