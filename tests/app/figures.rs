@@ -1,7 +1,7 @@
 //! Figures on screen are those of the command line, bit for bit, whatever the window showed before.
 
 use crate::session::{Session, harness, step_until};
-use apertura::app::{Command, DocumentCommand, EditCommand, NewObject};
+use apertura::app::{DocumentCommand, EditCommand, NewObject};
 use apertura::evaluate::rows::read_rows;
 use apertura::evaluate::trial::Trial;
 use apertura::interact::Document;

@@ -2,8 +2,7 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{
-    Command, DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand,
-    WindowCommand,
+    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
 };
 use apertura::engine::{Outcome, StageReport};
 use apertura::files::npz::Npz;

@@ -5,7 +5,7 @@ use super::plot::rect_of;
 use crate::app::state::{Command, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::icons::{self, Icon};
 use eframe::egui::emath::easing::cubic_in_out;
-use eframe::egui::{Color32, Id, Mesh, Painter, Pos2, Rect, Shape, TextureId, Ui, pos2, vec2};
+use eframe::egui::{Color32, Id, Mesh, Painter, Rect, Shape, TextureId, Ui, pos2, vec2};
 
 /// How long it takes, seconds.
 pub const SECONDS: f32 = 0.5;
@@ -63,6 +63,7 @@ mod tests {
     use super::*;
     use crate::radar::{Polar, Radar};
     use crate::scene::Reflector;
+    use eframe::egui::Pos2;
 
     #[test]
     fn a_place_moves_in_a_straight_line_from_one_kind_of_map_to_the_other() {
