@@ -28,7 +28,7 @@ const PRESENTATION_HEIGHT: f32 = 600.0;
 /// How much larger everything is in a presentation at least and at most.
 const PRESENTATION_ZOOMS: [f32; 2] = [1.25, 2.5];
 
-/// How much larger everything is in a presentation on a window of a height, points.
+/// How much larger everything is in a presentation on a window of a height, points at normal size.
 fn presentation_zoom(height: f32) -> f32 {
     let [least, most] = PRESENTATION_ZOOMS;
     (height / PRESENTATION_HEIGHT).clamp(least, most)
@@ -245,7 +245,7 @@ impl App {
         match (self.state.is_presenting(), self.zoom_before) {
             (true, None) => {
                 self.zoom_before = Some(ctx.zoom_factor());
-                let zoom = presentation_zoom(ctx.content_rect().height());
+                let zoom = presentation_zoom(ctx.content_rect().height() * ctx.zoom_factor());
                 ctx.set_zoom_factor((zoom * ctx.zoom_factor()).min(3.0));
             }
             (false, Some(before)) => {
