@@ -6,7 +6,8 @@ use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::state::{
-    Arrangement, Command, DocumentCommand, LessonCommand, Methods, Notices, Pointer, Settings, State, ViewCommand,
+    Arrangement, Command, DocumentCommand, LessonCommand, MethodTimes, Methods, Notices, Pointer, Settings, State,
+    ViewCommand,
 };
 use super::widgets::{focus_ring, theme};
 use crate::interact::{Document, Editor};
@@ -66,6 +67,7 @@ struct Kept {
     arrangement: Arrangement,
     recent: Vec<PathBuf>,
     progress: Progress,
+    method_times: MethodTimes,
     /// Size of the interface before a presentation that was on screen in the end.
     zoom: Option<f32>,
     /// Whether something has been dragged, so that maps needn't say what they show.
@@ -127,6 +129,7 @@ impl App {
             editor: Editor::of(Document::shipped(presets::default_scene())),
             settings: kept.settings,
             methods: Methods::new(methods),
+            method_times: kept.method_times,
             arrangement: kept.arrangement,
             notices: Notices::default(),
             scene_view: Default::default(),
@@ -369,6 +372,7 @@ impl eframe::App for App {
             progress: state.progress.clone(),
             captions_seen: !state.captions,
             recent_commands: self.memory.palette.recent().to_vec(),
+            method_times: state.method_times.clone(),
             zoom: self.zoom_before_lesson.or(self.zoom_before),
         };
         eframe::set_value(storage, eframe::APP_KEY, &kept);

@@ -104,10 +104,11 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::Task;
     use egui_kittest::Harness;
 
     #[test]
-    fn keys_mean_what_the_list_says_and_digits_alone_nothing() {
+    fn keys_mean_what_the_list_says() {
         let draw = |ui: &mut eframe::egui::Ui, asked: &mut Vec<Command>| {
             let input = Input { keys_taken: false, in_a_field: false, selected: true, bin_metres: 0.5 };
             asked.extend(read(ui.ctx(), input));
@@ -124,7 +125,9 @@ mod tests {
             keys.step();
         }
         let nudge = Command::Edit(EditCommand::Nudge { dx_metres: 0.0, dy_metres: 5.0 });
-        assert_eq!(keys.state(), &[Command::Edit(EditCommand::Undo), Command::Edit(EditCommand::Redo), nudge]);
+        let explore = Command::Window(WindowCommand::ArrangeFor(Task::Explore));
+        let [undo, redo] = [EditCommand::Undo, EditCommand::Redo].map(Command::Edit);
+        assert_eq!(keys.state(), &[explore, undo, redo, nudge], "a digit alone makes no scene");
     }
 
     fn press(key: Key) -> Event {

@@ -231,10 +231,14 @@ impl Document {
         self.path.as_deref()
     }
 
-    /// Its file's name, that of the recording it is laid over, or "untitled".
+    /// Its file's name, that of the recording it is laid over, the scene's own, or "untitled".
     pub fn name(&self) -> String {
         let name = self.path().or(self.recording_source().map(Path::new)).and_then(Path::file_name);
-        name.map_or_else(|| "untitled".to_owned(), |n| n.to_string_lossy().into_owned())
+        let of_scene = || match self.scene().name.as_str() {
+            "" => "untitled".to_owned(),
+            name => name.to_owned(),
+        };
+        name.map_or_else(of_scene, |n| n.to_string_lossy().into_owned())
     }
 
     /// Its name, with a mark where it is not on disk as it is.
@@ -317,6 +321,14 @@ pub(super) fn whole_path(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_scene_without_a_file_is_called_by_its_own_name() {
+        let scene = Scene { name: "A street".into(), ..Scene::of_points([(1.0, 2.0)]) };
+        let file = SceneFile { scene, ..SceneFile::default() };
+        assert_eq!(Document::shipped(file.clone()).title(), "A street");
+        assert_eq!(Document::opened(Path::new("/there/a.toml"), file).title(), "a.toml");
+    }
 
     #[test]
     fn what_is_on_disk_is_not_modified() {

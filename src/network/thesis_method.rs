@@ -9,7 +9,9 @@ use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights};
+use crate::reconstruct::{
+    About, Family, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights,
+};
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
@@ -78,6 +80,10 @@ impl ThesisMethod {
 }
 
 impl Reconstructor for ThesisMethod {
+    fn family(&self) -> Family {
+        Family::Network
+    }
+
     fn about(&self) -> About {
         About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
     }
@@ -150,6 +156,10 @@ impl UnetMethod {
 }
 
 impl Reconstructor for UnetMethod {
+    fn family(&self) -> Family {
+        Family::Network
+    }
+
     fn about(&self) -> About {
         About {
             name: Unet::NAME,

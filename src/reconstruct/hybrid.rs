@@ -2,6 +2,7 @@
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
+use super::family::Family;
 use super::nomp::{Found, Settings, find, find_from};
 use super::reconstructor::{About, Reconstructor, Weights};
 use crate::maps::RangeAngleMap;
@@ -60,6 +61,10 @@ impl Hybrid {
 }
 
 impl Reconstructor for Hybrid {
+    fn family(&self) -> Family {
+        Family::Search
+    }
+
     fn about(&self) -> About {
         Hybrid::about_itself()
     }

@@ -15,6 +15,7 @@ mod coherent;
 mod confidence;
 mod echoes;
 mod error;
+mod family;
 pub mod found;
 mod grid;
 mod hearing;
@@ -34,6 +35,7 @@ pub use answer::{Detection, Reconstruction, Request};
 pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
+pub use family::Family;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
 pub use hybrid::{Hybrid, on_one_scale};
 #[cfg(feature = "live")]

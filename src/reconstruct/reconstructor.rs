@@ -2,6 +2,7 @@
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
+use super::family::Family;
 use super::hearing::ends_noise_variance;
 use super::noise_test::tested;
 use super::trained::TrainedNoise;
@@ -43,6 +44,11 @@ pub struct Weights {
 pub trait Reconstructor: Send + Sync {
     /// Who the method is.
     fn about(&self) -> About;
+
+    /// Which kind of method it is.
+    fn family(&self) -> Family {
+        Family::Classical
+    }
 
     /// Says at once whether the method can work on samples of `radar`.
     ///

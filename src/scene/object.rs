@@ -129,6 +129,14 @@ impl Object {
         }
     }
 
+    /// What people call it: a file's "gaussian" is a cluster.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Object::Gaussian(_) => "cluster",
+            other => other.kind(),
+        }
+    }
+
     /// Number of reflectors.
     pub fn reflector_count(&self) -> usize {
         match self {

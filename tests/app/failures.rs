@@ -68,7 +68,7 @@ fn write(s: &mut Session, text: &str) {
 fn the_worst_row_can_be_found_changed_kept() {
     let mut s = tried();
     s.ask(WindowCommand::Maximise(Panel::Failures));
-    s.app.get_by_label("squared_error").click();
+    s.app.get_by_label("Squared error").click();
     s.settle();
     let (index, row) = worst(&s);
     assert_eq!((listed(&s).len(), &listed(&s)[0]), (6, &name(&row)));

@@ -22,7 +22,7 @@ fn is_control(role: Role, name: &str) -> bool {
             | Role::TextInput
             | Role::Link
     );
-    control && !["point ", "line ", "gaussian "].iter().any(|kind| name.starts_with(kind) && name.contains(": "))
+    control && !["point ", "line ", "cluster "].iter().any(|kind| name.starts_with(kind) && name.contains(": "))
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::app::jobs::{Jobs, Purpose};
 use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State};
 use crate::interact::Document;
 use crate::recording;
+use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
 use crate::scene::presets;
@@ -97,6 +98,7 @@ fn shipped_recording(state: &mut State, index: usize) {
 fn random_scene(state: &mut State, kind: Kind) {
     let Settings { random_seed: seed, random_number: number, .. } = state.settings;
     let scene = Generator::new(state.radar(), Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
+    let scene = Scene { name: kind.scene_name(seed, number), ..scene };
     state.settings.random_number = number.wrapping_add(1);
     let file = SceneFile { scene, radar: state.radar().clone() };
     if kind == Kind::Noise && !matches!(state.settings.floor, Floor::Level(_)) {

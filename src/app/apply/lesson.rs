@@ -51,8 +51,9 @@ pub fn go_to(state: &mut State, step: usize) {
 fn begin(state: &mut State, id: String, lesson: Arc<Lesson>) {
     leave(state);
     let (setup, scene_view, map_views) = (state.setup(), state.scene_view, state.map_views);
+    let task = state.kept_arrangement().task();
     state.map_views = MapViews::default();
-    state.lesson = Some(LessonRun::new(id, lesson, Before { setup, scene_view, map_views }));
+    state.lesson = Some(LessonRun::new(id, lesson, Before { setup, scene_view, map_views, task }));
     state.arrangement.set_open(Panel::Lesson, true);
     state.close_unused();
     set_up(state);
@@ -94,11 +95,12 @@ fn show_solution(state: &mut State) {
 fn leave(state: &mut State) {
     let Some(run) = state.lesson.take() else { return };
     let after = state.settings.clone();
-    let Before { setup, scene_view, map_views } = run.before;
+    let Before { setup, scene_view, map_views, .. } = run.before;
     while state.editor.history().depth() > setup.depth && state.editor.undo() {}
     state.settings.take_back(&setup.settings, &after);
     (state.scene_view, state.map_views) = (scene_view, map_views);
     state.kept_arrangement().open_again(&run.closed);
+    state.kept_arrangement().switch(run.before.task);
     if state.presents_lesson() {
         state.arrangement = Arrangement::of_a_lesson();
     }

@@ -12,6 +12,7 @@ pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
         WindowCommand::ClosePanel(panel) => state.arrangement.set_open(panel, false),
         WindowCommand::OpenPanel(panel) => state.arrangement.set_open(panel, true),
         WindowCommand::Maximise(panel) => state.arrangement.toggle_maximised(panel),
+        WindowCommand::ArrangeFor(task) => state.arrange_for(task),
         WindowCommand::ResetLayout => {
             state.stop_presenting();
             state.arrangement = Arrangement::default();

@@ -8,6 +8,11 @@ use std::path::PathBuf;
 /// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
+        WorkCommand::MeasureMethodTimes => {
+            let said = jobs.method_times.begin(state, jobs.pipeline.basis());
+            tell(state, said);
+        }
+        WorkCommand::CancelMethodTimes => jobs.method_times.cancel(),
         WorkCommand::CancelMethod => jobs.pipeline.cancel_method(MethodSlot::First),
         WorkCommand::CancelSecond => jobs.pipeline.cancel_method(MethodSlot::Second),
         WorkCommand::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),

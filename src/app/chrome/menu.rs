@@ -2,8 +2,8 @@
 
 use super::unsaved;
 use crate::app::state::{
-    Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, ViewCommand,
-    WindowCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task,
+    ViewCommand, WindowCommand,
 };
 use crate::app::widgets::entry::{arrange, button, entry, entry_called, ticked, tooltip};
 use crate::app::widgets::number_field::NumberField;
@@ -41,6 +41,8 @@ pub struct Input<'a> {
     pub is_recording: bool,
     /// Unsaved scenes that another took the place of, the latest last.
     pub left: &'a [Document],
+    /// What the panels are arranged for.
+    pub task: Task,
     /// Whether a panel has a visible tile.
     pub is_open: &'a dyn Fn(Panel) -> bool,
     /// Whether what a command switches is on; `None` where it switches nothing.
@@ -305,6 +307,11 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.menu_button("Panels", |ui| {
         let all = Panel::all();
         panels(ui, all.iter().filter(|panel| !Panel::TOOLS.contains(panel)), input, asked);
+    });
+    ui.menu_button("Arrangement", |ui| {
+        for task in Task::ALL {
+            ticked(ui, task.name(), WindowCommand::ArrangeFor(task), input.task == task, asked);
+        }
     });
     ui.menu_button("Colours", |ui| {
         for colours in ColourMap::ALL {

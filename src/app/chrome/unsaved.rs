@@ -18,7 +18,8 @@ pub fn show(ui: &mut Ui, left: &[Document], asked: &mut Vec<Command>) {
 
 fn one(ui: &mut Ui, document: &Document, asked: &mut Vec<Command>) {
     let scene = document.scene();
-    let name = if scene.name.is_empty() { document.name() } else { format!("{}: {}", document.name(), scene.name) };
+    let is_named_by_scene = scene.name.is_empty() || scene.name == document.name();
+    let name = if is_named_by_scene { document.name() } else { format!("{}: {}", document.name(), scene.name) };
     let objects = scene.objects.len();
     let text = format!("{name} ({objects} object{})", if objects == 1 { "" } else { "s" });
     ui.push_id(document.id(), |ui| {

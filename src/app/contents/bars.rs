@@ -24,6 +24,7 @@ pub fn menu_input<'a>(
         has_recording: state.editor.document().recording().is_some(),
         is_recording: jobs.recorder.is_at_work() || jobs.exports.is_waiting(),
         left: state.editor.left(),
+        task: state.arrangement.task(),
         is_open,
         is_on,
     }

@@ -1,7 +1,7 @@
 //! What the panels are told that set maps beside each other.
 
-use super::Contents;
 use super::maps::{caption, cells, is_updating, map_input, marked};
+use super::{Contents, offered};
 use crate::app::jobs::Jobs;
 use crate::app::panels::{compare, values};
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
@@ -23,7 +23,7 @@ impl Contents<'_> {
         let second = jobs.pipeline.method(MethodSlot::Second);
         let input = compare::Input {
             compare: &state.settings.compare,
-            methods: &state.methods.all,
+            methods: offered(state, jobs),
             chosen: MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name())),
             maps: kinds.iter().zip(textures).map(map).collect(),
             progress: second.progress(),
@@ -54,7 +54,12 @@ impl Contents<'_> {
 /// What stands above a compared map: whose it is, and how good.
 fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let method = kind.slot().and_then(|slot| state.method_in(slot)).map_or("", |m| m.name());
-    let updating = if is_updating(jobs, kind) { " (updating)" } else { "" };
+    let shown = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
+    let updating = match (shown, is_updating(jobs, kind)) {
+        (Some(shown), _) => return format!("{shown}'s result; {method} is running"),
+        (None, true) => " (updating)",
+        (None, false) => "",
+    };
     let slot = kind.slot().filter(|_| !state.is_predicting());
     let figures = slot.and_then(|slot| jobs.pipeline.scores_in(slot)).map(|s| s.metrics);
     match kind {

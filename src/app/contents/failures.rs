@@ -1,6 +1,6 @@
 //! What the panel of failures is told.
 
-use super::Contents;
+use super::{Contents, offered};
 use crate::app::jobs::Jobs;
 use crate::app::panels::failures;
 use crate::app::state::{Command, MethodSlot, State};
@@ -14,7 +14,7 @@ impl Contents<'_> {
         let (table, search) = (job.table(), &job.search);
         let opened = state.failures.opened.as_ref().filter(|opened| opened.generation == table.generation());
         let input = failures::Input {
-            methods: &state.methods.all,
+            methods: offered(state, jobs),
             method: state.method().map(|m| m.name()),
             table,
             album: job.album(),

@@ -6,7 +6,6 @@ use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
 use crate::evaluate::TARGET_ETA;
-use crate::lesson::Cell;
 use crate::reconstruct::untrained_noise;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
 
@@ -94,6 +93,7 @@ pub(super) fn map_input<'a>(
         end: picture.map_or(1.0, |p| p.end),
         sentence: picture.map(|p| p.sentence.as_ref()),
         stale: pipeline.is_stale(kind),
+        old: old(state, jobs, kind),
         cells: cells(jobs, kind),
         marks: map::Marks { objects, found },
         kinds: kinds(state, jobs, kind),
@@ -148,6 +148,7 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
         kind,
         method: pipeline.method(slot).output().map(|o| o.method),
         updating: is_updating(jobs, kind),
+        running: kind.slot().and_then(|slot| running(state, jobs, slot)),
         metrics: pipeline.scores_in(slot).map(|s| s.metrics).filter(|_| !state.is_predicting()),
         target_eta: state.settings.target_eta,
         output_eta: pipeline.eta(state, slot),
@@ -206,9 +207,26 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
 }
 
 /// The place that was guessed in a lesson's step, and the true one.
-fn places(state: &State, kind: MapKind) -> Option<(Cell, Cell)> {
-    let scene = state.editor.scene();
-    state.lesson.as_ref().and_then(|run| run.places(kind, state.radar(), scene))
+fn places(state: &State, kind: MapKind) -> Option<map::Places> {
+    let (run, scene) = (state.lesson.as_ref()?, state.editor.scene());
+    let (guess, truth) = run.places(kind, state.radar(), scene)?;
+    let judged = run.judgement.as_ref()?.as_ref().ok()?;
+    Some(map::Places { guess, truth, distance: judged.distance.clone() })
+}
+
+/// The method that is at work where another one's output of the same scene is shown.
+fn running(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<&'static str> {
+    jobs.pipeline.method(slot).of_another_method()?;
+    state.method_in(slot).map(|method| method.name())
+}
+
+/// What is said of a map that belongs to something else than what is on screen: whose result it is where only the method is another.
+fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
+    let of_another_method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
+    match (of_another_method, kind.slot().and_then(|slot| state.method_in(slot))) {
+        (Some(shown), Some(wanted)) => format!("{shown}'s result; {} is running", wanted.name()),
+        _ => map::EARLIER_SCENE.to_owned(),
+    }
 }
 
 /// Why a map is hidden: a lesson asks for a prediction first.

@@ -17,6 +17,7 @@ use super::panels::{
     training,
 };
 use super::state::{Command, MapKind, Panel, State};
+use super::widgets::method_menu::Offered;
 use super::widgets::textures::Texture;
 use crate::scene::{Object, Reflector, Scene};
 use eframe::egui::Ui;
@@ -120,6 +121,16 @@ impl Draw for Contents<'_> {
             _ => None,
         }
     }
+
+    fn is_old(&self, panel: Panel) -> bool {
+        matches!(panel, Panel::Map(kind) if self.jobs.pipeline.is_stale(kind))
+    }
+}
+
+/// The methods to choose from, with the times that are known of them.
+fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
+    let times = state.method_times.on(state.radar());
+    Offered { all: &state.methods.all, times, timing: jobs.method_times.progress() }
 }
 
 /// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far

@@ -50,7 +50,15 @@ impl Contents<'_> {
 
     pub(super) fn inspector(&mut self, ui: &mut Ui) -> Vec<Command> {
         let (editor, coordinates) = (&self.state.editor, self.state.settings.coordinates);
-        inspector::show(ui, inspector::Input { editor, radar: editor.radar(), coordinates })
+        inspector::show(
+            ui,
+            inspector::Input {
+                editor,
+                radar: editor.radar(),
+                coordinates,
+                metres_per_point: self.state.scene_view.metres_per_point,
+            },
+        )
     }
 
     pub(super) fn objects(&mut self, ui: &mut Ui) -> Vec<Command> {

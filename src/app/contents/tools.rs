@@ -1,6 +1,6 @@
 //! What settings and tools are told.
 
-use super::Contents;
+use super::{Contents, offered};
 use crate::app::panels::{bounds, controls, evaluation, found, lesson, run_time, several, timing, training};
 use crate::app::state::{Command, MapKind, MethodSlot};
 use eframe::egui::{TextureOptions, Ui};
@@ -22,7 +22,7 @@ impl Contents<'_> {
             settings: &state.settings,
             radar: state.radar(),
             noise_seed: state.editor.scene().noise_seed,
-            methods: &state.methods.all,
+            methods: offered(state, self.jobs),
             method: state.method().map(|m| m.as_ref()),
             eta: pipeline.eta(state, MethodSlot::First),
             range_db: pipeline.range_db(),
@@ -74,7 +74,7 @@ impl Contents<'_> {
     pub(super) fn evaluation(&mut self, ui: &mut Ui) -> Vec<Command> {
         let job = &self.jobs.evaluation;
         let input = evaluation::Input {
-            methods: &self.state.methods.all,
+            methods: offered(self.state, self.jobs),
             method: self.state.method().map(|m| m.name()),
             radar: job.radar().unwrap_or(self.state.radar()),
             progress: job.progress(),
@@ -112,7 +112,7 @@ impl Contents<'_> {
         let input = several::Input {
             several: &self.state.settings.several,
             radar: self.state.radar(),
-            methods: &self.state.methods.all,
+            methods: offered(self.state, self.jobs),
             maps: self.jobs.several.shown(),
             veiled: self.state.is_predicting(),
         };

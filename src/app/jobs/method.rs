@@ -38,6 +38,29 @@ impl Basis {
         })
     }
 
+    /// The radar.
+    pub fn radar(&self) -> &Radar {
+        &self.radar
+    }
+
+    /// A method's answer from scratch.
+    ///
+    /// # Errors
+    /// As the method says.
+    pub fn reconstruct(&self, method: &dyn Reconstructor, task: Task) -> Result<Reconstruction, ReconstructError> {
+        method.reconstruct(&self.radar, &self.ends, &self.request(false, task))
+    }
+
+    fn request(&self, may_follow: bool, task: Task) -> Request {
+        Request {
+            noise: self.noise,
+            normalisation: self.normalisation,
+            snapshot_range_metres: self.snapshot_range_metres,
+            may_follow,
+            task,
+        }
+    }
+
     fn same(&self, other: &Basis) -> bool {
         Arc::ptr_eq(&self.ends, &other.ends)
             && (self.noise, self.normalisation) == (other.noise, other.normalisation)
@@ -150,6 +173,8 @@ pub struct MethodJob {
     outdated: Option<Instant>,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
+    /// A time that nobody has taken yet: for which radar, of which method.
+    time: Option<(Radar, &'static str, Duration)>,
 }
 
 impl MethodJob {
@@ -160,7 +185,7 @@ impl MethodJob {
     pub fn start(thread: &'static str, wake: impl Fn() + Send + 'static) -> std::io::Result<MethodJob> {
         let work = |kept: &mut Kept, q: MethodRequest, task: &Task| kept.work(q, task);
         let worker = Worker::spawn(thread, move || Kept::new(thread), work, wake)?;
-        Ok(MethodJob { worker, asked: None, outdated: None, output: None, refusal: None })
+        Ok(MethodJob { worker, asked: None, outdated: None, output: None, refusal: None, time: None })
     }
 
     /// Takes in what the worker made of the `latest` maps or earlier ones. Returns messages for the user.
@@ -195,7 +220,11 @@ impl MethodJob {
         took: Duration,
         latest: Option<&MapsResult>,
     ) {
-        let MethodRequest { document, basis, target, method, .. } = request;
+        let MethodRequest { document, basis, target, method, at_rest, .. } = request;
+        // A method with a memory is faster than the same from scratch, which is what somebody chooses by.
+        if at_rest || method.following().is_none() {
+            self.time = Some((basis.radar.clone(), method.name(), took));
+        }
         let Reconstruction { lambda, mut reflectors, eta, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
@@ -211,6 +240,11 @@ impl MethodJob {
     fn refuse(&mut self, method: &'static str, reason: String) {
         self.output = None;
         self.refusal = Some(Refusal { method, reason });
+    }
+
+    /// The time of the latest answer from scratch, once.
+    pub fn take_time(&mut self) -> Option<(Radar, &'static str, Duration)> {
+        self.time.take()
     }
 
     /// New maps of the same samples, as when a scene comes to rest: the output stays, is theirs, and aims for their target.
@@ -273,6 +307,13 @@ impl MethodJob {
         self.worker.is_busy()
     }
 
+    /// The method whose output is shown, where it is of the samples on screen and another method is at work on them.
+    pub fn of_another_method(&self) -> Option<&'static str> {
+        let (output, asked) = (self.output.as_ref()?, self.asked.as_ref()?);
+        let is_only_method = output.basis.same(&asked.basis) && output.method != asked.method.name();
+        (is_only_method && self.is_busy()).then_some(output.method)
+    }
+
     /// Since when the output belongs to something else than the maps, where it does.
     pub fn outdated(&self) -> Option<Instant> {
         self.outdated
@@ -280,14 +321,8 @@ impl MethodJob {
 }
 
 fn reconstruct(q: &MethodRequest, method: &dyn Reconstructor, task: &Task) -> Result<Answer, ReconstructError> {
-    let Basis { radar, ends, noise, normalisation, snapshot_range_metres } = &q.basis;
-    let request = Request {
-        noise: *noise,
-        normalisation: *normalisation,
-        snapshot_range_metres: *snapshot_range_metres,
-        may_follow: !q.at_rest,
-        task: task.clone(),
-    };
+    let Basis { radar, ends, .. } = &q.basis;
+    let request = q.basis.request(!q.at_rest, task.clone());
     let answer = method.reconstruct(radar, ends, &request)?;
     let list = || find(method, radar, ends, &request, &answer);
     let found = q.listed.then(list).transpose()?;

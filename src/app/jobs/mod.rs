@@ -12,6 +12,7 @@ mod frame_log;
 mod kinds;
 mod lessons;
 mod method;
+mod method_times;
 mod painter;
 mod pipeline;
 mod recorded;
@@ -42,6 +43,7 @@ pub use frame_log::FrameLog;
 pub use kinds::{Fates, Kinds, Verdict};
 pub use lessons::Lessons;
 pub use method::Refusal;
+pub use method_times::MeasuredMethods;
 pub use pipeline::Pipeline;
 pub use recording::Recorder;
 use recording::Window;
@@ -74,6 +76,8 @@ pub struct Jobs {
     pub failures: Failures,
     /// Run time against error.
     pub run_time: RunTime,
+    /// How long every method takes.
+    pub method_times: MeasuredMethods,
     /// A training that is watched.
     pub training: Training,
     /// One map for several values.
@@ -114,6 +118,7 @@ impl Jobs {
             evaluation: Evaluation::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
             run_time: RunTime::start(wake.clone())?,
+            method_times: MeasuredMethods::start(wake.clone())?,
             training: Training::start(wake.clone())?,
             several: SeveralMaps::start(wake.clone())?,
             kinds: Kinds::start(wake.clone())?,
@@ -131,6 +136,7 @@ impl Jobs {
     /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = self.pipeline.poll();
+        self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.bounds.poll());
         errors.extend(self.calibration.poll());
         errors.extend(self.evaluation.poll());
@@ -138,6 +144,7 @@ impl Jobs {
         let (found, failed) = self.failures.search.poll();
         errors.extend(failed);
         errors.extend(self.run_time.poll());
+        errors.extend(self.method_times.poll(state));
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.kinds.poll());

@@ -12,7 +12,7 @@ use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
 use super::recorded::Unexplained;
 use super::rest::{Motion, Rest};
 use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
-use crate::app::state::{CutMap, MapKind, MethodSlot, Panel, State};
+use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::evaluate::TARGET_ETA;
 use crate::signal::{Floor, Unfinished};
@@ -101,6 +101,20 @@ impl Pipeline {
             messages.extend(method.poll(self.result.as_ref()));
         }
         messages
+    }
+
+    /// Hands over how long the methods took since the last frame.
+    pub fn record_times(&mut self, times: &mut MethodTimes) {
+        for method in &mut self.methods {
+            if let Some((radar, name, took)) = method.take_time() {
+                times.record(&radar, name, took);
+            }
+        }
+    }
+
+    /// What a method gets of the scene on screen, where somebody wants an output.
+    pub fn basis(&self) -> Option<Basis> {
+        Basis::of(self.result.as_ref()?)
     }
 
     /// The samples of a scene's ends are the same bits whether it rests or not: what a method made of them before stays its output, but

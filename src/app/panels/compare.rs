@@ -3,12 +3,10 @@
 use super::map::{self, Over};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, ViewCommand, WorkCommand};
 use crate::app::widgets::entry::button;
-use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
+use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::progress::progress;
-use crate::reconstruct::Reconstructor;
 use eframe::egui;
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
-use std::sync::Arc;
 
 /// A map, and what stands above it.
 pub struct Titled<'a> {
@@ -23,7 +21,7 @@ pub struct Input<'a> {
     /// What was chosen.
     pub compare: &'a Compare,
     /// Every method.
-    pub methods: &'a [Arc<dyn Reconstructor>],
+    pub methods: Offered<'a>,
     /// Names of the first and of the second.
     pub chosen: [&'static str; 2],
     /// The maps of [`Compare::maps`].
@@ -52,9 +50,14 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
             Layout::Swipe => swiped(maps, compare.edge),
         };
         for (index, (place, Titled { title, map })) in places.into_iter().zip(maps).enumerate() {
+            let is_old = map.stale;
             let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE);
             ui.scope_builder(UiBuilder::new().max_rect(above).id_salt(("title", index)), |ui| {
-                ui.add(Label::new(RichText::new(title).size(12.0)).truncate().selectable(false));
+                let title = RichText::new(title).size(12.0);
+                // As dim as the map beneath it.
+                let title =
+                    if is_old { title.color(ui.visuals().weak_text_color().gamma_multiply(0.55)) } else { title };
+                ui.add(Label::new(title).truncate().selectable(false));
             });
             ui.scope_builder(UiBuilder::new().max_rect(below).id_salt(("map", index)), |ui| {
                 asked.extend(map::show(ui, map, view, memory));
@@ -85,12 +88,12 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut compare = input.compare.clone();
     ui.horizontal_wrapped(|ui| {
         let [first, second] = input.chosen;
-        if let Some(name) = method(ui, "First", first, input.methods) {
-            asked.push(ViewCommand::Method(name).into());
-        }
-        if let Some(name) = method(ui, "Second", second, input.methods) {
-            compare.second = name.to_owned();
-        }
+        method(ui, "First", first, input.methods, |v| Command::View(ViewCommand::Method(v)), asked);
+        let second_is = |name: &str| {
+            let compare = Compare { second: name.to_owned(), ..input.compare.clone() };
+            Command::View(ViewCommand::SetCompare(Box::new(compare)))
+        };
+        method(ui, "Second", second, input.methods, second_is, asked);
         for layout in Layout::ALL {
             let tip = match layout {
                 Layout::Beside => "Both outputs above, their differences from the target below",
@@ -123,13 +126,19 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-/// A method to choose; its name where another was chosen.
-fn method(ui: &mut Ui, label: &str, chosen: &'static str, methods: &[Arc<dyn Reconstructor>]) -> Option<&'static str> {
+/// A method to choose.
+fn method(
+    ui: &mut Ui,
+    label: &str,
+    chosen: &'static str,
+    methods: Offered<'_>,
+    choose: impl Fn(&'static str) -> Command,
+    asked: &mut Vec<Command>,
+) {
     let label = ui.label(label);
     let combo = ComboBox::from_id_salt(("method", label.id)).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
-    let combo = combo.show_ui(ui, |ui| method_list(ui, methods, chosen));
+    let combo = combo.show_ui(ui, |ui| method_list(ui, methods, chosen, choose, asked));
     combo.response.labelled_by(label.id);
-    combo.inner.flatten().filter(|name| *name != chosen)
 }
 
 fn choose_map(ui: &mut Ui, label: &str, map: &mut MapKind) {
@@ -150,12 +159,13 @@ mod tests {
     use crate::app::widgets::seen;
     use crate::interact::Selection;
     use crate::radar::Radar;
-    use crate::reconstruct::{Baseline, CAPON};
+    use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use crate::scene::Scene;
     use eframe::egui::accesskit::Role;
     use eframe::egui::{Key, TextureId};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use std::sync::Arc;
 
     struct Held {
         compare: Compare,
@@ -178,7 +188,7 @@ mod tests {
             };
             let input = Input {
                 compare: &held.compare,
-                methods: &methods,
+                methods: Offered::untimed(&methods),
                 chosen: ["baseline", "capon"],
                 maps: held.compare.maps().into_iter().map(titled).collect(),
                 progress: held.progress,

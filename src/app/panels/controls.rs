@@ -5,10 +5,11 @@ use crate::app::state::{
     Command, DifferenceView, EditCommand, Projection, RadarCommand, Settings, Units, ViewCommand, WorkCommand,
 };
 use crate::app::widgets::levels::{level, with_unit};
-use crate::app::widgets::method_menu::{LIST_HEIGHT, method_list};
+use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
+use crate::app::widgets::setting_row::{group, rarely, row, row_of};
 use crate::evaluate::eta_text;
 use crate::interact::Snap;
 use crate::lesson::Uses;
@@ -19,7 +20,6 @@ use crate::reconstruct::Reconstructor;
 use crate::signal::{self, Floor};
 use eframe::egui;
 use eframe::egui::{ComboBox, Grid, ScrollArea, Slider, SliderClamping, Ui};
-use std::sync::Arc;
 use std::time::Duration;
 
 /// Largest seed that a scene file holds: TOML knows no larger whole number.
@@ -39,7 +39,7 @@ pub struct Input<'a> {
     /// The scene's own seed of the noise beneath it.
     pub noise_seed: u64,
     /// The methods to choose from.
-    pub methods: &'a [Arc<dyn Reconstructor>],
+    pub methods: Offered<'a>,
     /// The method in use.
     pub method: Option<&'a dyn Reconstructor>,
     /// Its eta.
@@ -76,54 +76,31 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             if input.uses.output {
-                heading(ui, "Reconstruction");
-                reconstruction(ui, &input, &mut asked);
-                ui.add_space(6.0);
+                group(ui, "Reconstruction", |ui| reconstruction(ui, &input, &mut asked));
             } else if input.uses.threshold {
-                heading(ui, "Threshold");
-                Grid::new("threshold")
-                    .num_columns(2)
-                    .spacing([12.0, 5.0])
-                    .show(ui, |ui| target_eta(ui, &input, &mut asked));
-                ui.add_space(6.0);
+                group(ui, "Threshold", |ui| target_eta(ui, &input, &mut asked));
             }
-            heading(ui, "Maps");
-            Grid::new("maps").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
-                normalisation(ui, settings, &mut asked);
-                match input.is_recorded {
-                    true => row(ui, "Floor", "What lies beneath the echoes", |ui| ui.weak("as it was recorded")),
-                    false => floor(ui, settings, input.noise_seed, &mut asked),
-                }
-                carrier(ui, input.radar.carrier, &mut asked);
-                window(ui, input.radar.window, &mut asked);
-            });
-            ui.add_space(6.0);
-            heading(ui, "Display");
-            Grid::new("display")
-                .num_columns(2)
-                .spacing([12.0, 5.0])
-                .show(ui, |ui| display(ui, settings, input.uses, &mut asked));
+            group(ui, "Maps", |ui| maps(ui, &input, &mut asked));
+            group(ui, "Display", |ui| display(ui, settings, input.uses, &mut asked));
         });
     });
     asked
 }
 
-fn heading(ui: &mut Ui, text: &str) {
-    ui.strong(text);
-}
-
-/// A row: its name, then its widget. The name labels the widget for screen readers.
-fn row(ui: &mut Ui, name: &str, tooltip: &str, widget: impl FnOnce(&mut Ui) -> egui::Response) {
-    let label = ui.label(name).on_hover_text(tooltip);
-    widget(ui).labelled_by(label.id).on_hover_text(tooltip);
-    ui.end_row();
-}
-
-/// A row of choices, each of which is called what it says; more rows where there is no room.
-fn row_of(ui: &mut Ui, name: &str, tooltip: &str, widgets: impl FnOnce(&mut Ui)) {
-    ui.label(name).on_hover_text(tooltip);
-    ui.horizontal_wrapped(widgets);
-    ui.end_row();
+fn maps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    normalisation(ui, input.settings, asked);
+    match input.is_recorded {
+        true => row(ui, "Floor", "What lies beneath the echoes", |ui| ui.weak("as it was recorded")),
+        false => floor(ui, input.settings, asked),
+    }
+    window(ui, input.radar.window, asked);
+    let has_noise = !input.is_recorded && input.settings.floor != Floor::Exact;
+    rarely(ui, if has_noise { "Carrier and noise seed" } else { "Carrier" }, |ui| {
+        carrier(ui, input.radar.carrier, asked);
+        if has_noise {
+            noise_seed(ui, input.noise_seed, asked);
+        }
+    });
 }
 
 /// Choices beside each other.
@@ -150,55 +127,48 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ui.weak("This build has no reconstruction method.");
         return;
     };
-    Grid::new("reconstruction").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
-        row(ui, "Method", method.description(), |ui| {
-            let combo = ComboBox::from_id_salt("method").width(150.0).height(LIST_HEIGHT).selected_text(method.name());
-            let listed = combo.show_ui(ui, |ui| {
-                let chosen = method_list(ui, input.methods, method.name());
-                asked.extend(chosen.map(|v| Command::View(ViewCommand::Method(v))));
-            });
-            listed.response
+    row(ui, "Method", method.description(), |ui| {
+        let combo = ComboBox::from_id_salt("method").width(150.0).height(LIST_HEIGHT).selected_text(method.name());
+        let listed = combo.show_ui(ui, |ui| {
+            method_list(ui, input.methods, method.name(), |v| Command::View(ViewCommand::Method(v)), asked);
         });
-        if !input.uses.threshold {
-            return;
-        }
-        row(ui, "η", "Cells of the output above this count as detections", |ui| {
-            ui.horizontal(|ui| {
-                let mut eta = input.eta;
-                let slider = threshold(ui, "η in numbers", &mut eta);
-                asked.extend(
-                    moved(input.eta, eta).map(|eta| Command::View(ViewCommand::SetMethodEta(method.name(), Some(eta)))),
-                );
-                let own = input.settings.method_eta.contains_key(method.name());
-                let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
-                let back = match method.reads_eta() {
-                    true => "Back to the η that fits each output".to_owned(),
-                    false => format!("Back to the method's own η = {}", eta_text(method.eta())),
-                };
-                if reset.on_hover_text(back).clicked() {
-                    asked.push(ViewCommand::SetMethodEta(method.name(), None).into());
-                }
-                in_decibels(ui, input, input.eta);
-                slider
-            })
-            .inner
-        });
-        target_eta(ui, input, asked);
+        listed.response
     });
+    if input.uses.threshold {
+        output_eta(ui, input, method, asked);
+        target_eta(ui, input, asked);
+    }
     figures(ui, method, &input.run, asked);
+}
+
+/// The threshold of the method's output.
+fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked: &mut Vec<Command>) {
+    row(ui, "η", "Cells of the output above this count as detections", |ui| {
+        let mut eta = input.eta;
+        let slider = threshold(ui, "η in numbers", &mut eta);
+        asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
+        let own = input.settings.method_eta.contains_key(method.name());
+        let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
+        let back = match method.reads_eta() {
+            true => "Back to the η that fits each output".to_owned(),
+            false => format!("Back to the method's own η = {}", eta_text(method.eta())),
+        };
+        if reset.on_hover_text(back).clicked() {
+            asked.push(Command::SetMethodEta(method.name(), None));
+        }
+        in_decibels(ui, input, input.eta);
+        slider
+    });
 }
 
 /// The threshold of the target.
 fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
-        ui.horizontal(|ui| {
-            let mut eta = input.settings.target_eta;
-            let slider = threshold(ui, "η' in numbers", &mut eta);
-            asked.extend(moved(input.settings.target_eta, eta).map(|v| Command::View(ViewCommand::SetTargetEta(v))));
-            in_decibels(ui, input, input.settings.target_eta);
-            slider
-        })
-        .inner
+        let mut eta = input.settings.target_eta;
+        let slider = threshold(ui, "η' in numbers", &mut eta);
+        asked.extend(moved(input.settings.target_eta, eta).map(|v| Command::View(ViewCommand::SetTargetEta(v))));
+        in_decibels(ui, input, input.settings.target_eta);
+        slider
     });
 }
 
@@ -250,7 +220,9 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
         ui.weak(format!("Nothing exceeds η. {}: {}.", method.name(), method.description()));
     }
     let m = scores.metrics;
-    ui.add_enabled_ui(!run.outdated || run.progress.is_none(), |ui| {
+    // Figures of an earlier scene or method are dimmed as their maps are.
+    let is_current = !run.outdated || run.progress.is_none();
+    ui.add_enabled_ui(is_current, |ui| {
         Grid::new("figures").num_columns(3).spacing([FIGURES_GAP, 2.0]).show(ui, |ui| {
             let detection = m.detection.map_or("–".to_owned(), percent);
             for (name, value, tooltip) in [
@@ -266,7 +238,11 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
             }
             ui.end_row();
         });
+        blobs(ui, scores);
     });
+}
+
+fn blobs(ui: &mut Ui, scores: Scores) {
     let plural = if scores.target_blobs == 1 { "" } else { "s" };
     ui.weak(format!("{} blob{plural} in the target, {} in the output", scores.target_blobs, scores.output_blobs))
         .on_hover_text("Regions of touching cells above η' and η");
@@ -297,7 +273,7 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
 const LEVEL: &str = "Thermal noise of this level in every sample, whatever the scene: an empty scene is noise alone. A reflector of σ 1 at \
     20 m has +18 dBm";
 
-fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<Command>) {
+fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
         let of = [
             (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
@@ -324,15 +300,25 @@ fn floor(ui: &mut Ui, settings: &Settings, mut noise_seed: u64, asked: &mut Vec<
             }
         }
     });
-    if settings.floor != Floor::Exact {
-        row(ui, "Noise seed", "The same seed gives the same noise; it is saved with the scene", |ui| {
-            let drag = ui.add(NumberField::new(&mut noise_seed).range(0..=MAX_NOISE_SEED).speed(0.05));
-            if drag.changed() {
-                asked.push(EditCommand::SetNoiseSeed(noise_seed).into());
-            }
-            drag
-        });
-    }
+}
+
+fn noise_seed(ui: &mut Ui, mut seed: u64, asked: &mut Vec<Command>) {
+    let tooltip = format!("The same seed gives the same noise; it is saved with the scene. It is {seed}");
+    let short = short_seed(seed);
+    row(ui, "Noise seed", &tooltip, |ui| {
+        let field = NumberField::new(&mut seed).range(0..=MAX_NOISE_SEED).speed(0.05);
+        let field = ui.add(if let Some(short) = &short { field.standing_for(short) } else { field });
+        if field.changed() {
+            asked.push(EditCommand::SetNoiseSeed(seed).into());
+        }
+        field
+    });
+}
+
+/// The first and the last digits of a seed that is too long to be read; the tooltip has all.
+fn short_seed(seed: u64) -> Option<String> {
+    let digits = seed.to_string();
+    (digits.len() > 8).then(|| format!("{}…{}", &digits[..3], &digits[digits.len() - 3..]))
 }
 
 fn carrier(ui: &mut Ui, carrier: Carrier, asked: &mut Vec<Command>) {
@@ -363,14 +349,21 @@ fn display(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
     });
-    if uses.output {
-        difference(ui, settings, asked);
-    }
     row_of(ui, "Colours", "Colours of Λ", |ui| {
         let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
         choices(ui, settings.colours, of, ViewCommand::Colours, asked);
     });
     marks(ui, settings, uses, asked);
+    rarely(ui, if uses.output { "Snap, difference and failures" } else { "Snap to" }, |ui| {
+        snap(ui, settings, asked);
+        if uses.output {
+            difference(ui, settings, asked);
+            failures(ui, settings, asked);
+        }
+    });
+}
+
+fn snap(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
         let of = [
             (Snap::Off, "Off", ""),
@@ -414,9 +407,9 @@ fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>)
         let tooltip = "What the formulas say of the selected reflector, over every map (T)";
         mark(ui, settings.show_theory, "theory", tooltip, ViewCommand::ToggleTheory);
     });
-    if !uses.output {
-        return;
-    }
+}
+
+fn failures(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Failures", "Kinds of failure", |ui| {
         let mut marked = settings.show_kinds;
         let tip = "What became of every object: found, missed, merged, on the wrong tooth; and ghosts (H)";

@@ -2,17 +2,15 @@
 
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice, ExportCommand, WorkCommand};
-use crate::app::widgets::method_menu::method_menu;
+use crate::app::widgets::method_menu::{Offered, method_menu};
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::evaluate::eta_text;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
 use crate::radar::{Radar, counted};
-use crate::reconstruct::Reconstructor;
 use eframe::egui;
 use eframe::egui::{Grid, ScrollArea, Ui};
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 /// The printed columns with their names.
 const PRINTED: [(&str, [Printed; 3]); 3] = [
@@ -27,7 +25,7 @@ const SETS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
 /// What can be chosen, and what was found.
 pub struct Input<'a> {
     /// The methods to choose from.
-    pub methods: &'a [Arc<dyn Reconstructor>],
+    pub methods: Offered<'a>,
     /// The method in use: evaluated where nobody chose others.
     pub method: Option<&'static str>,
     /// The radar of what was found, or else of what would be.
@@ -90,7 +88,7 @@ fn unlike_the_thesis(radar: &Radar) -> Option<String> {
 }
 
 fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
-    let known = |name: &&'static str| input.methods.iter().any(|m| m.name() == *name);
+    let known = |name: &&'static str| input.methods.all.iter().any(|m| m.name() == *name);
     memory.methods.retain(known);
     if memory.methods.is_empty() {
         memory.methods.extend(input.method);
@@ -111,24 +109,28 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
 
 fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        if let Some(part) = input.progress {
-            if progress(ui, part, 180.0, "Stop after this map; the rows that are finished stay") {
-                asked.push(WorkCommand::CancelEvaluation.into());
-            }
-            return;
-        }
         let sets: Vec<usize> = (1..=3).filter(|set| memory.sets[set - 1]).collect();
         let ready = !sets.is_empty() && !memory.methods.is_empty();
-        let start = ui.add_enabled(ready, egui::Button::new("Evaluate"));
-        let start = start.on_hover_text("Run the chosen methods over the chosen sets, in the background");
-        if start.on_disabled_hover_text("Choose a method and a set first").clicked() {
-            let methods = memory.methods.iter().copied().collect();
-            let (count, seed) = (memory.count, memory.seed);
-            asked.push(WorkCommand::Evaluate(EvaluationChoice { methods, sets, count, seed }).into());
+        let tip = "Run the chosen methods over the chosen sets, in the background";
+        let tips = [
+            if ready { tip } else { "Choose a method and a set first" },
+            "Stop after this map; the rows that are finished stay",
+        ];
+        match start_or_cancel(ui, "Evaluate", input.progress.is_some(), ready, tips) {
+            Some(Pressed::Start) => {
+                let methods = memory.methods.iter().copied().collect();
+                let (count, seed) = (memory.count, memory.seed);
+                asked.push(WorkCommand::Evaluate(EvaluationChoice { methods, sets, count, seed }).into());
+            }
+            Some(Pressed::Cancel) => asked.push(WorkCommand::CancelEvaluation.into()),
+            None => {}
         }
         if !input.rows.is_empty() && ui.button("Copy as CSV").on_hover_text("Copy the rows to the clipboard").clicked()
         {
             asked.push(ExportCommand::CopyEvaluation.into());
+        }
+        if let Some(part) = input.progress {
+            bar(ui, part, 180.0);
         }
     });
 }
@@ -193,9 +195,10 @@ mod tests {
     use super::*;
     use crate::app::widgets::seen;
     use crate::radar::{Carrier, WindowFunction};
-    use crate::reconstruct::{Baseline, CAPON};
+    use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use std::sync::Arc;
 
     #[test]
     fn what_is_chosen_is_asked_for() {
@@ -203,7 +206,14 @@ mod tests {
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
         let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
             let method = Some("capon");
-            let input = Input { methods: &methods, method, radar: &radar, progress: None, rows: &[], note: None };
+            let input = Input {
+                methods: Offered::untimed(&methods),
+                method,
+                radar: &radar,
+                progress: None,
+                rows: &[],
+                note: None,
+            };
             let commands = show(ui, input, &mut state.0);
             state.1.extend(commands);
         };
@@ -236,7 +246,8 @@ mod tests {
         let radar = Radar::default();
         let evaluation = Harness::builder().with_size([460.0, 480.0]).build_ui(move |ui| {
             let rows = std::slice::from_ref(&row);
-            let input = Input { methods: &[], method: None, radar: &radar, progress: None, rows, note: None };
+            let input =
+                Input { methods: Offered::untimed(&[]), method: None, radar: &radar, progress: None, rows, note: None };
             _ = show(ui, input, &mut Memory::default());
         });
         seen::assert_readable(evaluation.output());

@@ -19,6 +19,8 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// In which numbers places are told.
     pub coordinates: Coordinates,
+    /// What a point of the scene's canvas covers: lengths are told as exactly as that.
+    pub metres_per_point: f64,
 }
 
 /// Draws the panel.
@@ -58,12 +60,12 @@ fn named(ui: &mut Ui, scene: &Scene) {
 }
 
 fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let Input { editor, radar, coordinates } = *input;
+    let Input { editor, radar, coordinates, metres_per_point } = *input;
     let single = editor.selection().single();
     let object = single.and_then(|index| editor.scene().objects.get(index));
     ui.horizontal(|ui| {
         ui.strong(match (object, single) {
-            (Some(object), Some(index)) => format!("{} {}", capital(object.kind()), index + 1),
+            (Some(object), Some(index)) => format!("{} {}", capital(object.noun()), index + 1),
             _ => counted(editor.selection().len(), "object", "objects"),
         });
         if object.is_none() {
@@ -75,7 +77,7 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.push_id((editor.selection().latest(), editor.selection().len()), |ui| {
         Grid::new("numbers").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
             for shared in editor.shared_fields(coordinates) {
-                let change = number(ui, &shared);
+                let change = number(ui, &shared, metres_per_point);
                 asked.extend(change.map(|change| Command::Edit(EditCommand::SetField(shared.field, change))));
             }
         });
@@ -188,9 +190,14 @@ fn look(field: Field) -> Look {
 
 /// A number to drag or to type; what becomes of it in all objects. Where it differs between them, typing sets it in all, dragging moves
 /// it in all by the same.
-fn number(ui: &mut Ui, shared: &Shared) -> Option<Change> {
+fn number(ui: &mut Ui, shared: &Shared, metres_per_point: f64) -> Option<Change> {
     let look = look(shared.field);
-    let label = ui.label(look.name).on_hover_text(look.tooltip);
+    let shown = shared.is_same.then(|| rounded(shared.first, &look, metres_per_point)).flatten();
+    let tooltip = match &shown {
+        Some(_) => format!("{}; exactly {}{}", look.tooltip, shared.first, look.unit),
+        None => look.tooltip.to_owned(),
+    };
+    let label = ui.label(look.name).on_hover_text(&tooltip);
     let entered = ui.scope_id().with(look.name);
     // A range read back from x and y differs in its last bits from the one that was entered; that mustn't disturb the typing.
     let before: Option<f64> = ui.data(|d| d.get_temp(entered));
@@ -210,7 +217,10 @@ fn number(ui: &mut Ui, shared: &Shared) -> Option<Change> {
     if !shared.is_same {
         drag = drag.standing_for("various");
     }
-    let response = ui.add(drag).labelled_by(label.id).on_hover_text(look.tooltip);
+    if let Some(shown) = &shown {
+        drag = drag.standing_for(shown);
+    }
+    let response = ui.add(drag).labelled_by(label.id).on_hover_text(tooltip);
     ui.end_row();
     let asked = asked?;
     if !shared.is_same && response.dragged() {
@@ -219,6 +229,16 @@ fn number(ui: &mut Ui, shared: &Shared) -> Option<Change> {
     ui.data_mut(|d| d.insert_temp(entered, asked));
     // A number that was looked at only comes back as it was printed.
     (!shared.is_same || (asked - base).abs() > 0.5e-6).then_some(Change::To(asked))
+}
+
+/// A length that a drag left, with as many digits as a point of the canvas is worth; `None` for one that has no more than three decimals
+/// anyway, as those that are typed.
+fn rounded(value: f64, look: &Look, metres_per_point: f64) -> Option<String> {
+    if look.unit != " m" || (1e3 * value - (1e3 * value).round()).abs() < 1e-6 {
+        return None;
+    }
+    let digits = (-metres_per_point.log10()).ceil().clamp(1.0, 6.0) as usize;
+    Some(format!("{value:.digits$}{}", look.unit))
 }
 
 fn capital(word: &str) -> String {
@@ -244,7 +264,12 @@ mod tests {
     /// The panel, and an editor that does what it asks for.
     fn panel(editor: Editor, coordinates: Coordinates) -> Harness<'static, Held> {
         let draw = |ui: &mut Ui, held: &mut Held| {
-            let input = Input { editor: &held.editor, radar: &Radar::default(), coordinates: held.coordinates };
+            let input = Input {
+                editor: &held.editor,
+                radar: &Radar::default(),
+                coordinates: held.coordinates,
+                metres_per_point: 0.05,
+            };
             for command in show(ui, input) {
                 if let Command::Edit(EditCommand::SetField(field, change)) = command {
                     held.editor.set_field(field, change).unwrap();
@@ -347,6 +372,41 @@ mod tests {
             inspector.state().asked.last(),
             Some(&Command::Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)))
         );
+    }
+
+    #[test]
+    fn a_length_has_as_many_digits_as_a_point_of_the_canvas_is_worth() {
+        let y = look(Field::Y);
+        let shown = |metres_per_point| rounded(3.041_35, &y, metres_per_point);
+        assert_eq!([0.1, 0.05, 0.004].map(shown), ["3.0 m", "3.04 m", "3.041 m"].map(|t| Some(t.to_owned())));
+        assert_eq!(rounded(3.125, &y, 0.1), None, "what was typed stays as it was typed");
+        assert_eq!(rounded(33.333_333, &look(Field::AngleDegrees), 0.1), None);
+    }
+
+    #[test]
+    fn a_length_that_is_shown_rounded_keeps_all_its_digits() {
+        let mut inspector = panel(of(&[(1.0, 3.041_35)]), Coordinates::Cartesian);
+        inspector.run();
+        assert!(crate::app::widgets::seen::texts(inspector.output()).iter().any(|t| t.text == "3.04 m"));
+        enter(&mut inspector, "y", "");
+        assert_eq!((places(&inspector), inspector.state().asked.len()), (vec![[1.0, 3.041_35]], 0));
+    }
+
+    #[test]
+    fn a_cluster_is_called_a_cluster() {
+        let cluster = crate::scene::GaussianCluster {
+            x_metres: 0.0,
+            y_metres: 20.0,
+            x_std_metres: 1.0,
+            y_std_metres: 1.0,
+            count: 40,
+            seed: 0,
+            reflectivity: 1.0,
+        };
+        let mut editor = Editor::new(Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() });
+        editor.select_all();
+        let inspector = panel(editor, Coordinates::Cartesian);
+        let _called = inspector.get_by_label("Cluster 1");
     }
 
     #[test]

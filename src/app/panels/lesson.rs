@@ -4,12 +4,15 @@ use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
 use crate::app::widgets::number_field::{NumberField, Wanted};
+use crate::app::widgets::theme;
 use crate::lesson::question::{Answer, number_text};
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Challenge, Guess, Judgement, Lesson, Progress, Question, Truth};
 use crate::radar::counted;
 use eframe::egui;
-use eframe::egui::{Color32, RichText, ScrollArea, Sense, Slider, Stroke, TextEdit, TextureId, Ui, pos2, vec2};
+use eframe::egui::{
+    Color32, ProgressBar, RichText, ScrollArea, Sense, Slider, Stroke, TextEdit, TextureId, Ui, Vec2, pos2, vec2,
+};
 use std::sync::OnceLock;
 
 /// What is shown.
@@ -89,37 +92,71 @@ fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<C
         let (made, right) = progress.score();
         if made > 0 {
             ui.weak(format!("{right} of {made} first guesses right"));
-            if ui.button("Start over").on_hover_text("Forget what this learner did").clicked() {
-                asked.push(LessonCommand::ForgetProgress.into());
-            }
+            ui.menu_button("Progress", |ui| start_over(ui, progress, asked));
         }
     });
     ui.add_space(6.0);
     for (index, (file, lesson)) in shipped().iter().enumerate() {
-        ui.horizontal_wrapped(|ui| {
-            if ui.button(RichText::new(&lesson.title).strong()).on_hover_text(&lesson.about).clicked() {
-                asked.push(LessonCommand::Begin(index).into());
-            }
-            ui.weak(done(progress, file.id, lesson));
-        });
-        ui.label(&lesson.about);
-        ui.add_space(6.0);
+        if listed(ui, lesson, done(progress, file.id, lesson)) {
+            asked.push(LessonCommand::Begin(index).into());
+        }
     }
+    ui.add_space(6.0);
     if ui.button("Open a lesson file…").on_hover_text("A TOML file; docs/lessons.md says how to write one").clicked()
     {
         asked.push(LessonCommand::Open.into());
     }
 }
 
-/// How far a lesson was taken.
-fn done(progress: &Progress, id: &str, lesson: &Lesson) -> String {
+/// Asks before it forgets what the learner did.
+fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
+    let whose = match progress.learner() {
+        "" => "Forget every answer that was given here?".to_owned(),
+        learner => format!("Forget every answer of {learner}?"),
+    };
+    ui.menu_button("Start over…", |ui| {
+        ui.label(whose);
+        ui.horizontal(|ui| {
+            if ui.button("Forget them").clicked() {
+                asked.push(Command::ForgetProgress);
+                ui.close();
+            }
+            if ui.button("Keep them").clicked() {
+                ui.close();
+            }
+        });
+    });
+}
+
+/// A line of the list: the title, how far the lesson was taken, and what it is about. Whether it was clicked.
+fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
+    ui.separator();
+    let (steps, room) = (lesson.steps.len(), ui.available_width());
+    let bar = BAR.min(0.4 * room);
+    let clicked = ui.horizontal(|ui| {
+        let title = RichText::new(&lesson.title).strong();
+        let height = ui.spacing().interact_size.y;
+        let title = egui::Button::new(title).right_text("").frame_when_inactive(false).truncate();
+        let button = ui.add_sized([room - bar - 12.0, height], title);
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &lesson.title));
+        let clicked = button.on_hover_text("Begin this lesson").clicked();
+        let text = format!("{done} of {}", counted(steps, "step", "steps"));
+        ui.add(ProgressBar::new(done as f32 / steps.max(1) as f32).desired_width(bar).text(text));
+        clicked
+    });
+    ui.label(RichText::new(&lesson.about).weak());
+    clicked.inner
+}
+
+/// How many steps of a lesson are done.
+fn done(progress: &Progress, id: &str, lesson: &Lesson) -> usize {
     let steps = lesson.steps.iter().enumerate();
     let done = steps.filter(|(i, step)| {
         let record = progress.record(id, *i);
         (step.predict.is_none() || record.first_guess_right.is_some())
             && (step.challenge.is_none() || record.challenge_met)
     });
-    format!("{} of {}", done.count(), counted(lesson.steps.len(), "step", "steps"))
+    done.count()
 }
 
 fn step(ui: &mut Ui, run: &LessonRun, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
@@ -162,6 +199,9 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         whole_screen(ui, presenting, asked);
     });
 }
+
+/// Width of a bar that shows how far a lesson was taken, points.
+const BAR: f32 = 120.0;
 
 /// Text that is to be read first is this much larger than the rest.
 const LARGE: f32 = 1.15;
@@ -280,11 +320,50 @@ fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
         None => _ = ui.weak("computing…"),
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
-            let verdict = if judged.is_right { "Correct" } else { "Not quite" };
-            ui.label(large(ui, format!("{verdict}: {}.", judged.distance)).strong());
+            verdict(ui, judged.is_right, &judged.distance);
             let sentence = ui.label(inline(ui, &judged.sentence, LARGE));
             if !std::mem::replace(told, true) {
                 sentence.scroll_to_me(None);
+            }
+        }
+    }
+}
+
+/// A coloured line with a symbol: neither alone tells right from wrong.
+fn verdict(ui: &mut Ui, is_right: bool, distance: &str) {
+    let (said, symbol) = if is_right { ("Correct", Symbol::Tick) } else { ("Not quite", Symbol::Cross) };
+    let ink = theme::verdict(ui.visuals(), is_right);
+    let text = large(ui, format!("{said}: {distance}.")).strong().color(ink);
+    let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 6, top: 4, bottom: 4 });
+    let line = frame.fill(ink.gamma_multiply(0.12)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            let (place, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
+            symbol.draw(ui.painter(), place.center(), 6.0, Stroke::new(2.4, ink));
+            ui.add(egui::Label::new(text).wrap());
+        });
+    });
+    let bar = line.response.rect;
+    ui.painter().line_segment([bar.left_top(), bar.left_bottom()], Stroke::new(3.0, ink));
+}
+
+/// What stands before a verdict.
+#[derive(Clone, Copy)]
+enum Symbol {
+    Tick,
+    Cross,
+}
+
+impl Symbol {
+    fn draw(self, painter: &egui::Painter, at: egui::Pos2, r: f32, stroke: Stroke) {
+        match self {
+            Symbol::Tick => {
+                let points = [vec2(-r, 0.0), vec2(-0.3 * r, 0.7 * r), vec2(r, -0.7 * r)].map(|by| at + by);
+                painter.line(points.to_vec(), stroke);
+            }
+            Symbol::Cross => {
+                for by in [vec2(0.75 * r, 0.75 * r), vec2(0.75 * r, -0.75 * r)] {
+                    painter.line_segment([at - by, at + by], stroke);
+                }
             }
         }
     }

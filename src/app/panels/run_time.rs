@@ -2,7 +2,7 @@
 
 use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
@@ -46,21 +46,23 @@ impl Default for Memory {
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        ui.horizontal_wrapped(|ui| match input.progress {
-            Some(part) => {
-                if progress(ui, part, 180.0, "Stop after this measurement; what was measured stays") {
-                    asked.push(WorkCommand::CancelMeasurement.into());
-                }
-            }
-            None => {
-                let tip = "Time how long three maps take, and how wrong they are, by algorithm and precision; leave the \
-                           machine alone meanwhile";
-                if ui.button("Measure").on_hover_text(tip).clicked() {
+        ui.horizontal_wrapped(|ui| {
+            let tip = "Time how long three maps take, and how wrong they are, by algorithm and precision; leave the \
+                       machine alone meanwhile";
+            let tips = [tip, "Stop after this measurement; what was measured stays"];
+            match start_or_cancel(ui, "Measure", input.progress.is_some(), true, tips) {
+                Some(Pressed::Start) => {
                     memory.reflectors = None;
                     asked.push(WorkCommand::Measure { thorough: memory.thorough }.into());
                 }
-                ui.checkbox(&mut memory.thorough, "thorough")
-                    .on_hover_text("Every algorithm, up to 300 reflectors, drags too: about a minute instead of seconds");
+                Some(Pressed::Cancel) => asked.push(Command::CancelMeasurement),
+                None => {}
+            }
+            let thorough = egui::Checkbox::new(&mut memory.thorough, "thorough");
+            ui.add_enabled(input.progress.is_none(), thorough)
+                .on_hover_text("Every algorithm, up to 300 reflectors, drags too: about a minute instead of seconds");
+            if let Some(part) = input.progress {
+                bar(ui, part, 180.0);
             }
         });
         let Radar { elements, samples, window, .. } = input.radar;

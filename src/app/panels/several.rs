@@ -2,14 +2,12 @@
 
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
-use crate::app::widgets::method_menu::method_lines;
+use crate::app::widgets::method_menu::{Offered, method_lines};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::textures::Texture;
 use crate::radar::Radar;
-use crate::reconstruct::Reconstructor;
 use eframe::egui;
 use eframe::egui::{Align2, Color32, ComboBox, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
-use std::sync::Arc;
 
 /// What is shown.
 pub struct Input<'a> {
@@ -18,7 +16,7 @@ pub struct Input<'a> {
     /// The radar before the scene.
     pub radar: &'a Radar,
     /// Every method.
-    pub methods: &'a [Arc<dyn Reconstructor>],
+    pub methods: Offered<'a>,
     /// The maps.
     pub maps: &'a [Small],
     /// Whether pictures are hidden: a prediction is asked for.
@@ -111,16 +109,18 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
         .labelled_by(label.id);
 }
 
-fn methods(ui: &mut Ui, several: &mut Several, methods: &[Arc<dyn Reconstructor>]) {
+fn methods(ui: &mut Ui, several: &mut Several, methods: Offered<'_>) {
     ui.menu_button("Methods", |ui| {
         method_lines(ui, methods, |ui, method| {
             let mut chosen = several.methods.contains(method.name());
-            if ui.checkbox(&mut chosen, method.name()).changed() {
+            let response = ui.checkbox(&mut chosen, method.name());
+            if response.changed() {
                 match chosen {
                     true => several.methods.insert(method.name().to_owned()),
                     false => several.methods.remove(method.name()),
                 };
             }
+            response
         });
     })
     .response
@@ -188,6 +188,7 @@ mod tests {
     use crate::signal::Floor;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use std::sync::Arc;
 
     struct Drawn {
         several: Several,
@@ -208,8 +209,13 @@ mod tests {
                     is_current: true,
                 })
                 .collect();
-            let input =
-                Input { several: &drawn.several, radar: &radar, methods: &[], maps: &maps, veiled: drawn.veiled };
+            let input = Input {
+                several: &drawn.several,
+                radar: &radar,
+                methods: Offered::untimed(&[]),
+                maps: &maps,
+                veiled: drawn.veiled,
+            };
             let asked = show(ui, input, &mut drawn.memory);
             drawn.asked.extend(asked);
         };

@@ -1,122 +1,115 @@
 //! Where the panels are: tiles that can be moved, resized, hidden and maximised.
 
 use super::panel::{MapKind, Panel};
+use super::room::{self, Taken};
+use super::task_layouts::{self, Task};
 use crate::lesson::Uses;
 use eframe::egui;
-use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use egui_tiles::{Container, LinearDir, Tile, TileId, Tree};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+
+/// The panels of a task that is not on screen.
+#[derive(Serialize, Deserialize)]
+struct Left {
+    task: Task,
+    tree: Tree<Panel>,
+    taken: Vec<Taken>,
+}
 
 /// Where the panels are.
 #[derive(Serialize, Deserialize)]
 pub struct Arrangement {
     tree: Tree<Panel>,
     maximised: Option<Panel>,
+    /// What the panels are arranged for.
+    #[serde(default)]
+    task: Task,
+    /// What they were arranged for before a panel brought its own arrangement.
+    #[serde(default)]
+    before: Option<Task>,
+    /// The panels of other tasks, as they were left.
+    #[serde(default)]
+    others: Vec<Left>,
+    /// Room that opened panels took from others.
+    #[serde(default)]
+    taken: Vec<Taken>,
+    /// A panel that was opened in this frame: once it was laid out, it is given the room it needs.
+    #[serde(skip)]
+    opened: Option<Panel>,
     /// Panels drawn in the last frame: only these are computed.
     #[serde(skip)]
     shown: BTreeSet<Panel>,
 }
 
-/// Heights of what stands above a panel that has the whole width, and of that panel.
-const BELOW: [f32; 2] = [1.0, 0.8];
-
 impl Default for Arrangement {
     fn default() -> Self {
-        let mut tiles = Tiles::default();
-        let mut pane = |panel| tiles.insert_pane(panel);
-        let [scene, controls, inspector, objects] =
-            [Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects].map(&mut pane);
-        let [in0, in1, target, output, target_above, output_above, difference, unexplained] =
-            MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
-        let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-        let [guide, lesson, failures, radar, elements, disturbances, tools @ ..] = Panel::TOOLS.map(pane);
-        for closed in [timing, guide, lesson, failures, radar, elements, disturbances, unexplained].iter().chain(&tools)
-        {
-            tiles.set_visible(*closed, false);
-        }
-        let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
-        let scene = tabs(&mut tiles, vec![scene]);
-        let controls = tabs(&mut tiles, vec![controls, radar, elements, disturbances, timing]);
-        // What is read while settings change stands beside them.
-        let beside = tabs(&mut tiles, vec![guide, lesson]);
-        let inspector = tabs(&mut tiles, vec![inspector, objects]);
-        let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
-        let first = tabs(&mut tiles, vec![in0]);
-        let second = tabs(&mut tiles, vec![target]);
-        let third = tabs(&mut tiles, vec![target_above, cuts]);
-        let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
-        let first = tabs(&mut tiles, vec![in1]);
-        let second = tabs(&mut tiles, vec![output, difference, unexplained]);
-        let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
-        let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
-        let columns =
-            linear(&mut tiles, LinearDir::Horizontal, vec![left, beside, left_maps, right_maps], &[1.1, 0.9, 1.0, 1.0]);
-        // Rows are long, and the maps are looked at while one walks through them.
-        let below = tabs(&mut tiles, vec![failures]);
-        let root = column(&mut tiles, vec![columns, below], &BELOW);
-        Arrangement {
-            tree: Tree::new(egui::Id::unique("panels"), root, tiles),
-            maximised: None,
-            shown: BTreeSet::new(),
-        }
+        Arrangement::of(Task::Explore.tree())
     }
-}
-
-fn column(tiles: &mut Tiles<Panel>, children: Vec<TileId>, shares: &[f32]) -> TileId {
-    linear(tiles, LinearDir::Vertical, children, shares)
-}
-
-fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<TileId>, shares: &[f32]) -> TileId {
-    let mut linear = Linear::new(dir, children.clone());
-    for (child, share) in children.into_iter().zip(shares) {
-        linear.shares.set_share(child, *share);
-    }
-    tiles.insert_container(Container::Linear(linear))
 }
 
 impl Arrangement {
-    /// A lesson large, with the scene, the four maps that lessons ask about, and the target above its threshold: for a projector.
-    pub fn of_a_lesson() -> Self {
-        let mut tiles = Tiles::default();
-        let mut tab = |panel| {
-            let pane = tiles.insert_pane(panel);
-            tiles.insert_tab_tile(vec![pane])
-        };
-        let [lesson, scene] = [Panel::Lesson, Panel::Scene].map(&mut tab);
-        let [in0, in1, target] = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tab(Panel::Map(kind)));
-        let output = [MapKind::Output, MapKind::TargetAbove].map(|kind| tiles.insert_pane(Panel::Map(kind))).to_vec();
-        let output = tiles.insert_tab_tile(output);
-        let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
-        let middle = column(&mut tiles, vec![target, in0], &[1.0, 1.0]);
-        let right = column(&mut tiles, vec![output, in1], &[1.0, 1.0]);
-        let root = linear(&mut tiles, LinearDir::Horizontal, vec![left, middle, right], &[1.15, 1.0, 1.0]);
+    fn of(tree: Tree<Panel>) -> Self {
         Arrangement {
-            tree: Tree::new(egui::Id::unique("lesson"), root, tiles),
+            tree,
             maximised: None,
+            task: Task::default(),
+            before: None,
+            others: Vec::new(),
+            taken: Vec::new(),
+            opened: None,
             shown: BTreeSet::new(),
         }
+    }
+
+    /// A lesson large, with the scene and the maps that lessons ask about: for a projector.
+    pub fn of_a_lesson() -> Self {
+        Arrangement::of(task_layouts::lesson("lesson"))
     }
 
     /// An arrangement of nothing, to stand in for one that is being drawn.
     pub fn empty() -> Self {
-        let tree = Tree::empty(egui::Id::unique("no panels"));
-        Arrangement { tree, maximised: None, shown: BTreeSet::new() }
+        Arrangement::of(Tree::empty(egui::Id::unique("no panels")))
     }
 
     /// What is shown to many people at once: the scene, an end's map, the target and the output, large.
     pub fn presentation() -> Self {
-        let mut tiles = Tiles::default();
-        let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
-        let mut tab = |panel| {
-            let pane = tiles.insert_pane(panel);
-            tiles.insert_tab_tile(vec![pane])
+        Arrangement::of(task_layouts::presentation())
+    }
+
+    /// What the panels are arranged for.
+    pub fn task(&self) -> Task {
+        self.task
+    }
+
+    /// Arranges the panels for a task, as they were left when it was on screen last.
+    pub fn switch(&mut self, task: Task) {
+        self.before = None;
+        self.change(task);
+    }
+
+    fn change(&mut self, task: Task) {
+        self.maximised = None;
+        if task == self.task {
+            return;
+        }
+        let kept = self.others.iter().position(|left| left.task == task);
+        let next = match kept {
+            Some(index) => self.others.remove(index),
+            None => Left { task, tree: task.tree(), taken: Vec::new() },
         };
-        let (scene, [first, last, target, output]) = (tab(Panel::Scene), maps.map(|kind| tab(Panel::Map(kind))));
-        let upper = linear(&mut tiles, LinearDir::Horizontal, vec![scene, target], &[1.0, 1.0]);
-        let lower = linear(&mut tiles, LinearDir::Horizontal, vec![first, last, output], &[1.0, 1.0, 1.0]);
-        let root = column(&mut tiles, vec![upper, lower], &[1.0, 1.0]);
-        let tree = Tree::new(egui::Id::unique("presentation"), root, tiles);
-        Arrangement { tree, maximised: None, shown: BTreeSet::new() }
+        let (tree, taken) =
+            (std::mem::replace(&mut self.tree, next.tree), std::mem::replace(&mut self.taken, next.taken));
+        self.others.push(Left { task: self.task, tree, taken });
+        self.task = task;
+    }
+
+    /// Arranges the panels for what a panel is for, until it is closed.
+    fn change_for(&mut self, panel: Panel, task: Task) {
+        let before = self.before.unwrap_or(self.task);
+        self.change(task);
+        self.before = Some(before).filter(|before| *before != task);
+        self.set_open(panel, true);
     }
 
     /// The tiles.
@@ -162,29 +155,67 @@ impl Arrangement {
         self.set_open(panel, !in_sight);
     }
 
-    /// Shows or hides a panel; a shown one comes to the front.
+    /// Shows or hides a panel; a shown one comes to the front. One that needs much room and maps beside it brings an arrangement of its own,
+    /// and its end brings the last one back.
     pub fn set_open(&mut self, panel: Panel, open: bool) {
         self.maximised = None;
+        let own = Task::of(panel).filter(|_| !self.is_open(panel) || !open);
+        match own {
+            Some(task) if open && task != self.task && self.wants_own(panel) => return self.change_for(panel, task),
+            Some(task) if !open && task == self.task && task != Task::Explore => {
+                let before = self.before.take().unwrap_or_default();
+                return self.change(before);
+            }
+            _ => {}
+        }
         if open && matches!(panel, Panel::Guide | Panel::Lesson) {
             self.take_from_over_settings(panel);
         }
         match self.tree.tiles.find_pane(&panel) {
-            Some(id) => {
-                self.tree.tiles.set_visible(id, open);
-                if open {
-                    self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
-                }
-            }
-            None if open && panel == Panel::Failures => self.insert_below(panel),
-            // A layout kept from an older version may lack a panel.
-            None if open => {
-                let id = self.tree.tiles.insert_pane(panel);
-                if let Some(root) = self.tree.root() {
-                    self.tree.move_tile_to_container(id, root, usize::MAX, false);
-                }
-            }
+            Some(id) => self.set_pane_open(id, panel, open),
+            // An arrangement for a task, or a layout kept from an older version, may lack a panel.
+            None if open => self.insert(panel),
             None => {}
         }
+    }
+
+    /// Whether a panel opens in its own arrangement: a lesson stands beside the settings where there is a place for it.
+    fn wants_own(&self, panel: Panel) -> bool {
+        panel != Panel::Lesson || self.tree.tiles.find_pane(&panel).is_none()
+    }
+
+    fn set_pane_open(&mut self, id: TileId, panel: Panel, open: bool) {
+        let was_open = self.is_open(panel);
+        self.tree.tiles.set_visible(id, open);
+        if open {
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
+            self.opened = Some(panel);
+        } else if was_open {
+            room::give_back(&mut self.tree.tiles, &mut self.taken, panel);
+        }
+    }
+
+    /// Puts a panel that has no tile among the tabs of one that is like it.
+    fn insert(&mut self, panel: Panel) {
+        let tiles = &mut self.tree.tiles;
+        let like = [Panel::Controls, Panel::Inspector, Panel::Scene].iter().find_map(|p| tiles.find_pane(p));
+        let tabs = like.and_then(|id| tiles.parent_of(id)).or(self.tree.root);
+        let id = tiles.insert_pane(panel);
+        if let Some(tabs) = tabs {
+            self.tree.move_tile_to_container(id, tabs, usize::MAX, false);
+        }
+        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
+        self.opened = Some(panel);
+    }
+
+    /// Gives a panel that was opened the room it needs, once it was laid out; whether anything moved.
+    pub fn make_room(&mut self) -> bool {
+        let in_sight = |panel: &Panel| self.shown.contains(panel);
+        let Some(panel) = self.opened.take_if(|panel| in_sight(panel)) else { return false };
+        let taken = room::make(&mut self.tree.tiles, panel);
+        let moved = !taken.is_empty();
+        self.taken.extend(taken);
+        moved
     }
 
     /// Closes what a lesson doesn't use; each panel that was open, and whether its tab was in front.
@@ -196,6 +227,9 @@ impl Arrangement {
             Panel::Found | Panel::Roc | Panel::Compare => !uses.output,
             _ => false,
         };
+        if unused(&Panel::Compare) && self.task == Task::Compare {
+            self.switch(Task::Teach);
+        }
         let open = Panel::all().into_iter().filter(|p| unused(p) && self.is_open(*p));
         let closed: Vec<(Panel, bool)> = open.map(|panel| (panel, self.is_in_front(panel))).collect();
         closed.iter().for_each(|(panel, _)| self.set_open(*panel, false));
@@ -221,15 +255,6 @@ impl Arrangement {
                 self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if p == panel));
             }
         }
-    }
-
-    /// Gives a panel the whole width below all others.
-    fn insert_below(&mut self, panel: Panel) {
-        let tiles = &mut self.tree.tiles;
-        let pane = tiles.insert_pane(panel);
-        let tab = tiles.insert_tab_tile(vec![pane]);
-        let children = self.tree.root.into_iter().chain([tab]).collect();
-        self.tree.root = Some(column(tiles, children, &BELOW));
     }
 
     /// The container of the columns, one of which holds the settings.
@@ -289,19 +314,50 @@ mod tests {
     }
 
     #[test]
-    fn rows_have_the_whole_width_below_the_maps_even_where_an_older_layout_lacks_them() {
-        let mut old = Arrangement::default();
-        let id = old.tree.tiles.find_pane(&Panel::Failures).unwrap();
-        let below = tabs_of(&old, Panel::Failures).unwrap();
-        old.tree.root = old.columns();
-        old.tree.tiles.remove(id);
-        old.tree.tiles.remove(below);
-        for mut arrangement in [old, Arrangement::default()] {
-            arrangement.set_open(Panel::Failures, true);
-            let tabs = tabs_of(&arrangement, Panel::Failures).unwrap();
-            assert_eq!(arrangement.tree.tiles.parent_of(tabs), arrangement.tree.root());
-            assert_ne!(arrangement.columns(), arrangement.tree.root(), "the columns stand above");
-            assert!(arrangement.is_open(Panel::Failures) && arrangement.is_open(Panel::Controls));
+    fn compare_opens_in_the_large_place_with_the_maps_it_needs() {
+        let mut arrangement = Arrangement::default();
+        arrangement.set_open(Panel::Compare, true);
+        assert_eq!(arrangement.task(), Task::Compare);
+        let beside = [Panel::Compare, Panel::Scene, Panel::Map(MapKind::Target), Panel::Controls];
+        assert!(beside.iter().all(|panel| arrangement.is_open(*panel)));
+        assert!(!arrangement.is_open(Panel::Map(MapKind::Input0)), "it has the room of the other maps");
+    }
+
+    #[test]
+    fn rows_have_the_whole_width_below_the_maps() {
+        let mut arrangement = Arrangement::default();
+        arrangement.set_open(Panel::Failures, true);
+        let tabs = tabs_of(&arrangement, Panel::Failures).unwrap();
+        assert_eq!(arrangement.tree.tiles.parent_of(tabs), arrangement.tree.root());
+        assert!([MapKind::Target, MapKind::Output].iter().all(|kind| arrangement.is_open(Panel::Map(*kind))));
+    }
+
+    #[test]
+    fn closing_a_large_panel_gives_the_arrangement_back() {
+        let mut arrangement = Arrangement::default();
+        arrangement.set_open(Panel::Map(MapKind::Input1), false);
+        for panel in [Panel::Compare, Panel::Failures] {
+            arrangement.set_open(panel, true);
+        }
+        arrangement.set_open(Panel::Failures, false);
+        assert_eq!(arrangement.task(), Task::Explore);
+        assert!(!arrangement.is_open(Panel::Map(MapKind::Input1)), "as the user left it");
+        assert!(arrangement.is_open(Panel::Map(MapKind::Input0)) && !arrangement.is_open(Panel::Failures));
+    }
+
+    #[test]
+    fn every_task_keeps_its_panels_as_the_user_left_them() {
+        let mut arrangement = Arrangement::default();
+        for task in Task::ALL {
+            arrangement.switch(task);
+            arrangement.set_open(Panel::Scene, false);
+        }
+        let kept = serde_json::to_string(&arrangement).unwrap();
+        let mut again: Arrangement = serde_json::from_str(&kept).unwrap();
+        for task in Task::ALL {
+            again.switch(task);
+            assert!(!again.is_open(Panel::Scene), "{task:?}");
+            assert_eq!(again.others.len(), 3);
         }
     }
 

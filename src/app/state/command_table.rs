@@ -7,6 +7,7 @@ use super::command::{
 use super::help::HelpPage;
 use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
+use super::task_layouts::Task;
 use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
@@ -419,6 +420,12 @@ const TABLE: &[Entry] = {
             key(Key::X),
         ),
         entry(View(ViewCommand::NextMethod), "Next method", "Reconstruct with the next method", key(Key::N)),
+        entry(
+            Work(WorkCommand::MeasureMethodTimes),
+            "Measure the methods' times",
+            "Run every method once on the scene on screen",
+            None,
+        ),
         entry(Work(WorkCommand::CancelMethod), "Cancel reconstruction", "Stop the reconstruction that runs", None),
         entry(
             Window(WindowCommand::Present),
@@ -466,6 +473,14 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Radar, Key::W),
     (Panel::Training, Key::F12),
 ];
+
+/// Keys of [`Task::ALL`].
+const TASK_KEYS: [Key; 4] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
+
+fn arrange(task: Task, digit: Key) -> Entry {
+    let name = format!("Arrange for: {}", task.name());
+    named(Command::Window(WindowCommand::ArrangeFor(task)), name, task.describe(), key(digit))
+}
 
 fn named(command: Command, name: String, tooltip: &'static str, key: Option<KeyboardShortcut>) -> Entry {
     Entry { command, name: name.into(), tooltip, key }
@@ -529,6 +544,7 @@ pub fn listed() -> &'static [Entry] {
         };
         let mut all = TABLE.to_vec();
         all.extend(Kind::all().map(random));
+        all.extend(Task::ALL.into_iter().zip(TASK_KEYS).map(|(task, digit)| arrange(task, digit)));
         all.extend(of_panels());
         all.extend(presets::ALL.iter().enumerate().map(preset));
         all.extend(recordings::ALL.iter().enumerate().map(recording));

@@ -2,6 +2,7 @@
 
 use super::guided::Setup;
 use super::panel::{MapKind, Panel};
+use super::task_layouts::Task;
 use super::view::{MapViews, SceneView};
 use crate::lesson::question::Answer;
 use crate::lesson::{Cell, Guess, Judgement, Lesson, MapName, Measured, Step, Truth};
@@ -21,6 +22,8 @@ pub struct Before {
     pub scene_view: SceneView,
     /// The visible part of the maps.
     pub map_views: MapViews,
+    /// What the panels were arranged for.
+    pub task: Task,
 }
 
 /// A lesson in progress.

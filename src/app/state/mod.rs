@@ -11,13 +11,16 @@ mod failures;
 mod guided;
 mod help;
 mod lesson_run;
+mod method_times;
 mod methods;
 mod notices;
 mod panel;
+mod room;
 mod save_question;
 mod settings;
 mod several;
 mod synonyms;
+mod task_layouts;
 mod toggles;
 mod view;
 
@@ -34,6 +37,7 @@ pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice}
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
+pub use method_times::{MethodTimes, Times};
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
@@ -41,6 +45,7 @@ pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
 pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::{menu_path, synonyms};
+pub use task_layouts::Task;
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
@@ -62,6 +67,8 @@ pub struct State {
     pub settings: Settings,
     /// The reconstruction methods.
     pub methods: Methods,
+    /// How long each method takes on this machine.
+    pub method_times: MethodTimes,
     /// Where the panels are.
     pub arrangement: Arrangement,
     /// Messages on screen.
@@ -143,6 +150,16 @@ impl State {
         } else {
             run.closed.extend(self.arrangement.close_unused(uses));
         }
+    }
+
+    /// Arranges the panels for a task; those that the lesson doesn't use are closed there too.
+    pub fn arrange_for(&mut self, task: Task) {
+        self.stop_presenting();
+        if let Some(run) = &mut self.lesson {
+            self.arrangement.open_again(&std::mem::take(&mut run.closed));
+        }
+        self.arrangement.switch(task);
+        self.close_unused();
     }
 
     /// Where the pointer is, as every panel shows it: none does while a prediction is asked for, since what is under it in one is the

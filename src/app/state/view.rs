@@ -73,11 +73,20 @@ pub struct SceneView {
     pub fitted: Option<Vec2>,
     /// Corner where a selection box began, while one is drawn.
     pub box_start: Option<Place>,
+    /// Where the pointer let go of an object last: no tooltip comes over the object until the pointer has left that place.
+    pub dropped: Option<Pos2>,
 }
 
 impl Default for SceneView {
     fn default() -> Self {
-        SceneView { centre: Place::new(0.0, 18.0), metres_per_point: 0.1, fit: true, fitted: None, box_start: None }
+        SceneView {
+            centre: Place::new(0.0, 18.0),
+            metres_per_point: 0.1,
+            fit: true,
+            fitted: None,
+            box_start: None,
+            dropped: None,
+        }
     }
 }
 
@@ -96,6 +105,11 @@ impl SceneView {
             self.centre.x_metres + f64::from(d.x) * self.metres_per_point,
             self.centre.y_metres - f64::from(d.y) * self.metres_per_point,
         )
+    }
+
+    /// Whether the pointer is still where it let go of an object.
+    pub fn was_just_dropped(&self, ctx: &eframe::egui::Context) -> bool {
+        self.dropped.zip(ctx.pointer_latest_pos()).is_some_and(|(dropped, now)| dropped.distance(now) < 12.0)
     }
 
     /// Shows everything between two corners, with a little room around.

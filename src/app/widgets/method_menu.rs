@@ -1,7 +1,9 @@
-//! Lists of methods, each with a line that says what it is: one to choose, or several.
+//! Lists of methods by family, each with a line that says what it is and the time it takes here: one to choose, or several.
 
-use crate::reconstruct::Reconstructor;
-use eframe::egui::{Grid, Label, RichText, Sense, Ui};
+use super::numbers::significant;
+use crate::app::state::{Command, Times, WorkCommand};
+use crate::reconstruct::{Family, Reconstructor};
+use eframe::egui::{Align, Grid, Label, Layout, Response, RichText, Sense, Ui};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -11,64 +13,236 @@ pub const LIST_HEIGHT: f32 = 420.0;
 /// Width of what is said of each, points: most are one line.
 const DESCRIPTION_WIDTH: f32 = 440.0;
 
+/// Width of a time, points.
+const TIME_WIDTH: f32 = 56.0;
+
 /// More methods than this are counted, not named.
 const MOST_NAMED: usize = 2;
 
+/// The methods to choose from, and what is known of their times.
+#[derive(Clone, Copy)]
+pub struct Offered<'a> {
+    /// Every method.
+    pub all: &'a [Arc<dyn Reconstructor>],
+    /// How long each takes on this machine.
+    pub times: Times<'a>,
+    /// Progress of timing them, while that goes on.
+    pub timing: Option<f32>,
+}
+
+impl<'a> Offered<'a> {
+    /// These methods, of whose times nothing is known.
+    #[cfg(test)]
+    pub fn untimed(all: &'a [Arc<dyn Reconstructor>]) -> Self {
+        Offered { all, times: Times::default(), timing: None }
+    }
+}
+
 /// Draws the menu, which is called by the methods of `chosen`.
-pub fn method_menu(ui: &mut Ui, methods: &[Arc<dyn Reconstructor>], chosen: &mut BTreeSet<&'static str>, tip: &str) {
+pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'static str>, tip: &str) {
     let title = match chosen.len() {
         count if count > MOST_NAMED => format!("{count} methods"),
         _ => chosen.iter().copied().collect::<Vec<_>>().join(", "),
     };
     let menu = ui.menu_button(format!("Methods: {title}"), |ui| {
-        method_lines(ui, methods, |ui, method| {
+        method_lines(ui, offered, |ui, method| {
             let mut is_chosen = chosen.contains(method.name());
-            if ui.checkbox(&mut is_chosen, method.name()).changed() {
+            let response = ui.checkbox(&mut is_chosen, method.name());
+            if response.changed() {
                 match is_chosen {
                     true => chosen.insert(method.name()),
                     false => chosen.remove(method.name()),
                 };
             }
+            response
         });
     });
     menu.response.on_hover_text(tip);
 }
 
-/// The contents of a popup in which one of `methods` is chosen; its name where one was clicked.
-pub fn method_list(ui: &mut Ui, methods: &[Arc<dyn Reconstructor>], chosen: &str) -> Option<&'static str> {
+/// The contents of a popup in which one of the methods is chosen, scrolled to the one that is; what is asked for: another method by
+/// `choose`, or the times.
+pub fn method_list(
+    ui: &mut Ui,
+    offered: Offered<'_>,
+    chosen: &str,
+    choose: impl Fn(&'static str) -> Command,
+    asked: &mut Vec<Command>,
+) {
+    let has_opened = has_opened(ui);
     let mut clicked = None;
-    let described = method_lines(ui, methods, |ui, method| {
-        if ui.selectable_label(method.name() == chosen, method.name()).clicked() {
+    let described = method_lines(ui, offered, |ui, method| {
+        let is_chosen = method.name() == chosen;
+        let response = ui.selectable_label(is_chosen, method.name());
+        if response.clicked() {
             clicked = Some(method.name());
         }
+        if is_chosen && has_opened {
+            response.scroll_to_me_animation(Some(Align::Center), eframe::egui::style::ScrollAnimation::none());
+        }
+        response
     });
-    let clicked = clicked.or(described);
-    if clicked.is_some() {
+    times_footer(ui, offered, asked);
+    if let Some(name) = clicked.or(described) {
         ui.close();
+        if name != chosen {
+            asked.push(choose(name));
+        }
     }
+}
+
+/// Whether a popup was drawn for the first times: its size is known in the second.
+fn has_opened(ui: &Ui) -> bool {
+    let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
+    let (first, last) =
+        ui.data(|d| d.get_temp::<(u64, u64)>(id)).filter(|(_, last)| last + 2 >= now).unwrap_or((now, now));
+    ui.data_mut(|d| d.insert_temp(id, (first, now.max(last))));
+    now <= first + 2
+}
+
+/// Where the times come from, and the button that measures all of them.
+fn times_footer(ui: &mut Ui, offered: Offered<'_>, asked: &mut Vec<Command>) {
+    ui.separator();
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("Times are medians of the latest runs on this machine, with this radar.");
+        match offered.timing {
+            Some(part) => {
+                ui.weak(format!("Measuring: {:.0} %.", 100.0 * part));
+                if ui.small_button("Cancel").clicked() {
+                    asked.push(WorkCommand::CancelMethodTimes.into());
+                }
+            }
+            None => {
+                let tip = "Run every method once on the scene on screen; slow ones take seconds";
+                if ui.small_button("Measure all").on_hover_text(tip).clicked() {
+                    asked.push(WorkCommand::MeasureMethodTimes.into());
+                }
+            }
+        }
+    });
+}
+
+/// A row for each method, by family: what `name` draws of it, what it is, and its time. The method whose description was clicked.
+pub fn method_lines(
+    ui: &mut Ui,
+    offered: Offered<'_>,
+    mut name: impl FnMut(&mut Ui, &dyn Reconstructor) -> Response,
+) -> Option<&'static str> {
+    let mut clicked = None;
+    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 180.0 - TIME_WIDTH).max(120.0));
+    Grid::new("methods").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
+        for family in Family::ALL {
+            let mut of_family = offered.all.iter().filter(|method| method.family() == family).peekable();
+            if of_family.peek().is_none() {
+                continue;
+            }
+            ui.strong(family.name());
+            ui.label(RichText::new(family.describe()).weak().italics().small());
+            ui.end_row();
+            for method in of_family {
+                name(ui, method.as_ref());
+                ui.scope(|ui| {
+                    ui.set_width(room);
+                    let text = RichText::new(method.description()).weak().small();
+                    if ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click())).clicked() {
+                        clicked = Some(method.name());
+                    }
+                });
+                time(ui, offered.times.typical_ms(method.name()));
+                ui.end_row();
+            }
+        }
+    });
     clicked
 }
 
-/// A row for each method: what `name` draws of it, and what it is. The method whose description was clicked.
-pub fn method_lines(
-    ui: &mut Ui,
-    methods: &[Arc<dyn Reconstructor>],
-    mut name: impl FnMut(&mut Ui, &dyn Reconstructor),
-) -> Option<&'static str> {
-    let mut clicked = None;
-    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 180.0).max(120.0));
-    Grid::new("methods").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-        for method in methods {
-            name(ui, method.as_ref());
-            ui.scope(|ui| {
-                ui.set_width(room);
-                let text = RichText::new(method.description()).weak().small();
-                if ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click())).clicked() {
-                    clicked = Some(method.name());
-                }
-            });
-            ui.end_row();
-        }
+fn time(ui: &mut Ui, typical_ms: Option<f64>) {
+    let text = typical_ms.map_or_else(|| "–".to_owned(), time_text);
+    let tip = if typical_ms.is_some() { "Typical time on this machine" } else { "It has not run on this machine yet" };
+    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+        ui.set_min_width(TIME_WIDTH);
+        ui.label(RichText::new(text).weak().small()).on_hover_text(tip);
     });
-    clicked
+}
+
+/// A time in the unit in which it has one to three digits before the point.
+fn time_text(ms: f64) -> String {
+    if ms >= 999.5 { format!("{} s", significant(ms / 1e3)) } else { format!("{} ms", significant(ms)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::{MethodTimes, ViewCommand};
+    use crate::app::widgets::seen;
+    use crate::radar::Radar;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+    use std::time::Duration;
+
+    struct Popup {
+        times: MethodTimes,
+        asked: Vec<Command>,
+    }
+
+    /// A popup of all methods of 300 points.
+    fn popup(chosen: &'static str) -> Harness<'static, Popup> {
+        let mut times = MethodTimes::default();
+        times.record(&Radar::default(), chosen, Duration::from_millis(1240));
+        let all = crate::methods::all();
+        let draw = move |ui: &mut Ui, popup: &mut Popup| {
+            let offered = Offered { all: &all, times: popup.times.on(&Radar::default()), timing: None };
+            eframe::egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+                method_list(ui, offered, chosen, |v| ViewCommand::Method(v).into(), &mut popup.asked);
+            });
+        };
+        let size = [700.0, 320.0];
+        Harness::builder().with_size(size).build_ui_state(draw, Popup { times, asked: Vec::new() })
+    }
+
+    fn in_sight(popup: &Harness<'_, Popup>, text: &str) -> bool {
+        seen::texts(popup.output()).iter().any(|t| t.text == text && t.clip.contains_rect(t.rect))
+    }
+
+    #[test]
+    fn it_opens_at_the_chosen_method() {
+        for chosen in ["baseline", "sbl", "esprit", "nomp"] {
+            let mut popup = popup(chosen);
+            popup.run_steps(4);
+            assert!(in_sight(&popup, chosen), "{chosen}: {:?}", seen::texts(popup.output()));
+        }
+    }
+
+    #[test]
+    fn every_method_stands_under_its_family() {
+        let mut popup = popup("nomp");
+        popup.run_steps(4);
+        let at = |label: &str| popup.get_by_label(label).rect().top();
+        let order = ["Search", "nomp", "Sparse", "sbl", "Classical", "baseline", "capon"];
+        assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])), "{order:?}");
+    }
+
+    #[test]
+    fn a_method_tells_the_time_that_was_measured() {
+        let mut popup = popup("nomp");
+        popup.run_steps(4);
+        assert!(in_sight(&popup, "1.24 s"));
+        let of_others = seen::texts(popup.output()).iter().filter(|t| t.text == "–").count();
+        assert!(of_others > 0, "no time is told that was not measured");
+    }
+
+    #[test]
+    fn a_click_on_the_description_chooses_too() {
+        let mut popup = popup("nomp");
+        popup.run_steps(4);
+        let text = crate::methods::by_name("hybrid").unwrap().description();
+        popup.get_by_label(text).click();
+        popup.run_steps(2);
+        assert_eq!(popup.state().asked, [Command::View(ViewCommand::Method("hybrid"))]);
+    }
+
+    #[test]
+    fn times_have_three_digits() {
+        assert_eq!([11.237, 124.9, 1004.0, 23_000.0].map(time_text), ["11.2 ms", "125 ms", "1.00 s", "23.0 s"]);
+    }
 }

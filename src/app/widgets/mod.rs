@@ -19,5 +19,6 @@ pub mod numbers;
 pub mod progress;
 #[cfg(test)]
 pub mod seen;
+pub mod setting_row;
 pub mod textures;
 pub mod theme;

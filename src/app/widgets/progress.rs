@@ -1,20 +1,49 @@
 //! Long work: a bar that shows how far it is, beside the button that stops it.
 
-use eframe::egui::{ProgressBar, Ui};
+use eframe::egui::{Button, ProgressBar, Ui, vec2};
 
 /// What is shown at the most: a bar that stands says that the work goes on.
 const MOST: f32 = 0.99;
+
+/// What was pressed of a button that starts work, and that stops it while it runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pressed {
+    /// Start.
+    Start,
+    /// Stop.
+    Cancel,
+}
+
+/// Least width of a button that changes its name: what stands beside it doesn't move.
+const BUTTON: f32 = 64.0;
+
+/// A button that starts work and, in the same place, stops it while it `runs`. `tips` say what each does.
+pub fn start_or_cancel(ui: &mut Ui, start: &str, runs: bool, is_ready: bool, tips: [&str; 2]) -> Option<Pressed> {
+    let (name, tip, pressed, enabled) = match runs {
+        true => ("Cancel", tips[1], Pressed::Cancel, true),
+        false => (start, tips[0], Pressed::Start, is_ready),
+    };
+    let size = vec2(BUTTON, ui.spacing().interact_size.y);
+    let button = ui.add_enabled(enabled, Button::new(name).min_size(size));
+    let button = button.on_hover_text(tip).on_disabled_hover_text(tip);
+    button.clicked().then_some(pressed)
+}
+
+/// The bar alone.
+pub fn bar(ui: &mut Ui, part: f32, width: f32) {
+    let bar = if part > 0.0 {
+        ProgressBar::new(part.min(MOST)).show_percentage()
+    } else {
+        ProgressBar::new(0.0).animate(true)
+    };
+    ui.add(bar.desired_width(width));
+}
 
 /// Draws both; whether the button was pressed. `part` is from 0 to 1; 0 says that nobody knows yet. It never reads 100 %: who draws it knows
 /// that there is more to come.
 pub fn progress(ui: &mut Ui, part: f32, width: f32, cancel_tooltip: &str) -> bool {
     ui.horizontal(|ui| {
-        let bar = if part > 0.0 {
-            ProgressBar::new(part.min(MOST)).show_percentage()
-        } else {
-            ProgressBar::new(0.0).animate(true)
-        };
-        ui.add(bar.desired_width(width));
+        bar(ui, part, width);
         ui.small_button("Cancel").on_hover_text(cancel_tooltip).clicked()
     })
     .inner
@@ -25,6 +54,27 @@ mod tests {
     use super::*;
     use crate::app::widgets::seen;
     use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn nothing_moves_when_work_begins() {
+        let draw = |ui: &mut Ui, runs: &mut bool| {
+            ui.horizontal(|ui| {
+                if let Some(pressed) = start_or_cancel(ui, "Try", *runs, true, ["try", "stop"]) {
+                    *runs = pressed == Pressed::Start;
+                }
+                _ = ui.button("Save…");
+            });
+        };
+        let mut row = Harness::builder().with_size([400.0, 60.0]).build_ui_state(draw, false);
+        let before = (row.get_by_label("Try").rect(), row.get_by_label("Save…").rect());
+        row.get_by_label("Try").click();
+        row.run();
+        assert_eq!((row.get_by_label("Cancel").rect(), row.get_by_label("Save…").rect()), before);
+        row.get_by_label("Cancel").click();
+        row.run();
+        assert!(!row.state());
+    }
 
     #[test]
     fn work_that_goes_on_never_reads_100_per_cent() {

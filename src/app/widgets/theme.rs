@@ -2,6 +2,7 @@
 
 use crate::app::state::Brightness;
 use eframe::egui;
+use eframe::egui::style::{ScrollFadeStyle, ScrollStyle};
 use eframe::egui::{Color32, Context, CornerRadius, Visuals};
 
 /// Colours of the scene and of marks over maps.
@@ -76,9 +77,31 @@ pub fn mask(dark: bool) -> [Color32; 2] {
     }
 }
 
+/// What says that an answer is right, or that it isn't.
+pub fn verdict(visuals: &Visuals, is_right: bool) -> Color32 {
+    let rgb = Color32::from_rgb;
+    match (is_right, visuals.dark_mode) {
+        (true, true) => rgb(120, 220, 150),
+        (true, false) => rgb(0, 104, 52),
+        (false, _) => visuals.warn_fg_color,
+    }
+}
+
 /// The ring around what has the keyboard's focus.
 pub fn focus(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(120, 190, 255) } else { Color32::from_rgb(0, 92, 200) }
+}
+
+/// Scroll bars that are always seen, and a faded edge where there is more.
+fn scroll() -> ScrollStyle {
+    ScrollStyle {
+        floating_width: 4.0,
+        floating_allocated_width: 6.0,
+        dormant_background_opacity: 0.3,
+        dormant_handle_opacity: 0.6,
+        fade: ScrollFadeStyle { strength: 0.95, size: 26.0 },
+        ..ScrollStyle::floating()
+    }
 }
 
 /// Sets both themes up and chooses one.
@@ -88,6 +111,7 @@ pub fn apply(ctx: &Context, theme: Brightness) {
             style.visuals.widgets.noninteractive.corner_radius = CornerRadius::same(4);
             style.spacing.item_spacing = egui::vec2(6.0, 4.0);
             style.spacing.slider_width = 110.0;
+            style.spacing.scroll = scroll();
             if of == egui::Theme::Dark {
                 style.visuals.panel_fill = Color32::from_rgb(30, 33, 40);
                 style.visuals.extreme_bg_color = Color32::from_rgb(18, 20, 25);
@@ -144,7 +168,9 @@ mod tests {
             let inks = Inks::of(&visuals);
             let (weak, error) = (visuals.weak_text_color(), visuals.error_fg_color);
             for ground in [visuals.panel_fill, visuals.extreme_bg_color, visuals.window_fill] {
-                for ink in [visuals.text_color(), weak, error, visuals.warn_fg_color, visuals.hyperlink_color] {
+                let verdicts = [true, false].map(|is_right| verdict(&visuals, is_right));
+                let others = [visuals.text_color(), weak, error, visuals.warn_fg_color, visuals.hyperlink_color];
+                for ink in others.into_iter().chain(verdicts) {
                     assert!(
                         contrast(ink, ground) >= 4.5,
                         "{theme:?}: {ink:?} on {ground:?}: {}",

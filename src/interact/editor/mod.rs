@@ -140,7 +140,7 @@ impl Editor {
 
     /// Adds an object and selects it.
     pub fn add(&mut self, object: Object) {
-        let label = format!("add {}", object.kind());
+        let label = format!("add {}", object.noun());
         self.edit(&label, None, |scene, selection| {
             *selection = Selection::of([scene.objects.len()]);
             scene.objects.push(object);

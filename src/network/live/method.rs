@@ -8,7 +8,7 @@ use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::trained_for::{check_radar, is_alike};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::reconstruct::{TrainedNoise, level_above_mean_decades};
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
@@ -131,6 +131,10 @@ fn noise_level_decades(map: &[f32]) -> f64 {
 }
 
 impl Reconstructor for LiveMethod {
+    fn family(&self) -> Family {
+        Family::Network
+    }
+
     fn about(&self) -> About {
         About {
             name: NAME,

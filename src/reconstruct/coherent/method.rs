@@ -10,6 +10,7 @@ use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::no_plane_waves;
@@ -39,6 +40,10 @@ pub struct CoherentMethod {
 }
 
 impl Reconstructor for CoherentMethod {
+    fn family(&self) -> Family {
+        Family::Sparse
+    }
+
     fn about(&self) -> About {
         self.about
     }

@@ -6,6 +6,7 @@ use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
@@ -229,6 +230,10 @@ fn shrink(v: Complex64, by: f64) -> Complex64 {
 }
 
 impl Reconstructor for Fista {
+    fn family(&self) -> Family {
+        Family::Sparse
+    }
+
     fn about(&self) -> About {
         About {
             name: "fista",

@@ -6,6 +6,7 @@ use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
@@ -337,6 +338,10 @@ fn subtract(from: &mut [Complex64], what: &[Complex64], times: Complex64) {
 }
 
 impl Reconstructor for Omp {
+    fn family(&self) -> Family {
+        Family::Sparse
+    }
+
     fn about(&self) -> About {
         About {
             name: "omp",

@@ -105,6 +105,7 @@ pub use settings::Settings;
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
+use super::family::Family;
 use super::prior::NoisePrior;
 use super::reconstructor::{About, Reconstructor};
 use crate::maps::RangeAngleMap;
@@ -140,6 +141,10 @@ pub(super) fn no_snapshot(radar: &Radar) -> Option<String> {
 }
 
 impl Reconstructor for Nomp {
+    fn family(&self) -> Family {
+        Family::Search
+    }
+
     fn about(&self) -> About {
         About {
             name: "nomp",

@@ -82,6 +82,19 @@ impl Kind {
         }
     }
 
+    /// What its scene of a seed and a number is called: "Test set 3, seed 0, scene 7".
+    pub fn scene_name(self, seed: u64, number: u32) -> String {
+        let kind = match self.test_set() {
+            Some(set) => format!("Test set {set}"),
+            None => {
+                let mut letters = self.description().chars();
+                let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+                format!("{first}{}", letters.as_str())
+            }
+        };
+        format!("{kind}, seed {seed}, scene {number}")
+    }
+
     /// Number of the kind's random streams.
     pub(super) fn stream(self) -> u64 {
         match self {
@@ -140,6 +153,12 @@ impl FromStr for Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_scene_is_named_in_words() {
+        assert_eq!(Kind::Set3.scene_name(0, 7), "Test set 3, seed 0, scene 7");
+        assert_eq!(Kind::Walls.scene_name(2, 1), "Walls at any slant and points, seed 2, scene 1");
+    }
 
     #[test]
     fn every_name_leads_back_to_its_kind() {

@@ -16,6 +16,7 @@ fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<C
             has_recording: finds_reflectors,
             is_recording: false,
             left: &[],
+            task: Task::Explore,
             is_open: &|panel| panel == Panel::Scene,
             is_on: &|command| (*command == ViewCommand::ToggleTheory.into()).then_some(true),
         };

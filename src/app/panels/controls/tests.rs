@@ -1,9 +1,10 @@
 use super::*;
 use crate::app::widgets::seen;
 use crate::evaluate::Metrics;
-use crate::reconstruct::{Baseline, CAPON};
+use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
 
 fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
     panel_for(Uses::ALL, run)
@@ -18,7 +19,7 @@ fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'s
             settings: &settings,
             radar: &radar,
             noise_seed: 0,
-            methods: &methods,
+            methods: Offered::untimed(&methods),
             method: Some(&Baseline),
             eta: Baseline.eta(),
             range_db: None,
@@ -66,7 +67,18 @@ fn thresholds_are_told_in_decibels_where_these_are_chosen() {
         let (radar, method, noise_seed, run) =
             (&Radar::default(), Some(&Baseline as &dyn Reconstructor), 0, Run::default());
         let (settings, range_db, is_recorded, eta, uses) = (&settings, Some(300.0), false, 0.8, Uses::ALL);
-        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db, run, uses };
+        let input = Input {
+            is_recorded,
+            settings,
+            radar,
+            noise_seed,
+            methods: Offered::untimed(&[]),
+            method,
+            eta,
+            range_db,
+            run,
+            uses,
+        };
         asked.extend(show(ui, input));
     };
     let controls = Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new());
@@ -78,6 +90,7 @@ fn a_click_is_one_command_and_nothing_else_changes() {
     let mut controls = panel(Run::default);
     controls.run();
     assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
+    unfold(&mut controls);
     for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Min–max", "60 dB", "dB", "absolute"] {
         controls.get_by_label(label).click();
         controls.run();
@@ -105,7 +118,18 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
         let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
         let (is_recorded, settings, radar) = (false, &settings, &radar);
         let (range_db, uses) = (None, Uses::ALL);
-        let input = Input { is_recorded, settings, radar, noise_seed, methods: &[], method, eta, range_db, run, uses };
+        let input = Input {
+            is_recorded,
+            settings,
+            radar,
+            noise_seed,
+            methods: Offered::untimed(&[]),
+            method,
+            eta,
+            range_db,
+            run,
+            uses,
+        };
         asked.extend(show(ui, input));
     };
     let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
@@ -118,9 +142,24 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
     assert!(shown.iter().any(|t| t.text == "0.7631942"), "every digit, so that P_FA can be had again: {shown:?}");
 }
 
+/// Opens what is folded away.
+fn unfold<State>(controls: &mut Harness<'_, State>) {
+    for title in ["Carrier and noise seed", "Snap, difference and failures"] {
+        controls.get_by_label(title).click();
+        controls.run();
+    }
+}
+
+#[test]
+fn a_long_seed_is_shown_by_its_ends() {
+    assert_eq!([short_seed(7), short_seed(12_345_678)], [None, None]);
+    assert_eq!(short_seed(8_765_432_187_654_321).unwrap(), "876…321");
+}
+
 #[test]
 fn every_choice_is_called_what_it_says() {
-    let controls = panel(Run::default);
+    let mut controls = panel(Run::default);
+    unfold(&mut controls);
     for label in ["Min–max", "Thesis", "One-way", "hann", "Range–angle", "Λ", "grey", "reflectors", "Off"] {
         let _one = controls.get_by_label(label);
     }
@@ -156,7 +195,7 @@ fn no_choice_leaves_a_narrow_panel() {
             settings: &settings,
             radar: &radar,
             noise_seed: 0,
-            methods: &[],
+            methods: Offered::untimed(&[]),
             method: Some(method),
             eta: 0.5,
             range_db: None,
@@ -165,9 +204,11 @@ fn no_choice_leaves_a_narrow_panel() {
         };
         asked.extend(show(ui, input));
     };
-    let controls = Harness::builder().with_size([284.0, 900.0]).build_ui_state(draw, Vec::new());
+    let mut controls = Harness::builder().with_size([260.0, 1100.0]).build_ui_state(draw, Vec::new());
+    seen::assert_readable(controls.output());
+    unfold(&mut controls);
     for label in ["100 dB", "SNR", "dBm", "Two-way", "rectangular", "inferno", "views", "Cells"] {
-        assert!(controls.get_by_label(label).rect().right() <= 284.0, "{label}");
+        assert!(controls.get_by_label(label).rect().right() <= 260.0, "{label}");
     }
     seen::assert_readable(controls.output());
 }

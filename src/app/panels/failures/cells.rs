@@ -30,15 +30,37 @@ fn last_part(text: &str) -> &str {
     text.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or(text)
 }
 
-/// A column's name in at most two lines.
+/// A column's heading in at most two lines, in words.
 pub fn title(column: Column) -> [&'static str; 2] {
-    let name = column.name();
-    let middle = name.len() / 2;
-    let seams = name.match_indices('_').map(|(at, _)| at);
-    match seams.min_by_key(|at| at.abs_diff(middle)).filter(|_| name.len() > 10) {
-        Some(at) => [&name[..at], &name[at..]],
-        None => [name, ""],
+    match column {
+        Column::Set => ["Set", ""],
+        Column::Index => ["Scene", ""],
+        Column::Seed => ["Seed", ""],
+        Column::Method => ["Method", ""],
+        Column::Eta => ["η", ""],
+        Column::SquaredError => ["Squared", "error"],
+        Column::Detection => ["P_D", ""],
+        Column::FalseAlarm => ["P_FA", ""],
+        Column::DetectionAtPrinted => ["P_D at the", "printed η"],
+        Column::Milliseconds => ["Time", "ms"],
+        Column::Objects => ["Objects", ""],
+        Column::Reflectors => ["Reflectors", ""],
+        Column::Missed => ["Missed", ""],
+        Column::Ghosts => ["Ghosts", ""],
+        Column::NearestPairColumns => ["Nearest pair", "columns"],
+        Column::NearestPairBins => ["Nearest pair", "bins"],
+        Column::MinRangeMetres => ["Least range", "m"],
+        Column::StrongestOverWeakestDb => ["Strongest over", "weakest, dB"],
+        Column::Found => ["Found", ""],
+        Column::Merged => ["Merged", ""],
+        Column::WrongTooth => ["Wrong", "tooth"],
     }
+}
+
+/// A column's heading as one text.
+pub fn heading(column: Column) -> String {
+    let [above, below] = title(column);
+    if below.is_empty() { above.to_owned() } else { format!("{above} {below}") }
 }
 
 /// Width of a column, points.
@@ -48,6 +70,7 @@ pub fn width(column: Column) -> f32 {
         Column::Method => 130.0,
         Column::Index | Column::Seed => 52.0,
         Column::StrongestOverWeakestDb => 110.0,
+        Column::NearestPairColumns | Column::NearestPairBins => 90.0,
         _ => 78.0,
     }
 }
@@ -71,10 +94,11 @@ mod tests {
     fn every_column_has_a_title_and_a_text() {
         let row = Row { set: "/home/me/scenes/".into(), ..some_row(3, "live") };
         for column in Column::ALL {
-            assert_eq!(title(column).concat(), column.name());
+            let heading = heading(column);
+            assert!(!heading.is_empty() && heading != column.name(), "words, and no name of a file's column");
             assert!(!text(&row, column).is_empty());
         }
-        assert_eq!(title(Column::SquaredError), ["squared", "_error"]);
+        assert_eq!(heading(Column::SquaredError), "Squared error");
         assert_eq!(
             [Column::Set, Column::DetectionAtPrinted, Column::Found].map(|c| text(&row, c)),
             ["scenes", "–", "1"]

@@ -4,11 +4,11 @@ use super::input::Input;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui;
-use eframe::egui::{Button, Ui};
+use eframe::egui::Ui;
 use std::collections::BTreeSet;
 
 /// What is chosen.
@@ -28,28 +28,25 @@ impl Default for Memory {
 
 /// Draws them.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
-    memory.methods.retain(|name| input.methods.iter().any(|m| m.name() == *name));
+    memory.methods.retain(|name| input.methods.all.iter().any(|m| m.name() == *name));
     if memory.methods.is_empty() {
         memory.methods.extend(input.method);
     }
     ui.horizontal_wrapped(|ui| {
-        match input.progress {
-            Some(part) => {
-                if progress(ui, part, 180.0, "Stop after this map; the rows stay") {
-                    asked.push(RowsCommand::CancelTrying.into());
-                }
-            }
-            None => run(ui, input, memory, asked),
-        }
+        ui.add_enabled_ui(input.progress.is_none(), |ui| choose(ui, input, memory, asked));
+        start(ui, input, memory, asked);
         ui.separator();
         files(ui, input, asked);
+        if let Some(part) = input.progress {
+            bar(ui, part, 140.0);
+        }
     });
     if let Some(note) = input.note {
         ui.colored_label(ui.visuals().warn_fg_color, note);
     }
 }
 
-fn run(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
     let menu = ui.menu_button(format!("Scenes: {}", sets(memory)), |ui| {
         for kind in Kind::all() {
@@ -75,22 +72,27 @@ fn run(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
     ui.add(NumberField::new(&mut memory.count).range(1..=100_000)).labelled_by(label.id);
     let label = ui.label("seed");
     ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+}
+
+/// Try, or in its place Cancel.
+fn start(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
     let ready = !memory.methods.is_empty() && (memory.own || !memory.kinds.is_empty());
-    let start = ui.add_enabled(ready, Button::new("Try"));
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
                the same stay; those made with others make room";
-    let start = start.on_hover_text(tip).on_disabled_hover_text("Choose a method and scenes first");
-    if start.clicked() {
-        asked.push(
-            RowsCommand::Try(FailureChoice {
-                methods: memory.methods.iter().copied().collect(),
-                kinds: memory.kinds.iter().copied().collect(),
-                own: memory.own,
-                count: memory.count,
-                seed: memory.seed,
-            })
-            .into(),
-        );
+    let tips = [if ready { tip } else { "Choose a method and scenes first" }, "Stop after this map; the rows stay"];
+    let pressed = start_or_cancel(ui, "Try", input.progress.is_some(), ready, tips);
+    if pressed == Some(Pressed::Cancel) {
+        asked.push(RowsCommand::CancelTrying.into());
+    }
+    if pressed == Some(Pressed::Start) {
+        let choice = FailureChoice {
+            methods: memory.methods.iter().copied().collect(),
+            kinds: memory.kinds.iter().copied().collect(),
+            own: memory.own,
+            count: memory.count,
+            seed: memory.seed,
+        };
+        asked.push(RowsCommand::Try(choice).into());
     }
 }
 

@@ -1,17 +1,16 @@
 //! What the panel shows.
 
 use crate::app::jobs::{Album, RowTable};
+use crate::app::widgets::method_menu::Offered;
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
 use crate::picture::ColourMap;
-use crate::reconstruct::Reconstructor;
 use std::path::Path;
-use std::sync::Arc;
 
 /// What is shown.
 pub struct Input<'a> {
     /// The methods to choose from.
-    pub methods: &'a [Arc<dyn Reconstructor>],
+    pub methods: Offered<'a>,
     /// The method in use.
     pub method: Option<&'static str>,
     /// The rows.

@@ -58,7 +58,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Vec<Command>
             return;
         }
         let known: BTreeSet<&str> =
-            input.table.methods().iter().map(String::as_str).chain(input.methods.iter().map(|m| m.name())).collect();
+            input.table.methods().iter().map(String::as_str).chain(input.methods.all.iter().map(|m| m.name())).collect();
         filter::show(ui, &known, &mut memory.filter);
         update(ui, input, memory);
         head(ui, input, memory);

@@ -263,7 +263,7 @@ fn titles(ui: &Ui, sort: Option<Sort>, rect: Rect) -> Option<Column> {
 /// Draws a column's title with a triangle that says how it is sorted; whether it was clicked.
 fn title(ui: &Ui, column: Column, sorted: Option<Sort>, cell: Rect) -> bool {
     let response = ui.interact(cell, ui.scope_id().with(("title", column)), Sense::CLICK);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColumnHeader, true, column.name()));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColumnHeader, true, cells::heading(column)));
     if !ui.is_rect_visible(cell) {
         return false;
     }
@@ -285,6 +285,6 @@ fn title(ui: &Ui, column: Column, sorted: Option<Sort>, cell: Rect) -> bool {
         ui.painter().add(egui::Shape::convex_polygon(points.to_vec(), ink, Stroke::NONE));
     }
     let clicked = response.clicked();
-    response.on_hover_text(format!("{}: click to sort", column.name()));
+    response.on_hover_text(format!("Click to sort. Filters and files call it {}", column.name()));
     clicked
 }

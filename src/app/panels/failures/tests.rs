@@ -1,6 +1,7 @@
 use super::*;
 use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
 use crate::app::state::{Conditions, FailureChoice, SearchChoice};
+use crate::app::widgets::method_menu::Offered;
 use crate::app::widgets::seen;
 use crate::evaluate::rows::{Column, Row};
 use crate::evaluate::worsen::{Aim, Measure};
@@ -27,7 +28,7 @@ fn panel_of(rows: Vec<Row>, size: Vec2) -> Harness<'static, Drawn> {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
         let row = drawn.opened.map(|index| drawn.table.rows()[index].clone());
         let input = Input {
-            methods: &methods,
+            methods: Offered::untimed(&methods),
             method: Some("capon"),
             table: &drawn.table,
             album: &drawn.album,
@@ -85,7 +86,7 @@ fn what_is_chosen_is_tried_searched_and_kept() {
 #[test]
 fn titles_sort_and_keys_walk_through_the_rows_in_that_order() {
     let mut panel = panel(50);
-    click(&mut panel, "squared_error");
+    click(&mut panel, "Squared error");
     let rows = panel.state().table.rows().clone();
     let worst = (0..50).max_by(|a, b| rows[*a].squared_error.total_cmp(&rows[*b].squared_error)).unwrap();
     assert_eq!(panel.state().memory.in_sight()[0], worst);
@@ -143,7 +144,7 @@ fn ten_thousand_rows_are_put_in_order_once_and_drawn_as_few() {
     let bytes = || vec![99; THUMBNAIL_WIDTH * THUMBNAIL_HEIGHT].into_boxed_slice();
     let thumbnail = Arc::new(Thumbnail { target: bytes(), output: bytes() });
     table.rows().iter().for_each(|row| album.insert(table.generation(), row, Ok(thumbnail.clone())));
-    click(&mut panel, "missed");
+    click(&mut panel, "Missed");
     let stamp = panel.state().memory.order.stamp();
     let began = Instant::now();
     for _ in 0..20 {

@@ -1,7 +1,7 @@
 //! Lessons as they are shown: what is asked with, and what stands there after an answer.
 
 use super::*;
-use crate::app::state::{Before, MapViews, SceneView, Settings, Setup};
+use crate::app::state::{Before, MapViews, SceneView, Settings, Setup, Task};
 use crate::lesson::Stage;
 use crate::radar::Radar;
 use crate::scene::Scene;
@@ -13,7 +13,7 @@ fn run(lesson: &str, step: usize) -> LessonRun {
     let shipped = crate::lesson::shipped::ALL.iter().find(|s| s.id == lesson).unwrap();
     let setup =
         Setup { settings: Settings::default(), radar: Radar::default(), scene: Arc::new(Scene::default()), depth: 0 };
-    let before = Before { setup, scene_view: SceneView::default(), map_views: MapViews::default() };
+    let before = Before { setup, scene_view: SceneView::default(), map_views: MapViews::default(), task: Task::Teach };
     let mut run = LessonRun::new(lesson.to_owned(), Arc::new(shipped.load().unwrap()), before);
     run.go_to(step);
     run
@@ -142,4 +142,60 @@ fn previous_keeps_the_verdict() {
     assert!(run.guess.is_none() && run.judgement.is_none() && run.is_predicting());
     run.go_to(3);
     assert!(!run.is_predicting() && run.judgement.is_some_and(|j| j.is_ok_and(|j| !j.is_right)));
+}
+
+fn with_progress(progress: Progress) -> Harness<'static, Drawn> {
+    let draw = move |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
+        let input = Input { run: run.as_ref(), progress: &progress, hidden: None, presenting: false };
+        asked.extend(show(ui, input, memory));
+    };
+    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (None, Memory::default(), Vec::new()))
+}
+
+#[test]
+fn starting_over_asks_before_it_forgets() {
+    let mut progress = Progress::default();
+    progress.note_guess("range-and-bandwidth", 1, true);
+    let mut panel = with_progress(progress);
+    panel.get_by_label("Progress").click();
+    panel.run();
+    panel.get_by_label("Start over…").click();
+    panel.run();
+    let _question = panel.get_by_label("Forget every answer that was given here?");
+    assert!(panel.state().2.is_empty());
+    panel.get_by_label("Forget them").click();
+    panel.run();
+    assert_eq!(panel.state().2, [Command::ForgetProgress]);
+}
+
+#[test]
+fn every_lesson_of_the_list_shows_how_far_it_was_taken() {
+    let mut progress = Progress::default();
+    progress.note_guess("range-and-bandwidth", 1, true);
+    let panel = with_progress(progress);
+    let texts = crate::app::widgets::seen::texts(panel.output());
+    let bars = texts.iter().filter(|t| t.text.contains(" of ") && t.text.ends_with("steps")).count();
+    assert_eq!(bars, crate::lesson::shipped::ALL.len());
+    crate::app::widgets::seen::assert_readable(panel.output());
+}
+
+#[test]
+fn a_verdict_has_a_colour_and_a_symbol() {
+    let symbols = |guess| {
+        let panel = harness(Some(answered_run("range-and-bandwidth", 1, guess)));
+        let ink = |is_right| theme::verdict(&panel.ctx.style_of(panel.ctx.theme()).visuals, is_right);
+        let lines = |is_right| {
+            let of = |shape: &egui::Shape| match shape {
+                egui::Shape::LineSegment { stroke, .. } => stroke.color == ink(is_right),
+                egui::Shape::Path(path) => format!("{:?}", path.stroke.color).contains(&format!("{:?}", ink(is_right))),
+                _ => false,
+            };
+            panel.output().shapes.iter().filter(|s| of(&s.shape)).count()
+        };
+        (lines(true), lines(false))
+    };
+    let (tick, none) = symbols(Guess::Number(0.075));
+    assert!(tick >= 2 && none == 0, "a tick and a bar: {tick}, {none}");
+    let (none, cross) = symbols(Guess::Number(0.15));
+    assert!(cross >= 3 && none == 0, "a cross and a bar: {none}, {cross}");
 }

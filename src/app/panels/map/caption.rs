@@ -11,8 +11,10 @@ pub struct Caption {
     pub kind: MapKind,
     /// The method whose output is shown.
     pub method: Option<&'static str>,
-    /// Whether the map is of an earlier scene.
+    /// Whether the map is of an earlier scene or of another method.
     pub updating: bool,
+    /// The method that is at work on the same scene, where another one's output is shown.
+    pub running: Option<&'static str>,
     /// Figures of the output that is shown, against the target of the same scene.
     pub metrics: Option<Metrics>,
     /// eta'.
@@ -29,7 +31,11 @@ pub struct Caption {
 
 /// What stands in the title bar of a map's panel.
 pub fn caption(input: Caption) -> Option<String> {
-    let updating = if input.updating { "(updating) " } else { "" };
+    let updating = match input.running {
+        Some(method) => &format!("({method} is running) "),
+        None if input.updating => "(updating) ",
+        None => "",
+    };
     let text = match input.kind {
         MapKind::TargetAbove => format!("η' = {} {updating}", threshold(&input, input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
@@ -71,6 +77,7 @@ mod tests {
                 kind: MapKind::TargetAbove,
                 method: None,
                 updating: false,
+                running: None,
                 metrics: None,
                 target_eta: 0.9,
                 output_eta: 0.8,

@@ -194,7 +194,7 @@ impl Kinds<'_> {
             return format!("ghost: {} above η = {eta}\nwhere the scene has nothing", counted(cells, "cell", "cells"));
         };
         let named = |index: usize| {
-            let kind = scene.objects.get(index).map_or("object", |o| o.kind());
+            let kind = scene.objects.get(index).map_or("object", |o| o.noun());
             format!("{kind} {}", index + 1)
         };
         let part = failures.covered.get(index).copied().unwrap_or(0.0);

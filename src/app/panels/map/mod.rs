@@ -16,6 +16,7 @@ mod scale;
 mod swipe;
 mod theory;
 
+pub use answer::Places;
 pub use blank::{Problem, Veil};
 pub use caption::{Caption, caption};
 pub use frame::{Cells, Marked, Marks};
@@ -74,6 +75,8 @@ pub struct Input<'a> {
     pub sentence: Option<&'a str>,
     /// Whether the picture is of an earlier scene, and has been for long enough to be told.
     pub stale: bool,
+    /// What is said of it then.
+    pub old: String,
     /// The numbers behind the picture.
     pub cells: Option<Cells<'a>>,
     /// What is drawn over it.
@@ -101,7 +104,7 @@ pub struct Input<'a> {
     /// Whether the axes are told: not while they would answer a lesson's question.
     pub axes: bool,
     /// The place that was guessed in a lesson, and the true one.
-    pub places: Option<(crate::lesson::Cell, crate::lesson::Cell)>,
+    pub places: Option<answer::Places>,
 }
 
 /// What is drawn over maps.
@@ -140,6 +143,7 @@ impl<'a> Input<'a> {
             end: 1.0,
             sentence: None,
             stale: false,
+            old: EARLIER_SCENE.to_owned(),
             cells: None,
             marks: Marks { objects: &[], found: &[] },
             kinds: None,
@@ -157,6 +161,9 @@ impl<'a> Input<'a> {
         }
     }
 }
+
+/// What is said of a map of an earlier scene.
+pub const EARLIER_SCENE: &str = "Previous scene; updating…";
 
 /// Draws a map.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memory) -> Vec<Command> {
@@ -258,14 +265,14 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         overlay::found(inner, frame, input.marks.found, input.stale);
         overlay::selected(inner, frame, input.scene, input.selection);
         input.theory.iter().for_each(|theory| theory.draw(inner, frame, pointer));
-        if let Some((guess, truth)) = input.places {
-            answer::draw(inner, frame, guess, truth);
+        if let Some(places) = &input.places {
+            answer::draw(inner, frame, places);
         }
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }
     }
-    let said = if is_old { Some("Previous scene; updating…") } else { input.note.as_deref() };
+    let said = if is_old { Some(input.old.as_str()) } else { input.note.as_deref() };
     if let Some(line) = input.line.as_deref().filter(|_| input.veil.is_none()) {
         caption_over(inner, rect, line);
     } else if let Some(said) = said.filter(|_| input.veil.is_none() || is_old) {

@@ -30,6 +30,28 @@ pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
     there.chain(far).chain(back).chain(near).collect()
 }
 
+/// The convex outline `radius` around places.
+pub fn hull(places: &[Pos2], radius: f32) -> Vec<Pos2> {
+    let corner = |at: Pos2, i: usize| at + radius * Vec2::angled(PI * i as f32 / ROUND as f32);
+    let mut points: Vec<Pos2> = places.iter().flat_map(|at| (0..2 * ROUND).map(move |i| corner(*at, i))).collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let turns_left = |a: Pos2, b: Pos2, c: Pos2| (b - a).x * (c - a).y - (b - a).y * (c - a).x > 0.0;
+    let half = |points: &mut dyn Iterator<Item = Pos2>| {
+        let mut chain: Vec<Pos2> = Vec::new();
+        for point in points {
+            while chain.len() > 1 && !turns_left(chain[chain.len() - 2], chain[chain.len() - 1], point) {
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut around = half(&mut points.iter().copied());
+    around.extend(half(&mut points.iter().rev().copied()));
+    around
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,5 +68,21 @@ mod tests {
         assert!(closed.clone().all(|(a, b)| a.distance(*b) < 4.0), "it goes round without a jump");
         assert_eq!(outline(&[Pos2::ZERO], 6.0).len(), 2 + 2 * (ROUND - 1), "a line of one is a circle");
         assert!(outline(&[], 6.0).is_empty());
+    }
+
+    #[test]
+    fn a_hull_keeps_its_distance_from_every_place() {
+        let places: Vec<Pos2> = (0..30).map(|i| Pos2::new((i * 13 % 37) as f32, (i * 7 % 19) as f32)).collect();
+        let around = hull(&places, 8.0);
+        for corner in &around {
+            let nearest = places.iter().map(|p| p.distance(*corner)).fold(f32::INFINITY, f32::min);
+            assert!((nearest - 8.0).abs() < 1e-3, "{nearest}");
+        }
+        let sides = around.iter().zip(around.iter().cycle().skip(1));
+        for (a, b) in sides {
+            let inside = |p: &Pos2| (*b - *a).x * (*p - *a).y - (*b - *a).y * (*p - *a).x >= -1e-3;
+            assert!(places.iter().all(inside), "{a:?} to {b:?} cuts places off");
+        }
+        assert!(hull(&[], 8.0).is_empty());
     }
 }

@@ -1,7 +1,7 @@
 //! What is drawn over a map: true and found reflectors, the pointer's place and the value there.
 
 use super::frame::{Cells, Frame, Marked};
-use super::outline::outline;
+use super::outline::{hull, outline};
 use crate::app::state::{Cursor, Projection, Units};
 use crate::app::widgets::axes;
 use crate::app::widgets::direction::direction;
@@ -83,7 +83,7 @@ fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> 
     pieces.map(|piece| Ring::Outline(outline(piece, radius))).collect()
 }
 
-/// Rings around the blobs of what is selected; a line as the curve that its blobs lie on.
+/// One outline around the blobs of each selected object: their echoes stay in sight; a line as the curve that its blobs lie on.
 pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
     let mut left = MARKS;
     for object in selection.iter().filter_map(|i| scene.objects.get(i)) {
@@ -95,7 +95,11 @@ pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &
         }
         let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
         let marked = Marked { reflectors, is_line: false };
-        for ring in rings(&marked, &blobs, frame.rect.height(), 2.0) {
+        let outlines = match blobs.len() {
+            0..3 => rings(&marked, &blobs, frame.rect.height(), 2.0),
+            _ => around(blobs, frame.rect.height()),
+        };
+        for ring in outlines {
             for (width, colour) in [(3.0, MARK_EDGE), (1.6, MARK_SELECTED)] {
                 painter.add(ring.shape(Stroke::new(width, colour)));
             }
@@ -123,6 +127,13 @@ fn curve(painter: &Painter, frame: Frame<'_>, first: &Reflector, last: &Reflecto
             painter.circle_filled(end, 1.6 + width / 2.0, colour);
         }
     }
+}
+
+/// One outline around a cluster's blobs; two where it wraps around the end of the ranges.
+fn around(mut blobs: Vec<Pos2>, height: f32) -> Vec<Ring> {
+    blobs.sort_by(|a, b| a.y.total_cmp(&b.y));
+    let pieces = blobs.chunk_by(|a, b| b.y - a.y <= height / 2.0);
+    pieces.map(|piece| Ring::Outline(hull(piece, RADIUS + 2.0))).collect()
 }
 
 /// From a ring to where it would be without the beam's squint.
@@ -229,6 +240,15 @@ mod tests {
         let mut wrapped = blobs(4.0);
         wrapped[3..].iter_mut().for_each(|at| at.y -= 90.0);
         assert_eq!(rings(&object(true), &wrapped, 100.0, 0.0).len(), 2, "what wraps around is in two pieces");
+    }
+
+    #[test]
+    fn a_selected_cluster_has_one_outline_however_many_reflectors_it_has() {
+        let blobs: Vec<Pos2> = (0..40).map(|i| Pos2::new((i * 7 % 23) as f32, (i * 5 % 17) as f32)).collect();
+        assert_eq!(around(blobs.clone(), 300.0).len(), 1);
+        let mut wrapped = blobs;
+        wrapped[..20].iter_mut().for_each(|at| at.y += 280.0);
+        assert_eq!(around(wrapped, 300.0).len(), 2, "what wraps around is in two pieces");
     }
 
     #[test]

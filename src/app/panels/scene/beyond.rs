@@ -26,24 +26,25 @@ struct Beyond<'a> {
     is_whole: bool,
 }
 
-/// Draws a sign beside every object beyond the maximum range, or at the edge of the canvas where it is out of sight, and one sentence.
-pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
+/// Draws a sign beside every object beyond the maximum range, or at the edge of the canvas where it is out of sight; what is to be
+/// said of them.
+pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Option<String> {
     if canvas.radar.samples == 1 {
         // A snapshot has no ranges.
-        return;
+        return None;
     }
     let beyond = beyond(canvas.radar, scene);
-    let Some(said) = sentence(canvas.radar, &beyond) else { return };
+    let said = sentence(canvas.radar, &beyond)?;
     let ink = ui.visuals().warn_fg_color;
     for one in beyond.iter().take(SIGNS) {
         let at = sign(painter, canvas, one, ink);
-        let name = format!("{} {} beyond the maximum range", one.object.kind(), one.index + 1);
+        let name = format!("{} {} beyond the maximum range", one.object.noun(), one.index + 1);
         let place = Rect::from_center_size(at, Vec2::splat(18.0));
         let response = ui.interact(place, Id::unique(("beyond the maximum range", one.index)), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &name));
         response.on_hover_text(&said);
     }
-    write(ui, painter, canvas.rect, &said, ink);
+    Some(said)
 }
 
 fn beyond<'a>(radar: &Radar, scene: &'a Scene) -> Vec<Beyond<'a>> {
@@ -74,7 +75,7 @@ fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
             )
         }
         [Beyond { index, object, is_whole, .. }] => {
-            let (name, part) = (object.kind(), if *is_whole { "it wraps" } else { "its far part wraps" });
+            let (name, part) = (object.noun(), if *is_whole { "it wraps" } else { "its far part wraps" });
             format!("{name} {} reaches beyond the maximum range of {most:.1} m: {part} around in the maps.", index + 1)
         }
         several => {
@@ -115,7 +116,8 @@ fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
 }
 
 /// Writes the sentence in the upper left corner, below the scale.
-fn write(ui: &Ui, painter: &Painter, rect: Rect, said: &str, ink: Color32) {
+pub fn write(ui: &Ui, painter: &Painter, rect: Rect, said: &str) {
+    let ink = ui.visuals().warn_fg_color;
     let width = (PART * rect.width()).min(WIDEST);
     let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
     let at = rect.min + vec2(12.0, 28.0);

@@ -162,12 +162,9 @@ pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look
     let centre = at(object.centre_metres().into());
     let halo = if hovered || selected { colour.gamma_multiply(0.25) } else { Color32::TRANSPARENT };
     match object {
-        Object::Point(p) => {
+        Object::Point(_) => {
             painter.circle_filled(centre, 9.0, halo);
             painter.circle(centre, 4.5, colour, Stroke::new(1.0, inks.ground));
-            if p.y_metres < 0.0 {
-                ghost(painter, at(Place::new(p.x_metres, -p.y_metres)), inks);
-            }
         }
         Object::Line(l) => {
             let (a, b) = (at(Place::new(l.x_metres, l.y_start_metres)), at(l.end_metres().into()));
@@ -206,11 +203,6 @@ fn dots(painter: &Painter, object: &Object, radius: f32, colour: Color32, at: im
     for r in reflectors.iter().step_by(step) {
         painter.circle_filled(at(Place::new(r.x_metres, r.y_metres)), radius, colour);
     }
-}
-
-/// Where something behind the array appears in the maps.
-fn ghost(painter: &Painter, at: Pos2, inks: Inks) {
-    painter.circle_stroke(at, 4.5, Stroke::new(1.0, inks.grid_text));
 }
 
 fn grip(painter: &Painter, at: Pos2, grip: Grip, colour: Color32, inks: Inks) {

@@ -1,5 +1,6 @@
 //! The scene's canvas: what the pointer does in it.
 
+mod behind;
 mod beyond;
 mod canvas;
 mod disturbances;
@@ -12,10 +13,10 @@ use crate::app::widgets::nudge::{focused_steps, nudge, pan_keys, zoom_keys};
 use crate::app::widgets::theme::Inks;
 use crate::interact::{Editor, Grip, Place, SelectionMode, Snap, grips, hit};
 use crate::radar::Radar;
-use crate::scene::Reflector;
+use crate::scene::{Object, Reflector, Scene};
 use canvas::{Canvas, Look};
 use eframe::egui;
-use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
+use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, RectAlign, Response, Sense, Ui, Vec2, vec2};
 pub use hint::Hint;
 
 /// What the canvas shows beside the scene.
@@ -65,7 +66,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
     navigate(view, ui, rect, &response);
     keys(input.radar, editor, view, rect, &response, &mut asked);
+    let was_dragged = editor.dragged().is_some();
     pointer(ui, &input, editor, view, rect, &response, &mut asked);
+    if was_dragged && editor.dragged().is_none() {
+        view.dropped = response.ctx.pointer_latest_pos();
+    }
     let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
     let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
@@ -90,7 +95,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     }
     if input.numbers {
         canvas::scale_bar(&painter, canvas);
-        beyond::warn(ui, &painter, canvas, editor.scene());
+        elsewhere(ui, &painter, canvas, editor.scene());
     }
     if let Some(hint) = &input.hint {
         hint.draw(&painter, canvas);
@@ -108,6 +113,16 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     }
     context_menu(editor, *view, ui, rect, &response, &mut asked);
     asked
+}
+
+/// What the maps show elsewhere than it stands.
+fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
+    let behind = behind::mirror(ui, painter, canvas, scene);
+    let beyond = beyond::warn(ui, painter, canvas, scene);
+    let said: Vec<String> = behind.into_iter().chain(beyond).collect();
+    if !said.is_empty() {
+        beyond::write(ui, painter, canvas.rect, &said.join("\n"));
+    }
 }
 
 /// What an empty scene offers, and what is wrong with this one.
@@ -266,21 +281,18 @@ fn handles(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect:
             let place = Rect::from_center_size(at, vec2(18.0, 18.0));
             let response = ui.interact(place, Id::unique(("handle", index, g.grip)), sense);
             response.widget_info(|| {
-                let name = format!("{} {}: {}", object.kind(), index + 1, g.grip.describe());
+                let name = format!("{} {}: {}", object.noun(), index + 1, g.grip.describe());
                 egui::WidgetInfo::selected(egui::Role::Button, true, selected, name)
             });
             if let Some((dx, dy)) = focused_steps(&response).filter(|_| g.grip != Grip::Body) {
                 let to = Place::new(g.place.x_metres + dx * bin_metres, g.place.y_metres + dy * bin_metres);
                 moved = Some((hit::Hit { object: index, grip: g.grip, place: g.place }, to));
             }
-            if editor.dragged().is_none() {
+            if editor.dragged().is_none() && response.hovered() && !view.was_just_dropped(ui.ctx()) {
                 let [x, y] = object.centre_metres();
-                response.on_hover_text(format!(
-                    "{} {} at x {x:.2} m, y {y:.2} m\ndrag to {}",
-                    object.kind(),
-                    index + 1,
-                    g.grip.describe()
-                ));
+                let name = format!("{} {}", object.noun(), index + 1);
+                let text = format!("{name} at x {x:.2} m, y {y:.2} m\ndrag to {}", g.grip.describe());
+                beside(&response, on_screen(object, view, rect), &text);
             }
         }
     }
@@ -289,6 +301,24 @@ fn handles(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect:
         editor.drag_to(to, Snap::Off);
         editor.end_drag();
     }
+}
+
+/// The part of the canvas that an object takes.
+fn on_screen(object: &Object, view: SceneView, rect: Rect) -> Rect {
+    let places = object.reflectors();
+    let places = places.iter().map(|r| view.to_screen(rect, Place::new(r.x_metres, r.y_metres)));
+    Rect::from_points(&places.collect::<Vec<_>>()).expand(8.0).intersect(rect)
+}
+
+/// A tooltip beside an object, never over it.
+fn beside(response: &Response, object: Rect, text: &str) {
+    let mut tooltip = egui::Tooltip::for_enabled(response);
+    tooltip.popup = tooltip.popup.anchor(object).align(RectAlign::RIGHT).align_alternatives(&[
+        RectAlign::LEFT,
+        RectAlign::TOP,
+        RectAlign::BOTTOM,
+    ]);
+    tooltip.gap(6.0).show(|ui| ui.label(text));
 }
 
 fn context_menu(
@@ -303,29 +333,26 @@ fn context_menu(
     let clicked = ui.input(|i| i.pointer.button_clicked(PointerButton::Secondary));
     if clicked && let Some(pos) = response.hover_pos() {
         let place = view.to_scene(rect, pos);
-        ui.data_mut(|d| d.insert_temp(id, [place.x_metres, place.y_metres]));
-        if let Some(hit) = editor.hit(place, view.metres_per_point)
-            && !editor.selection().contains(hit.object)
-        {
+        let hit = editor.hit(place, view.metres_per_point);
+        ui.data_mut(|d| d.insert_temp(id, ([place.x_metres, place.y_metres], hit.is_some())));
+        if let Some(hit) = hit.filter(|hit| !editor.selection().contains(hit.object)) {
             editor.select([hit.object], SelectionMode::Replace);
         }
     }
     let popup = egui::Popup::menu(response).id(ui.scope_id().with("scene menu")).at_pointer_fixed();
     let popup = popup.open_memory(clicked.then_some(egui::SetOpenCommand::Bool(response.hovered())));
     popup.show(|ui| {
-        let place = ui.data(|d| d.get_temp::<[f64; 2]>(id)).map(Place::from);
+        let clicked = ui.data(|d| d.get_temp::<([f64; 2], bool)>(id));
+        let (place, on_object) = (clicked.map(|(place, _)| Place::from(place)), clicked.is_some_and(|(_, hit)| hit));
         for kind in [NewObject::Point, NewObject::Line, NewObject::Cluster] {
             entry(ui, EditCommand::Add(kind, place), true, asked);
         }
         ui.separator();
-        let selected = !editor.selection().is_empty();
-        for command in [
-            Command::Edit(EditCommand::Cut),
-            Command::Edit(EditCommand::Copy),
-            Command::Edit(EditCommand::Duplicate),
-            Command::Edit(EditCommand::Delete),
-        ] {
-            entry(ui, command, selected, asked);
+        // On empty ground there is nothing to delete; what is selected elsewhere has its entries in the menu Edit.
+        if on_object {
+            for command in [EditCommand::Cut, EditCommand::Copy, EditCommand::Duplicate, EditCommand::Delete] {
+                entry(ui, command, true, asked);
+            }
         }
         entry(ui, EditCommand::Paste, true, asked);
         ui.separator();

@@ -1,6 +1,6 @@
 //! Commands that arrange the window.
 
-use crate::app::state::{HelpPage, Panel};
+use crate::app::state::{HelpPage, Panel, Task};
 
 /// Commands that arrange the window.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,8 @@ pub enum WindowCommand {
     OpenPanel(Panel),
     /// Let a panel fill the window, or end that.
     Maximise(Panel),
+    /// Arrange the panels for a task, as they were left when it was on screen last.
+    ArrangeFor(Task),
     /// Put all panels where they were at first.
     ResetLayout,
     /// The scene and the maps in large type, or everything as before.

@@ -1,0 +1,90 @@
+//! How long each method takes on this machine: measured whenever one reconstructs, kept from one start to the next.
+
+use crate::radar::Radar;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+/// So many of the latest times of a method are kept.
+const KEPT: usize = 5;
+
+/// Elements and samples: what decides most of a method's time.
+type Shape = (usize, usize);
+
+/// Times of methods, for each shape of radar.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MethodTimes {
+    /// Milliseconds, the latest last.
+    measured: BTreeMap<String, Vec<(Shape, VecDeque<f64>)>>,
+}
+
+fn shape_of(radar: &Radar) -> Shape {
+    (radar.elements, radar.samples)
+}
+
+impl MethodTimes {
+    /// A method took so long on samples of a radar.
+    pub fn record(&mut self, radar: &Radar, method: &str, took: Duration) {
+        let (shape, of_method) = (shape_of(radar), self.measured.entry(method.to_owned()).or_default());
+        let index = of_method.iter().position(|(of, _)| *of == shape).unwrap_or_else(|| {
+            of_method.push((shape, VecDeque::new()));
+            of_method.len() - 1
+        });
+        let times = &mut of_method[index].1;
+        times.push_back(took.as_secs_f64() * 1e3);
+        while times.len() > KEPT {
+            times.pop_front();
+        }
+    }
+
+    /// The times on samples of a radar.
+    pub fn on<'a>(&'a self, radar: &Radar) -> Times<'a> {
+        Times { of: Some(self), shape: shape_of(radar) }
+    }
+}
+
+/// Times of methods on samples of one radar.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Times<'a> {
+    of: Option<&'a MethodTimes>,
+    shape: Shape,
+}
+
+impl Times<'_> {
+    /// The median of a method's latest times, milliseconds; `None` where it has not run yet.
+    pub fn typical_ms(&self, method: &str) -> Option<f64> {
+        let (_, times) = self.of?.measured.get(method)?.iter().find(|(shape, _)| *shape == self.shape)?;
+        let mut sorted: Vec<f64> = times.iter().copied().filter(|ms| ms.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_typical_time_is_the_median_of_the_latest() {
+        let (mut times, radar) = (MethodTimes::default(), Radar::default());
+        assert_eq!(times.on(&radar).typical_ms("live"), None);
+        for ms in [9000, 9000, 9000, 30, 10, 12, 11, 400] {
+            times.record(&radar, "live", Duration::from_millis(ms));
+        }
+        assert_eq!(
+            times.on(&radar).typical_ms("live"),
+            Some(12.0),
+            "the first are forgotten, one outlier counts little"
+        );
+    }
+
+    #[test]
+    fn times_of_a_small_radar_are_not_those_of_a_large_one() {
+        let (mut times, large) = (MethodTimes::default(), Radar::default());
+        let small = Radar { elements: 128, ..Radar::default() };
+        times.record(&small, "live", Duration::from_millis(3));
+        assert_eq!(times.on(&large).typical_ms("live"), None);
+        assert_eq!(times.on(&small).typical_ms("live"), Some(3.0));
+    }
+}

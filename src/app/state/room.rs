@@ -1,0 +1,99 @@
+//! Room for a panel that is opened: at least as much as it can be used in, taken from its neighbours and given back when it is closed.
+
+use super::panel::{MapKind, Panel};
+use eframe::egui::Vec2;
+use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles};
+use serde::{Deserialize, Serialize};
+
+/// Neighbours keep at least this much, points.
+const LEAST_OF_NEIGHBOURS: f32 = 120.0;
+
+/// What tabs take of a panel's height, points.
+const TABS: f32 = 24.0;
+
+/// How a container was divided before a panel took room in it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Taken {
+    /// The panel.
+    panel: Panel,
+    /// The container.
+    container: TileId,
+    /// How its children shared it.
+    before: Shares,
+}
+
+/// The least room in which a panel can be used, points.
+pub fn least_size(panel: Panel) -> Vec2 {
+    let [width, height] = match panel {
+        Panel::Map(MapKind::Input0 | MapKind::Input1 | MapKind::Target | MapKind::Output) => [200.0, 140.0],
+        Panel::Scene | Panel::Map(_) => [200.0, 140.0],
+        Panel::Inspector | Panel::Objects | Panel::Timing | Panel::Values => [250.0, 160.0],
+        Panel::Controls | Panel::Radar | Panel::Found => [260.0, 220.0],
+        Panel::Cuts | Panel::Roc => [260.0, 180.0],
+        Panel::Guide | Panel::Lesson => [300.0, 260.0],
+        Panel::Elements | Panel::Disturbances => [280.0, 260.0],
+        Panel::Bounds | Panel::RunTime | Panel::Training | Panel::Evaluation => [360.0, 280.0],
+        Panel::Several => [420.0, 320.0],
+        Panel::Compare | Panel::Failures => [560.0, 320.0],
+    };
+    Vec2::new(width, height)
+}
+
+/// Gives an opened panel its least size, where its containers have room for it; what was taken for it. Sizes are those of the last frame.
+pub fn make(tiles: &mut Tiles<Panel>, panel: Panel) -> Vec<Taken> {
+    let least = least_size(panel);
+    let across = grow(tiles, panel, LinearDir::Horizontal, least.x);
+    let down = grow(tiles, panel, LinearDir::Vertical, least.y + TABS);
+    across.into_iter().chain(down).collect()
+}
+
+/// Gives back what was taken for a panel. Where another one took room in the same container later, that one gives it back instead.
+pub fn give_back(tiles: &mut Tiles<Panel>, taken: &mut Vec<Taken>, panel: Panel) {
+    while let Some(index) = taken.iter().position(|t| t.panel == panel) {
+        let Taken { container, before, .. } = taken.remove(index);
+        match taken[index..].iter_mut().find(|later| later.container == container) {
+            Some(later) => later.before = before,
+            None => {
+                if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(container) {
+                    linear.shares = before;
+                }
+            }
+        }
+    }
+}
+
+/// Along one direction, from the innermost container outwards, until the panel has `need` points.
+fn grow(tiles: &mut Tiles<Panel>, panel: Panel, dir: LinearDir, need: f32) -> Vec<Taken> {
+    let mut taken = Vec::new();
+    let extent = |tiles: &Tiles<Panel>, id: TileId| {
+        let size = tiles.rect(id).map_or(Vec2::ZERO, |rect| rect.size());
+        if dir == LinearDir::Horizontal { size.x } else { size.y }
+    };
+    let Some(mut child) = tiles.find_pane(&panel) else { return taken };
+    let mut lacking = tiles.parent_of(child).map_or(0.0, |tabs| need - extent(tiles, tabs));
+    while let Some(parent) = tiles.parent_of(child).filter(|_| lacking > 0.5) {
+        let whole = extent(tiles, parent);
+        if let Some(Tile::Container(Container::Linear(linear))) = tiles.get(parent).filter(|_| whole > 0.0)
+            && linear.dir == dir
+        {
+            let in_sight = |id: &&TileId| tiles.is_visible_in_layout(**id);
+            let others: Vec<TileId> =
+                linear.children.iter().filter(in_sight).copied().filter(|id| *id != child).collect();
+            let now = extent(tiles, child);
+            let most = whole - LEAST_OF_NEIGHBOURS * others.len() as f32;
+            let wanted = (now + lacking).min(most);
+            if wanted > now && !others.is_empty() {
+                let (before, mut shares) = (linear.shares.clone(), linear.shares.clone());
+                let of_others: f32 = others.iter().map(|id| before[*id]).sum();
+                shares.set_share(child, of_others * wanted / (whole - wanted));
+                lacking -= wanted - now;
+                if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(parent) {
+                    linear.shares = shares;
+                }
+                taken.push(Taken { panel, container: parent, before });
+            }
+        }
+        child = parent;
+    }
+    taken
+}

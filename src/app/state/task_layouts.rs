@@ -1,0 +1,182 @@
+//! Where the panels stand at first: for each task, for a presentation, and for a lesson on the whole screen.
+
+use super::panel::{MapKind, Panel};
+use eframe::egui;
+use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+
+/// What somebody is at: each task has an arrangement of panels of its own, kept as the user leaves it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Task {
+    /// The scene, its settings and all maps.
+    #[default]
+    Explore,
+    /// Two methods on one scene, large.
+    Compare,
+    /// Rows of scenes on which methods fail, with the maps of the one that is open.
+    Failures,
+    /// A lesson, the scene and the maps that lessons ask about.
+    Teach,
+}
+
+impl Task {
+    /// All, in the order of their keys.
+    pub const ALL: [Task; 4] = [Task::Explore, Task::Compare, Task::Failures, Task::Teach];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Task::Explore => "Explore",
+            Task::Compare => "Compare",
+            Task::Failures => "Failures",
+            Task::Teach => "Teach",
+        }
+    }
+
+    /// What it shows.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Task::Explore => "Arrange panels: the scene, its settings and all maps",
+            Task::Compare => "Arrange panels: two methods on this scene, large, beside the scene and the target",
+            Task::Failures => {
+                "Arrange panels: the rows on the whole width, above them the maps of the row that is open"
+            }
+            Task::Teach => "Arrange panels: a lesson, the scene and the maps it asks about",
+        }
+    }
+
+    /// The task that opens with a panel which needs much room and maps beside it.
+    pub fn of(panel: Panel) -> Option<Task> {
+        match panel {
+            Panel::Compare => Some(Task::Compare),
+            Panel::Failures => Some(Task::Failures),
+            Panel::Lesson => Some(Task::Teach),
+            _ => None,
+        }
+    }
+
+    /// Its panels as they stand at first.
+    pub fn tree(self) -> Tree<Panel> {
+        match self {
+            Task::Explore => explore(),
+            Task::Compare => compare(),
+            Task::Failures => failures(),
+            Task::Teach => lesson("teach"),
+        }
+    }
+}
+
+/// The scene, its settings and all maps; tools are there and closed.
+fn explore() -> Tree<Panel> {
+    let mut tiles = Tiles::default();
+    let mut pane = |panel| tiles.insert_pane(panel);
+    let [scene, controls, inspector, objects] =
+        [Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects].map(&mut pane);
+    let [in0, in1, target, output, target_above, output_above, difference, unexplained] =
+        MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
+    let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
+    let [guide, lesson, radar, elements, disturbances] =
+        [Panel::Guide, Panel::Lesson, Panel::Radar, Panel::Elements, Panel::Disturbances].map(&mut pane);
+    let of_results = [
+        Panel::Found,
+        Panel::Bounds,
+        Panel::Evaluation,
+        Panel::RunTime,
+        Panel::Training,
+        Panel::Several,
+        Panel::Values,
+    ];
+    let tools = of_results.map(pane);
+    for closed in [timing, guide, lesson, radar, elements, disturbances, unexplained].iter().chain(&tools) {
+        tiles.set_visible(*closed, false);
+    }
+    let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
+    let scene = tabs(&mut tiles, vec![scene]);
+    let controls = tabs(&mut tiles, vec![controls, radar, elements, disturbances, timing]);
+    // What is read while settings change stands beside them.
+    let beside = tabs(&mut tiles, vec![guide, lesson]);
+    let inspector = tabs(&mut tiles, vec![inspector, objects]);
+    let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
+    let first = tabs(&mut tiles, vec![in0]);
+    let second = tabs(&mut tiles, vec![target]);
+    let third = tabs(&mut tiles, vec![target_above, cuts]);
+    let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
+    let first = tabs(&mut tiles, vec![in1]);
+    let second = tabs(&mut tiles, vec![output, difference, unexplained]);
+    let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
+    let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
+    let root = row(&mut tiles, vec![left, beside, left_maps, right_maps], &[1.1, 0.9, 1.0, 1.0]);
+    Tree::new(egui::Id::unique("panels"), root, tiles)
+}
+
+/// Two methods large; beside them what they work on and aim for.
+fn compare() -> Tree<Panel> {
+    let mut tiles = Tiles::default();
+    let scene = tabs(&mut tiles, &[Panel::Scene]);
+    let target = tabs(&mut tiles, &[Panel::Map(MapKind::Target)]);
+    let settings = tabs(&mut tiles, &[Panel::Controls, Panel::Inspector, Panel::Values]);
+    let left = column(&mut tiles, vec![scene, target, settings], &[1.0, 0.9, 1.0]);
+    let compare = tabs(&mut tiles, &[Panel::Compare]);
+    let root = row(&mut tiles, vec![left, compare], &[0.3, 0.7]);
+    Tree::new(egui::Id::unique("compare"), root, tiles)
+}
+
+/// Rows on the whole width, since they are long; above them the maps of the one that is open.
+fn failures() -> Tree<Panel> {
+    let mut tiles = Tiles::default();
+    let scene = tabs(&mut tiles, &[Panel::Scene, Panel::Inspector]);
+    let target = tabs(&mut tiles, &[MapKind::Target, MapKind::TargetAbove].map(Panel::Map));
+    let output = tabs(&mut tiles, &[MapKind::Output, MapKind::OutputAbove, MapKind::Difference].map(Panel::Map));
+    let above = row(&mut tiles, vec![scene, target, output], &[0.9, 1.0, 1.0]);
+    let rows = tabs(&mut tiles, &[Panel::Failures]);
+    let root = column(&mut tiles, vec![above, rows], &[0.42, 0.58]);
+    Tree::new(egui::Id::unique("failures"), root, tiles)
+}
+
+/// A lesson large, with the scene, the four maps that lessons ask about, and the target above its threshold.
+pub fn lesson(name: &'static str) -> Tree<Panel> {
+    let mut tiles = Tiles::default();
+    let [lesson, scene] = [Panel::Lesson, Panel::Scene].map(|panel| tabs(&mut tiles, &[panel]));
+    let [in0, in1, target] =
+        [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
+    let output = tabs(&mut tiles, &[MapKind::Output, MapKind::TargetAbove].map(Panel::Map));
+    let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
+    let middle = column(&mut tiles, vec![target, in0], &[1.0, 1.0]);
+    let right = column(&mut tiles, vec![output, in1], &[1.0, 1.0]);
+    let root = row(&mut tiles, vec![left, middle, right], &[1.15, 1.0, 1.0]);
+    Tree::new(egui::Id::unique(name), root, tiles)
+}
+
+/// What is shown to many people at once: the scene, an end's map, the target and the output, large.
+pub fn presentation() -> Tree<Panel> {
+    let mut tiles = Tiles::default();
+    let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
+    let scene = tabs(&mut tiles, &[Panel::Scene]);
+    let [first, last, target, output] = maps.map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
+    let upper = row(&mut tiles, vec![scene, target], &[1.0, 1.0]);
+    let lower = row(&mut tiles, vec![first, last, output], &[1.0, 1.0, 1.0]);
+    let root = column(&mut tiles, vec![upper, lower], &[1.0, 1.0]);
+    Tree::new(egui::Id::unique("presentation"), root, tiles)
+}
+
+/// Panels behind each other, the first in front.
+fn tabs(tiles: &mut Tiles<Panel>, panels: &[Panel]) -> TileId {
+    let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+    tiles.insert_tab_tile(panes)
+}
+
+fn column(tiles: &mut Tiles<Panel>, children: Vec<TileId>, shares: &[f32]) -> TileId {
+    linear(tiles, LinearDir::Vertical, children, shares)
+}
+
+fn row(tiles: &mut Tiles<Panel>, children: Vec<TileId>, shares: &[f32]) -> TileId {
+    linear(tiles, LinearDir::Horizontal, children, shares)
+}
+
+fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<TileId>, shares: &[f32]) -> TileId {
+    let mut linear = Linear::new(dir, children.clone());
+    for (child, share) in children.into_iter().zip(shares) {
+        linear.shares.set_share(child, *share);
+    }
+    tiles.insert_container(Container::Linear(linear))
+}
