@@ -146,7 +146,9 @@ fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked:
     row(ui, "η", "Cells of the output above this count as detections", |ui| {
         let mut eta = input.eta;
         let slider = threshold(ui, "η in numbers", &mut eta);
-        asked.extend(moved(input.eta, eta).map(|eta| Command::SetMethodEta(method.name(), Some(eta))));
+        asked.extend(
+            moved(input.eta, eta).map(|eta| Command::View(ViewCommand::SetMethodEta(method.name(), Some(eta)))),
+        );
         let own = input.settings.method_eta.contains_key(method.name());
         let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
         let back = match method.reads_eta() {
@@ -154,7 +156,7 @@ fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked:
             false => format!("Back to the method's own η = {}", eta_text(method.eta())),
         };
         if reset.on_hover_text(back).clicked() {
-            asked.push(Command::SetMethodEta(method.name(), None));
+            asked.push(ViewCommand::SetMethodEta(method.name(), None).into());
         }
         in_decibels(ui, input, input.eta);
         slider

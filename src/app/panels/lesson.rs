@@ -118,7 +118,7 @@ fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
         ui.label(whose);
         ui.horizontal(|ui| {
             if ui.button("Forget them").clicked() {
-                asked.push(Command::ForgetProgress);
+                asked.push(LessonCommand::ForgetProgress.into());
                 ui.close();
             }
             if ui.button("Keep them").clicked() {

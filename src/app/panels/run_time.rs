@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
                     memory.reflectors = None;
                     asked.push(WorkCommand::Measure { thorough: memory.thorough }.into());
                 }
-                Some(Pressed::Cancel) => asked.push(Command::CancelMeasurement),
+                Some(Pressed::Cancel) => asked.push(WorkCommand::CancelMeasurement.into()),
                 None => {}
             }
             let thorough = egui::Checkbox::new(&mut memory.thorough, "thorough");

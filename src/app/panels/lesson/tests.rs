@@ -165,7 +165,7 @@ fn starting_over_asks_before_it_forgets() {
     assert!(panel.state().2.is_empty());
     panel.get_by_label("Forget them").click();
     panel.run();
-    assert_eq!(panel.state().2, [Command::ForgetProgress]);
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::ForgetProgress)]);
 }
 
 #[test]
