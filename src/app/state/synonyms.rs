@@ -68,6 +68,7 @@ fn window_words(command: &WindowCommand) -> &'static str {
             "font text size scale bigger smaller"
         }
         WindowCommand::ResetLayout => "arrangement windows panels restore",
+        WindowCommand::ArrangeFor(_) => "layout workspace windows panels",
         WindowCommand::Help(_) => "help manual shortcuts keyboard mouse version licence sources",
         WindowCommand::ToggleCaptions => "help explain labels what is this start",
         WindowCommand::TogglePanel(Panel::Guide) => "help manual explain tutorial",
@@ -130,6 +131,7 @@ fn view_menus(command: &ViewCommand) -> &'static [&'static str] {
 
 fn window_menus(command: &WindowCommand) -> &'static [&'static str] {
     match command {
+        WindowCommand::ArrangeFor(_) => &["View", "Arrangement"],
         WindowCommand::TogglePanel(Panel::Guide | Panel::Lesson)
         | WindowCommand::Help(_)
         | WindowCommand::ToggleCaptions => &["Help"],
