@@ -13,17 +13,9 @@ pub fn entry(ui: &mut Ui, command: impl Into<Command>, enabled: bool, asked: &mu
 
 /// A menu entry with a name of its own, where the menu's title says the rest.
 pub fn entry_called(ui: &mut Ui, name: &str, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
-    add(ui, Button::new(name), command.into(), enabled, asked);
-}
-
-/// A menu entry that is marked while it is `on`.
-pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, asked: &mut Vec<Command>) {
-    add(ui, Button::selectable(on, name), command.into(), true, asked);
-}
-
-fn add(ui: &mut Ui, button: Button<'_>, command: Command, enabled: bool, asked: &mut Vec<Command>) {
+    let command = command.into();
     let Some(listed) = command.entry() else { return };
-    if ui.add_enabled(enabled, with_key(ui, button, listed)).on_hover_text(listed.tooltip).clicked() {
+    if ui.add_enabled(enabled, with_key(ui, Button::new(name), listed)).on_hover_text(listed.tooltip).clicked() {
         asked.push(command);
         ui.close();
     }
