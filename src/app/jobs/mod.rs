@@ -23,6 +23,7 @@ mod run_time;
 mod scene_maps;
 mod sentence;
 mod several;
+mod subject;
 mod theory;
 mod training;
 

@@ -1,7 +1,8 @@
 //! From maps to pictures, off the UI thread and only where something changed.
 
 use super::sentence::sentence;
-use crate::app::state::{DifferenceView, MapKind, Projection};
+use super::subject::{Paint, Subject};
+use crate::app::state::{MapKind, Projection};
 use crate::app::widgets::textures::colour_table;
 use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
@@ -13,59 +14,6 @@ use eframe::egui::{Color32, ColorImage};
 use ndarray::Array2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// How a map is painted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Paint {
-    /// Lambda in colours.
-    Lambda(ColourMap),
-    /// Cells above a threshold, in two colours.
-    Above {
-        /// The threshold.
-        eta: f32,
-        /// Whether the window is dark.
-        dark: bool,
-    },
-    /// Cells above a threshold, told apart by whether the target has them too: flat fills, each with an outline.
-    Detections {
-        /// The threshold.
-        eta: f32,
-        /// Whether the window is dark.
-        dark: bool,
-    },
-    /// Differences from another map.
-    Difference {
-        /// On which scale, with a sign or without.
-        view: DifferenceView,
-        /// Colours of differences without a sign.
-        colours: ColourMap,
-    },
-}
-
-/// What one picture shows.
-#[derive(Debug, Clone)]
-pub struct Subject {
-    /// What is shown.
-    pub map: Arc<RangeAngleMap>,
-    /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
-    pub minus: Option<Arc<RangeAngleMap>>,
-    /// How.
-    pub paint: Paint,
-    /// Over which coordinates.
-    pub projection: Projection,
-}
-
-impl Subject {
-    /// Whether both would give the same picture.
-    fn same(&self, other: &Subject) -> bool {
-        let minus = match (&self.minus, &other.minus) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        minus && Arc::ptr_eq(&self.map, &other.map) && self.paint == other.paint && self.projection == other.projection
-    }
-}
 
 /// A painted map; row 0 is range (or y) 0.
 #[derive(Debug, Clone)]
@@ -212,6 +160,7 @@ fn detections(output: &Array2<f32>, target: &Array2<f32>, eta: f32, dark: bool) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::DifferenceView;
     use ndarray::array;
 
     fn subject(paint: Paint) -> Subject {

@@ -1,7 +1,8 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
-use super::painter::{Paint, Painter, Picture, Subject};
+use super::painter::{Painter, Picture};
 use super::recorded::{RecordedMaps, Unexplained};
+use super::subject::{Paint, Subject};
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, Frame, ReadyMap, Wanted};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs};

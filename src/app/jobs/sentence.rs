@@ -1,6 +1,6 @@
 //! What a map shows in one sentence, for whoever can't see it.
 
-use super::painter::{Paint, Subject};
+use super::subject::{Paint, Subject};
 use crate::app::state::Cursor;
 use crate::app::widgets::direction::angle_degrees;
 use crate::app::widgets::numbers::signed;

@@ -1,6 +1,7 @@
 //! One map several times, off the UI thread: the latest request wins, and each map is shown as soon as it is there.
 
-use super::painter::{Paint, Painter, Subject};
+use super::painter::Painter;
+use super::subject::{Paint, Subject};
 use crate::app::state::{MapKind, Panel, Projection, State, Variant};
 use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
 use crate::picture::ColourMap;

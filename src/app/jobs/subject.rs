@@ -1,0 +1,59 @@
+//! What a picture shows, and how.
+
+use crate::app::state::{DifferenceView, Projection};
+use crate::maps::RangeAngleMap;
+use crate::picture::ColourMap;
+use std::sync::Arc;
+
+/// How a map is painted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Paint {
+    /// Lambda in colours.
+    Lambda(ColourMap),
+    /// Cells above a threshold, in two colours.
+    Above {
+        /// The threshold.
+        eta: f32,
+        /// Whether the window is dark.
+        dark: bool,
+    },
+    /// Cells above a threshold, told apart by whether the target has them too: flat fills, each with an outline.
+    Detections {
+        /// The threshold.
+        eta: f32,
+        /// Whether the window is dark.
+        dark: bool,
+    },
+    /// Differences from another map.
+    Difference {
+        /// On which scale, with a sign or without.
+        view: DifferenceView,
+        /// Colours of differences without a sign.
+        colours: ColourMap,
+    },
+}
+
+/// What one picture shows.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// What is shown.
+    pub map: Arc<RangeAngleMap>,
+    /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
+    pub minus: Option<Arc<RangeAngleMap>>,
+    /// How.
+    pub paint: Paint,
+    /// Over which coordinates.
+    pub projection: Projection,
+}
+
+impl Subject {
+    /// Whether both would give the same picture.
+    pub fn same(&self, other: &Subject) -> bool {
+        let minus = match (&self.minus, &other.minus) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        minus && Arc::ptr_eq(&self.map, &other.map) && self.paint == other.paint && self.projection == other.projection
+    }
+}
