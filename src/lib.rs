@@ -73,6 +73,7 @@ pub mod methods;
 #[cfg(feature = "live")]
 pub mod network;
 pub mod picture;
+pub mod platform;
 pub mod radar;
 pub mod reconstruct;
 pub mod recording;

@@ -12,13 +12,13 @@ use super::state::{
 use super::widgets::{focus_ring, theme};
 use crate::interact::{Document, Editor};
 use crate::lesson::Progress;
+use crate::platform::{self, Instant};
 use crate::reconstruct::Reconstructor;
 use crate::scene::presets;
 use eframe::egui;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Name under which settings and the autosave are kept.
 pub const APP_ID: &str = "apertura";
@@ -56,6 +56,8 @@ pub struct Options {
     pub lesson: Option<PathBuf>,
     /// Whether files are asked for by the window's own dialog even where the system has one.
     pub own_dialogs: bool,
+    /// What is done first.
+    pub commands: Vec<Command>,
 }
 
 /// What is kept from one start to the next.
@@ -122,7 +124,7 @@ impl App {
         let ctx = &creation.egui_ctx;
         let (kept, captions) = kept(creation.storage);
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
-        let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| eframe::storage_dir(APP_ID)));
+        let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| platform::storage_folder(APP_ID)));
         let began = options.started.unwrap_or_else(Instant::now);
         let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
         let mut state = State {
@@ -156,7 +158,8 @@ impl App {
         }
         start(&mut state, &jobs, options.scene);
         let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
-        let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v)))).collect();
+        let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v))));
+        let asked = asked.chain(options.commands).collect();
         let palette = palette::Memory::remembering(kept.recent_commands);
         let memory = Memory { palette, ..Memory::default() };
         Ok(App {
@@ -172,6 +175,11 @@ impl App {
             later: Default::default(),
             in_a_field: false,
         })
+    }
+
+    /// Tells what went wrong before the window opened.
+    pub(super) fn tell(&mut self, problem: String) {
+        self.state.notices.error(problem);
     }
 
     /// Does commands, and what they ask of the window.

@@ -12,7 +12,6 @@
 //! downward: application, contents, panels and chrome, jobs, widgets, state. Nothing shown is ever taken away before its successor is
 //! there. Editing itself is in [`crate::interact`], without egui.
 
-use eframe::egui;
 mod application;
 mod apply;
 mod chrome;
@@ -20,9 +19,14 @@ mod contents;
 mod input;
 mod inspect;
 mod jobs;
+mod page;
 mod panels;
 mod state;
 mod widgets;
+
+use crate::platform;
+
+pub use page::open_page;
 
 pub use application::{APP_ID, App, Options};
 pub use state::{
@@ -47,17 +51,8 @@ pub enum AppError {
 /// # Errors
 /// [`AppError`] where there is no display or no OpenGL, where the frame log can't be created or no thread be started.
 pub fn run(options: Options) -> Result<(), AppError> {
-    let native = eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default()
-            .with_title("apertura")
-            .with_app_id(APP_ID)
-            .with_inner_size([1440.0, 900.0])
-            .with_min_inner_size([800.0, 520.0])
-            .with_drag_and_drop(true),
-        ..eframe::NativeOptions::default()
-    };
-    let create: eframe::AppCreator<'_> = Box::new(|creation| Ok(Box::new(App::new(creation, options)?)));
-    eframe::run_native(APP_ID, native, create).map_err(|error| match error {
+    let create: eframe::AppCreator<'static> = Box::new(|creation| Ok(Box::new(App::new(creation, options)?)));
+    platform::open_window(APP_ID, create).map_err(|error| match error {
         eframe::Error::AppCreation(error) => AppError::Start(std::io::Error::other(error)),
         error => AppError::Window(error.to_string()),
     })

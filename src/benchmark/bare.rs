@@ -1,10 +1,11 @@
 //! The bare two-dimensional transform that every run time is measured in.
 
+use crate::platform::Instant;
 use crate::signal::simd::Simd;
 use num_complex::Complex32;
 use rustfft::Fft;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const ROWS: usize = 512;
 const COLUMNS: usize = 1024;

@@ -4,6 +4,7 @@ use super::change::Change;
 use super::frame::Wanted;
 use super::report::{Report, Stage};
 use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources, silence_decades};
+use crate::platform::Instant;
 use crate::radar::{Radar, counted};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan;
@@ -12,7 +13,6 @@ use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
 use crate::signal::{Algorithm, Floor, Plan, Rows, floor};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
-use std::time::Instant;
 
 /// One update, as the caches see it.
 pub(super) struct Job<'a> {

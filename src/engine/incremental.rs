@@ -10,6 +10,7 @@ use super::report::{Report, Stage};
 use super::settled::Settled;
 use super::shown::Shown;
 use crate::maps::tolerance;
+use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::{self, Sum};
@@ -18,7 +19,6 @@ use crate::signal::{Algorithm, Plan, Precision, Rows, Unfinished, simulate_ends_
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Keeps what it computed for one radar and recomputes only what a change touches.
 pub struct Engine {

@@ -3,12 +3,12 @@
 use super::frame::{Frame, ReadyMap, Wanted};
 use super::report::{Report, Stage};
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
+use crate::platform::Instant;
 use crate::radar::{End, Radar, counted};
 use crate::scene::{Disturbances, Object, Scene};
 use crate::signal::{self, Floor, TwoEnds, Unfinished};
 use crate::task::Task;
 use std::sync::Arc;
-use std::time::Instant;
 
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 

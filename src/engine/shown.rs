@@ -5,12 +5,12 @@ use super::frame::{ReadyMap, Wanted};
 use super::report::{Report, Stage};
 use crate::maps::fast::{FastLogMap, normalise_into};
 use crate::maps::{Normalisation, RangeAngleMap};
+use crate::platform::Instant;
 use crate::radar::{Radar, counted};
 use crate::scene::{Object, Scene};
 use crate::signal::{Floor, Rows, TwoEnds};
 use ndarray::Array2;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// What the last frame showed, and for which scene.
 pub(super) struct Shown {

@@ -2,6 +2,7 @@
 
 use super::tables::PRINTED_EXPERIMENT_2;
 use crate::files::{read_bounded, sha256};
+use crate::platform::fs;
 use crate::radar::{DecibelMilliwatts, Radar};
 use crate::scene::Scene;
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
@@ -60,7 +61,7 @@ impl Folder {
     pub fn open(path: &Path) -> Result<Folder, FolderError> {
         let failed = |source| FolderError::Io { path: path.to_owned(), source };
         let mut files = Vec::new();
-        for entry in std::fs::read_dir(path).map_err(failed)? {
+        for entry in fs::read_dir(path).map_err(failed)? {
             let file = entry.map_err(failed)?.path();
             let hidden = file.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
             if !hidden && file.is_file() && file::Format::of_path(&file).is_ok() {

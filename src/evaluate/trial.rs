@@ -4,12 +4,12 @@ use super::failure::{Failures, Fate, Footprints};
 use super::rows::{Origin, Row};
 use super::{Metrics, Roc};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
+use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::{Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 
 /// A simulated scene: what methods get, and what they are held against.
 #[derive(Debug, Clone)]

@@ -7,10 +7,9 @@ pub mod npy;
 pub mod npz;
 pub mod sha256;
 
-use std::fs::{File, Permissions};
+use crate::platform::fs::{self, Draft, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. Whoever looks sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.
@@ -19,24 +18,18 @@ use tempfile::NamedTempFile;
 /// What `write` returns, or what the system says: the folder is missing, `path` is a folder, a device or a pipe, the disk is full.
 pub fn write_atomically<E: From<io::Error>>(
     path: &Path,
-    write: impl FnOnce(&mut BufWriter<NamedTempFile>) -> Result<(), E>,
+    write: impl FnOnce(&mut BufWriter<Draft>) -> Result<(), E>,
 ) -> Result<(), E> {
     let path = destination(path)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !folder.is_dir() {
+    if !fs::is_dir(folder) {
         let message = format!("there is no folder \"{}\" to write into", folder.display());
         return Err(io::Error::new(io::ErrorKind::NotFound, message).into());
     }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".apertura-").suffix(".tmp");
-    if let Some(permissions) = new_file_permissions(&path) {
-        builder.permissions(permissions);
-    }
-    let mut out = BufWriter::new(builder.tempfile_in(folder).map_err(|e| unwritable(folder, &e))?);
+    let draft = Draft::begin(folder, &path).map_err(|e| unwritable(folder, &e))?;
+    let mut out = BufWriter::new(draft);
     write(&mut out)?;
-    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.as_file().sync_all()?;
-    file.persist(&path).map_err(|e| e.error)?;
+    out.into_inner().map_err(io::IntoInnerError::into_error)?.persist(&path)?;
     Ok(())
 }
 
@@ -62,7 +55,7 @@ fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
 /// What the system says; [`io::ErrorKind::FileTooLarge`] for a longer file, [`io::ErrorKind::InvalidInput`] for a folder, a device or a pipe,
 /// which may never end.
 pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let found = std::fs::metadata(path)?;
+    let found = fs::metadata(path)?;
     if !found.is_file() {
         let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
         return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected a file")));
@@ -85,7 +78,7 @@ pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read_bounded`], but for the length.
 pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
+    if !fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "is no file"));
     }
     let mut bytes = Vec::new();
@@ -95,26 +88,14 @@ pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 
 /// Follows a link, so that it stays a link, and refuses what replacing would destroy.
 fn destination(path: &Path) -> io::Result<PathBuf> {
-    match std::fs::metadata(path) {
-        Ok(found) if found.is_file() => std::fs::canonicalize(path),
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() => fs::canonicalize(path),
         Ok(found) => {
             let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
             Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected the name of a file")))
         }
         Err(_) => Ok(path.to_owned()),
     }
-}
-
-/// Temporary files are private; a file a user asked for has the permissions of the one it replaces, or those the umask leaves.
-#[cfg(unix)]
-fn new_file_permissions(path: &Path) -> Option<Permissions> {
-    use std::os::unix::fs::PermissionsExt;
-    Some(std::fs::metadata(path).map_or_else(|_| Permissions::from_mode(0o666), |m| m.permissions()))
-}
-
-#[cfg(not(unix))]
-fn new_file_permissions(_: &Path) -> Option<Permissions> {
-    None
 }
 
 #[cfg(test)]

@@ -2,13 +2,13 @@
 
 use super::entries::check_entries;
 use super::{npy, write_atomically};
+use crate::platform::fs::Draft;
+use crate::platform::fs::File;
 use ndarray::{Array, ArrayRef, Dimension};
 use ndarray_npy::{NpzWriter, ReadNpyError, ReadNpyExt, ReadableElement, WritableElement, WriteNpzError};
 use num_complex::{Complex32, Complex64};
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read};
 use std::path::Path;
-use tempfile::NamedTempFile;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
@@ -229,7 +229,7 @@ fn all_finite<T: Finite, D: Dimension>(key: &str, values: Array<T, D>) -> Result
 
 /// An archive being written.
 pub struct NpzOutput<'a> {
-    writer: NpzWriter<&'a mut BufWriter<NamedTempFile>>,
+    writer: NpzWriter<&'a mut BufWriter<Draft>>,
 }
 
 impl NpzOutput<'_> {

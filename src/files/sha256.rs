@@ -1,7 +1,7 @@
 //! SHA-256: what weights, programs and folders of scenes are known by in the record of a run.
 
+use crate::platform::fs::File;
 use sha2::{Digest, Sha256};
-use std::fs::File;
 use std::io;
 use std::path::Path;
 

@@ -2,6 +2,7 @@
 //!
 //! Undo, the autosave and the window's title all speak of it. It is shared and never changed in place: an edit makes another.
 
+use crate::platform::fs;
 use crate::radar::Radar;
 use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
@@ -254,7 +255,7 @@ impl Document {
     /// Whether its file is there and holds something else than is known of it. Nothing is known after a restart: then it isn't said.
     pub(super) fn is_outdated(&self) -> bool {
         let (Some(path), Some(saved)) = (self.path(), &self.saved) else { return false };
-        path.exists() && !Document::read(path).is_ok_and(|on_disk| on_disk.content.same(saved))
+        fs::exists(path) && !Document::read(path).is_ok_and(|on_disk| on_disk.content.same(saved))
     }
 
     /// The document as a file holds it.
@@ -315,7 +316,7 @@ pub struct Restored {
 
 /// `path` from the root, without links, so that one file has one path.
 pub(super) fn whole_path(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
+    fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
 }
 
 #[cfg(test)]

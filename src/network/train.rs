@@ -7,6 +7,7 @@ use super::run::{Part, Progress, Run, TrainError, file};
 use super::students::Student;
 use super::validation::{export, validate};
 use crate::maps::RangeAngleMap;
+use crate::platform::Instant;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use burn::optim::{GradientsParams, ModuleOptimizer};
 use burn::tensor::{Device, Tensor, TensorData};
@@ -17,7 +18,7 @@ use rayon::prelude::*;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
 ///

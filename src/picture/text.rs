@@ -1,8 +1,9 @@
 //! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
 
 use super::canvas::{Area, PictureError};
+use crate::platform::register_font;
 use plotters::prelude::*;
-use plotters::style::{FontStyle, register_font};
+use plotters::style::FontStyle;
 use std::sync::OnceLock;
 
 /// Weight of a line of text.

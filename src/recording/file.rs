@@ -47,6 +47,7 @@ use super::numpy::{read_npy, read_npz};
 use super::said_radar::said_radar;
 use super::signs::{BeatSign, CarrierAt, Said, Signs, Sweep};
 use super::{AxisKind, Calibration, Capture, Chirp, Fault, RadarProfile, Recorded, Recording, RecordingError, matlab};
+use crate::platform::fs::File;
 use crate::radar::{End, Radar};
 use crate::scene::file::SceneTextError;
 use crate::signal::{BeatSignal, TwoEnds};
@@ -54,7 +55,6 @@ use ndarray::{Array2, Axis, concatenate};
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::collections::HashSet;
-use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 

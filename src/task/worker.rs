@@ -10,11 +10,12 @@
 //! A panic in the work becomes [`Reply::Panicked`] and the worker starts afresh with new state.
 
 use super::Task;
+use crate::platform::{self, Instant};
 use std::any::Any;
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Number of a request: rises by one with each.
 pub type Generation = u64;
@@ -59,10 +60,33 @@ impl<Q, T> Shared<Q, T> {
     }
 }
 
-/// A thread that turns requests `Q` into results `T`, latest request first. Dropping it stops the thread.
+/// Takes one request and gives its reply; the state of the work is inside.
+type Step<Q, T> = Box<dyn FnMut(Generation, Q, &Task) -> Reply<T>>;
+
+/// A thread that turns requests `Q` into results `T`, latest request first. Dropping it stops the thread. Where there are no threads the work
+/// is done when replies are asked for.
 pub struct Worker<Q, T> {
     shared: Arc<Shared<Q, T>>,
-    thread: Option<JoinHandle<()>>,
+    /// The work and the waking, where there is no thread to do them.
+    here: Option<(RefCell<Step<Q, T>>, Box<dyn Fn()>)>,
+}
+
+/// Does the work of one request; a panic drops the state.
+fn step<S, Q, T>(
+    start: impl Fn() -> S,
+    mut work: impl FnMut(&mut S, Q, &Task) -> T,
+) -> impl FnMut(Generation, Q, &Task) -> Reply<T> {
+    let mut state = None;
+    move |generation, request, task| {
+        let began = Instant::now();
+        match catch_unwind(AssertUnwindSafe(|| work(state.get_or_insert_with(&start), request, task))) {
+            Ok(result) => Reply::Done { generation, result, elapsed: began.elapsed() },
+            Err(panic) => {
+                state = None;
+                Reply::Panicked { generation, message: panic_message(panic.as_ref()) }
+            }
+        }
+    }
 }
 
 impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
@@ -74,32 +98,23 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
     pub fn spawn<S: 'static>(
         name: &str,
         start: impl Fn() -> S + Send + 'static,
-        mut work: impl FnMut(&mut S, Q, &Task) -> T + Send + 'static,
+        work: impl FnMut(&mut S, Q, &Task) -> T + Send + 'static,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<Self> {
         let slot = Slot { pending: None, running: None, replies: Vec::new(), generation: 0, stop: false };
         let shared = Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new() });
+        if !platform::HAS_THREADS {
+            return Ok(Worker { shared, here: Some((RefCell::new(Box::new(step(start, work))), Box::new(wake))) });
+        }
         let theirs = shared.clone();
-        let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || {
-            let mut state = None;
+        platform::spawn(name, move || {
+            let mut step = step(start, work);
             while let Some((generation, request, task)) = theirs.next() {
-                let began = Instant::now();
-                let outcome = catch_unwind(AssertUnwindSafe(|| work(state.get_or_insert_with(&start), request, &task)));
-                let reply = match outcome {
-                    Ok(result) => Reply::Done { generation, result, elapsed: began.elapsed() },
-                    Err(panic) => {
-                        state = None;
-                        Reply::Panicked { generation, message: panic_message(panic.as_ref()) }
-                    }
-                };
-                let mut slot = theirs.lock();
-                slot.running = None;
-                slot.replies.push(reply);
-                drop(slot);
+                theirs.reply(step(generation, request, &task));
                 wake();
             }
         })?;
-        Ok(Worker { shared, thread: Some(thread) })
+        Ok(Worker { shared, here: None })
     }
 
     /// Asks for `request` next; one that waits is replaced, one that runs goes on.
@@ -114,6 +129,9 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         let generation = slot.generation;
         slot.pending = Some((generation, request, task));
         self.shared.ready.notify_one();
+        if let Some((_, wake)) = &self.here {
+            wake();
+        }
         generation
     }
 
@@ -150,11 +168,29 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
 
     /// The replies since the last call, oldest first.
     pub fn replies(&self) -> Vec<Reply<T>> {
+        self.work_here();
         std::mem::take(&mut self.shared.lock().replies)
+    }
+
+    /// Does what waits, where there is no thread to do it.
+    fn work_here(&self) {
+        let Some((step, _)) = &self.here else { return };
+        let pending = self.shared.lock().pending.take();
+        if let Some((generation, request, task)) = pending {
+            let reply = (*step.borrow_mut())(generation, request, &task);
+            self.shared.lock().replies.push(reply);
+        }
     }
 }
 
 impl<Q, T> Shared<Q, T> {
+    /// Hands over what came of the request that ran.
+    fn reply(&self, reply: Reply<T>) {
+        let mut slot = self.lock();
+        slot.running = None;
+        slot.replies.push(reply);
+    }
+
     /// Waits for a request; `None` when told to stop.
     fn next(&self) -> Option<(Generation, Q, Task)> {
         let mut slot = self.lock();
@@ -179,9 +215,8 @@ impl<Q, T> Drop for Worker<Q, T> {
             task.cancel();
         }
         drop(slot);
+        // Nobody waits for the thread: work that doesn't look at its task would keep the window from closing.
         self.shared.ready.notify_all();
-        // Work that doesn't look at its task would make closing the window wait: leave it to the end of the process.
-        self.thread.take();
     }
 }
 

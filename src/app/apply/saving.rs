@@ -3,6 +3,7 @@
 use crate::app::jobs::{Jobs, Purpose};
 use crate::app::state::{Doubt, SaveAnswer, SaveQuestion, State};
 use crate::interact::Saved;
+use crate::platform::fs;
 use std::path::{Path, PathBuf};
 
 /// Writes the scene to its own file, or asks for one. A recording that nothing is laid over has nothing to be saved.
@@ -44,7 +45,7 @@ pub fn answer(state: &mut State, jobs: &mut Jobs, answer: SaveAnswer) {
         SaveAnswer::Cancel => {}
         SaveAnswer::Anyway => write(state, path),
         // Another file of that name is not replaced without a question.
-        SaveAnswer::Elsewhere if toml.exists() => jobs.choose_file(state, Purpose::SaveScene),
+        SaveAnswer::Elsewhere if fs::exists(&toml) => jobs.choose_file(state, Purpose::SaveScene),
         SaveAnswer::Elsewhere => write(state, toml),
     }
 }

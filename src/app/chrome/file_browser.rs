@@ -1,6 +1,7 @@
 //! A folder on screen, to choose a file from or to name a new one in.
 
 use crate::app::jobs::{Purpose, Question};
+use crate::platform::fs;
 use eframe::egui;
 use eframe::egui::{Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
@@ -64,7 +65,7 @@ impl Browser {
 
     /// Reads the folder; whether it could be read.
     fn list(&mut self) -> bool {
-        let read = match std::fs::read_dir(&self.folder) {
+        let read = match fs::read_dir(&self.folder) {
             Ok(read) => read,
             Err(error) => {
                 self.problem = Some(format!("{}: {error}", self.folder.display()));
@@ -74,9 +75,9 @@ impl Browser {
         let (_, endings) = self.purpose.kind();
         let of_kind =
             |path: &Path| path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
-        let listed = |entry: std::fs::DirEntry| {
+        let listed = |entry: fs::DirEntry| {
             let path = entry.path();
-            let (name, is_folder) = (entry.file_name().to_string_lossy().into_owned(), path.is_dir());
+            let (name, is_folder) = (entry.file_name().to_string_lossy().into_owned(), fs::is_dir(&path));
             let fits = self.all || (!name.starts_with('.') && (is_folder || of_kind(&path)));
             fits.then_some(Entry { name, is_folder })
         };
@@ -182,12 +183,12 @@ impl Browser {
     /// Takes what was typed: a folder is entered, a file chosen, and what is to be read must be there.
     fn choose(&mut self) -> Option<Answer> {
         let path = self.folder.join(self.name.trim());
-        if path.is_dir() {
+        if fs::is_dir(&path) {
             self.name.clone_from(&self.usual);
             self.enter(path);
             return None;
         }
-        if self.purpose.reads() && !path.exists() {
+        if self.purpose.reads() && !fs::exists(&path) {
             self.problem = Some(format!("{} is not there.", path.display()));
             return None;
         }
@@ -196,7 +197,7 @@ impl Browser {
 
     fn make_folder(&mut self) {
         let path = self.folder.join("New folder");
-        match std::fs::create_dir(&path) {
+        match fs::create_dir(&path) {
             Ok(()) => self.enter(path),
             Err(error) => self.problem = Some(format!("{}: {error}", path.display())),
         }

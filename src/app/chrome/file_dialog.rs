@@ -3,6 +3,7 @@
 use super::file_browser::{Answer, Browser};
 use crate::app::jobs::{Purpose, Question};
 use crate::app::state::Command;
+use crate::platform::fs;
 use eframe::egui::{Context, Id, Modal, Ui};
 use std::path::{Path, PathBuf};
 
@@ -27,7 +28,7 @@ impl Memory {
 
     /// A file was chosen: done, unless it would replace another.
     fn choose(&mut self, purpose: Purpose, path: PathBuf) -> Option<Command> {
-        if purpose.reads() || !path.exists() {
+        if purpose.reads() || !fs::exists(&path) {
             return Some(purpose.command(path));
         }
         self.replace = Some((purpose, path));

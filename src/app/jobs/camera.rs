@@ -1,8 +1,9 @@
 //! Pictures of the window, in which no message stands before the panels.
 
+use crate::platform::Instant;
 use eframe::egui::{ColorImage, Context};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A picture that has not come after so long never comes: messages are shown again.
 const PATIENCE: Duration = Duration::from_secs(2);

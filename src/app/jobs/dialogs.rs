@@ -2,11 +2,12 @@
 //! is told, so that the window shows its own.
 
 use crate::app::state::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
+use crate::platform::{self, FileQuestion, Instant};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A dialog that ended sooner than this was never on screen: nobody is so quick to close it.
 const NEVER_SHOWN: Duration = Duration::from_millis(250);
@@ -134,10 +135,25 @@ impl Question {
         let folder = document.and_then(Path::parent).filter(|p| !p.as_os_str().is_empty()).map(Path::to_path_buf);
         Question { purpose, folder, name }
     }
+
+    fn for_the_system(&self) -> FileQuestion {
+        let (kind, endings) = self.purpose.kind();
+        FileQuestion {
+            title: self.purpose.title().to_owned(),
+            kind: kind.to_owned(),
+            endings: endings.iter().map(|e| (*e).to_owned()).collect(),
+            folder: self.folder.clone(),
+            name: self.name.clone(),
+            reads: self.purpose.reads(),
+        }
+    }
 }
 
-/// Asks by a dialog of the system; `None` where it was closed without a file, or could not be shown.
-type System = Arc<dyn Fn(&Question) -> Option<PathBuf> + Send + Sync>;
+/// Asks by a dialog of the system, which answers later: `None` where it was closed without a file, or could not be shown.
+type System = Arc<dyn Fn(FileQuestion, Reply) -> std::io::Result<()>>;
+
+/// Takes the file that was chosen, or `None`.
+type Reply = Box<dyn FnOnce(Option<PathBuf>) + Send>;
 
 enum Answer {
     Chosen(Command),
@@ -163,7 +179,7 @@ impl Dialogs {
     pub fn of_the_system() -> Self {
         let [bus, runtime, path] = ["DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR", "PATH"].map(std::env::var_os);
         match cfg!(not(target_os = "linux")) || may_have_dialogs(bus, runtime, path) {
-            true => Dialogs::by(Some(Arc::new(system_dialog))),
+            true => Dialogs::by(Some(Arc::new(|question, reply| platform::choose_file(question, reply)))),
             false => Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) },
         }
     }
@@ -188,9 +204,10 @@ impl Dialogs {
             return Ok(());
         };
         let answers = self.answers.0.clone();
-        std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
-            let began = Instant::now();
-            let answer = match system(&question) {
+        let began = Instant::now();
+        let asked = question.for_the_system();
+        let reply = move |path: Option<PathBuf>| {
+            let answer = match path {
                 Some(path) => Answer::Chosen(question.purpose.command(path)),
                 None if began.elapsed() < NEVER_SHOWN => Answer::NotShown(question),
                 None => return,
@@ -198,8 +215,8 @@ impl Dialogs {
             // The window may be gone by now.
             let _closed = answers.send(answer);
             wake();
-        })?;
-        Ok(())
+        };
+        system(asked, Box::new(reply))
     }
 
     /// What the user chose since the last call. Returns also what to tell the user, when it turns out that the system has no dialogs.
@@ -230,14 +247,6 @@ impl Dialogs {
 fn may_have_dialogs(bus: Option<OsString>, runtime: Option<OsString>, path: Option<OsString>) -> bool {
     let has_bus = bus.is_some_and(|b| !b.is_empty()) || runtime.is_some_and(|r| Path::new(&r).join("bus").exists());
     has_bus || path.is_some_and(|p| std::env::split_paths(&p).any(|folder| folder.join("zenity").exists()))
-}
-
-fn system_dialog(question: &Question) -> Option<PathBuf> {
-    let Question { purpose, folder, name: file_name } = question;
-    let (name, endings) = purpose.kind();
-    let dialog = rfd::FileDialog::new().set_title(purpose.title()).add_filter(name, endings);
-    let dialog = if let Some(folder) = folder { dialog.set_directory(folder) } else { dialog };
-    if purpose.reads() { dialog.pick_file() } else { dialog.set_file_name(file_name).save_file() }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::picture::{Format, Style, compose, compose_recording, maps_of};
+use crate::platform::{self, Instant};
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
 use crate::signal;
@@ -18,7 +19,7 @@ use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Between asking for a picture of the window and taking it: menus and dialogs are gone by then, and maps have come to rest in their
 /// coordinates.
@@ -243,7 +244,7 @@ fn in_background(
         let _closed = done.send(Export { path, written });
         wake.request_repaint();
     };
-    std::thread::Builder::new().name("export".to_owned()).spawn(work).map(|_| ())
+    platform::spawn("export", work)
 }
 
 fn write_png(path: &Path, picture: &ColorImage) -> Result<(), String> {

@@ -1,10 +1,10 @@
 //! Times of every frame as CSV, for `--frame-log`.
 
 use crate::files::memory::resident_bytes;
+use crate::platform::Instant;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
-use std::time::Instant;
 
 /// A CSV file with one line a frame.
 pub struct FrameLog {

@@ -2,6 +2,7 @@
 
 use super::scene_maps::{MapsRequest, MapsResult, Pair};
 use crate::maps::{Normalisation, RangeAngleMap};
+use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
 use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request};
@@ -9,7 +10,7 @@ use crate::scene::Reflector;
 use crate::signal::TwoEnds;
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
 /// finishes, so that something is seen.

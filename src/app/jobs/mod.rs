@@ -56,9 +56,10 @@ pub use training::{Log, Training};
 
 use crate::app::state::{Command, Panel, RowsCommand, State};
 use crate::interact::Autosave;
+use crate::platform::Instant;
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Time between two looks at what runs, where a bar shows how far it is.
 const BAR: Duration = Duration::from_millis(100);

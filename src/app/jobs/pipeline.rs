@@ -15,10 +15,11 @@ use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::evaluate::TARGET_ETA;
+use crate::platform::Instant;
 use crate::signal::{Floor, Unfinished};
 use crate::task::{Reply, Task, Worker};
 use std::collections::BTreeSet;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What is older than this on screen is marked as old: less would flicker.
 const STALE: Duration = Duration::from_millis(400);

@@ -3,13 +3,14 @@
 use crate::engine::{Frame, Outcome, ReadyMap, Report, Stage, StageReport, Wanted};
 use crate::maps::{LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::picture::maps_of;
+use crate::platform::Instant;
 use crate::radar::{BuiltArray, End, Radar};
 use crate::recording::explain::explain;
 use crate::recording::{Recorded, Recording};
 use crate::scene::Scene;
 use crate::signal::{TwoEnds, apply_responses};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What reflectors leave of a recording.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@ use crate::files::write_bytes;
 use crate::lesson::Lesson;
 use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose};
+use crate::platform::{self, Instant};
 use crate::radar::counted;
 use crate::scene::Scene;
 use crate::signal;
@@ -18,7 +19,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Time from frame to frame.
 const INTERVAL: Duration = Duration::from_millis(100);
@@ -93,6 +94,9 @@ impl Recorder {
     /// # Errors
     /// Why it can't be begun.
     pub fn record_drag(&mut self, mut path: PathBuf) -> Result<String, String> {
+        if !platform::HAS_THREADS {
+            return Err("A page can't record drags; the desktop program can.".to_owned());
+        }
         path.set_extension("gif");
         let (frames, arriving) = sync_channel(WAITING);
         let task = Task::default();
@@ -105,8 +109,8 @@ impl Recorder {
             let _closed = done.send(written);
             wake.request_repaint();
         };
-        let started = std::thread::Builder::new().name("recording".to_owned()).spawn(work);
-        started.map_err(|e| format!("{}: the recording can't be started: {e}", path.display()))?;
+        platform::spawn("recording", work)
+            .map_err(|e| format!("{}: the recording can't be started: {e}", path.display()))?;
         let said = format!(
             "Drag something now: it is recorded as {}, without frames in which a map is of an earlier scene. \"Stop recording\" gives it up.",
             path.display()

@@ -1,10 +1,11 @@
 //! When the scene on screen rests: nothing is dragged, and nothing that the samples depend on has changed for a moment.
 
+use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::scene::Scene;
 use crate::signal::Floor;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Longer than between two repeats of a held key, so that nudging stays as quick as dragging.
 const QUIET: Duration = Duration::from_millis(100);

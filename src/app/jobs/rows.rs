@@ -133,7 +133,8 @@ impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::{Duration, Instant};
+    use crate::platform::Instant;
+    use std::time::Duration;
 
     fn rest<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static>(
         job: &mut RowJob<P, R, E>,

@@ -1,12 +1,13 @@
 //! A training that is watched: the log of one that runs elsewhere, or of one started from here as a process of its own.
 
 use crate::files::read_bounded;
+use crate::platform::Instant;
 use crate::task::{Reply, Task, Worker};
 use std::path::{Path, PathBuf};
 use std::process::Child;
 #[cfg(feature = "network")]
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Time between two looks at the log.
 pub const EVERY: Duration = Duration::from_secs(1);

@@ -50,6 +50,7 @@ pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
 use crate::lesson::{Progress, Uses};
+use crate::platform::fs;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use std::collections::BTreeSet;
@@ -251,7 +252,7 @@ impl State {
 
     /// Puts a file among the recent ones.
     pub fn remember(&mut self, path: &Path) {
-        let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         self.recent.retain(|p| *p != path);
         self.recent.insert(0, path);
         self.recent.truncate(RECENT);

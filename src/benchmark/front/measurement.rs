@@ -6,13 +6,13 @@ use super::{Convention, Entrant, Front, FrontRequest, FrontRow, FrontTask, Lambd
 use crate::engine::{Engine, Forced, Wanted};
 use crate::files::memory::{peak_resident_bytes, reset_peak_resident};
 use crate::maps::tolerance;
+use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
 use crate::signal::Floor;
 use crate::signal::plan::{self, BEST_TOLERANCE};
 use crate::signal::simd::Simd;
 use crate::signal::{Plan, Precision, beat_signal};
-use std::time::Instant;
 
 /// Updates before the timed ones: the first two moves of a drag let the dragged reflector leave the sum at rest.
 const WARM_UP: usize = 3;

@@ -13,11 +13,12 @@ mod store;
 
 use super::Editor;
 use super::document::Restored;
-use std::fs::{File, TryLockError};
+use crate::platform::Instant;
+use crate::platform::{self, Claim, fs};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use store::{Plan, Store};
 
 /// Shortest time between two copies: no hand makes two edits in it.
@@ -29,15 +30,16 @@ const SLOTS: u32 = 64;
 /// The copies of one window.
 pub struct Autosave {
     store: Store,
+    /// Where files are written on a thread of their own.
     jobs: Option<Sender<Plan>>,
-    answers: Receiver<Result<(), String>>,
+    answers: (Sender<Result<(), String>>, Receiver<Result<(), String>>),
     /// Jobs whose answers are out.
     pending: usize,
     thread: Option<JoinHandle<()>>,
     /// What the thread was asked for last, and when.
     last: Option<(Plan, Instant)>,
     /// Held while the window lives; the system lets go of it however the process ends. Last, so that the thread ends before.
-    _lock: Option<File>,
+    _lock: Option<fs::Lock>,
 }
 
 impl Autosave {
@@ -49,28 +51,15 @@ impl Autosave {
     /// When the system can't start a thread.
     pub fn claim(folder: &Path) -> std::io::Result<Autosave> {
         // Without a folder there is no lock; writing a copy will say why.
-        let _reported_later = std::fs::create_dir_all(folder);
+        let _reported_later = fs::create_dir_all(folder);
         let (stem, lock) = claim_slot(folder);
         let store = Store::new(folder, stem);
-        let (jobs, asked) = channel::<Plan>();
-        let (answer, answers) = channel();
-        let mut writer = store.clone();
-        let work = move || {
-            while let Ok(plan) = asked.recv() {
-                // Only the latest state matters.
-                let plans: Vec<Plan> = std::iter::once(plan).chain(asked.try_iter()).collect();
-                let count = plans.len();
-                let result = plans.into_iter().next_back().map_or(Ok(()), |p| writer.carry_out(&p));
-                for answered in 1..=count {
-                    let result = if answered == count { result.clone() } else { Ok(()) };
-                    if answer.send(result).is_err() {
-                        return;
-                    }
-                }
-            }
+        let answers = channel();
+        let (jobs, thread) = match platform::HAS_THREADS {
+            true => writer(store.clone(), answers.0.clone()).map(|(jobs, thread)| (Some(jobs), Some(thread)))?,
+            false => (None, None),
         };
-        let thread = std::thread::Builder::new().name("autosave".to_owned()).spawn(work)?;
-        Ok(Autosave { store, jobs: Some(jobs), answers, pending: 0, thread: Some(thread), last: None, _lock: lock })
+        Ok(Autosave { store, jobs, answers, pending: 0, thread, last: None, _lock: lock })
     }
 
     /// Reads what a dead window left in this slot. A file that can't be read is set aside, not deleted.
@@ -105,7 +94,7 @@ impl Autosave {
         let mut result = Ok(());
         while self.pending > 0 {
             self.pending -= 1;
-            result = self.answers.recv().unwrap_or_else(|_| Err("the autosave has stopped".to_owned()));
+            result = self.answers.1.recv().unwrap_or_else(|_| Err("the autosave has stopped".to_owned()));
         }
         result
     }
@@ -118,7 +107,7 @@ impl Autosave {
     /// What went wrong since the last call.
     pub fn poll(&mut self) -> Vec<String> {
         let mut problems = Vec::new();
-        while let Ok(answer) = self.answers.try_recv() {
+        while let Ok(answer) = self.answers.1.try_recv() {
             self.pending -= 1;
             problems.extend(answer.err());
         }
@@ -132,7 +121,10 @@ impl Autosave {
 
     fn ask(&mut self, plan: Plan) {
         self.last = Some((plan.clone(), Instant::now()));
-        let sent = self.jobs.as_ref().is_some_and(|jobs| jobs.send(plan).is_ok());
+        let sent = match &self.jobs {
+            Some(jobs) => jobs.send(plan).is_ok(),
+            None => self.answers.0.send(self.store.carry_out(&plan)).is_ok(),
+        };
         self.pending += usize::from(sent);
     }
 }
@@ -147,21 +139,39 @@ impl Drop for Autosave {
     }
 }
 
-/// The name of the slot's files, and the lock on it where the file system has any.
-fn claim_slot(folder: &Path) -> (String, Option<File>) {
+/// Starts the thread that writes files. Only the latest plan of those that wait matters; each has an answer.
+fn writer(mut store: Store, answer: Sender<Result<(), String>>) -> std::io::Result<(Sender<Plan>, JoinHandle<()>)> {
+    let (jobs, asked) = channel::<Plan>();
+    let work = move || {
+        while let Ok(plan) = asked.recv() {
+            let plans: Vec<Plan> = std::iter::once(plan).chain(asked.try_iter()).collect();
+            let count = plans.len();
+            let result = plans.into_iter().next_back().map_or(Ok(()), |p| store.carry_out(&p));
+            for answered in 1..=count {
+                let result = if answered == count { result.clone() } else { Ok(()) };
+                if answer.send(result).is_err() {
+                    return;
+                }
+            }
+        }
+    };
+    std::thread::Builder::new().name("autosave".to_owned()).spawn(work).map(|thread| (jobs, thread))
+}
+
+/// The name of the slot's files, and the lock on it where there are locks.
+fn claim_slot(folder: &Path) -> (String, Option<fs::Lock>) {
     let name = |slot: u32| if slot == 1 { "autosave".to_owned() } else { format!("autosave-{slot}") };
     let lock_path = |slot: u32| -> PathBuf { folder.join(format!("{}.lock", name(slot))) };
     let mut free = None;
     for slot in 1..=SLOTS {
-        let Ok(lock) = File::create(lock_path(slot)) else { break };
-        match lock.try_lock() {
-            Ok(()) if Store::new(folder, name(slot)).has_copies() => return (name(slot), Some(lock)),
-            Ok(()) => _ = free.get_or_insert((name(slot), lock)),
-            Err(TryLockError::WouldBlock) => {}
-            Err(TryLockError::Error(_)) => break,
+        match fs::claim(&lock_path(slot)) {
+            Claim::Ours(lock) if Store::new(folder, name(slot)).has_copies() => return (name(slot), Some(lock)),
+            Claim::Ours(lock) => _ = free.get_or_insert((name(slot), lock)),
+            Claim::Theirs => {}
+            Claim::Unavailable => break,
         }
         // Slots are taken in order: behind a free one without its lock file there is nothing.
-        if free.is_some() && !lock_path(slot + 1).exists() {
+        if free.is_some() && !fs::exists(&lock_path(slot + 1)) {
             break;
         }
     }

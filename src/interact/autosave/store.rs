@@ -3,6 +3,7 @@
 use crate::files::read_bounded;
 use crate::interact::Editor;
 use crate::interact::document::{Document, Restored};
+use crate::platform::fs;
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -88,7 +89,7 @@ impl Store {
     /// Numbers of the copies of left documents, rising.
     fn behind_numbers(&self) -> Vec<u64> {
         let prefix = format!("{}.behind-", self.stem);
-        let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let names = entries.filter_map(|e| e.file_name().into_string().ok());
         let number = |name: String| name.strip_prefix(&prefix)?.strip_suffix(".toml")?.parse().ok();
         let mut numbers: Vec<u64> = names.filter_map(number).collect();
@@ -98,7 +99,7 @@ impl Store {
 
     /// Whether a window left copies here.
     pub(super) fn has_copies(&self) -> bool {
-        self.on_screen_path().exists() || !self.behind_numbers().is_empty()
+        fs::exists(&self.on_screen_path()) || !self.behind_numbers().is_empty()
     }
 
     /// Reads every copy. One that can't be read is set aside.
@@ -113,7 +114,7 @@ impl Store {
             }
         }
         let path = self.on_screen_path();
-        if path.exists() {
+        if fs::exists(&path) {
             match read(&path) {
                 // A kill between two files leaves a document in both.
                 Ok(document) if behind.iter().any(|b| b.document.same_as(&document)) => {}
@@ -129,7 +130,7 @@ impl Store {
     /// Makes the files what `plan` says: writes first, deletes then, so that at no moment a document is in no file.
     pub(super) fn carry_out(&mut self, plan: &Plan) -> Result<(), String> {
         if plan.documents().next().is_some() {
-            std::fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;
+            fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;
         }
         let mut behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
         for document in &plan.left {
@@ -180,7 +181,7 @@ fn read(path: &Path) -> Result<Document, SceneFileError> {
 
 /// Deletes a file; not there is as good as deleted.
 fn remove(path: &Path) -> Result<(), String> {
-    match std::fs::remove_file(path) {
+    match fs::remove_file(path) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(format!("{}: {error}", path.display())),
         _ => Ok(()),
     }
@@ -188,8 +189,8 @@ fn remove(path: &Path) -> Result<(), String> {
 
 /// Renames what can't be read, so that it is neither read again nor overwritten.
 fn set_aside(path: &Path, error: &SceneFileError) -> String {
-    let free = (1u32..).map(|n| path.with_extension(format!("broken-{n}.txt"))).find(|p| !p.exists());
-    match free.filter(|aside| std::fs::rename(path, aside).is_ok()) {
+    let free = (1u32..).map(|n| path.with_extension(format!("broken-{n}.txt"))).find(|p| !fs::exists(p));
+    match free.filter(|aside| fs::rename(path, aside).is_ok()) {
         Some(aside) => format!("{error}; it was kept as {}", aside.display()),
         None => error.to_string(),
     }

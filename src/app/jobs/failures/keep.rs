@@ -1,5 +1,6 @@
 //! Scenes that are kept with a note, in a folder of one's own that is a test set at once.
 
+use crate::platform::fs;
 use crate::scene::file::{self, SceneFile};
 use std::path::{Path, PathBuf};
 
@@ -12,9 +13,9 @@ const NAME: usize = 40;
 /// Why nothing was written.
 pub fn keep(folder: &Path, mut file: SceneFile, note: &str) -> Result<PathBuf, String> {
     let told = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
-    std::fs::create_dir_all(folder).map_err(|e| told(folder, e))?;
+    fs::create_dir_all(folder).map_err(|e| told(folder, e))?;
     let mut last = 0;
-    for entry in std::fs::read_dir(folder).map_err(|e| told(folder, e))? {
+    for entry in fs::read_dir(folder).map_err(|e| told(folder, e))? {
         let name = entry.map_err(|e| told(folder, e))?.file_name();
         let digits: String = name.to_string_lossy().chars().take_while(char::is_ascii_digit).collect();
         last = last.max(digits.parse::<u32>().unwrap_or(0));

@@ -18,11 +18,13 @@ use crate::app::state::{Conditions, State};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::SceneSet;
+use crate::platform::Instant;
+use crate::platform::fs;
 use crate::reconstruct::Reconstructor;
 use search::Search;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use store::{Done, Store};
 use thumbnails::Thumbnails;
 
@@ -84,7 +86,7 @@ impl Failures {
         )?;
         let store = Store::start(wake.clone())?;
         let file = folder.map(|folder| folder.join(FILE));
-        if let Some(file) = file.as_ref().filter(|file| file.exists()) {
+        if let Some(file) = file.as_ref().filter(|file| fs::exists(file)) {
             store.read(file.clone(), true);
         }
         let search = Search::start(wake)?;
@@ -221,7 +223,7 @@ impl Failures {
     /// Moves a file that can't be read out of the way, so that it isn't overwritten.
     fn set_aside(&self, path: &Path, error: &str) -> String {
         let aside = path.with_extension("unreadable.csv");
-        let moved = match std::fs::rename(path, &aside) {
+        let moved = match fs::rename(path, &aside) {
             Ok(()) => format!("The file is now {}.", aside.display()),
             Err(error) => format!("It will be written over, as it can't be moved: {error}"),
         };

@@ -3,10 +3,10 @@
 use crate::app::state::Conditions;
 use crate::evaluate::rows::{Column, Row, Scenes, read_rows, write_rows};
 use crate::files::{read_bounded, write_atomically, write_bytes};
+use crate::platform::fs::{self, File};
 use crate::radar::Radar;
 use crate::scene::generate::{Purpose, Reading};
 use crate::task::{Reply, Worker};
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,7 +30,7 @@ pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), S
     let other = beside(path);
     let told = |path: &Path, error: io::Error| format!("{}: {error}", path.display());
     if *conditions == Conditions::default() {
-        if let Err(error) = std::fs::remove_file(&other)
+        if let Err(error) = fs::remove_file(&other)
             && error.kind() != io::ErrorKind::NotFound
         {
             return Err(told(&other, error));

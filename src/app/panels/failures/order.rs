@@ -3,8 +3,9 @@
 use crate::app::jobs::RowTable;
 use crate::evaluate::filter::Filter;
 use crate::evaluate::rows::{Column, sorted_by};
+use crate::platform::Instant;
 use std::collections::HashSet;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// While rows come, they are put in order so often.
 const EVERY: Duration = Duration::from_millis(250);

@@ -6,6 +6,7 @@ use crate::app::widgets::seen;
 use crate::evaluate::rows::{Column, Row};
 use crate::evaluate::worsen::{Aim, Measure};
 use crate::picture::ColourMap;
+use crate::platform::Instant;
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use crate::scene::generate::Kind;
 use eframe::egui::{Key, Modifiers, Vec2, vec2};
@@ -13,7 +14,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 struct Drawn {
     table: RowTable,

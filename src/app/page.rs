@@ -1,0 +1,86 @@
+//! The window in a browser's page: what the address asks for.
+
+use super::{App, Command, Options};
+use crate::{lesson, platform, recording, scene};
+
+/// Opens the window on the page's canvas, with what the address asks for.
+pub fn open_page() {
+    let address = platform::address();
+    let (options, problem) = match options_of(&address) {
+        Ok(options) => (options, None),
+        Err(problem) => (Options::default(), Some(problem)),
+    };
+    let create: eframe::AppCreator<'static> = Box::new(|creation| {
+        let mut app = App::new(creation, options)?;
+        if let Some(problem) = problem {
+            app.tell(problem);
+        }
+        Ok(Box::new(app))
+    });
+    if let Err(error) = platform::open_window(super::APP_ID, create) {
+        platform::tell(&format!("The window could not be opened: {error}"));
+    }
+}
+
+/// What an address asks for: `?scene=street`, `?lesson=two-ends`, `?recording=chip-8`, or what was copied as text behind `#`.
+///
+/// # Errors
+/// A sentence for the person who opened the address.
+fn options_of(address: &str) -> Result<Options, String> {
+    let (query, fragment) = address.split_once('#').unwrap_or((address, ""));
+    let mut options = Options::default();
+    if !fragment.is_empty() {
+        options.shared = Some(fragment.to_owned());
+    }
+    for (key, name) in query.trim_start_matches('?').split('&').filter_map(|part| part.split_once('=')) {
+        options.commands.push(command_of(key, name)?);
+    }
+    Ok(options)
+}
+
+fn command_of(key: &str, name: &str) -> Result<Command, String> {
+    let unknown = |what: &str, known: Vec<&str>| {
+        format!("The address asks for the {what} \"{name}\", which there is not. There are: {}.", known.join(", "))
+    };
+    match key {
+        "scene" => {
+            let all = scene::presets::ALL;
+            let index = all.iter().position(|p| p.id == name);
+            index.map(Command::Preset).ok_or_else(|| unknown("scene", all.iter().map(|p| p.id).collect()))
+        }
+        "recording" => {
+            let all = recording::presets::ALL;
+            let index = all.iter().position(|p| p.id == name);
+            index.map(Command::Recording).ok_or_else(|| unknown("recording", all.iter().map(|p| p.id).collect()))
+        }
+        "lesson" => {
+            let all = lesson::shipped::ALL;
+            let index = all.iter().position(|l| l.id == name);
+            index.map(Command::BeginLesson).ok_or_else(|| unknown("lesson", all.iter().map(|l| l.id).collect()))
+        }
+        _ => Err(format!("The address asks for \"{key}\". It may ask for scene, lesson or recording.")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_opens_a_preset() {
+        let options = options_of("?scene=street").unwrap();
+        assert!(matches!(options.commands[..], [Command::Preset(index)] if scene::presets::ALL[index].id == "street"));
+    }
+
+    #[test]
+    fn an_address_carries_a_shared_text() {
+        assert_eq!(options_of("#apertura:1:abc").unwrap().shared.as_deref(), Some("apertura:1:abc"));
+    }
+
+    #[test]
+    fn an_unknown_name_is_a_sentence_with_the_known_ones() {
+        let problem = options_of("?lesson=nowhere").unwrap_err();
+        assert!(problem.contains("nowhere") && problem.contains("two-ends"), "{problem}");
+        assert!(options_of("?weather=rain").unwrap_err().contains("weather"));
+    }
+}

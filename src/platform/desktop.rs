@@ -1,0 +1,165 @@
+//! The system: threads, files on disk, its dialogs.
+
+/// What the address of a page says; a desktop has none.
+pub fn address() -> String {
+    String::new()
+}
+
+/// Tells a sentence where there is no window to tell it in.
+pub fn tell(sentence: &str) {
+    tracing::error!("{sentence}");
+}
+
+/// Whether long work runs beside the window.
+pub const HAS_THREADS: bool = true;
+
+/// Runs `work` on a thread called `name`.
+///
+/// # Errors
+/// When the system can't start a thread.
+pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
+    std::thread::Builder::new().name(name.to_owned()).spawn(work).map(|_| ())
+}
+
+/// Files on disk.
+pub mod fs {
+    use crate::platform::Claim;
+    pub use std::fs::{
+        DirEntry, File, canonicalize, create_dir, create_dir_all, metadata, read, read_dir, read_to_string,
+        remove_file, rename, write,
+    };
+    use std::fs::{Permissions, TryLockError};
+    use std::io::{self, Seek, SeekFrom, Write};
+    use std::path::Path;
+    use tempfile::NamedTempFile;
+
+    /// Whether there is anything at `path`.
+    pub fn exists(path: &Path) -> bool {
+        path.exists()
+    }
+
+    /// Whether there is a folder at `path`.
+    pub fn is_dir(path: &Path) -> bool {
+        path.is_dir()
+    }
+
+    /// Held while it lives; the system lets go of it however the process ends.
+    #[derive(Debug)]
+    pub struct Lock(#[expect(dead_code, reason = "holds the lock")] File);
+
+    /// Tries to hold the lock file at `path`.
+    pub fn claim(path: &Path) -> Claim {
+        let Ok(file) = File::create(path) else { return Claim::Unavailable };
+        match file.try_lock() {
+            Ok(()) => Claim::Ours(Lock(file)),
+            Err(TryLockError::WouldBlock) => Claim::Theirs,
+            Err(TryLockError::Error(_)) => Claim::Unavailable,
+        }
+    }
+
+    /// A file that is being written and has no name yet.
+    #[derive(Debug)]
+    pub struct Draft(NamedTempFile);
+
+    impl Draft {
+        /// Begins a file in `folder` that will take the place of `path`.
+        ///
+        /// # Errors
+        /// What the system says of the folder.
+        pub fn begin(folder: &Path, path: &Path) -> io::Result<Draft> {
+            let mut builder = tempfile::Builder::new();
+            builder.prefix(".apertura-").suffix(".tmp");
+            if let Some(permissions) = new_file_permissions(path) {
+                builder.permissions(permissions);
+            }
+            builder.tempfile_in(folder).map(Draft)
+        }
+
+        /// Puts the file in the place of `path`.
+        ///
+        /// # Errors
+        /// What the system says: the disk is full, the place can't be written.
+        pub fn persist(self, path: &Path) -> io::Result<()> {
+            self.0.as_file().sync_all()?;
+            self.0.persist(path).map(|_| ()).map_err(|e| e.error)
+        }
+    }
+
+    impl Write for Draft {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.0.flush()
+        }
+    }
+
+    impl Seek for Draft {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    /// Temporary files are private; a file a user asked for has the permissions of the one it replaces, or those the umask leaves.
+    #[cfg(unix)]
+    fn new_file_permissions(path: &Path) -> Option<Permissions> {
+        use std::os::unix::fs::PermissionsExt;
+        Some(metadata(path).map_or_else(|_| Permissions::from_mode(0o666), |m| m.permissions()))
+    }
+
+    #[cfg(not(unix))]
+    fn new_file_permissions(_: &Path) -> Option<Permissions> {
+        None
+    }
+}
+
+/// Asks by the system's dialog, on a thread of its own; `answer` gets the file, or `None` where the dialog was closed.
+///
+/// # Errors
+/// When the system can't start a thread.
+#[cfg(feature = "app")]
+pub fn choose_file(
+    question: super::FileQuestion,
+    answer: impl FnOnce(Option<std::path::PathBuf>) + Send + 'static,
+) -> std::io::Result<()> {
+    spawn("file dialog", move || {
+        let dialog = rfd::FileDialog::new().set_title(&question.title).add_filter(&question.kind, &question.endings);
+        let dialog = if let Some(folder) = &question.folder { dialog.set_directory(folder) } else { dialog };
+        answer(if question.reads { dialog.pick_file() } else { dialog.set_file_name(&question.name).save_file() });
+    })
+}
+
+/// Where the program keeps its own files.
+#[cfg(feature = "app")]
+pub fn storage_folder(app_id: &str) -> Option<std::path::PathBuf> {
+    eframe::storage_dir(app_id)
+}
+
+/// Opens the window and runs until it is closed.
+///
+/// # Errors
+/// Where there is no display or no OpenGL, or where `create` fails.
+#[cfg(feature = "app")]
+pub fn open_window(app_id: &str, create: eframe::AppCreator<'static>) -> Result<(), eframe::Error> {
+    let native = eframe::NativeOptions {
+        viewport: eframe::egui::ViewportBuilder::default()
+            .with_title(app_id)
+            .with_app_id(app_id)
+            .with_inner_size([1440.0, 900.0])
+            .with_min_inner_size([800.0, 520.0])
+            .with_drag_and_drop(true),
+        ..eframe::NativeOptions::default()
+    };
+    eframe::run_native(app_id, native, create)
+}
+
+/// Gives pictures a font, so that they look the same on every machine.
+#[cfg(feature = "pictures")]
+pub(crate) fn register_font(
+    family: &str,
+    style: plotters::style::FontStyle,
+    bytes: &'static [u8],
+) -> Result<(), &'static str> {
+    plotters::style::register_font(family, style, bytes).map_err(|_| "is no font")
+}

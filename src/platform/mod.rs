@@ -1,0 +1,55 @@
+//! What differs between a desktop and a page in a browser: clock, threads, files, file dialogs, storage, fonts of pictures, and how the window
+//! opens. Each has one file; no other room asks which of the two it runs on, but for the SIMD kernels.
+
+#[cfg(not(target_arch = "wasm32"))]
+mod desktop;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod memory_files;
+#[cfg(target_arch = "wasm32")]
+mod page;
+
+#[cfg(all(feature = "pictures", not(target_arch = "wasm32")))]
+pub(crate) use desktop::register_font;
+#[cfg(not(target_arch = "wasm32"))]
+pub use desktop::{HAS_THREADS, address, fs, spawn, tell};
+#[cfg(all(feature = "app", not(target_arch = "wasm32")))]
+pub use desktop::{choose_file, open_window, storage_folder};
+#[cfg(all(feature = "pictures", target_arch = "wasm32"))]
+pub(crate) use page::register_font;
+#[cfg(target_arch = "wasm32")]
+pub use page::{HAS_THREADS, address, fs, spawn, tell};
+#[cfg(all(feature = "app", target_arch = "wasm32"))]
+pub use page::{choose_file, open_window, storage_folder};
+
+/// A clock that goes on a desktop and in a page.
+pub use web_time::Instant;
+
+use std::path::PathBuf;
+
+/// What a file is asked for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileQuestion {
+    /// Title of the dialog.
+    pub title: String,
+    /// What such files are.
+    pub kind: String,
+    /// How the file's name may end, without the dot.
+    pub endings: Vec<String>,
+    /// Where to look first.
+    pub folder: Option<PathBuf>,
+    /// Name of the file where nobody chooses another.
+    pub name: String,
+    /// Whether the file is read, not written.
+    pub reads: bool,
+}
+
+/// What came of a claim on a lock file.
+#[derive(Debug)]
+pub enum Claim {
+    /// The lock is ours until the value is dropped.
+    Ours(fs::Lock),
+    /// Another window holds it.
+    Theirs,
+    /// There are no locks here.
+    Unavailable,
+}

@@ -1,0 +1,231 @@
+//! A page: the browser's turns in place of threads, files in memory, the browser's storage and downloads.
+
+use super::memory_files;
+use std::io;
+use std::path::{Path, PathBuf};
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen_futures::{JsFuture, spawn_local};
+
+/// Folder whose files the browser keeps from one visit to the next.
+const STORAGE: &str = "/storage";
+
+/// Folder of files that were opened or dropped.
+const OPENED: &str = "/opened";
+
+/// Folder whose files the browser saves as downloads.
+const DOWNLOADS: &str = "/downloads";
+
+#[wasm_bindgen(module = "/src/platform/page.js")]
+extern "C" {
+    fn soon() -> js_sys::Promise;
+    #[wasm_bindgen(js_name = download)]
+    fn save_as_download(name: &str, bytes: &[u8]);
+    #[wasm_bindgen(js_name = storedKeys)]
+    fn stored_keys() -> Vec<String>;
+    fn stored(key: &str) -> Option<String>;
+    /// Whether the browser had room for it.
+    fn store(key: &str, text: &str) -> bool;
+    fn forget(key: &str);
+    #[wasm_bindgen(js_name = claimLock)]
+    fn claim_lock(key: &str) -> bool;
+    #[wasm_bindgen(js_name = releaseLock)]
+    fn release_lock(key: &str);
+    /// What the address says behind `?` and `#`.
+    pub fn address() -> String;
+    /// Shows a sentence in place of the window.
+    pub fn tell(sentence: &str);
+}
+
+/// Whether long work runs beside the window.
+pub const HAS_THREADS: bool = false;
+
+/// Runs `work` in a later turn of the page.
+///
+/// # Errors
+/// None here.
+pub fn spawn(_name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
+    spawn_local(async move {
+        // A frame is drawn first, so that what was asked for shows.
+        let _turn = JsFuture::from(soon()).await;
+        work();
+    });
+    Ok(())
+}
+
+/// Files in memory. Those in the storage folder are kept by the browser, those in the folder of downloads are saved by it.
+pub mod fs {
+    use super::{DOWNLOADS, STORAGE, claim_lock, forget, memory_files, release_lock, save_as_download, store};
+    use crate::platform::Claim;
+    pub use memory_files::{
+        DirEntry, File, Metadata, canonicalize, create_dir, create_dir_all, exists, is_dir, metadata, read, read_dir,
+        read_to_string,
+    };
+    use std::io::{self, Cursor, Seek, SeekFrom, Write};
+    use std::path::{Path, PathBuf};
+
+    /// Held while it lives; a page that is closed lets go of it after some seconds.
+    #[derive(Debug)]
+    pub struct Lock(PathBuf);
+
+    impl Drop for Lock {
+        fn drop(&mut self) {
+            release_lock(&self.0.to_string_lossy());
+        }
+    }
+
+    /// Tries to hold the lock file at `path` against other pages.
+    pub fn claim(path: &Path) -> Claim {
+        if claim_lock(&path.to_string_lossy()) { Claim::Ours(Lock(path.to_owned())) } else { Claim::Theirs }
+    }
+
+    /// A file that is being written and has no name yet.
+    #[derive(Debug)]
+    pub struct Draft(Cursor<Vec<u8>>);
+
+    impl Draft {
+        /// Begins a file that will take the place of another.
+        ///
+        /// # Errors
+        /// None here.
+        pub fn begin(_folder: &Path, _path: &Path) -> io::Result<Draft> {
+            Ok(Draft(Cursor::default()))
+        }
+
+        /// Puts the file in the place of `path`.
+        ///
+        /// # Errors
+        /// When the browser's storage is full or forbidden.
+        pub fn persist(self, path: &Path) -> io::Result<()> {
+            write(path, self.0.into_inner())
+        }
+    }
+
+    impl Write for Draft {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Draft {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    /// Writes a file as a whole.
+    ///
+    /// # Errors
+    /// When the browser's storage is full or forbidden.
+    pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
+        let bytes = bytes.as_ref();
+        if path.starts_with(DOWNLOADS) {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            save_as_download(&name, bytes);
+        }
+        if path.starts_with(STORAGE)
+            && let Ok(text) = std::str::from_utf8(bytes)
+            && !store(&path.to_string_lossy(), text)
+        {
+            return Err(io::Error::new(io::ErrorKind::StorageFull, "the browser's storage is full or forbidden"));
+        }
+        memory_files::put(path, bytes.to_vec());
+        Ok(())
+    }
+
+    /// Removes a file.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::NotFound`] where there is none.
+    pub fn remove_file(path: &Path) -> io::Result<()> {
+        memory_files::remove_file(path)?;
+        forget(&path.to_string_lossy());
+        Ok(())
+    }
+
+    /// Gives a file another name.
+    ///
+    /// # Errors
+    /// Where there is no such file, or no room.
+    pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
+        write(to, read(from)?)?;
+        remove_file(from)
+    }
+}
+
+/// Asks by the browser's dialog for a file to read. A file to write is a download: its name is the answer at once.
+///
+/// # Errors
+/// None here.
+#[cfg(feature = "app")]
+pub fn choose_file(
+    question: super::FileQuestion,
+    answer: impl FnOnce(Option<PathBuf>) + Send + 'static,
+) -> io::Result<()> {
+    spawn_local(async move {
+        if !question.reads {
+            return answer(Some(Path::new(DOWNLOADS).join(&question.name)));
+        }
+        let dialog =
+            rfd::AsyncFileDialog::new().set_title(&question.title).add_filter(&question.kind, &question.endings);
+        let Some(file) = dialog.pick_file().await else { return answer(None) };
+        answer(Some(opened(&file.file_name(), file.read().await)));
+    });
+    Ok(())
+}
+
+/// Keeps the bytes of a file that was opened or dropped; the path under which it is read.
+pub(crate) fn opened(name: &str, bytes: Vec<u8>) -> PathBuf {
+    let path = Path::new(OPENED).join(name);
+    memory_files::put(&path, bytes);
+    path
+}
+
+/// Where the program keeps its own files. Reads what the browser kept.
+#[cfg(feature = "app")]
+pub fn storage_folder(_app_id: &str) -> Option<PathBuf> {
+    for key in stored_keys() {
+        if let Some(text) = stored(&key) {
+            memory_files::put(Path::new(&key), text.into_bytes());
+        }
+    }
+    Some(PathBuf::from(STORAGE))
+}
+
+/// Opens the window on the page's canvas and returns at once.
+///
+/// # Errors
+/// Where the page has no canvas; a page without WebGL tells a sentence instead.
+#[cfg(feature = "app")]
+pub fn open_window(_app_id: &str, create: eframe::AppCreator<'static>) -> Result<(), eframe::Error> {
+    use wasm_bindgen::JsCast;
+    let canvas = web_sys::window()
+        .and_then(|w| w.document())
+        .and_then(|d| d.get_element_by_id("window"))
+        .and_then(|e| e.dyn_into::<web_sys::HtmlCanvasElement>().ok());
+    let Some(canvas) = canvas else {
+        tell("The page has no canvas with the name \"window\".");
+        return Ok(());
+    };
+    spawn_local(async move {
+        let started = eframe::WebRunner::new().start(canvas, eframe::WebOptions::default(), create).await;
+        match started {
+            Ok(()) => tell(""),
+            Err(error) => tell(&format!("The window could not be opened; it needs WebGL. ({error:?})")),
+        }
+    });
+    Ok(())
+}
+
+/// The browser has fonts of its own.
+#[cfg(feature = "pictures")]
+pub(crate) fn register_font(
+    _family: &str,
+    _style: plotters::style::FontStyle,
+    _bytes: &'static [u8],
+) -> Result<(), &'static str> {
+    Ok(())
+}
