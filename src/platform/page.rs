@@ -187,6 +187,9 @@ pub(crate) fn opened(name: &str, bytes: Vec<u8>) -> PathBuf {
 /// Where the program keeps its own files. Reads what the browser kept.
 #[cfg(feature = "app")]
 pub fn storage_folder(_app_id: &str) -> Option<PathBuf> {
+    for folder in [STORAGE, OPENED, DOWNLOADS] {
+        memory_files::create_dir_all(Path::new(folder)).ok()?;
+    }
     for key in stored_keys() {
         if let Some(text) = stored(&key) {
             memory_files::put(Path::new(&key), text.into_bytes());
