@@ -114,7 +114,7 @@ use crate::signal::TwoEnds;
 use draw::{Noise, Weighted, expected_lambda};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
-pub(super) const ETA: f32 = 0.745;
+pub(super) const ETA: f32 = 0.885;
 
 /// What the search knows beside the samples.
 pub(super) const TOLD: &str = "that a scene holds single reflectors or straight rows of equal ones; for long rows along y also the \
