@@ -79,8 +79,9 @@ mod tests {
 
     #[test]
     fn an_unknown_name_is_a_sentence_with_the_known_ones() {
-        let problem = options_of("?lesson=nowhere").unwrap_err();
+        let problem_of = |address| options_of(address).err().unwrap_or_default();
+        let problem = problem_of("?lesson=nowhere");
         assert!(problem.contains("nowhere") && problem.contains("two-ends"), "{problem}");
-        assert!(options_of("?weather=rain").unwrap_err().contains("weather"));
+        assert!(problem_of("?weather=rain").contains("weather"));
     }
 }

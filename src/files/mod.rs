@@ -139,6 +139,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_replaced_file_keeps_its_permissions() {
+        use std::fs::Permissions;
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().unwrap();
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));

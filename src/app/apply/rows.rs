@@ -25,7 +25,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
                 state.arrangement.set_open(Panel::Failures, true);
             }
         }
-<<<<<<< HEAD:src/app/apply/rows.rs
         RowsCommand::Save => jobs.choose_file(state, Purpose::SaveRows),
         RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
         RowsCommand::Clear => jobs.failures.clear(),
@@ -38,22 +37,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
         RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note),
         RowsCommand::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
         RowsCommand::SetOwnScenes(path) => {
-            let folder = if path.is_dir() { Some(path.as_path()) } else { path.parent() };
-=======
-        Command::SaveRows => jobs.choose_file(state, Purpose::SaveRows),
-        Command::SaveRowsTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
-        Command::ClearRows => jobs.failures.clear(),
-        Command::BringRowsBack => jobs.failures.bring_back(),
-        Command::OpenRow(index) => open_row(state, jobs, index),
-        Command::Search(choice) => jobs.failures.search.begin(state, choice),
-        Command::CancelSearch => jobs.failures.search.cancel(),
-        Command::TakeFinding => take_finding(state, jobs),
-        Command::ForgetSearch => jobs.failures.search.forget(),
-        Command::KeepScene(note) => keep_scene(state, jobs, &note),
-        Command::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
-        Command::SetOwnScenes(path) => {
             let folder = if fs::is_dir(&path) { Some(path.as_path()) } else { path.parent() };
->>>>>>> f0762df (The window in a browser: one room for what differs, a script that makes the page):src/app/apply/failures.rs
             state.settings.own_scenes = folder.map(Path::to_path_buf);
         }
     }

@@ -293,7 +293,10 @@ mod tests {
 
     #[test]
     fn where_the_system_shows_nothing_the_window_asks_and_says_so_once() {
-        let mut dialogs = Dialogs::by(Some(Arc::new(|_| None)));
+        let mut dialogs = Dialogs::by(Some(Arc::new(|_, reply| {
+            reply(None);
+            Ok(())
+        })));
         let question = |purpose| Question::beside(purpose, Some(Path::new("/scenes/a.npz")));
         let (chosen, told) = answer(&mut dialogs, question(Purpose::Open));
         assert!(chosen.is_empty() && told.is_some());
@@ -306,9 +309,10 @@ mod tests {
 
     #[test]
     fn a_dialog_that_somebody_closed_is_no_failure_and_a_file_is_a_command() {
-        let slow: System = Arc::new(|question| {
+        let slow: System = Arc::new(|question, reply| {
             std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));
-            (question.purpose == Purpose::Open).then(|| PathBuf::from("a.toml"))
+            reply((question.title == Purpose::Open.title()).then(|| PathBuf::from("a.toml")));
+            Ok(())
         });
         let mut dialogs = Dialogs::by(Some(slow));
         let question = |purpose| Question::beside(purpose, None);
