@@ -4,6 +4,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop;
 #[cfg(any(test, target_arch = "wasm32"))]
+#[cfg_attr(test, allow(dead_code, reason = "the page uses what the tests don't"))]
 mod memory_files;
 #[cfg(target_arch = "wasm32")]
 mod page;
