@@ -1,6 +1,7 @@
 //! The window in a browser's page: what the address asks for.
 
-use super::{App, Command, Options};
+use super::state::{Command, DocumentCommand, LessonCommand};
+use super::{App, Options};
 use crate::{lesson, platform, recording, scene};
 
 /// Opens the window on the page's canvas, with what the address asks for.
@@ -46,17 +47,23 @@ fn command_of(key: &str, name: &str) -> Result<Command, String> {
         "scene" => {
             let all = scene::presets::ALL;
             let index = all.iter().position(|p| p.id == name);
-            index.map(Command::Preset).ok_or_else(|| unknown("scene", all.iter().map(|p| p.id).collect()))
+            index
+                .map(|i| Command::Document(DocumentCommand::Preset(i)))
+                .ok_or_else(|| unknown("scene", all.iter().map(|p| p.id).collect()))
         }
         "recording" => {
             let all = recording::presets::ALL;
             let index = all.iter().position(|p| p.id == name);
-            index.map(Command::Recording).ok_or_else(|| unknown("recording", all.iter().map(|p| p.id).collect()))
+            index
+                .map(|i| Command::Document(DocumentCommand::Recording(i)))
+                .ok_or_else(|| unknown("recording", all.iter().map(|p| p.id).collect()))
         }
         "lesson" => {
             let all = lesson::shipped::ALL;
             let index = all.iter().position(|l| l.id == name);
-            index.map(Command::BeginLesson).ok_or_else(|| unknown("lesson", all.iter().map(|l| l.id).collect()))
+            index
+                .map(|i| Command::Lesson(LessonCommand::Begin(i)))
+                .ok_or_else(|| unknown("lesson", all.iter().map(|l| l.id).collect()))
         }
         _ => Err(format!("The address asks for \"{key}\". It may ask for scene, lesson or recording.")),
     }
@@ -69,7 +76,8 @@ mod tests {
     #[test]
     fn an_address_opens_a_preset() {
         let options = options_of("?scene=street").unwrap();
-        assert!(matches!(options.commands[..], [Command::Preset(index)] if scene::presets::ALL[index].id == "street"));
+        let [Command::Document(DocumentCommand::Preset(index))] = options.commands[..] else { panic!() };
+        assert_eq!(scene::presets::ALL[index].id, "street");
     }
 
     #[test]
