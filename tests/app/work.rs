@@ -2,12 +2,7 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{
-<<<<<<< HEAD
     DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
-=======
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand,
-    WindowCommand,
->>>>>>> 7a10ed3 (README opens the window by one command, and the page by another; changelog and notes on the page)
 };
 use apertura::engine::{Outcome, StageReport};
 use apertura::files::npz::Npz;
