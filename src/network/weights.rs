@@ -329,7 +329,8 @@ impl<'a> WeightFile<'a> {
     }
 }
 
-#[cfg(all(test, feature = "network"))]
+#[cfg(test)]
+#[cfg(feature = "network")]
 mod tests {
     use super::*;
     use crate::network::live::{Live, LiveConfig};

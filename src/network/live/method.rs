@@ -184,7 +184,8 @@ impl Reconstructor for LiveMethod {
     }
 }
 
-#[cfg(all(test, feature = "network"))]
+#[cfg(test)]
+#[cfg(feature = "network")]
 mod tests {
     use super::*;
     use crate::network::recipe::Recipe;
