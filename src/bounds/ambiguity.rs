@@ -1,4 +1,4 @@
-//! The ambiguity function: how alike the echoes of two places are to an array (P. M. Woodward, "Probability and Information
+//! The ambiguity function: correlation of the echoes of two places over an array (P. M. Woodward, "Probability and Information
 //! Theory, with Applications to Radar", 1953).
 
 use crate::radar::{Layout, Polar, Radar};
@@ -18,9 +18,9 @@ pub struct Ambiguity {
     pub likeness: Array2<f64>,
 }
 
-/// Likeness with the reflector at `centre` of the places at `ranges_metres` and `cosines`, as `layout` hears them.
+/// Ambiguity function of `layout` between the reflector at `centre` and the places at `ranges_metres` and `cosines`.
 ///
-/// A layout without elements hears nothing: its likeness is 0 everywhere.
+/// Of a layout without elements it is 0 everywhere.
 pub fn ambiguity(radar: &Radar, layout: &Layout, centre: Polar, ranges_metres: &[f64], cosines: &[f64]) -> Ambiguity {
     let pairs = layout.pairs();
     let atom = |range, cos| ArrayEcho::heard_by(radar, &pairs, range, cos);

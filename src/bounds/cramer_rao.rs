@@ -33,10 +33,10 @@ pub struct PositionBound {
     pub amplitude: f64,
 }
 
-/// What is unknown of the phase and the gain with which elements hear a reflector.
+/// The unknown gains with which elements receive a reflector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Gains {
-    /// One complex gain a reflector: all elements hear it coherently, the two ends of a sparse array too.
+    /// One complex gain a reflector: all elements receive it coherently, the two ends of a sparse array included.
     #[default]
     One,
     /// One complex gain a reflector for the elements left of the array's middle, another for the others: nothing is known of the phase
@@ -86,10 +86,10 @@ pub fn noise_variance(radar: &Radar, layout: &Layout, reflector: &Reflector, snr
 /// sample, every reflector's range, cos(theta) and complex gain being unknown.
 ///
 /// The gain takes in the phase of the reflection, so that the absolute carrier phase tells nothing about the range; it is one
-/// for the whole layout: both ends of a sparse array hear the same reflector coherently. [`cramer_rao_of`] bounds it where they don't.
+/// for the whole layout: both ends of a sparse array receive the same reflector coherently. [`cramer_rao_of`] bounds it where they don't.
 ///
 /// # Errors
-/// [`BoundsError`] when the parameters can't be told apart, or the noise is not a positive number.
+/// [`BoundsError`] when the parameters can't be distinguished, or the noise is not a positive number.
 pub fn cramer_rao(
     radar: &Radar,
     layout: &Layout,
@@ -102,7 +102,7 @@ pub fn cramer_rao(
 /// [`cramer_rao`] with one or several unknown gains a reflector.
 ///
 /// # Errors
-/// [`BoundsError`] when the parameters can't be told apart, or the noise is not a positive number.
+/// [`BoundsError`] when the parameters can't be distinguished, or the noise is not a positive number.
 pub fn cramer_rao_of(
     radar: &Radar,
     layout: &Layout,

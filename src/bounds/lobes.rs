@@ -1,18 +1,18 @@
-//! Main lobe and side lobes of a likeness: what is left of an ambiguity function when one number has to do.
+//! Main lobe and side lobes of an ambiguity function, each as one number.
 
 use super::ambiguity;
 use crate::radar::{Layout, Polar, Radar};
 
-/// How a layout's likeness falls and rises again along cos(theta), at the reflector's own range.
+/// Lobes of a layout's ambiguity function along cos(theta), at the reflector's range.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Lobes {
-    /// Width in cos(theta) over which the likeness stays above half power.
+    /// Width in cos(theta) over which the ambiguity function stays above half power.
     pub main_lobe_cos: f64,
-    /// The highest likeness beyond the main lobe's first minima; 0 where there is none.
+    /// The highest value beyond the main lobe's first minima; 0 where there is none.
     pub highest_side_lobe: f64,
     /// cos(theta) of that side lobe, less the reflector's.
     pub highest_side_lobe_offset: f64,
-    /// Root of the mean squared likeness beyond the main lobe.
+    /// Root mean square beyond the main lobe.
     pub side_lobe_rms: f64,
 }
 

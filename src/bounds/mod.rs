@@ -1,4 +1,4 @@
-//! What no unbiased estimator can beat: bounds on position errors, and how alike two places look to an array.
+//! Bounds on the position error of any unbiased estimator, and the ambiguity function of an array.
 
 mod ambiguity;
 mod cramer_rao;

@@ -138,7 +138,7 @@ fn print_table(radar: &Radar, count: u32, rows: &[Row]) -> Result<(), CommandErr
     Ok(())
 }
 
-/// What `layout` hears of a signal of the whole array.
+/// The samples that `layout` receives, of a signal of the whole array.
 fn heard(
     radar: &Radar,
     kind: &LayoutKind,
@@ -164,7 +164,7 @@ impl Row {
     }
 }
 
-/// Likeness along cos(theta), a panel a layout (after thesis figures 1-2 and 1-3).
+/// Ambiguity function along cos(theta), a panel a layout (after thesis figures 1-2 and 1-3).
 struct CutFigure<'a> {
     radar: &'a Radar,
     rows: &'a [Row],

@@ -133,7 +133,7 @@ impl Args {
         }
     }
 
-    /// What the method asked for makes of the two ends; `None` where none was asked for.
+    /// The output of the method asked for; `None` if none was asked for.
     fn estimate(
         &self,
         radar: &Radar,

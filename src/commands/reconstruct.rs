@@ -195,7 +195,7 @@ const DOUBTFUL: f64 = 0.5;
 /// What is read.
 struct Input {
     radar: Radar,
-    /// Of a snapshot, where anybody knows it.
+    /// Of a snapshot, if it is known.
     range_metres: Option<f64>,
     noise: NoisePrior,
     samples: Samples,

@@ -33,7 +33,7 @@ pub struct Campaign {
     pub count: u32,
     /// Which of them are this run's.
     pub shard: Shard,
-    /// What lies beneath the reflectors.
+    /// Noise of the scene.
     pub floor: Floor,
     /// How every map is normalised.
     pub normalisation: Normalisation,

@@ -1,4 +1,4 @@
-//! Means over scenes, and how sure they are.
+//! Means over scenes, with standard errors.
 
 /// A mean over scenes with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

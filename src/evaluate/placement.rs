@@ -1,4 +1,4 @@
-//! How well the Newton search places one reflector, against the bound that no unbiased estimator can beat.
+//! Position error of the Newton search on one reflector, compared with the Cramer-Rao bound.
 
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::radar::{Decibels, End, Layout, Radar};

@@ -1,4 +1,4 @@
-//! How methods bear elements that are not as they should be.
+//! Errors of methods on arrays with element errors.
 
 use super::campaign::CampaignError;
 use super::estimate::Estimate;
@@ -24,7 +24,7 @@ pub struct Robustness {
     pub seed: u64,
     /// Number of scenes; each meets an array of its own.
     pub count: u32,
-    /// What lies beneath the reflectors.
+    /// Noise of the scene.
     pub floor: Floor,
     /// Errors at scale 1.
     pub tolerances: Tolerances,

@@ -146,7 +146,7 @@ impl SceneSet {
         }
     }
 
-    /// What lies beneath the scenes of this set where `floor` was asked for. Beneath scenes of noise alone that is thermal noise of a level of
+    /// The floor of this set's scenes if `floor` was asked for. Scenes of noise alone have thermal noise of a level of
     /// its own, [`NOISE_LEVEL`] where another floor was asked for: all others have no noise where there is no echo.
     pub fn floor(&self, floor: Floor) -> Floor {
         match (self, floor) {

@@ -1,4 +1,4 @@
-//! One scene as methods meet it, and how what they make of it is judged.
+//! One scene for all methods, and the measures of their answers.
 
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::{Origin, Row};

@@ -1,4 +1,4 @@
-//! What every panel of a sheet is drawn on and with.
+//! Drawing tools shared by all panels of a sheet.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

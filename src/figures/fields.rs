@@ -1,4 +1,4 @@
-//! Figure 5-6: what each end sees, and where both do.
+//! Figure 5-6: the fields of view of both ends, and their overlap.
 
 use super::sheet::{Ink, Panel, Shape, Sheet};
 use super::source::{FigureError, Source};

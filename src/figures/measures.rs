@@ -1,4 +1,4 @@
-//! Figures 5-1 and 5-2: what squared error does not tell.
+//! Figures 5-1 and 5-2: differences that the squared error does not show.
 
 use super::sheet::{Axis, Panel, Series, Sheet, Stroke};
 use super::source::{FigureError, Source};

@@ -1,4 +1,4 @@
-//! Figures 3-2, 4-1 to 4-8, 5-3 to 5-5 and 5-7: what methods make of scenes.
+//! Figures 3-2, 4-1 to 4-8, 5-3 to 5-5 and 5-7: outputs of methods.
 
 use super::sheet::{Panel, Sheet};
 use super::source::{FigureError, Seen, Source};

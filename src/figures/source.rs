@@ -1,4 +1,4 @@
-//! Where figures take their data from: the thesis' radar, this program's simulation, maps and methods.
+//! The data of figures: the thesis' radar, this program's simulation, maps and methods.
 
 use super::sheet::{Axis, Cells, Panel, Series, Stroke};
 use crate::maps::cartesian::project;

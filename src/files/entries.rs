@@ -1,4 +1,4 @@
-//! How many entries a zip archive claims to have, before anybody reserves memory for them.
+//! The number of entries that a zip archive claims, checked before memory is reserved.
 
 use std::io::{self, Read, Seek, SeekFrom};
 

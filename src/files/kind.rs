@@ -1,4 +1,4 @@
-//! What a file is that stands where another was expected: told by its first bytes, for messages.
+//! The kind of a file by its first bytes, for messages about a wrong file.
 
 use super::read_start;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! How much memory the process holds, where the system tells (Linux).
+//! The memory in use by the process (Linux only).
 
 /// Starts a new measurement of [`peak_resident_bytes`].
 pub fn reset_peak_resident() {

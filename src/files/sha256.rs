@@ -1,4 +1,4 @@
-//! SHA-256: what weights, programs and folders of scenes are known by in the record of a run.
+//! SHA-256, which identifies weights, programs and folders of scenes in the record of a run.
 
 use crate::platform::fs::File;
 use sha2::{Digest, Sha256};

@@ -1,4 +1,4 @@
-//! What is wrong with a step of a lesson, and on which of its lines.
+//! Faults of a lesson's step, with their lines.
 
 /// A mistake in a step.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Lessons that ask first: the learner predicts, the maps reveal, then something is changed until a condition holds.
+//! Lessons: the learner predicts, sees the maps, and then changes the scene until a condition holds.
 //!
 //! ```text
 //!   Lesson (TOML) ──► Step: text, scene, radar ──► Question ──► Guess ──► Judgement

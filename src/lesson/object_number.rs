@@ -1,4 +1,4 @@
-//! Objects as lesson files count them.
+//! Numbers of objects in lesson files, from 1.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Who has answered what: kept on this machine alone, for several learners one after another.
+//! Progress of several learners, kept on this machine.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Predictions: what a learner commits to before the maps are shown, and what it is worth.
+//! Predictions: questions, and the judgement of a learner's answer.
 
 use super::fault::{Fault, check_tolerance};
 use super::object_number::ObjectNumber;

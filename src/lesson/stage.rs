@@ -1,4 +1,4 @@
-//! What a step's scene looks like to the radar: the maps that questions and challenges are checked on.
+//! The maps of a step's scene, on which questions and challenges are checked.
 
 use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
 use crate::methods;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct View {
-    /// What lies beneath the reflectors.
+    /// Noise of the scene.
     pub floor: Floor,
     /// Seed of the floor's noise.
     pub seed: u64,

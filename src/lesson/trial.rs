@@ -1,4 +1,4 @@
-//! A lesson tried out before anybody takes it: what a simulation alone can tell of its questions and challenges.
+//! The check of a lesson when it is opened: its questions and challenges are simulated.
 
 use super::challenge::{Challenge, Measured};
 use super::fault::Fault;

@@ -1,4 +1,4 @@
-//! What of the window a lesson needs.
+//! The parts of the window that a lesson needs.
 
 use super::file::Lesson;
 use super::question::Answer;

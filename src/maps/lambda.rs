@@ -1,4 +1,4 @@
-//! Lambda, the normalised log-magnitude, and what is made of it: thresholds and masks.
+//! Lambda, the normalised log-magnitude, with thresholds and masks.
 
 use crate::radar::Decibels;
 use ndarray::Array2;

@@ -1,4 +1,4 @@
-//! Peaks of a map: what a method that draws a map and names no reflector believes in.
+//! Peaks of a map: the echoes found by a method that draws a map without naming reflectors.
 
 use ndarray::ArrayView2;
 

@@ -1,4 +1,4 @@
-//! How precise a signal must be so that the picture made of it doesn't show how it was computed.
+//! The precision that a signal needs so that numerical errors stay invisible in its map.
 
 use super::lambda::Normalisation;
 use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, Sum};

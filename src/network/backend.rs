@@ -1,4 +1,4 @@
-//! Which of burn's backends computes.
+//! The choice of burn's backend.
 
 use burn::tensor::Device;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! What lies beneath training scenes.
+//! Floors of training scenes.
 
 use crate::radar::Decibels;
 use crate::signal::Floor;
@@ -22,7 +22,7 @@ pub enum Floors {
 }
 
 impl Floors {
-    /// What lies beneath the scene whose noise has this seed.
+    /// The floor of the scene whose noise has this seed.
     pub fn of(&self, noise_seed: u64) -> Floor {
         match *self {
             Floors::Fixed(floor) => floor,

@@ -1,4 +1,4 @@
-//! What is learned from one scene.
+//! A training example: input and target of one scene.
 
 use super::run::{Run, TrainError};
 use super::students::Student;

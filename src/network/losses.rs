@@ -1,4 +1,4 @@
-//! What training minimises: the losses that the thesis names, and the live network's own.
+//! Losses: those of the thesis, and the live network's own.
 //!
 //! `output` and `target` are Lambda of a batch, `[batch, range bins, columns]`. Every loss is one number, smaller is better.
 

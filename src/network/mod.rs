@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | [`live`] | the live network: features, examples to train on, burn module, an engine without a framework |
-//! | [`floors`] | what lies beneath training scenes |
+//! | [`floors`] | floors of training scenes |
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`unet`] | the thesis' failing U-Net |
 //! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |

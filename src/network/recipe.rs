@@ -273,7 +273,7 @@ impl Recipe {
         self.optimizer.learning_rate() * decays
     }
 
-    /// What lies beneath the training scene whose noise has this seed.
+    /// The floor of the training scene whose noise has this seed.
     pub fn floor(&self, noise_seed: u64) -> Floor {
         let floors = self.thermal.as_ref().map_or(Floors::Fixed(Floor::Thesis), |thermal| Floors::Thermal {
             share: thermal.share,

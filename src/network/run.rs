@@ -1,4 +1,4 @@
-//! What a training run is: where it lives, where it stands, what it was made of, and why it may stop.
+//! A training run: its folder, its progress, its record, and its stopping rules.
 
 use super::recipe::RecipeError;
 use crate::radar::Radar;

@@ -1,4 +1,4 @@
-//! What each network learns from a scene: its input, its target, and the map it estimates.
+//! Each network's input, target and estimated map for a scene.
 
 use super::live::features::{FeatureExtractor, LiveInput};
 use super::live::grid::{COLUMNS, ROWS};

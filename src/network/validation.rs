@@ -1,4 +1,4 @@
-//! What a trained network is worth on validation scenes, and its weight file, which says so.
+//! Validation figures of a trained network, and the weight file that records them.
 
 use super::lesson::lesson;
 use super::recipe::Recipe;

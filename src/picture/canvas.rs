@@ -1,4 +1,4 @@
-//! What every panel of a picture is drawn on and with.
+//! Drawing tools shared by all panels of a picture.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

@@ -1,4 +1,4 @@
-//! Colour maps as tables of 256 colours: what every picture and the app paint cells with.
+//! Colour maps as tables of 256 colours, for pictures and the window.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -1,4 +1,4 @@
-//! The output above its threshold, told apart by whether the target has that cell: by brightness as well as by hue.
+//! The output above its threshold: hits, misses and false alarms differ in brightness as well as in hue.
 
 use super::colour::Rgb;
 

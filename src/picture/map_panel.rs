@@ -16,7 +16,7 @@ pub(super) enum Cells<'a> {
     Lambda(&'a RangeAngleMap, ColourMap),
     /// The cells above a threshold.
     Above(&'a RangeAngleMap, f32),
-    /// The output above its threshold, told apart by whether the target has that cell.
+    /// The output above its threshold: hits, misses and false alarms.
     Detections { target: &'a RangeAngleMap, output: &'a RangeAngleMap, eta: f32 },
 }
 

@@ -1,4 +1,4 @@
-//! Elements as they are built: each with a gain, a phase and a place of its own, and some that are dead.
+//! Element errors: gain, phase and place of each element, and dead elements.
 
 use super::{Decibels, Radar};
 use num_complex::Complex64;
@@ -17,7 +17,7 @@ pub struct ElementError {
     pub phase_degrees: f64,
     /// How far it stands from its place, towards +x, millimetres.
     pub position_millimetres: f64,
-    /// Whether it hears nothing at all.
+    /// Whether it is dead: it receives nothing.
     pub dead: bool,
 }
 
@@ -77,7 +77,7 @@ impl Tolerances {
 /// The elements of a built array; an empty list is an array that is as it should be.
 ///
 /// In files it is lists of what differs: `count`, `gain_db`, `phase_degrees`, `position_millimetres` (one number an element each, or
-/// none at all) and `dead`, the elements that hear nothing.
+/// none at all) and `dead`, the elements that receive nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "Lists", into = "Lists")]
 pub struct BuiltArray {
@@ -201,7 +201,7 @@ impl BuiltArray {
         BuiltArray { elements }
     }
 
-    /// Elements that hear nothing.
+    /// Elements that receive nothing.
     pub fn dead(&self) -> usize {
         self.elements.iter().filter(|e| e.dead).count()
     }

@@ -64,7 +64,7 @@ impl Layout {
         Layout { x_metres: elements.into_iter().map(|n| radar.element_x_metres(n)).collect() }
     }
 
-    /// The rows of `samples`, `[elements of radar, samples]`, that this layout hears; `None` where one of its elements stands
+    /// The rows of `samples`, `[elements of radar, samples]`, that this layout receives; `None` where one of its elements stands
     /// between those of `radar`, or beside them.
     pub fn samples_of<T: Clone>(&self, radar: &Radar, samples: &Array2<T>) -> Option<Array2<T>> {
         let spacing = radar.element_spacing_metres;

@@ -1,4 +1,4 @@
-//! Layouts by name: what the command line and other choosers offer.
+//! Layouts by name, as the command line offers them.
 
 use super::{End, Layout, LayoutError, Mimo, Radar};
 use std::fmt;

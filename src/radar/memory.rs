@@ -1,4 +1,4 @@
-//! How much memory a radar asks for: a scene file is a few bytes, its maps may be gigabytes.
+//! The memory that a radar's maps need: a small scene file can ask for gigabytes.
 
 use super::{Bytes, Radar, RadarError};
 

@@ -1,4 +1,4 @@
-//! Radars that are built, and radars that show what a constant does.
+//! Radars that exist, and radars that show the effect of one constant.
 
 use super::{Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
 

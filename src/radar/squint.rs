@@ -1,4 +1,4 @@
-//! Beam squint: where a map shows a reflector, which is beside its direction.
+//! Beam squint: the offset between a reflector's direction and its column in the map.
 //!
 //! Over a chirp the beat's phase is added to the carrier's. The carrier's phase is `s q / lambda` turns a metre of distance (equation
 //! 3.1), the beat's at sample `n` of `N` another `2 n B / (N c)`. In the middle of the chirp, where windows weigh most, the array is

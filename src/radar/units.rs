@@ -1,4 +1,4 @@
-//! Quantities whose unit a bare number would hide.
+//! Quantities with their unit in the type.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

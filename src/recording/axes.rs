@@ -1,4 +1,4 @@
-//! From an array of any shape to `[elements, samples]`: which axis is what.
+//! Axes: from an array of any shape to `[elements, samples]`.
 
 use super::numbers::Numbers;
 use ndarray::{Array2, ArrayD, Axis, IxDyn};

@@ -1,10 +1,10 @@
-//! What an array's elements do to the samples, and taking it off.
+//! Calibration: gains and phases of the elements are removed from the samples.
 
 use ndarray::Array2;
 use num_complex::Complex64;
 use serde::Deserialize;
 
-/// Gain and phase of each element; empty lists stand for an array that is as it should be.
+/// Gain and phase of each element; empty lists mean an array without errors.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Calibration {

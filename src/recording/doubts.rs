@@ -1,4 +1,4 @@
-//! What looks wrong about a recording and can't be known from it.
+//! Warnings about a recording: what looks wrong but may be right.
 
 use super::Recorded;
 use crate::maps::channels_range_transform;

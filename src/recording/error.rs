@@ -1,4 +1,4 @@
-//! What is wrong with a recording, and in which of its files.
+//! Errors of recordings, with the file they are in.
 
 use super::{AxesError, CalibrationError, CaptureError, MatError, NumpyError, ProfileError};
 use crate::radar::RadarError;

@@ -1,4 +1,4 @@
-//! What reflectors explain of a recording, and what they leave.
+//! The part of a recording that given reflectors explain, and the residual.
 
 use super::{Recorded, Recording};
 use crate::radar::{End, Pair, Radar};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Most reflectors that a recording is explained with: their gains are fitted together.
 pub const MAX_EXPLAINING: usize = 512;
 
-/// What is added to the diagonal of the fit, relative to it: reflectors that no element tells apart share their gain.
+/// What is added to the diagonal of the fit, relative to it: reflectors that no element distinguishes share their gain.
 const SHARED_GAIN_RIDGE: f64 = 1e-10;
 
 /// A recording explained by reflectors.

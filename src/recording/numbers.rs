@@ -1,4 +1,4 @@
-//! Numbers of a file before they are given a meaning.
+//! Arrays of a file before their axes are named.
 
 use ndarray::ArrayD;
 use num_complex::Complex64;

@@ -1,4 +1,4 @@
-//! What is not as the formulas assume: elements as they are built, somebody else's radar, a wall that mirrors.
+//! Disturbances that the formulas leave out: element errors, an interfering radar, a mirror.
 
 use super::{MIN_ELEMENT_DISTANCE_METRES, Reflector, SceneError};
 use crate::radar::{BuiltArray, Radar};
@@ -34,12 +34,12 @@ pub struct Interferer {
     pub strength: f64,
     /// When its frequency crosses ours, as a part of our chirp: 0 at the first sample, 1 after the last.
     pub crossing: f64,
-    /// For which part of our chirp it is heard.
+    /// Duration, as a fraction of our chirp.
     pub duration: f64,
 }
 
 impl Default for Interferer {
-    /// A car ahead, heard for a tenth of the chirp.
+    /// A car ahead that interferes for a tenth of the chirp.
     fn default() -> Self {
         Interferer { x_metres: 6.0, y_metres: 25.0, strength: 0.1, crossing: 0.6, duration: 0.1 }
     }
@@ -90,8 +90,8 @@ impl Mirror {
         [x_metres + twice * sin, y_metres - twice * cos]
     }
 
-    /// The ghosts of a reflector, as reflectors that sound like them: its mirror image, heard over the wall both ways, and two at the mean
-    /// range, heard over the wall one way, in the directions of image and reflector. None where the wall stands between it and the
+    /// The ghosts of a reflector, as reflectors with the same echo: its mirror image, reflected by the wall both ways, and two at the mean
+    /// range, reflected by the wall one way, in the directions of image and reflector. None where the wall stands between it and the
     /// array's centre.
     ///
     /// As F. Kraus, N. Scheiner, W. Ritter and K. Dietmayer sort them in "Using machine learning to detect ghost images in automotive

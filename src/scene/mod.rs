@@ -135,7 +135,7 @@ impl Scene {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
 
-    /// Whether nothing in it reflects: what a radar hears of it is noise, if anything.
+    /// Whether nothing in it reflects. Its samples then hold noise alone, or nothing.
     pub fn is_silent(&self) -> bool {
         self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.reflector_count() == 0)
     }
@@ -173,7 +173,7 @@ impl Scene {
         within_limit(reflectors, "reflectors")
     }
 
-    /// Checks that `radar` can see this scene: the radar sound, every number finite and in range, no reflector on an element.
+    /// Checks that `radar` can see this scene: the radar valid, every number finite and in range, no reflector on an element.
     ///
     /// Reflectors behind the array (y < 0), beyond the maximum range (they wrap) and very far away are all allowed.
     ///

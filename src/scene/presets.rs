@@ -1,4 +1,4 @@
-//! Scenes the thesis talks about, and some on which a method fails, ready to open: each has a name, and notes that say what to look for.
+//! Scenes that come with the program: scenes of the thesis, and scenes on which a method fails. Each has a name and notes.
 //!
 //! They are the files of `assets/scenes`, embedded in the program.
 

@@ -1,4 +1,4 @@
-//! The handle that long work shares with whoever waits for it.
+//! The handle of long work: progress and cancellation.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -31,7 +31,7 @@ impl Task {
         self.progress.store(part.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
     }
 
-    /// A part of the work: it stops where the whole does, and its own progress is nobody's.
+    /// A part of the work: it stops where the whole does, and its own progress is not shown.
     pub fn quiet(&self) -> Task {
         Task { cancelled: self.cancelled.clone(), progress: Arc::default() }
     }

@@ -1,4 +1,4 @@
-//! Long work: how it is watched, stopped, and done on a thread of its own.
+//! Long work: progress, cancellation, and a worker thread.
 //!
 //! Uses nothing else of the crate, so that everything may use it.
 

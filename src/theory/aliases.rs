@@ -1,4 +1,4 @@
-//! Places that look the same: ranges wrap around at the last bin, directions fold where elements stand far apart.
+//! Aliases: ranges wrap at the last bin, and directions fold when elements are more than half a wavelength apart.
 
 use crate::radar::{Polar, Radar};
 

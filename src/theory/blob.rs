@@ -14,7 +14,7 @@ const STEPS_PER_BIN: f64 = 4.0;
 /// Golden ratio's smaller part.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
-/// A ripple below this is told as no side lobe: it lies beneath every floor but the bare formula's. A blob that the near field draws out
+/// A ripple below this is not reported as a side lobe: it is below every floor but the exact one. A blob that the near field draws out
 /// falls without a valley until far beyond it.
 pub const LEAST_LOBE: Decibels = Decibels(-100.0);
 

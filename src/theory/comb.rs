@@ -1,4 +1,4 @@
-//! The comb of two ends that listen together: directions between which their phases can't decide.
+//! The comb of the two ends used together: directions that their phases cannot distinguish.
 
 use crate::radar::{End, Polar, Radar};
 
@@ -16,7 +16,7 @@ pub fn tooth_spacing_cos(radar: &Radar, place: Polar) -> f64 {
 }
 
 /// Directions, as cos(theta) in [-1, 1] from the lowest, of the teeth up to `count` on either side of a reflector at `place`, itself not
-/// counted: where the distances to the middles of both ends differ by whole turns more or less, so that both together hear much the same.
+/// counted: where the distances to the middles of both ends differ by whole turns more or less, so that the samples of both ends are nearly the same.
 pub fn comb_teeth(radar: &Radar, place: Polar, count: usize) -> Vec<f64> {
     let turn_metres = 1.0 / radar.middle_turns_per_metre().abs();
     let here = ends_difference_metres(radar, place);
@@ -56,7 +56,7 @@ mod tests {
     use crate::radar::Layout;
     use proptest::prelude::*;
 
-    /// Holds the next teeth on either side to where the echoes of both ends are most alike: within half a column, whatever the radar.
+    /// The next teeth on either side are where the echoes of both ends correlate most: within half a column, for any radar.
     fn hold(radar: &Radar, place: Polar) -> Result<(), TestCaseError> {
         let column = fold_period_cos(radar) / radar.elements as f64;
         let spacing = tooth_spacing_cos(radar, place);
@@ -101,7 +101,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(8))]
 
-        /// Teeth stand where the echoes of the two ends are most alike, within a tenth of their distance.
+        /// Teeth are where the echoes of the two ends correlate most, within a tenth of their distance.
         #[test]
         fn teeth_stand_where_echoes_are_alike(cos_theta in -0.9..0.9f64, range_metres in 6.0..36.0f64) {
             let radar = Radar { samples: 128, ..Radar::default() };

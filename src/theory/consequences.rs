@@ -1,4 +1,4 @@
-//! What a radar's constants mean, before it sees anything.
+//! Quantities that follow from a radar's constants alone.
 
 use super::{Pattern, fold_period_cos, squint_factor};
 use crate::radar::{Decibels, Radar};
@@ -13,7 +13,7 @@ pub struct Consequences {
     pub range_bin_metres: f64,
     /// Range at which bins wrap around, `N_r c / 2B`.
     pub max_range_metres: f64,
-    /// Half-power width of a blob over range under the window, in metres; `None` for a window that no range tells apart.
+    /// Half-power width of a blob over range under the window, in metres; `None` for a window that does not resolve range.
     pub range_width_metres: Option<f64>,
     /// Half-power beam width of the whole array.
     pub full_beam: BeamWidth,
@@ -41,7 +41,7 @@ pub struct Consequences {
 /// Half-power width of a beam at broadside.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct BeamWidth {
-    /// In columns of the map; all of them where the aperture hears every direction alike.
+    /// In columns of the map; all of them if the aperture receives every direction equally.
     pub columns: f64,
     /// In cos(theta), at most 2.
     pub cos_theta: f64,

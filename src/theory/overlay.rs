@@ -1,4 +1,4 @@
-//! All that the formulas say of one reflector on one map, to be drawn over it.
+//! All predictions for one reflector on one map, to be drawn over it.
 
 use super::{Blob, Cell, Streak, blob_cell, centre_metres, comb_teeth, fold_partners, wrap_partners};
 use crate::maps::Aperture;

@@ -1,4 +1,4 @@
-//! The transform of a window: main lobe and side lobes that every blob inherits.
+//! The transform of a window: the main lobe and side lobes of every blob.
 //!
 //! F. J. Harris, "On the Use of Windows for Harmonic Analysis with the Discrete Fourier Transform", Proceedings of the IEEE, 1978.
 
@@ -51,7 +51,7 @@ impl Pattern {
     }
 
     /// Width of the main lobe between the points `down` below its top, in bins of the window's own length; `None` where it never falls so
-    /// low (a window of one weight hears all directions alike).
+    /// low (a window of one weight receives all directions equally).
     pub fn main_lobe_bins(&self, down: Decibels) -> Option<f64> {
         let level = self.at(0.0) / 10f64.powf(down.amplitude_decades());
         let outside = self.first(|at| self.at(at) < level)?;

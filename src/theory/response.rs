@@ -11,7 +11,7 @@ use crate::signal::phase::EchoModel;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// One reflector as an aperture hears it.
+/// One reflector seen by an aperture.
 #[derive(Debug, Clone)]
 pub struct Response {
     samples: usize,

@@ -1,7 +1,7 @@
-//! Beam squint: why blobs off broadside stand beside the column of their true direction.
+//! Beam squint: why the map shows blobs off broadside in another column than their true direction's.
 //!
 //! Equation 3.3 turns the carrier's phase `s q` times a wavelength, and the beat's phase `2 B n1 / N c` times a metre. Both change
-//! from element to element, and the angle transform can't tell them apart: sample `n1` hears the wave number
+//! from element to element, and the angle transform can't separate them: sample `n1` hears the wave number
 //! `s q / lambda + 2 B n1 / (N c)` turns a metre. A symmetric window weighs the middle of the chirp most, and exactly that wave number
 //! decides the column. Under the thesis' convention (one-way carrier with minus, two-way beat with plus) it is `f - B` in place of `f`:
 //! 2.6 % lower. With consistent signs, as under the two-way carrier, it is `f + B / 2`.
@@ -24,7 +24,7 @@ pub fn blob_cell(radar: &Radar, x_metres: f64, y_metres: f64, aperture: Aperture
     cell_seen_from(radar, x_metres, y_metres, centre_metres(radar, aperture))
 }
 
-/// Where the part of the blob stands that the array hears around `element_x_metres`.
+/// The place in the map of the part of the blob that the elements around `element_x_metres` see.
 pub(super) fn cell_seen_from(radar: &Radar, x_metres: f64, y_metres: f64, element_x_metres: f64) -> Cell {
     let polar = radar.polar_of(x_metres - element_x_metres, y_metres);
     Cell {

@@ -54,7 +54,7 @@ fn every_control_has_a_name_in_every_arrangement() {
 }
 
 #[test]
-fn a_map_is_described_by_its_peaks_and_not_while_a_lesson_asks() {
+fn a_map_is_described_by_its_peaks() {
     let mut s = Session::start();
     let described = |s: &Session, kind: MapKind| {
         let label = format!("{} map", kind.title());
@@ -107,7 +107,7 @@ fn apertura_texts(s: &Session) -> Vec<String> {
 }
 
 #[test]
-fn maps_bend_into_cartesian_ones_in_half_a_second_and_back() {
+fn maps_bend_into_cartesian_ones_in_half_a_second() {
     let mut s = Session::start();
     let name = "Target: bend into x and y";
     s.app.get_by_label(name).click();

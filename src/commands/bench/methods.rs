@@ -23,7 +23,7 @@ use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// Crowded scenes are told apart by how close their reflectors lie: a few say nothing of the median.
+/// The time of a crowded scene depends on how close its reflectors are; a few scenes give no median.
 const FEWEST_CROWDS: u32 = 20;
 
 /// Methods whose time grows with the number of reflectors.

@@ -1,4 +1,4 @@
-//! The file of rows that a run appends to, and goes on from when it was stopped.
+//! The file of rows that a run appends to and resumes from.
 
 use super::super::CommandError;
 use crate::evaluate::rows::{Column, Origin, Part, Row, RowWriter, Table, merge, read_table, write_rows};

@@ -65,7 +65,7 @@ struct MethodReport {
 /// P_D where every scene's P_FA is held to a rate.
 #[derive(Debug, Serialize)]
 struct AtPrinted {
-    /// So that nobody takes it for the thesis' P_D, which is at one threshold.
+    /// Says that this is not the thesis' P_D, which is at one threshold.
     threshold: &'static str,
     false_alarm: f64,
     detection: f64,

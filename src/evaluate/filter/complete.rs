@@ -1,4 +1,4 @@
-//! What may stand where the cursor is.
+//! Completions of a filter at the cursor.
 
 use super::tokens::is_name;
 use crate::evaluate::rows::Column;

@@ -1,4 +1,4 @@
-//! What an expression means.
+//! The value of a parsed expression for a row.
 
 use crate::evaluate::rows::{Column, Row, Value};
 use std::collections::HashMap;

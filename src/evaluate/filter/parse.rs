@@ -1,4 +1,4 @@
-//! From an expression's text to what it means.
+//! The parser of expressions.
 
 use super::expression::{Comparison, Sign, Term, Truth};
 use super::tokens::{FilterError, OPERAND, SIGNS, Token, error, tokens};

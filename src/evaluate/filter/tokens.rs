@@ -1,4 +1,4 @@
-//! From an expression's characters to its tokens.
+//! The tokens of an expression.
 
 /// What is wrong with an expression, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

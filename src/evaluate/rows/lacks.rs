@@ -1,4 +1,4 @@
-//! What lacks of a whole run.
+//! Rows that are missing from a whole run.
 
 use super::{Row, Whole};
 use crate::evaluate::shard::Shard;

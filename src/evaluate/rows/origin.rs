@@ -1,4 +1,4 @@
-//! What made a row, beside its set, scene, seed and method.
+//! The origin of a row beside its set, scene, seed and method: program, floor, radar, weights.
 
 use super::MAX_ROWS;
 use crate::evaluate::shard::Shard;

@@ -1,4 +1,4 @@
-//! What is tried next: moves, echoes against each other, other noise.
+//! The next scene to try: moved objects, changed echoes, new noise.
 
 use super::wanted::{Aim, Finding, Search};
 use crate::scene::{Object, Scene};

@@ -1,8 +1,9 @@
-//! The search for trouble: near a scene, another on which a method does worse; or the smallest move after which it is right.
+//! The search near a scene for another on which a method does worse, or for the smallest move after which it is right.
 //!
 //! Candidates move objects, change their echoes against each other and draw other noise. The search draws a third of them anywhere within
-//! reach, the others around the worst so far, in steps that grow with success and shrink without, and begin anew when they are small. Candidate `n` of a search depends on the
-//! seed and on what the candidates of earlier batches came to, so that a search of so many tries repeats itself.
+//! reach, and the others around the worst so far. Their steps grow with success, shrink without, and start anew when they are small.
+//! Candidate `n` of a search depends on the seed and on the results of earlier batches, so a search of a given number of tries repeats
+//! itself.
 
 mod candidate;
 mod wanted;

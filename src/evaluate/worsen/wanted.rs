@@ -1,4 +1,4 @@
-//! What a search is for, and what comes of it.
+//! The goal of a search, and its result.
 
 use crate::evaluate::Metrics;
 use crate::evaluate::failure::{Failures, Fate};
@@ -63,7 +63,7 @@ pub enum Aim {
 pub struct Search {
     /// The radar.
     pub radar: Radar,
-    /// What lies beneath the reflectors.
+    /// Noise of the scene.
     pub floor: Floor,
     /// How maps are normalised.
     pub normalisation: Normalisation,

@@ -1,4 +1,4 @@
-//! FastLogMap to Lambda, all maps at once.
+//! Lambda of several fast log maps at once.
 
 use super::FastLogMap;
 use crate::maps::lambda::{Normalisation, RangeAngleMap};

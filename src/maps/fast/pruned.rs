@@ -1,4 +1,4 @@
-//! The ends' transforms, which know how few of their inputs are not zero.
+//! The ends' transforms. They skip the inputs that are zero: all but those of an end's few elements.
 
 use super::log::{Extremes, LogScale, log_rolled};
 use crate::radar::Radar;

@@ -27,7 +27,7 @@ pub struct Examples {
 pub struct Example {
     /// Kind of the scene.
     pub kind: Kind,
-    /// What lies beneath it.
+    /// Its floor.
     pub floor: Floor,
     /// The samples of both ends.
     pub ends: TwoEnds,
@@ -40,7 +40,7 @@ pub struct Example {
 /// Why there is no example.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExampleError {
-    /// The scene can't be simulated, or somebody cancelled the task.
+    /// The scene can't be simulated, or the task was cancelled.
     #[error("example {index}: {source}")]
     Scene {
         /// Number of the example.

@@ -1,4 +1,4 @@
-//! What the live network is told of the floor beneath the samples: two estimates of it.
+//! Two estimates of the noise floor, as inputs of the live network.
 
 use crate::maps::windowed_range_transform;
 use crate::radar::Radar;

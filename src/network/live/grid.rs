@@ -1,4 +1,4 @@
-//! The sizes of what goes into the live network and comes out of it.
+//! Sizes of the live network's input and output.
 
 /// Range rows of every tensor.
 pub const ROWS: usize = 512;

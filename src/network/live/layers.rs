@@ -1,4 +1,4 @@
-//! What the live network's burn module is built of.
+//! Layers of the live network's burn module.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};

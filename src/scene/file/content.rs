@@ -1,4 +1,4 @@
-//! What a scene file holds, the two kinds there are, and what can be wrong with one.
+//! The content of a scene file, its two formats, and its errors.
 
 use crate::files::npz::NpzError;
 use crate::radar::Radar;

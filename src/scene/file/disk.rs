@@ -56,7 +56,7 @@ pub fn save(path: &Path, file: &SceneFile) -> Result<(), SceneFileError> {
     }
 }
 
-/// Writes a scene as TOML in one step, with a table of somebody else's, called `key`, after it.
+/// Writes a scene as TOML in one step, with a further table, called `key`, after it.
 ///
 /// # Errors
 /// [`SceneFileError`] when the file can't be written.

@@ -1,4 +1,4 @@
-//! What a kind of file can't hold: told before a scene is written, not after.
+//! What a file format cannot store: reported before a scene is written.
 
 use super::content::{Format, SceneFile};
 use crate::radar::Radar;

@@ -39,7 +39,7 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     toml::to_string_pretty(&Document { name, notes, noise_seed, radar, disturbances, object: objects })
 }
 
-/// [`to_toml`] with a table of somebody else's, called `key`, after it.
+/// [`to_toml`] with a further table, called `key`, after it.
 ///
 /// # Errors
 /// As [`to_toml`].
@@ -58,7 +58,7 @@ pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
     Ok(checked::<IgnoredAny>(text, None)?.0)
 }
 
-/// A scene that can be simulated, and somebody else's table where the text has it.
+/// A scene that can be simulated, and the further table if the text has it.
 fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
     let (file, other) = parse(text, beside)?;
     file.scene.validate(&file.radar).map_err(|error| {
@@ -75,7 +75,7 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
 
 /// Reads what [`to_toml_beside`] wrote; the second is `None` where the text has no `key`.
 ///
-/// The scene need not be one that can be simulated: a point left on an element of the array is still somebody's work.
+/// The scene need not be one that can be simulated: a user may have left a point on an element of the array.
 ///
 /// # Errors
 /// As [`from_toml`].

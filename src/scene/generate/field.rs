@@ -1,4 +1,4 @@
-//! Scenes over the whole field: what the named kinds beside the thesis' sets hold.
+//! Random scenes of the named kinds beside the thesis' sets.
 
 use super::Kind;
 use crate::scene::{GaussianCluster, Line, Object, Point};
