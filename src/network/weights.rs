@@ -415,7 +415,9 @@ mod tests {
             let entries = [(RADAR_ENTRY.to_owned(), text)].into_iter().collect();
             Provenance { entries }.radar("w.safetensors")
         };
-        assert_eq!(of(serde_json::to_string(&radar).unwrap()).unwrap(), radar);
+        let read = of(serde_json::to_string(&radar).unwrap()).unwrap();
+        // JSON may round the last bit of a number.
+        assert!(crate::network::trained_for::is_alike(&read, &radar), "{read:?}");
         let told = of("{\"elements\": \"many\"}".into()).unwrap_err().to_string();
         assert!(told.contains("w.safetensors") && told.contains("no radar"), "{told}");
     }
