@@ -130,7 +130,7 @@ fn the_first_start_with_a_file_keeps_the_unsaved_scene_one_step_behind() {
     assert!(editor.scene().objects.is_empty());
     assert!(editor.undo());
     assert_eq!((editor.scene(), editor.left().len()), (edited(street()).scene(), 0));
-    assert_eq!(editor.document().title(), "untitled •");
+    assert_eq!(editor.document().title(), "A street •", "the scene's own name");
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_copy_of_an_earlier_program_is_read() {
     let folder = tempfile::tempdir().unwrap();
     file::save(&folder.path().join("autosave.toml"), &presets::default_scene()).unwrap();
     let back = found(folder.path()).on_screen.unwrap();
-    assert_eq!((back.scene(), back.title()), (street().scene(), "untitled •".to_owned()));
+    assert_eq!((back.scene(), back.title()), (street().scene(), "A street •".to_owned()));
 }
 
 #[test]

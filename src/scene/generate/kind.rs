@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn a_scene_is_named_in_words() {
         assert_eq!(Kind::Set3.scene_name(0, 7), "Test set 3, seed 0, scene 7");
-        assert_eq!(Kind::Walls.scene_name(2, 1), "Walls at any slant and points, seed 2, scene 1");
+        assert_eq!(Kind::Walls.scene_name(2, 1), "Lines at any slant and points, seed 2, scene 1");
     }
 
     #[test]

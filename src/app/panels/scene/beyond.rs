@@ -12,9 +12,12 @@ const INSET: f32 = 13.0;
 /// Most signs; the sentence counts all.
 const SIGNS: usize = 100;
 
-/// Widest sentence, points, and its part of the canvas.
+/// Widest and narrowest sentence, points.
 const WIDEST: f32 = 330.0;
-const PART: f32 = 0.45;
+const NARROWEST: f32 = 110.0;
+
+/// From the point of the arc at -60 degrees to the sentence: half a label and the margin, points.
+const BESIDE_ARC: f32 = 36.0;
 
 /// An object that the maps show elsewhere.
 struct Beyond<'a> {
@@ -115,12 +118,13 @@ fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
     if part.is_finite() { middle + to * part } else { middle }
 }
 
-/// Writes the sentence in the upper left corner, below the scale.
-pub fn write(ui: &Ui, painter: &Painter, rect: Rect, said: &str) {
+/// Writes the sentence in the upper left corner, below the scale and beside the label of -60 degrees.
+pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, said: &str) {
     let ink = ui.visuals().warn_fg_color;
-    let width = (PART * rect.width()).min(WIDEST);
+    let at = canvas.rect.min + vec2(12.0, 28.0);
+    let sixty = canvas.extent_metres * 60_f64.to_radians().sin();
+    let width = (canvas.at(Place::new(-sixty, 0.0)).x - BESIDE_ARC - at.x).clamp(NARROWEST, WIDEST);
     let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
-    let at = rect.min + vec2(12.0, 28.0);
     let patch = Rect::from_min_size(at, galley.size()).expand(4.0);
     painter.rect_filled(patch, 3.0, ui.visuals().extreme_bg_color);
     painter.galley(at, galley, ink);

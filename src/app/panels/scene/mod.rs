@@ -121,7 +121,7 @@ fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
     let beyond = beyond::warn(ui, painter, canvas, scene);
     let said: Vec<String> = behind.into_iter().chain(beyond).collect();
     if !said.is_empty() {
-        beyond::write(ui, painter, canvas.rect, &said.join("\n"));
+        beyond::write(ui, painter, canvas, &said.join("\n"));
     }
 }
 

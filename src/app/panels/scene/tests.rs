@@ -284,7 +284,7 @@ fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
         let names: Vec<String> = grips(&object, metres_per_point)
             .into_iter()
             .filter(|g| g.grip != Grip::Body)
-            .map(|g| format!("{} 1: {}", object.kind(), g.grip.describe()))
+            .map(|g| format!("{} 1: {}", object.noun(), g.grip.describe()))
             .collect();
         for name in &names {
             let before = scene.state().editor.scene().objects[0].clone();
