@@ -85,6 +85,11 @@ impl Roc {
     pub fn at_false_alarm(&self, false_alarm: f64) -> Option<RocPoint> {
         self.points().find(|p| p.false_alarm <= false_alarm)
     }
+
+    /// The highest threshold with P_D at least `detection`, or `None` where no threshold reaches it and without scenes.
+    pub fn at_detection(&self, detection: f64) -> Option<RocPoint> {
+        self.points().filter(|p| p.detection >= detection).last()
+    }
 }
 
 #[cfg(test)]
@@ -109,5 +114,23 @@ mod tests {
     fn a_perfect_output_detects_all_without_false_alarm() {
         let target = RangeAngleMap { lambda: Array2::from_shape_fn((10, 10), |(i, _)| i as f32 / 9.0) };
         assert_eq!(Roc::of(&target, &target).at_false_alarm(0.0).unwrap().detection, 1.0);
+    }
+
+    #[test]
+    fn the_highest_threshold_that_detects_enough_is_found() {
+        let target = RangeAngleMap { lambda: Array2::from_shape_fn((10, 10), |(i, _)| if i == 9 { 1.0 } else { 0.0 }) };
+        // One of the ten target cells answers 0.5, the others 0.75.
+        let output = RangeAngleMap {
+            lambda: Array2::from_shape_fn((10, 10), |(i, j)| match (i, j) {
+                (9, 0) => 0.5,
+                (9, _) => 0.75,
+                _ => 0.0,
+            }),
+        };
+        let roc = Roc::of(&target, &output);
+        let below = |eta: f32| eta - 1.0 / STEPS as f32;
+        assert_eq!(roc.at_detection(1.0).unwrap().eta, below(0.5));
+        assert_eq!(roc.at_detection(0.9).unwrap().eta, below(0.75));
+        assert_eq!(Roc::of(&target, &RangeAngleMap { lambda: Array2::zeros((10, 10)) }).at_detection(0.9), None);
     }
 }

@@ -1,6 +1,7 @@
 //! Commands that select objects and change the scene on screen.
 
-use super::{Effect, shared};
+use super::effect::Effect;
+use super::shared;
 use crate::app::state::{EditCommand, NewObject, State};
 use crate::interact::Place;
 use crate::scene::{GaussianCluster, Line, Object, Point};

@@ -1,6 +1,7 @@
 //! Commands that write for other programs: files and the clipboard.
 
-use super::{Effect, map_picture, shared};
+use super::effect::Effect;
+use super::{map_picture, shared};
 use crate::app::jobs::{Jobs, Purpose, tell};
 use crate::app::state::{ExportCommand, State};
 

@@ -2,6 +2,7 @@
 
 mod document;
 mod edit;
+mod effect;
 mod export;
 mod lesson;
 mod map_picture;
@@ -14,30 +15,11 @@ mod window;
 mod work;
 
 pub use document::{read, show_recording_panels};
+pub use effect::Effect;
 pub use shared::of as shared_text;
 
 use super::jobs::Jobs;
-use super::state::{Brightness, Command, State};
-use eframe::egui::ColorImage;
-
-/// What a command asks of the window.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Effect {
-    /// Light or dark.
-    Brightness(Brightness),
-    /// Another size of the interface, as a factor; back to normal where `None`.
-    Zoom(Option<f32>),
-    /// This text on the clipboard.
-    Copy(String),
-    /// This picture on the clipboard.
-    CopyImage(ColorImage),
-    /// Ask the system for the clipboard.
-    RequestPaste,
-    /// Show or hide the palette.
-    Palette,
-    /// Close.
-    Close,
-}
+use super::state::{Command, State};
 
 /// Does a command: each group in the file of its name.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {

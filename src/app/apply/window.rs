@@ -1,6 +1,6 @@
 //! Commands that arrange the window.
 
-use super::Effect;
+use super::effect::Effect;
 use crate::app::state::{Arrangement, Brightness, State, WindowCommand};
 use crate::interact::SelectionMode;
 

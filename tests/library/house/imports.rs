@@ -73,6 +73,8 @@ impl House {
         }
         rooms.remove("lib");
         rooms.remove("main");
+        // The program of the page, as `main` is that of the desktop.
+        rooms.remove("page");
         for imports in rooms.values_mut() {
             imports.remove("lib");
         }
