@@ -15,6 +15,7 @@ use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
 use crate::scene::Reflector;
+use num_complex::Complex64;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.
@@ -105,6 +106,16 @@ impl App {
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
         self.jobs.bounds.result().and_then(|r| r.bound.ok())
+    }
+
+    /// Chains of phasors asked for since the start.
+    pub fn phasors_asked(&self) -> u64 {
+        self.jobs.phasors.requests()
+    }
+
+    /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
+    pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
+        self.jobs.phasors.result()?.ok().map(|r| (r.cell, r.measured.sum()))
     }
 
     /// Name of the method whose output is on screen, if there is one.

@@ -11,9 +11,10 @@
 //! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
 //! | [`ellipse`] | the area that no unbiased estimator's error can stay below |
 //! | [`overlay`] | all of it for one reflector on one map, to be drawn over it |
+//! | [`phasors`] | what every element contributes to one cell, in the complex plane |
 //! | [`consequences`] | what a radar's constants mean before it sees anything |
 //!
-//! Nothing here looks at a simulated map; tests hold every prediction to one.
+//! Nothing here but [`phasors`] looks at samples; tests hold every prediction to a simulated map.
 
 pub mod aliases;
 pub mod blob;
@@ -22,6 +23,7 @@ pub mod consequences;
 pub mod ellipse;
 pub mod overlay;
 pub mod pattern;
+pub mod phasors;
 pub mod response;
 pub mod squint;
 pub mod streak;
@@ -33,6 +35,7 @@ pub use consequences::Consequences;
 pub use ellipse::Ellipse;
 pub use overlay::Overlay;
 pub use pattern::Pattern;
+pub use phasors::Phasors;
 pub use response::Response;
 pub use squint::{blob_cell, squint_factor};
 pub use streak::Streak;

@@ -162,6 +162,27 @@ fn bounds_follow_the_selected_reflector() {
 }
 
 #[test]
+fn phasors_follow_the_cursor() {
+    let mut s = Session::start();
+    assert_eq!(s.state().phasors_asked(), 0, "a closed panel costs nothing");
+    s.ask(WindowCommand::OpenPanel(Panel::Phasors));
+    let (cell, sum) = s.state().phasor_sum().expect("of the first object");
+    let map = s.app.get_by_label("Target map").rect();
+    s.app.hover_at(map.lerp_inside(vec2(0.4, 0.4)));
+    s.settle();
+    if let Some(path) = std::env::var_os("PHASOR_PICTURE") {
+        s.app.render().unwrap().save(path).unwrap();
+    }
+    let (moved, another) = s.state().phasor_sum().unwrap();
+    assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
+    let asked = s.state().phasors_asked();
+    s.ask(WindowCommand::TogglePanel(Panel::Phasors));
+    s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
+    s.settle();
+    assert_eq!(s.state().phasors_asked(), asked);
+}
+
+#[test]
 fn pinned_cuts_outlive_their_scene() {
     let mut s = Session::start();
     s.ask(WindowCommand::OpenPanel(Panel::Cuts));

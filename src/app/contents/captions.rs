@@ -6,9 +6,9 @@ use crate::interact::Place;
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Scene};
 
-/// What a map shows, in a line.
+/// What a map shows, in a line; nothing where the box of the theory stands.
 pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
-    state.shows_captions().then(|| {
+    (state.shows_captions() && !state.settings.show_theory).then(|| {
         let method = state.method_in(kind.slot().unwrap_or(MethodSlot::First)).map_or("the method", |m| m.name());
         text(kind, state.radar(), method)
     })

@@ -13,8 +13,8 @@ pub use bars::{menu_input, status_input};
 use super::chrome::tiles::Draw;
 use super::jobs::{Jobs, Pipeline};
 use super::panels::{
-    bounds, cuts, elements, evaluation, failures as failures_panel, guide, lesson, map, objects, run_time, several,
-    training,
+    bounds, cuts, elements, evaluation, failures as failures_panel, guide, lesson, map, objects, phasors, run_time,
+    several, training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::method_menu::Offered;
@@ -30,6 +30,7 @@ pub struct Memory {
     textures: BTreeMap<MapKind, Texture>,
     reflectors: Reflectors,
     bounds: bounds::Memory,
+    phasors: phasors::Memory,
     cuts: cuts::Memory,
     elements: elements::Memory,
     evaluation: evaluation::Memory,
@@ -102,6 +103,7 @@ impl Draw for Contents<'_> {
             Panel::Roc => self.roc(ui),
             Panel::Timing => self.timing(ui),
             Panel::Bounds => self.bounds(ui),
+            Panel::Phasors => self.phasors(ui),
             Panel::Evaluation => self.evaluation(ui),
             Panel::Failures => self.failures(ui),
             Panel::RunTime => self.run_time(ui),
@@ -136,7 +138,7 @@ fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
 /// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far
 /// the axes reach.
 fn tells_answers(panel: Panel) -> bool {
-    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts)
+    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts | Panel::Phasors)
 }
 
 /// In the place of a panel that would answer the question.

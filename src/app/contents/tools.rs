@@ -1,7 +1,7 @@
 //! What settings and tools are told.
 
 use super::{Contents, offered};
-use crate::app::panels::{bounds, controls, evaluation, found, lesson, run_time, several, timing, training};
+use crate::app::panels::{bounds, controls, evaluation, found, lesson, phasors, run_time, several, timing, training};
 use crate::app::state::{Command, MapKind, MethodSlot};
 use eframe::egui::{TextureOptions, Ui};
 
@@ -69,6 +69,18 @@ impl Contents<'_> {
             error: job.error(),
         };
         bounds::show(ui, input, &mut self.memory.bounds)
+    }
+
+    pub(super) fn phasors(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let state = &*self.state;
+        let input = phasors::Input {
+            radar: state.radar(),
+            settings: state.settings.phasors,
+            finds_reflectors: state.finds_reflectors(),
+            is_recorded: state.editor.document().recording().is_some(),
+            result: self.jobs.phasors.result(),
+        };
+        phasors::show(ui, input, &mut self.memory.phasors)
     }
 
     pub(super) fn evaluation(&mut self, ui: &mut Ui) -> Vec<Command> {

@@ -14,6 +14,7 @@ mod lessons;
 mod method;
 mod method_times;
 mod painter;
+mod phasors;
 mod pipeline;
 mod recorded;
 mod recording;
@@ -45,6 +46,7 @@ pub use kinds::{Fates, Kinds, Verdict};
 pub use lessons::Lessons;
 pub use method::Refusal;
 pub use method_times::MeasuredMethods;
+pub use phasors::{Phasors, PhasorsResult};
 pub use pipeline::Pipeline;
 pub use recording::Recorder;
 use recording::Window;
@@ -70,6 +72,8 @@ pub struct Jobs {
     pub pipeline: Pipeline,
     /// Bounds of one reflector.
     pub bounds: Bounds,
+    /// What every element contributes to the cell under the cursor.
+    pub phasors: Phasors,
     /// What the selected reflector tells of the elements.
     pub calibration: Calibration,
     /// Methods on test sets.
@@ -116,6 +120,7 @@ impl Jobs {
         Ok(Jobs {
             pipeline: Pipeline::start(wake.clone())?,
             bounds: Bounds::start(wake.clone())?,
+            phasors: Phasors::start(wake.clone())?,
             calibration: Calibration::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
@@ -140,6 +145,7 @@ impl Jobs {
         let mut errors = self.pipeline.poll();
         self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.bounds.poll());
+        errors.extend(self.phasors.poll());
         errors.extend(self.calibration.poll());
         errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
@@ -185,6 +191,9 @@ impl Jobs {
         if shown.contains(&Panel::Bounds) {
             self.bounds.ask(state);
         }
+        if shown.contains(&Panel::Phasors) {
+            self.phasors.ask(state, &self.pipeline);
+        }
         if shown.contains(&Panel::Elements) {
             self.calibration.ask(state);
         }
@@ -223,6 +232,7 @@ impl Jobs {
     fn draws_more(&self) -> bool {
         self.pipeline.is_busy()
             || self.bounds.is_busy()
+            || self.phasors.is_busy()
             || self.theory.is_busy()
             || self.several.is_busy()
             || self.kinds.is_busy()

@@ -14,6 +14,7 @@ pub mod inspector;
 pub mod lesson;
 pub mod map;
 pub mod objects;
+pub mod phasors;
 pub mod radar;
 pub mod roc;
 pub mod run_time;

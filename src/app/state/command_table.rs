@@ -470,6 +470,7 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Several, Key::S),
     (Panel::Compare, Key::J),
     (Panel::Values, Key::I),
+    (Panel::Phasors, Key::A),
     (Panel::Radar, Key::W),
     (Panel::Training, Key::F12),
 ];

@@ -31,6 +31,8 @@ pub enum Panel {
     Timing,
     /// Ambiguity function and Cramer-Rao bound.
     Bounds,
+    /// What every element contributes to the cell under the cursor.
+    Phasors,
     /// Methods on the tables' test sets.
     Evaluation,
     /// Scenes on which methods fail, row by row.
@@ -54,7 +56,7 @@ pub enum Panel {
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 14] = [
+    pub const TOOLS: [Panel; 15] = [
         Panel::Guide,
         Panel::Lesson,
         Panel::Failures,
@@ -63,6 +65,7 @@ impl Panel {
         Panel::Disturbances,
         Panel::Found,
         Panel::Bounds,
+        Panel::Phasors,
         Panel::Evaluation,
         Panel::RunTime,
         Panel::Training,
@@ -99,6 +102,7 @@ impl Panel {
             Panel::Roc => "ROC",
             Panel::Timing => "Timing",
             Panel::Bounds => "Bounds",
+            Panel::Phasors => "Phasors",
             Panel::Evaluation => "Evaluation",
             Panel::Failures => "Failures",
             Panel::RunTime => "Run time",
@@ -127,6 +131,7 @@ impl Panel {
             Panel::Roc => "Detection against false alarm of this scene, over every threshold",
             Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
             Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
+            Panel::Phasors => "What every element contributes to the cell under the cursor, added head to tail",
             Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
             Panel::Failures => {
                 "Every scene that methods were tried on, row by row: sort, filter, open, make worse, keep"

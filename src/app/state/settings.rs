@@ -2,6 +2,7 @@
 
 use super::bounds_settings::BoundsSettings;
 use super::compare::Compare;
+use super::phasor_settings::PhasorSettings;
 use super::several::Several;
 use crate::interact::{Coordinates, Snap};
 use crate::maps::Normalisation;
@@ -118,6 +119,8 @@ pub struct Settings {
     pub theme: Brightness,
     /// What the bounds are computed for.
     pub bounds: BoundsSettings,
+    /// Which phasors are drawn.
+    pub phasors: PhasorSettings,
     /// Which map is shown several times, and what differs.
     pub several: Several,
     /// Two methods side by side.
@@ -168,6 +171,7 @@ impl Default for Settings {
             coordinates: Coordinates::default(),
             theme: Brightness::System,
             bounds: BoundsSettings::default(),
+            phasors: PhasorSettings::default(),
             several: Several::default(),
             compare: Compare::default(),
             own_scenes: None,

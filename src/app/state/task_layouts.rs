@@ -80,6 +80,7 @@ fn explore() -> Tree<Panel> {
     let of_results = [
         Panel::Found,
         Panel::Bounds,
+        Panel::Phasors,
         Panel::Evaluation,
         Panel::RunTime,
         Panel::Training,

@@ -1,6 +1,6 @@
 //! Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
 
-use crate::app::state::{BoundsSettings, Compare, Cursor, Projection, Several, Units};
+use crate::app::state::{BoundsSettings, Compare, Cursor, PhasorSettings, Projection, Several, Units};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::signal::Floor;
@@ -44,6 +44,8 @@ pub enum ViewCommand {
     SetMethodEta(&'static str, Option<f32>),
     /// What bounds are computed for.
     SetBounds(BoundsSettings),
+    /// Which phasors are drawn.
+    SetPhasors(PhasorSettings),
     /// Draw true reflectors over the maps.
     MarkReflectors,
     /// Draw true reflectors over the maps or not.

@@ -1,0 +1,323 @@
+//! Phasors: what every element contributes to the cell under the cursor, added head to tail in the complex plane.
+
+use crate::app::jobs::PhasorsResult;
+use crate::app::state::{Command, PhasorMap, PhasorSettings, ViewCommand};
+use crate::app::widgets::axes::Axis;
+use crate::app::widgets::chart::{Chart, Drawn, inner};
+use crate::app::widgets::direction::direction;
+use crate::app::widgets::theme::{self, Inks};
+use crate::radar::{End, Radar};
+use crate::theory::Phasors;
+use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, vec2};
+use num_complex::Complex64;
+
+/// Time in which the whole array is played, seconds.
+const PLAY_SECONDS: f32 = 4.0;
+
+/// What is drawn.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// What is chosen.
+    pub settings: PhasorSettings,
+    /// Whether the chosen method names reflectors, which a residual needs.
+    pub finds_reflectors: bool,
+    /// Whether a recording stands in the place of the scene's echoes.
+    pub is_recorded: bool,
+    /// The chains, or why there are none; nothing before the first.
+    pub result: Option<Result<&'a PhasorsResult, &'a str>>,
+}
+
+/// How far the chain is drawn.
+#[derive(Default)]
+pub struct Memory {
+    /// The part of the elements that is drawn; all where `None`.
+    part: Option<f32>,
+    is_playing: bool,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+        let mut settings = input.settings;
+        choices(ui, &input, &mut settings);
+        if settings != input.settings {
+            asked.push(ViewCommand::SetPhasors(settings).into());
+        }
+        match input.result {
+            None => _ = ui.weak("computing…"),
+            Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
+            Some(Ok(result)) => {
+                play(ui, result, memory);
+                said(ui, input.radar, result);
+                chart(ui, input.radar, result, memory.part.unwrap_or(1.0));
+            }
+        }
+    });
+    asked
+}
+
+fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {
+    ui.horizontal_wrapped(|ui| {
+        for map in PhasorMap::ALL {
+            ui.selectable_value(&mut settings.map, map, map.name()).on_hover_text("The map whose cell is taken apart");
+        }
+        ui.add_space(6.0);
+        ui.checkbox(&mut settings.windowed, "Window").on_hover_text(
+            "Weigh the elements by the window, as the map does. Without it every element counts alike.",
+        );
+        ui.checkbox(&mut settings.focused, "Focused").on_hover_text(
+            "Also draw the chain without the curvature of the wave from this place: a near reflector's chain becomes straight.",
+        );
+        let echoes = egui::Checkbox::new(&mut settings.echoes, "Echoes alone");
+        ui.add_enabled(!input.is_recorded, echoes)
+            .on_hover_text("Also draw the chain of the scene's echoes without noise")
+            .on_disabled_hover_text("A recording is echoes and noise together.");
+        let residual = egui::Checkbox::new(&mut settings.residual, "Residual");
+        ui.add_enabled(input.finds_reflectors, residual)
+            .on_hover_text("Also draw the chain of what the method's reflectors leave")
+            .on_disabled_hover_text("The chosen method draws a map and names no reflectors.");
+    });
+}
+
+/// How many elements are drawn: a slider, and a button that moves it.
+fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut Memory) {
+    let count = result.measured.contributions.len();
+    ui.horizontal(|ui| {
+        let label = if memory.is_playing { "Pause" } else { "Play" };
+        if ui.button(label).on_hover_text("Add the elements one after the other").clicked() {
+            memory.is_playing = !memory.is_playing;
+            if memory.is_playing && memory.part.is_none_or(|part| part >= 1.0) {
+                memory.part = Some(0.0);
+            }
+        }
+        if memory.is_playing {
+            let part = memory.part.unwrap_or(0.0) + ui.input(|i| i.stable_dt.min(0.1)) / PLAY_SECONDS;
+            memory.is_playing = part < 1.0;
+            memory.part = (part < 1.0).then_some(part);
+            ui.ctx().request_repaint();
+        }
+        let mut drawn = drawn_count(memory.part.unwrap_or(1.0), count);
+        let label = ui.label("Elements").on_hover_text("How many elements of the aperture are added, from the left");
+        let slider = ui.add(Slider::new(&mut drawn, 0..=count)).labelled_by(label.id);
+        if slider.changed() {
+            memory.is_playing = false;
+            memory.part = (drawn < count).then(|| drawn as f32 / count as f32);
+        }
+    });
+}
+
+fn drawn_count(part: f32, count: usize) -> usize {
+    (part * count as f32).round() as usize
+}
+
+/// The cell in numbers.
+fn said(ui: &mut Ui, radar: &Radar, result: &PhasorsResult) {
+    let [bin, column] = result.cell;
+    let (sum, length) = (result.measured.sum(), whole_length(&result.measured));
+    let part = if length > 0.0 { 100.0 * sum.norm() / length } else { 0.0 };
+    let place = format!(
+        "{}, {:.2} m: amplitude {:.3e}, phase {:.0}°; {part:.1} % of the length of all contributions",
+        direction(radar.cos_of_column(column as f64), 1),
+        radar.range_of_bin_metres(bin as f64),
+        sum.norm(),
+        sum.arg().to_degrees()
+    );
+    ui.label(place).on_hover_text("100 % where all contributions have one phase, 0 % where they cancel");
+}
+
+fn whole_length(chain: &Phasors) -> f64 {
+    chain.contributions.iter().map(|c| c.norm()).sum()
+}
+
+/// The chains in the complex plane, both axes to one scale.
+fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
+    let area = ui.available_rect_before_wrap();
+    ui.advance_cursor_after_rect(area);
+    let unit = whole_length(&result.measured);
+    if unit <= 0.0 {
+        ui.painter().text(
+            area.center(),
+            egui::Align2::CENTER_CENTER,
+            "No element hears anything.",
+            egui::FontId::proportional(14.0),
+            ui.visuals().weak_text_color(),
+        );
+        return;
+    }
+    let place = |z: &Complex64| [z.re / unit, z.im / unit];
+    let chains: Vec<(Vec<[f64; 2]>, Kind)> =
+        drawn(result).map(|(chain, kind)| (chain.chain().iter().map(place).collect(), kind)).collect();
+    let corners = chains.iter().flat_map(|(chain, _)| chain.iter().copied());
+    let [x, y] = spans(ui, area, corners);
+    let chart = Chart { name: "Phasors in the complex plane", x, y };
+    let drawn = chart.show(ui, area, Sense::hover());
+    let count = drawn_count(part, result.measured.contributions.len());
+    for (chain, kind) in &chains {
+        line(ui, &drawn, radar, &chain[..=count.min(chain.len() - 1)], *kind, result.measured.first_element);
+    }
+    if let Some(end) = chains.first().and_then(|(chain, _)| chain.get(count)) {
+        arrow(&drawn, *end);
+    }
+    legend(ui, &drawn, &chains);
+}
+
+/// Axes of one scale that hold every corner.
+fn spans(ui: &Ui, area: egui::Rect, corners: impl Iterator<Item = [f64; 2]>) -> [Axis<'static>; 2] {
+    let (mut low, mut high) = ([0.0f64; 2], [0.0f64; 2]);
+    for corner in corners {
+        for i in 0..2 {
+            (low[i], high[i]) = (low[i].min(corner[i]), high[i].max(corner[i]));
+        }
+    }
+    let rect = inner(ui.painter(), area, Axis::new(-1.0, 1.0, ""));
+    let size = [f64::from(rect.width()), f64::from(rect.height())];
+    let per_point = (0..2).map(|i| (high[i] - low[i]) / (0.86 * size[i])).fold(1e-9, f64::max);
+    let span = |i: usize| {
+        let (middle, half) = ((low[i] + high[i]) / 2.0, per_point * size[i] / 2.0);
+        (middle - half, middle + half)
+    };
+    let ((left, right), (bottom, top)) = (span(0), span(1));
+    [Axis::new(left, right, "real part, of the length of all contributions"), Axis::new(bottom, top, "imaginary part")]
+}
+
+/// What a chain is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Measured,
+    Focused,
+    Echoes,
+    Residual,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Measured => "all elements",
+            Kind::Focused => "focused",
+            Kind::Echoes => "echoes alone",
+            Kind::Residual => "residual",
+        }
+    }
+
+    fn colour(self, ui: &Ui) -> Color32 {
+        let inks = Inks::of(ui.visuals());
+        match self {
+            Kind::Measured => inks.reflector,
+            Kind::Focused => inks.selected,
+            Kind::Echoes => inks.grid_text,
+            Kind::Residual => inks.found,
+        }
+    }
+}
+
+fn drawn(result: &PhasorsResult) -> impl Iterator<Item = (&Phasors, Kind)> {
+    let others = [(&result.focused, Kind::Focused), (&result.echoes, Kind::Echoes), (&result.residual, Kind::Residual)];
+    let others = others.into_iter().filter_map(|(chain, kind)| chain.as_ref().map(|chain| (chain, kind)));
+    std::iter::once((&result.measured, Kind::Measured)).chain(others)
+}
+
+/// A chain; the pieces of the two ends of the array in their colours.
+fn line(ui: &Ui, drawn: &Drawn<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kind, first_element: usize) {
+    let (colour, dash) = (kind.colour(ui), (kind == Kind::Echoes).then_some([5.0, 4.0]));
+    drawn.line(chain.iter().copied(), Stroke::new(1.4, colour), dash);
+    if kind != Kind::Measured {
+        return;
+    }
+    for (end, colour) in [End::First, End::Last].into_iter().zip(Inks::of(ui.visuals()).ends) {
+        let range = radar.end_range(end);
+        let from = range.start.saturating_sub(first_element).min(chain.len());
+        let to = (range.end + 1).saturating_sub(first_element).min(chain.len());
+        if range.start >= first_element && from < to {
+            drawn.line(chain[from..to].iter().copied(), Stroke::new(3.0, colour), None);
+        }
+    }
+}
+
+/// From the origin to the end of the chain: the cell.
+fn arrow(drawn: &Drawn<'_>, end: [f64; 2]) {
+    let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
+    for (width, colour) in [(4.0, theme::MARK_EDGE), (1.8, theme::MARK)] {
+        drawn.painter().arrow(from, to - from, Stroke::new(width, colour));
+    }
+}
+
+fn legend(ui: &Ui, drawn: &Drawn<'_>, chains: &[(Vec<[f64; 2]>, Kind)]) {
+    let mut at = drawn.rect.left_top() + vec2(8.0, 6.0);
+    for (_, kind) in chains {
+        let painter = drawn.painter();
+        painter.line_segment([at + vec2(0.0, 7.0), at + vec2(14.0, 7.0)], Stroke::new(2.0, kind.colour(ui)));
+        let font = egui::FontId::proportional(12.0);
+        painter.text(at + vec2(20.0, 0.0), egui::Align2::LEFT_TOP, kind.name(), font, ui.visuals().text_color());
+        at.y += 16.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn result() -> PhasorsResult {
+        let contributions = vec![Complex64::new(1.0, 0.0), Complex64::new(0.0, 1.0), Complex64::new(-1.0, 0.0)];
+        PhasorsResult {
+            cell: [10, 40],
+            measured: Phasors { first_element: 0, contributions },
+            focused: None,
+            echoes: None,
+            residual: None,
+        }
+    }
+
+    fn panel(result: Option<Result<PhasorsResult, &'static str>>) -> Harness<'static, (Memory, Vec<Command>)> {
+        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let draw = move |ui: &mut Ui, (memory, asked): &mut (Memory, Vec<Command>)| {
+            let input = Input {
+                radar: &radar,
+                settings: PhasorSettings::default(),
+                finds_reflectors: false,
+                is_recorded: false,
+                result: result.as_ref().map(|r| r.as_ref().map_err(|e| *e)),
+            };
+            asked.extend(show(ui, input, memory));
+        };
+        Harness::builder().with_size([420.0, 360.0]).build_ui_state(draw, (Memory::default(), Vec::new()))
+    }
+
+    #[test]
+    fn the_cell_is_told_in_numbers() {
+        let panel = panel(Some(Ok(result())));
+        // 1 + j - 1 = j: a third of the length of three contributions.
+        let _told = panel.get_by_label_contains("amplitude 1.000e0, phase 90°; 33.3 %");
+        let _chart = panel.get_by_label("Phasors in the complex plane");
+    }
+
+    #[test]
+    fn a_choice_asks_for_another_map() {
+        let mut panel = panel(Some(Ok(result())));
+        panel.get_by_label("Input 1").click();
+        panel.run_steps(2);
+        let wanted = PhasorSettings { map: PhasorMap::Input1, ..PhasorSettings::default() };
+        assert_eq!(panel.state().1.first(), Some(&ViewCommand::SetPhasors(wanted).into()));
+    }
+
+    #[test]
+    fn play_adds_one_element_after_the_other() {
+        let mut panel = panel(Some(Ok(result())));
+        panel.get_by_label("Play").click();
+        panel.run_steps(3);
+        let part = panel.state().0.part.unwrap();
+        assert!(part > 0.0 && part < 1.0, "{part}");
+        panel.get_by_label("Pause").click();
+        panel.run_steps(2);
+        assert!(!panel.state().0.is_playing);
+    }
+
+    #[test]
+    fn an_error_is_said() {
+        let panel = panel(Some(Err("The recording has the two ends alone.")));
+        let _said = panel.get_by_label("The recording has the two ends alone.");
+    }
+}

@@ -1,0 +1,62 @@
+//! Which phasors are drawn, and how.
+
+use crate::maps::Aperture;
+use crate::radar::End;
+use serde::{Deserialize, Serialize};
+
+/// The map whose cell is taken apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum PhasorMap {
+    /// That of the whole array.
+    #[default]
+    Target,
+    /// That of the first end.
+    Input0,
+    /// That of the last end.
+    Input1,
+}
+
+impl PhasorMap {
+    /// All, in reading order.
+    pub const ALL: [PhasorMap; 3] = [PhasorMap::Input0, PhasorMap::Input1, PhasorMap::Target];
+
+    /// Name of the map.
+    pub fn name(self) -> &'static str {
+        match self {
+            PhasorMap::Target => "Target",
+            PhasorMap::Input0 => "Input 0",
+            PhasorMap::Input1 => "Input 1",
+        }
+    }
+
+    /// The elements that make it.
+    pub fn aperture(self) -> Aperture {
+        match self {
+            PhasorMap::Target => Aperture::Full,
+            PhasorMap::Input0 => Aperture::End(End::First),
+            PhasorMap::Input1 => Aperture::End(End::Last),
+        }
+    }
+}
+
+/// What the user chose to look at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PhasorSettings {
+    /// The map.
+    pub map: PhasorMap,
+    /// Whether the window over the elements is applied, as in the map.
+    pub windowed: bool,
+    /// Whether a chain without the curvature of the wave from the cell's place is drawn beside it.
+    pub focused: bool,
+    /// Whether the chain of the echoes alone, without noise, is drawn beside it.
+    pub echoes: bool,
+    /// Whether the chain of what the method's reflectors leave is drawn beside it.
+    pub residual: bool,
+}
+
+impl Default for PhasorSettings {
+    fn default() -> Self {
+        PhasorSettings { map: PhasorMap::Target, windowed: true, focused: false, echoes: false, residual: false }
+    }
+}

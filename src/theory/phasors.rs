@@ -1,0 +1,127 @@
+//! The contributions of all elements to one cell of a map, in the complex plane: added head to tail they end at the cell.
+
+use crate::maps::Aperture;
+use crate::radar::Radar;
+use ndarray::ArrayView2;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// What every element of an aperture contributes to one cell of its range-angle map (thesis section 3.1: both transforms, one cell).
+///
+/// Under the aperture's window the contributions sum to the cell of [`crate::maps::angle_transform`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phasors {
+    /// The first element of the aperture.
+    pub first_element: usize,
+    /// One an element, in the order of the elements.
+    pub contributions: Vec<Complex64>,
+}
+
+impl Phasors {
+    /// The contributions to the cell `[bin, column]` of the map of `aperture`, from the samples of the whole array,
+    /// `[elements, samples]`. Without `windowed`, the window over the elements is left out: every element counts alike.
+    pub fn of(
+        radar: &Radar,
+        samples: ArrayView2<'_, Complex64>,
+        aperture: Aperture,
+        [bin, column]: [usize; 2],
+        windowed: bool,
+    ) -> Phasors {
+        let elements = match aperture {
+            Aperture::Full => 0..radar.elements,
+            Aperture::End(end) => radar.end_range(end),
+        };
+        let ranges = radar.window.weights(radar.samples);
+        let over_samples: Vec<Complex64> =
+            ranges.iter().enumerate().map(|(n, w)| turn(n * bin, radar.samples) * *w).collect();
+        let weights = match windowed {
+            true => radar.window.weights(elements.len()),
+            false => vec![1.0; elements.len()],
+        };
+        let scale = ((radar.samples * radar.elements) as f64).sqrt().recip();
+        // The map's columns are rolled by half their number, so that broadside is in the middle.
+        let frequency = (column + radar.elements - radar.elements / 2) % radar.elements;
+        let first_element = elements.start;
+        let contribution = |(k, weight): (usize, f64)| {
+            let profile: Complex64 =
+                samples.row(first_element + k).iter().zip(&over_samples).map(|(sample, turn)| sample * turn).sum();
+            profile * turn(k * frequency, radar.elements) * (weight * scale)
+        };
+        Phasors { first_element, contributions: weights.into_iter().enumerate().map(contribution).collect() }
+    }
+
+    /// The sums of the first 0, 1, 2, ... contributions: the corners of the chain from 0 to the cell.
+    pub fn chain(&self) -> Vec<Complex64> {
+        let sums = self.contributions.iter().scan(Complex64::default(), |sum, c| {
+            *sum += c;
+            Some(*sum)
+        });
+        std::iter::once(Complex64::default()).chain(sums).collect()
+    }
+
+    /// The sum of all: the cell.
+    pub fn sum(&self) -> Complex64 {
+        self.contributions.iter().sum()
+    }
+
+    /// Each contribution turned back by the phase of `of_point`'s: what a near point contributes becomes a straight line. A
+    /// contribution of nothing in `of_point` turns nothing.
+    pub fn focused(&self, of_point: &Phasors) -> Phasors {
+        let turned = self.contributions.iter().zip(&of_point.contributions).map(|(own, point)| {
+            let length = point.norm();
+            if length > 0.0 { own * point.conj() / length } else { *own }
+        });
+        Phasors { first_element: self.first_element, contributions: turned.collect() }
+    }
+}
+
+/// `exp(-2 pi i k / n)`; the phase is reduced to a turn before it is taken.
+fn turn(k: usize, n: usize) -> Complex64 {
+    Complex64::from_polar(1.0, -TAU * (k % n) as f64 / n as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::{angle_transform, range_transform};
+    use crate::radar::End;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+
+    fn radar() -> Radar {
+        Radar { elements: 64, end_elements: 12, samples: 32, ..Radar::default() }
+    }
+
+    #[test]
+    fn the_chain_ends_at_the_cell_of_the_map() {
+        let radar = radar();
+        let scene = Scene::of_points([(0.2, 0.9), (-0.5, 1.6)]);
+        let signal = simulate(&radar, &scene, Floor::Thesis, 3).unwrap();
+        let profiles = range_transform(&radar, &signal);
+        for aperture in [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)] {
+            let map = angle_transform(&radar, &profiles, aperture);
+            let peak = map.cells.iter().map(|c| c.norm()).fold(0.0, f64::max);
+            for cell in [[0, 0], [12, 40], [21, 19], [31, 63]] {
+                let phasors = Phasors::of(&radar, signal.samples.view(), aperture, cell, true);
+                let error = (phasors.sum() - map.cells[cell]).norm();
+                assert!(error < 1e-12 * peak, "{aperture:?} {cell:?}: {error:e} of {peak:e}");
+                assert_eq!(*phasors.chain().last().unwrap(), phasors.chain()[phasors.contributions.len()]);
+            }
+        }
+    }
+
+    #[test]
+    fn focusing_straightens_a_near_point() {
+        let radar = Radar { elements: 256, samples: 64, ..Radar::default() };
+        // Half a metre of array, a point a metre away: the wave is curved.
+        let scene = Scene::of_points([(0.1, 1.0)]);
+        let signal = simulate(&radar, &scene, Floor::Exact, 0).unwrap();
+        let map = angle_transform(&radar, &range_transform(&radar, &signal), Aperture::Full);
+        let (cell, _) = map.cells.indexed_iter().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();
+        let phasors = Phasors::of(&radar, signal.samples.view(), Aperture::Full, [cell.0, cell.1], true);
+        let length: f64 = phasors.contributions.iter().map(|c| c.norm()).sum();
+        let straight = phasors.focused(&phasors);
+        assert!(phasors.sum().norm() < 0.9 * length, "a curved chain is longer than its end is far");
+        assert!((straight.sum().norm() - length).abs() < 1e-12 * length, "a straight one is as long");
+    }
+}
