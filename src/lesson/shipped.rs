@@ -24,6 +24,7 @@ pub const ALL: &[Shipped] = lessons![
     "grating-lobes",
     "windows-and-side-lobes",
     "near-field",
+    "phasors",
     "two-ends-and-the-comb",
     "a-line",
     "points-taken-for-a-line",

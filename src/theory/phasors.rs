@@ -110,6 +110,27 @@ mod tests {
         }
     }
 
+    /// Part of the length of all contributions that the sum is, at a cell of the map of one point.
+    fn straightness(radar: &Radar, point: (f64, f64), cell: [usize; 2]) -> [f64; 2] {
+        let signal = simulate(radar, &Scene::of_points([point]), Floor::Exact, 0).unwrap();
+        let phasors = Phasors::of(radar, signal.samples.view(), Aperture::Full, cell, true);
+        let length: f64 = phasors.contributions.iter().map(|c| c.norm()).sum();
+        [phasors.sum().norm() / length, phasors.focused(&phasors).sum().norm() / length]
+    }
+
+    #[test]
+    fn chains_look_as_the_lesson_phasors_says() {
+        let short = Radar { elements: 96, ..Radar::default() };
+        let bin = short.bin_of_range(20.0).round() as usize;
+        let [blob, _] = straightness(&short, (0.0, 20.0), [bin, 48]);
+        let [null, _] = straightness(&short, (0.0, 20.0), [bin, 50]);
+        assert!(blob > 0.98 && null < 0.03, "{blob} {null}");
+        let whole = Radar::default();
+        let bin = whole.bin_of_range(5.0).round() as usize;
+        let [spiral, focused] = straightness(&whole, (0.0, 5.0), [bin, 512]);
+        assert!(spiral < 0.3 && focused > 0.999, "{spiral} {focused}");
+    }
+
     #[test]
     fn focusing_straightens_a_near_point() {
         let radar = Radar { elements: 256, samples: 64, ..Radar::default() };
