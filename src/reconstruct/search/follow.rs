@@ -1,10 +1,10 @@
 //! The answer to samples that differ little from the last ones, from the last answer.
 
-use super::atom::Atom;
 use super::finish::Found;
-use super::refine::Fit;
-use super::search::{Answer, Search};
+use super::ladder::{COMPLETION, climbed_from};
+use super::state::{Answer, Search, State};
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{Atom, Fit};
 
 /// Part of the samples' energy that a last answer may leave and still be a start.
 const MOST_CHANGED: f64 = 0.7;
@@ -39,8 +39,7 @@ impl Search<'_> {
         let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < most_left;
         let mut is_sure = self.is_explained(&fit);
         if !is_sure && !is_as_good(&fit) {
-            fit = self.completed(fit)?;
-            is_sure = self.is_explained(&fit);
+            Answer { fit, is_sure } = climbed_from(self, COMPLETION, State::of(fit))?;
         }
         // Many new atoms make up for old ones that went astray.
         let is_like_it = fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;

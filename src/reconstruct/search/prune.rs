@@ -1,10 +1,8 @@
 //! Atoms that the rest can do without.
 
-use super::atom::Atom;
-use super::groups::{Rows, distance_bins, rows_of};
 use super::grow::Grower;
-use super::refine::{Fit, Limits};
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
 
 /// An atom must explain this many times the energy that noise gives to one more gain at each end.
 const LEAST_WORTH: f64 = 16.0;

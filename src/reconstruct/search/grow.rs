@@ -1,16 +1,14 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
-use super::atom::Atom;
-use super::echoes::Samples;
-use super::end_beams::beam_noise_power;
-use super::groups::{Rows, groups, rows_of};
-use super::peaks::{Candidate, Detector};
-use super::profile::{Profile, union_of};
-use super::refine::{Fit, Gains, Limits, Tie, Workbench};
-use super::runs::EchoBins;
+use super::propose::end_beams::beam_noise_power;
+use super::propose::peaks::{Candidate, Detector};
+use super::propose::runs::EchoBins;
 use super::settings::Settings;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{
+    Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, Workbench, groups, rows_of, union_of,
+};
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;

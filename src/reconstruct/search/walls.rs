@@ -1,15 +1,11 @@
 //! Walls: rows of points that were found one by one, followed to where they end.
 
-use super::atom::Atom;
 use super::begin::{Seeds, is_long};
-use super::chains::rows_of_points;
-use super::echoes::Samples;
-use super::groups::rows_of;
 use super::grow::Grower;
 use super::on_wall::stands_on;
-use super::profile::Profile;
-use super::refine::{Fit, Gains, Limits, Tie};
+use super::propose::chains::rows_of_points;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, rows_of};
 
 /// A wall must leave less than this part of what was left without it.
 const LEAST_GAINED: f64 = 0.98;

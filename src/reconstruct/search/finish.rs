@@ -1,9 +1,7 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
-use super::atom::Atom;
-use super::echoes::Samples;
-use super::refine::{Fit, Gains, Limits, Tie, Workbench};
 use crate::radar::Radar;
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use num_complex::Complex64;
 use rayon::prelude::*;

@@ -5,11 +5,11 @@
 //! so that a coarse grid of (x, start) still meets them. A true line shows the same gain everywhere along its length and at both
 //! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
 
-use super::atom::Atom;
 use super::blocks::{BLOCK, Blocks, GLANCED, glance, heard_along};
 use super::phased::{PhasedBeams, Row};
 use super::runs::EchoBins;
 use crate::radar::Radar;
+use crate::reconstruct::fit::Atom;
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;

@@ -1,17 +1,13 @@
 //! Where walls begin: rows between two points, over two, from the edge of a wall, or long lines as a whole, and which of them are borne out.
 
-use super::atom::Atom;
-use super::between::rows_between;
-use super::edges::rows_from_edges;
-use super::groups::rows_of;
 use super::grow::Grower;
-use super::narrow::Spectra;
 use super::on_wall::is_on;
-use super::phased::PhasedBeams;
-use super::profile::Profile;
-use super::refine::{Fit, Gains, Limits, Tie};
-use super::strides::{Stride, rows_over_pairs};
+use super::propose::between::rows_between;
+use super::propose::edges::rows_from_edges;
+use super::propose::phased::PhasedBeams;
+use super::propose::strides::{Stride, rows_over_pairs};
 use crate::radar::Radar;
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Spectra, Tie, rows_of};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::collections::BTreeSet;

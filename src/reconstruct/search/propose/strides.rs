@@ -4,9 +4,8 @@
 //! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
 //! wrong ones go along.
 
-use super::atom::Atom;
 use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
-use super::solver::damped_step;
+use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use faer::Mat;

@@ -1,7 +1,6 @@
 //! Points found one by one that stand in a row at equal steps: where a wall may be.
 
-use super::atom::Atom;
-use super::refine::Gains;
+use crate::reconstruct::fit::{Atom, Gains};
 
 /// Longest step from one reflector of a wall to the next, metres.
 const MOST_STEP_METRES: f64 = 0.5;
