@@ -12,7 +12,7 @@ use apertura::evaluate::trial::Trial;
 use apertura::evaluate::{Roc, RocPoint, detection_rates, squared_error};
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::nomp::{Settings, find};
+use apertura::reconstruct::search::{Settings, find};
 use apertura::reconstruct::{Fista, Reconstructor, Request, on_one_scale};
 use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};

@@ -1,7 +1,7 @@
 //! Every reconstruction method by name: the one list behind the command line, the tables and the app.
 
 use crate::radar::Radar;
-use crate::reconstruct::nomp::Nomp;
+use crate::reconstruct::search::Nomp;
 use crate::reconstruct::{
     BARTLETT, Baseline, CAPON, CAPON_PEAKS, ESPRIT, Fista, Hybrid, IAA, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS,
     MUSIC, MUSIC_PEAKS, MatchedFilter, Omp, ROOT_MUSIC, ROOT_MUSIC_PEAKS, Reconstructor, SBL,

@@ -2,7 +2,7 @@
 
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::radar::{Decibels, End, Layout, Radar};
-use crate::reconstruct::nomp::{Settings, find};
+use crate::reconstruct::search::{Settings, find};
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::scene::Reflector;
 use crate::signal::exact;

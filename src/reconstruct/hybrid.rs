@@ -3,15 +3,15 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
-use super::nomp::{Found, Settings, find, find_from};
 use super::reconstructor::{About, Reconstructor, Weights};
+use super::search::{Found, Settings, find, find_from};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// [`super::nomp::Nomp`] with a fallback for what it can't take apart, or not in time.
+/// [`super::search::Nomp`] with a fallback for what it can't take apart, or not in time.
 #[derive(Clone)]
 pub struct Hybrid {
     fallback: Arc<dyn Reconstructor>,
@@ -54,8 +54,8 @@ impl Hybrid {
         About {
             name: "hybrid",
             description: "draws the exact map of the objects it finds; cells that they don't explain are filled in by another method",
-            told: super::nomp::TOLD,
-            eta: super::nomp::ETA,
+            told: super::search::TOLD,
+            eta: super::search::ETA,
         }
     }
 }
@@ -70,7 +70,7 @@ impl Reconstructor for Hybrid {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        super::nomp::no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        super::search::no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -180,7 +180,7 @@ pub fn on_one_scale(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::{Baseline, nomp::Nomp};
+    use crate::reconstruct::{Baseline, search::Nomp};
     use crate::scene::{GaussianCluster, Object, Scene};
     use crate::signal::{Floor, simulate};
 

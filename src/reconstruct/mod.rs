@@ -7,7 +7,9 @@
 //! | `rows` | one end and one range row at a time; both ends' estimates are laid over each other |
 //! | `coherent` | both ends as one aperture, place by place |
 //! | `grid` | both ends together, on the cells of the whole array's polar grid |
-//! | [`nomp`] | both ends together, off any grid |
+//! | [`search`] | both ends together, off any grid |
+//!
+//! `fit` is the least-squares kernel of `search` and `coherent`.
 
 mod answer;
 mod baseline;
@@ -16,18 +18,19 @@ mod confidence;
 mod echoes;
 mod error;
 mod family;
+mod fit;
 pub mod found;
 mod grid;
 mod hearing;
 mod hybrid;
 mod noise;
 mod noise_test;
-pub mod nomp;
 mod power;
 mod prior;
 mod profiles;
 mod reconstructor;
 mod rows;
+pub mod search;
 mod seen;
 mod trained;
 

@@ -7,7 +7,7 @@ use apertura::evaluate::trial::Trial;
 use apertura::interact::Document;
 use apertura::maps::Normalisation;
 use apertura::radar::Radar;
-use apertura::reconstruct::nomp::Settings;
+use apertura::reconstruct::search::Settings;
 use apertura::reconstruct::{About, Baseline, Hybrid, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::{Floor, TwoEnds};

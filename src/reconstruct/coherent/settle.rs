@@ -1,15 +1,14 @@
 //! Peaks moved to where their exact echoes explain the samples best; what the others can do without is taken away.
 //!
 //! The cyclic least squares that Yardibi et al. refine their own peaks with (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum
-//! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of `nomp`.
+//! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of the search.
 
 use super::peaks::{Peak, gains};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::nomp::{
-    Atom, Detector, Fit, Grower, Limits, Rows, Samples, Settings, Tie, Workbench, distance_bins, rows_of,
-};
+use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
+use crate::reconstruct::search::{Detector, Grower, Settings};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
@@ -123,7 +122,7 @@ impl<'a> Settled<'a> {
 
     pub(super) fn grower(&self) -> Grower<'_> {
         let Settled { radar, task, bench, detector, settings, .. } = self;
-        Grower { radar, bench, detector, settings, task }
+        Grower { radar, bench, detector, settings, task, trace: None }
     }
 
     /// What the reflectors leave of the samples.

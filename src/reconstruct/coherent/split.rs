@@ -7,7 +7,7 @@
 
 use super::settle::Settled;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::nomp::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
 use num_complex::Complex64;
 use rayon::prelude::*;
 

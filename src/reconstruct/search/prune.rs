@@ -1,10 +1,10 @@
 //! Atoms that the rest can do without.
 
-use super::atom::Atom;
-use super::groups::{Rows, distance_bins, rows_of};
-use super::grow::Grower;
-use super::refine::{Fit, Limits};
+use super::grow::{Grower, tried};
+use super::trace::{Refusal, decades};
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
 
 /// An atom must explain this many times the energy that noise gives to one more gain at each end.
 const LEAST_WORTH: f64 = 16.0;
@@ -25,7 +25,7 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..if self.settings.lacks(Part::Prune) { 0 } else { MOST_ROUNDS } {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;
@@ -46,6 +46,9 @@ impl Grower<'_> {
             }
             if gone.is_empty() {
                 break;
+            }
+            for &i in &gone {
+                self.refuse(tried(&fit.atoms[i]), decades(fit.cost() + worth[i], fit.cost()), Refusal::RestDoesWithout);
             }
             fit = self.bench.less(fit, &gone);
             let kept = (0..rows.len()).filter(|i| !gone.contains(i));

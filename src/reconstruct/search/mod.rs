@@ -4,104 +4,68 @@
 //! detect the strongest cell of the residual, move it to its best place by Newton steps, then move everything found so far together,
 //! and repeat. The exact simulator draws the map of what was found.
 //!
+//! `ladder` lists the steps of the search in the order in which they run, when each is skipped and why the search stops.
+//!
 //! | file | what it is |
 //! |---|---|
-//! | `atom` | the dictionary: one reflector, or a segment of them |
-//! | `sensor` | geometry of both ends |
-//! | `echo` | one reflector as each channel hears it |
-//! | `echoes` | what reflectors leave in the samples, and their products with a residual |
-//! | `moments` | inner products of two echoes: moments of the window |
-//! | `narrow` | the range bins around an atom |
-//! | `gram` | the banded Gram matrix of atoms and their derivatives |
-//! | `solver` | small systems that may be nearly singular |
-//! | `refine` | Levenberg-Marquardt on positions, gains projected out |
-//! | `alone` | one atom by itself |
-//! | `tones` | ranges from one element's chirp |
-//! | `pairs` | both ends' tones paired: points to start from |
-//! | `chains` | points that stand in a row at equal steps |
-//! | `phased` | each end's beams with their phases, and rows of reflectors looked up in them |
-//! | `strides` | rows of reflectors from their first two |
-//! | `edges` | rows of reflectors from their first alone |
-//! | `between` | rows of reflectors between their first and their last |
-//! | `begin` | where walls begin, and which are borne out |
-//! | `runs` | range bins that hold an echo |
-//! | `lines` | long lines along y, looked up as a whole |
-//! | `blocks` | a few neighbouring points of such a line at a time |
-//! | `on_wall` | which points stand on a wall |
-//! | `walls` | rows of points found one by one, and all walls together |
-//! | `wall_ends` | a wall followed to where it ends |
-//! | `end_beams` | each end's plain beams |
-//! | `registered` | both ends' beams laid over each other |
-//! | `peaks` | where a residual stands out, both ends registered |
-//! | `groups` | atoms that are neighbours in range |
-//! | `profile` | what is unexplained over range |
+//! | `find` | the search from outside: samples in, objects out |
+//! | `ladder` | every rung of the search in reading order |
+//! | `rungs` | what each rung does |
+//! | `state` | what a search works on, and how far it has come |
+//! | `propose` | where candidates come from, one file a source |
+//! | `begin` | which of the proposed lines are borne out by the samples |
+//! | `on_wall` | which points stand on a line |
+//! | `walls` | all lines together |
+//! | `wall_ends` | a line followed to where it ends |
 //! | `grow` | the greedy loop over points |
+//! | `trace` | what the search tried, and what became of it |
 //! | `prune` | atoms that the rest can do without |
-//! | `search` | the search as a whole |
-//! | `settings`, `work` | bounds on time and memory |
+//! | `settings` | bounds on time and memory |
+//! | `without` | parts that an ablation leaves out |
 //! | `follow` | the answer from the last one, where little changed |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
 //! | `draw` | expected map of the objects found |
-//! | `over_noise` | what noise makes of a log map's cells, in the mean |
+//! | `over_noise` | mean of a log map's cells over noise |
 
-mod alone;
-mod atom;
 mod begin;
-mod between;
-mod blocks;
-mod chains;
 mod draw;
-mod echo;
-mod echoes;
-mod edges;
-mod end_beams;
 mod explained;
+mod find;
 mod finish;
 mod follow;
-mod gram;
-mod groups;
 mod grow;
-mod lines;
-mod moments;
-mod narrow;
+mod ladder;
 #[cfg(test)]
 mod noise_tests;
 mod on_wall;
 mod over_noise;
-mod pairs;
-mod peaks;
-mod phased;
-mod profile;
+mod propose;
 mod prune;
-mod refine;
-mod registered;
-mod runs;
-mod search;
-mod sensor;
+mod rungs;
 mod settings;
-mod solver;
-mod strides;
+mod state;
 #[cfg(test)]
 mod tests;
-mod tones;
+mod trace;
+#[cfg(test)]
+mod trace_tests;
 #[cfg(test)]
 mod tracking_tests;
 mod wall_ends;
 mod walls;
-mod work;
+mod without;
 
-pub use atom::Atom;
+pub use super::fit::Atom;
 pub use draw::Expected;
-pub(super) use echoes::Samples;
+pub use find::{find, find_from};
 pub use finish::Found;
-pub(super) use groups::{Rows, distance_bins, rows_of};
 pub(super) use grow::Grower;
-pub(super) use peaks::Detector;
-pub(super) use profile::Profile;
-pub(super) use refine::{Fit, Limits, Tie, Workbench};
-pub use search::{find, find_from};
+pub use ladder::{LADDER, Rung, parts, without};
+pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
+pub use trace::{Attempt, FOLLOWING, MOST_ATTEMPTS, Refusal, Tried, Verdict};
+pub use without::Without;
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
@@ -174,7 +138,7 @@ impl Found {
     /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta }
+        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta, trace: self.trace.clone() }
     }
 
     /// The expected map of what was found, and its scale.

@@ -1,9 +1,9 @@
 //! Where to start: each end's tones, paired. A reflector is one tone at the first end and one at the last; their two ranges say where
 //! it is, and each end's phases say in which direction, so that true pairs agree and others don't.
 
-use super::atom::Atom;
 use super::tones::{Tone, gains_of_tones, tones};
 use crate::radar::{End, Radar};
+use crate::reconstruct::fit::Atom;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,15 +1,13 @@
 //! Walls: rows of points that were found one by one, followed to where they end.
 
-use super::atom::Atom;
 use super::begin::{Seeds, is_long};
-use super::chains::rows_of_points;
-use super::echoes::Samples;
-use super::groups::rows_of;
-use super::grow::Grower;
+use super::grow::{Grower, tried};
 use super::on_wall::stands_on;
-use super::profile::Profile;
-use super::refine::{Fit, Gains, Limits, Tie};
+use super::propose::chains::Chains;
+use super::trace::{Refusal, decades};
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, rows_of};
 
 /// A wall must leave less than this part of what was left without it.
 const LEAST_GAINED: f64 = 0.98;
@@ -62,7 +60,7 @@ impl Grower<'_> {
 
     /// Every wall followed to its ends once more, now that the others are known, and all moved together; by turns, as long as it helps.
     fn with_settled_ends(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_TURNS {
+        for _ in 0..if self.settings.lacks(Part::SettledEnds) { 0 } else { MOST_TURNS } {
             self.task.check()?;
             let before = fit.cost();
             fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, TOGETHER);
@@ -96,9 +94,20 @@ impl Grower<'_> {
             let most = if is_long(self.radar, &fit.atoms[*i]) { MOST_LEFT_OF_LONG } else { MOST_LEFT };
             left.at(&rows) > most * all.at(&rows)
         };
-        let doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
+        let mut doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
+        if self.settings.lacks(Part::DoubtfulLines) {
+            doubtful.clear();
+        }
         tracing::debug!(doubtful = doubtful.len(), walls = fit.atoms.len() - known, "walls");
-        if doubtful.is_empty() { fit } else { self.bench.less(fit, &doubtful) }
+        if doubtful.is_empty() {
+            return fit;
+        }
+        let less = self.bench.less(fit.clone(), &doubtful);
+        for &i in &doubtful {
+            let part = 1.0 - left.at(&rows_of(self.radar, &fit.atoms[i])) / all.at(&rows_of(self.radar, &fit.atoms[i]));
+            self.refuse(tried(&fit.atoms[i]), decades(less.cost(), fit.cost()), Refusal::ExplainsTooLittle(part));
+        }
+        less
     }
 
     /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.
@@ -106,7 +115,8 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn with_walls(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for seed in rows_of_points(&fit.atoms, &fit.gains) {
+        let seeds = self.proposed(Part::Chains, &Chains, &self.unexplained(&[], &fit));
+        for seed in seeds {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;
@@ -121,6 +131,8 @@ impl Grower<'_> {
                 atoms.push(wall.atoms[0]);
                 gains.push(wall.gains[0]);
                 fit = Fit { atoms, gains, residual: wall.residual, energy: wall.energy };
+            } else {
+                self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::GainsTooLittle);
             }
         }
         Ok(fit)

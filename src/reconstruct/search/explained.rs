@@ -4,8 +4,8 @@
 //! the cells of both ends' maps that a cell of the whole array's map is made from.
 
 use super::draw::Expected;
-use super::end_beams::{beam_noise_power, beam_of_cos, end_beams};
 use super::finish::Found;
+use super::propose::end_beams::{beam_noise_power, beam_of_cos, end_beams};
 use crate::radar::{End, Radar};
 use crate::reconstruct::seen::seen_from;
 use crate::signal::TwoEnds;
@@ -108,7 +108,7 @@ fn smoothed(powers: &Array2<f64>) -> Array2<f64> {
 mod tests {
     use super::*;
     use crate::reconstruct::Request;
-    use crate::reconstruct::nomp::{Settings, find};
+    use crate::reconstruct::search::{Settings, find};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
 

@@ -1,16 +1,17 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
-use super::atom::Atom;
-use super::echoes::Samples;
-use super::end_beams::beam_noise_power;
-use super::groups::{Rows, groups, rows_of};
-use super::peaks::{Candidate, Detector};
-use super::profile::{Profile, union_of};
-use super::refine::{Fit, Gains, Limits, Tie, Workbench};
-use super::runs::EchoBins;
+use super::propose::end_beams::beam_noise_power;
+use super::propose::peaks::{Candidate, Detector};
+use super::propose::source::{Propose, Unexplained};
 use super::settings::Settings;
+use super::trace::{Refusal, Trace, Tried, Verdict, decades};
+use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::fit::{
+    Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, Workbench, groups, rows_of, union_of,
+};
+use crate::scene::Reflector;
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -93,9 +94,26 @@ pub struct Grower<'a> {
     pub settings: &'a Settings,
     /// To be cancelled by.
     pub task: &'a Task,
+    /// Where attempts are written down, if anywhere.
+    pub trace: Option<&'a Trace>,
 }
 
 impl Grower<'_> {
+    /// Writes down an attempt that was refused.
+    pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
+        if let Some(trace) = self.trace {
+            trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
+        }
+    }
+
+    /// Decades by which the energy that `fit` leaves would grow without this object of it, the others staying as they are.
+    pub fn own_decades(&self, fit: &Fit, atom: &Atom, gains: &Gains) -> f64 {
+        let own =
+            |r: Reflector| self.bench.worth_of(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)), self.radar);
+        let energy: f64 = atom.reflectors((gains[0].norm() + gains[1].norm()) / 2.0).map(own).sum();
+        decades(fit.cost() + energy, fit.cost())
+    }
+
     /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
     pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool + Sync) -> Vec<Candidate> {
         self.detector.peaks(self.radar, flat, self.least_power(flat), most, closed)
@@ -113,9 +131,14 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// The range bins that hold an echo of what is left.
-    pub fn echoes_in(&self, flat: &[Complex64]) -> EchoBins {
-        EchoBins::of(self.radar, flat, self.bench.hearing.noise_variance(self.radar, flat))
+    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
+    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
+        Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
+    }
+
+    /// What a source proposes; nothing where an ablation leaves it out.
+    pub fn proposed(&self, part: Part, source: &dyn Propose, left: &Unexplained) -> Vec<Atom> {
+        if self.settings.lacks(part) { Vec::new() } else { source.propose(left) }
     }
 
     /// Amplitude of what rounding to f64 makes of a reflector's place, if its samples are 1: many reflectors of one wall are each off
@@ -150,8 +173,9 @@ impl Grower<'_> {
             let flat = fit.residual.flat(&self.bench.sensor);
             let profile = Profile::new(self.radar, &flat);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let candidates =
-                self.candidates(&flat, MOST_A_ROUND.min(room), |bin| trials.is_closed(bin, self.settings.trials));
+            let candidates = self.candidates(&flat, MOST_A_ROUND.min(room), |bin| {
+                !self.settings.lacks(Part::Closing) && trials.is_closed(bin, self.settings.trials)
+            });
             if candidates.is_empty() {
                 break;
             }
@@ -160,11 +184,13 @@ impl Grower<'_> {
             }
             let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
             fit = self.with_points(fit, &points)?;
-            fit = self.settled(fit)?;
+            if !self.settings.lacks(Part::Settling) {
+                fit = self.settled(fit)?;
+            }
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
-                if fit.cost() > WORTH_GOING_ON * cost {
+                if fit.cost() > WORTH_GOING_ON * cost && !self.settings.lacks(Part::LookBack) {
                     // Too dense to be told apart: what more there is to gain is small and dear.
                     self.bench.work.give_up();
                 }
@@ -196,9 +222,15 @@ impl Grower<'_> {
         let mut placed: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.placed(&fit, *p)).collect();
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
-        placed.retain(|(_, gains)| {
+        placed.retain(|(atom, gains)| {
             let [a, b] = gains.map(|g| g.norm());
-            std::mem::take(&mut strongest) || a.max(b) < MOST_UNLIKE * a.min(b)
+            let is_kept = std::mem::take(&mut strongest)
+                || self.settings.lacks(Part::PointsAgree)
+                || a.max(b) < MOST_UNLIKE * a.min(b);
+            if !is_kept {
+                self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+            }
+            is_kept
         });
         let known = fit.atoms.len();
         for (atom, gains) in placed {
@@ -219,6 +251,10 @@ impl Grower<'_> {
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone =
             |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ALONE);
+        if self.settings.lacks(Part::Wraps) {
+            let own = alone(own);
+            return (own.atoms[0], own.gains[0]);
+        }
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
@@ -269,7 +305,11 @@ impl Grower<'_> {
     fn ridge(&self, fit: &Fit, base: &Samples, rows: &Rows) -> f64 {
         let of = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor)).at(rows);
         let (left, all) = rayon::join(|| of(&fit.residual), || of(base));
-        if all > 0.0 { self.settings.gain_price * (left / all).min(1.0) } else { 0.0 }
+        if all > 0.0 && !self.settings.lacks(Part::Price) {
+            self.settings.gain_price * (left / all).min(1.0)
+        } else {
+            0.0
+        }
     }
 
     /// For every atom whether more is left in its rows than noise, and than the side lobes of what is left in others.
@@ -324,6 +364,15 @@ impl Grower<'_> {
             }
         }
         Ok(fit)
+    }
+}
+
+/// `atom` as an attempt names it.
+pub fn tried(atom: &Atom) -> Tried {
+    let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
+    match *atom {
+        Atom::Point { .. } => Tried::Point { at_metres: from_metres },
+        Atom::Segment { count, .. } => Tried::Line { from_metres, to_metres, count },
     }
 }
 

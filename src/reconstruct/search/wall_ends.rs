@@ -1,12 +1,8 @@
 //! Where a wall ends: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
-use super::atom::Atom;
-use super::echoes::Samples;
-use super::groups::rows_of;
 use super::grow::Grower;
-use super::narrow::{Narrow, Spectra};
 use super::on_wall::MOST_REFLECTORS;
-use super::refine::{Fit, Gains, Limits, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
 
 /// Of a wall by itself.
 const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };

@@ -113,7 +113,7 @@ impl Kernel for Leave<'_> {
 mod tests {
     use super::*;
     use crate::radar::{Radar, hann};
-    use crate::reconstruct::nomp::refine::Tie;
+    use crate::reconstruct::fit::refine::Tie;
     use crate::signal::floor::unit_noise;
     use crate::task::Task;
 

@@ -123,9 +123,9 @@ impl Narrow<'_> {
 mod tests {
     use super::*;
     use crate::radar::{Carrier, hann};
-    use crate::reconstruct::nomp::atom::Atom;
-    use crate::reconstruct::nomp::groups::rows_of;
-    use crate::reconstruct::nomp::refine::{Gains, Limits, Tie};
+    use crate::reconstruct::fit::atom::Atom;
+    use crate::reconstruct::fit::groups::rows_of;
+    use crate::reconstruct::fit::refine::{Gains, Limits, Tie};
     use crate::scene::{Line, Object, Point, Scene};
     use crate::signal::{Floor, simulate};
     use crate::task::Task;

@@ -3,12 +3,12 @@
 //! The squared error is smallest for the expectation of Lambda, not for one more draw of the noise: two independent draws differ by
 //! twice the variance that a draw and its mean do.
 
-use super::atom::Atom;
 use super::over_noise::{EULER, OverNoise};
 use crate::maps::fast::{FastLogMap, MapMaker, Sources};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::reconstruct::Request;
+use crate::reconstruct::fit::Atom;
 use crate::reconstruct::noise_test::decades_above_cells;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::{snr_over, thesis_noise_variance};

@@ -1,6 +1,6 @@
 //! Which points stand on a wall.
 
-use super::atom::Atom;
+use crate::reconstruct::fit::Atom;
 
 /// Most reflectors of a wall.
 pub const MOST_REFLECTORS: usize = 250;

@@ -264,7 +264,7 @@ fn add_shared(
 mod tests {
     use super::*;
     use crate::radar::{Radar, hann};
-    use crate::reconstruct::nomp::echoes::{Asked, Samples, remainder};
+    use crate::reconstruct::fit::echoes::{Asked, Samples, remainder};
 
     const WALL: Atom = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
 

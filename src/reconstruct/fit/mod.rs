@@ -1,0 +1,41 @@
+//! Least squares on the samples of both ends: places and gains of reflectors or lines of them, by the exact near-field model.
+//!
+//! The search (`search`) and the coherent methods (`coherent`) fit with it. It proposes nothing and judges nothing.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `atom` | the dictionary: one reflector, or a line of them |
+//! | `sensor` | geometry of both ends |
+//! | `echo` | one reflector as each channel hears it |
+//! | `echoes` | what reflectors leave in the samples, and their products with a residual |
+//! | `moments` | inner products of two echoes: moments of the window |
+//! | `gram` | the banded Gram matrix of atoms and their derivatives |
+//! | `solver` | small systems that may be nearly singular |
+//! | `refine` | Levenberg-Marquardt on positions, gains projected out |
+//! | `alone` | one atom by itself |
+//! | `groups` | atoms that are neighbours in range |
+//! | `narrow` | a fit within the range bins around an atom |
+//! | `profile` | unexplained energy over range |
+//! | `work` | a bound on work, counted and not timed |
+
+mod alone;
+mod atom;
+mod echo;
+mod echoes;
+mod gram;
+mod groups;
+mod moments;
+mod narrow;
+mod profile;
+mod refine;
+mod sensor;
+mod solver;
+mod work;
+
+pub use atom::Atom;
+pub use echoes::Samples;
+pub use groups::{Rows, distance_bins, groups, rows_of};
+pub use narrow::{Narrow, Spectra};
+pub use profile::{Profile, union_of};
+pub use refine::{Fit, Gains, Limits, Tie, Workbench};
+pub use solver::damped_step;

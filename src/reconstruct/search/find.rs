@@ -1,0 +1,65 @@
+//! The search from outside: samples of both ends in, objects out.
+
+use super::finish::{Found, finish};
+use super::ladder::climbed;
+use super::propose::peaks::Detector;
+use super::settings::Settings;
+use super::state::Search;
+use super::trace::Trace;
+use crate::radar::{Radar, hann};
+use crate::reconstruct::fit::{Samples, Workbench};
+use crate::reconstruct::hearing::Hearing;
+use crate::reconstruct::reconstructor::unit_gain;
+use crate::reconstruct::{ReconstructError, Request};
+use crate::signal::TwoEnds;
+
+/// Takes the samples apart into atoms.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`] when the request was cancelled.
+pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
+    find_with(None, radar, ends, request, settings)
+}
+
+/// Takes samples apart that differ little from those of `previous`: starts from its atoms, and falls back to [`find`] where they
+/// don't do.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`] when the request was cancelled.
+pub fn find_from(
+    previous: &Found,
+    radar: &Radar,
+    ends: &TwoEnds,
+    request: &Request,
+    settings: &Settings,
+) -> Result<Found, ReconstructError> {
+    find_with(Some(previous).filter(|p| !p.atoms.is_empty()), radar, ends, request, settings)
+}
+
+fn find_with(
+    previous: Option<&Found>,
+    radar: &Radar,
+    ends: &TwoEnds,
+    request: &Request,
+    settings: &Settings,
+) -> Result<Found, ReconstructError> {
+    let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
+    let flat = ends.flat();
+    let window = hann(radar.samples);
+    let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
+        .hearing(&flat)
+        .over(Hearing::beneath(radar, &ends, request.noise));
+    let samples = Samples::new(&bench.sensor, &flat);
+    let detector = Detector::of(radar);
+    let trace = Trace::default();
+    let search =
+        Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings, trace: &trace };
+    let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
+    let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
+    let answer = followed.map_or_else(|| climbed(&search), Ok)?;
+    request.task.check()?;
+    request.task.set_progress(1.0);
+    let found = finish(radar, &bench, &samples, answer.fit, answer.is_sure, request, settings, scale)?;
+    let left_by_search = measure.unwrap_or(found.left_by_search);
+    Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
+}

@@ -1,0 +1,140 @@
+//! The search in reading order.
+//!
+//! Each rung changes what was found so far. The search stops after the first rung whose answer leaves nothing that stands out of the
+//! noise, or after the last. A rung that is not due is skipped. What was found is then read off as objects (`finish`): one gain for both
+//! ends, one reflectivity an object.
+//!
+//! Within a rung, work is counted ([`Settings::most_work`](super::Settings)): where it is spent, each loop ends with the best it has.
+
+use super::rungs::{MOST_AGAIN, WORTH_ANOTHER_LOOK};
+use super::state::{Answer, Search, State};
+use super::trace::{Refusal, Tried};
+use super::without::Without;
+use crate::reconstruct::ReconstructError;
+
+/// What a rung does to the state of a search.
+type Climb = fn(&Search, &mut State) -> Result<(), ReconstructError>;
+
+/// One step of the search.
+pub struct Rung {
+    /// What it is called in traces.
+    pub name: &'static str,
+    /// What it does, in a sentence.
+    pub does: &'static str,
+    /// When it is skipped, in a sentence; `None` where it always runs once it is reached.
+    pub skipped: Option<&'static str>,
+    is_due: fn(&State) -> bool,
+    climb: Climb,
+}
+
+/// Every rung, the first first.
+pub const LADDER: &[Rung] = &[
+    Rung {
+        name: "tones",
+        does: "Pairs the tones that each end hears into points. Keeps them only if they are all there is.",
+        skipped: None,
+        is_due: |_| true,
+        climb: |search, state| search.climb_tones(state),
+    },
+    Rung {
+        name: "long lines",
+        does: "Looks up long lines along y as a whole, and follows each to its ends.",
+        skipped: Some("No echo is long in range."),
+        is_due: |state| state.is_long,
+        climb: |search, state| search.climb_long_lines(state),
+    },
+    Rung {
+        name: "points beside long lines",
+        does: "Pairs the tones that the long lines leave into points. Keeps them only if they are all there is besides.",
+        skipped: Some("No long line was found."),
+        is_due: |state| !state.fit.atoms.is_empty(),
+        climb: |search, state| search.climb_points_beside_lines(state),
+    },
+    Rung {
+        name: "lines",
+        does: "Looks for lines of any direction that begin where both ends may hear a point.",
+        skipped: None,
+        is_due: |_| true,
+        climb: |search, state| search.climb_lines(state),
+    },
+    Rung {
+        name: "pairs",
+        does: "Pairs the tones that the lines leave into points, and puts lines in place of points at equal steps.",
+        skipped: None,
+        is_due: |_| true,
+        climb: |search, state| search.climb_pairs(state),
+    },
+    Rung {
+        name: "weaker long lines",
+        does: "Looks up long lines along y once more in what is left, then pairs tones into points.",
+        skipped: Some("Much is left of what the last look for long lines saw."),
+        is_due: |state| state.fit.cost() < WORTH_ANOTHER_LOOK * state.looked_at,
+        climb: |search, state| search.climb_weaker_lines(state),
+    },
+    POINTS,
+    POINTS_AGAIN,
+];
+
+/// The rungs that add points to an answer that is there.
+pub(super) const COMPLETION: &[Rung] = &[POINTS, POINTS_AGAIN];
+
+const POINTS: Rung = Rung {
+    name: "points",
+    does: "Adds points where the residual of both ends stands out, refines them, and takes away those that explain too little.",
+    skipped: None,
+    is_due: |_| true,
+    climb: |search, state| search.climb_points(state),
+};
+
+const POINTS_AGAIN: Rung = Rung {
+    name: "points again",
+    does: "Does the same again: what was taken away may have hidden something.",
+    skipped: Some("Too many objects were found."),
+    is_due: |state| state.fit.atoms.len() < MOST_AGAIN,
+    climb: |search, state| search.climb_points(state),
+};
+
+/// Without the rung, source or rule of this name: a rung's has hyphens between its words.
+pub fn without(name: &str) -> Option<Without> {
+    let rung = LADDER.iter().position(|rung| rung.name.replace(' ', "-") == name);
+    rung.map(Without::rung).or_else(|| Without::part(name))
+}
+
+/// Every name that [`without`] knows, rungs first.
+pub fn parts() -> Vec<String> {
+    let rungs = LADDER.iter().map(|rung| rung.name.replace(' ', "-"));
+    rungs.chain(Without::parts().map(str::to_owned)).collect()
+}
+
+/// The answer of the whole ladder to samples of which nothing is known.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`].
+pub(super) fn climbed(search: &Search) -> Result<Answer, ReconstructError> {
+    climbed_from(search, LADDER, State::start(search))
+}
+
+/// `state` after `rungs`, one after another until nothing stands out.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`].
+pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<Answer, ReconstructError> {
+    for rung in rungs {
+        let number = LADDER.iter().position(|other| other.name == rung.name);
+        if number.is_some_and(|number| search.settings.without.lacks_rung(number)) {
+            continue;
+        }
+        search.trace.enter(rung.name);
+        if (rung.is_due)(&state) {
+            let before = state.fit.atoms.clone();
+            (rung.climb)(search, &mut state)?;
+            search.tell_of(&before, &state.fit);
+        } else if let Some(why) = rung.skipped {
+            search.grower().refuse(Tried::Nothing, 0.0, Refusal::Skipped(why));
+        }
+        if state.is_sure {
+            break;
+        }
+    }
+    Ok(Answer { fit: state.fit, is_sure: state.is_sure })
+}

@@ -1,0 +1,33 @@
+//! Where reflectors and lines of them may be: sources of candidates, none of which is held against the samples here.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `source` | what every source of candidates is, and what it looks at |
+//! | `end_beams` | each end's plain beams |
+//! | `registered` | both ends' beams laid over each other |
+//! | `peaks` | points where a residual stands out, both ends registered |
+//! | `tones` | ranges from one element's chirp |
+//! | `pairs` | points that both ends' tones agree on |
+//! | `phased` | each end's beams with their phases, and lines looked up in them |
+//! | `chains` | lines through points at equal steps |
+//! | `strides` | lines from their first two reflectors |
+//! | `edges` | lines from their first reflector alone |
+//! | `between` | lines between their first and their last reflector |
+//! | `runs` | range bins that hold an echo |
+//! | `blocks` | a few neighbouring reflectors of a line along y at a time |
+//! | `lines` | long lines along y, looked up as a whole |
+
+pub mod between;
+mod blocks;
+pub mod chains;
+pub mod edges;
+pub mod end_beams;
+pub mod lines;
+pub mod pairs;
+pub mod peaks;
+pub mod phased;
+mod registered;
+pub mod runs;
+pub mod source;
+pub mod strides;
+mod tones;

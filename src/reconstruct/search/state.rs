@@ -1,0 +1,188 @@
+//! What a search works on, how far it has come, and what several rungs ask of it.
+
+use super::grow::{Grower, tried};
+use super::propose::pairs::{Pairs, paired_points};
+use super::propose::peaks::Detector;
+use super::settings::Settings;
+use super::trace::{Refusal, Trace, Tried, Verdict, decades};
+use super::without::Part;
+use crate::radar::Radar;
+use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
+use crate::reconstruct::{ReconstructError, Request};
+
+/// Part of the samples' energy that is left where all is found but for its exact place.
+const NEARLY_NOTHING: f64 = 1e-5;
+
+/// Rounds in which pairs that the ends don't agree on are dropped.
+const MOST_DOUBTS: usize = 3;
+
+/// Gains of one pair at both ends agree within this factor.
+const MOST_UNLIKE: f64 = 1.5;
+
+/// What a search found, and whether nothing else stands out of the samples.
+pub struct Answer {
+    /// The objects.
+    pub fit: Fit,
+    /// Whether nothing else stands out.
+    pub is_sure: bool,
+}
+
+/// How far a search has come: what one rung of it leaves to the next.
+pub struct State {
+    /// The objects found.
+    pub fit: Fit,
+    /// Whether nothing stands out of what `fit` leaves: then the search stops.
+    pub is_sure: bool,
+    /// Points whose tones both ends hear in what `fit` leaves; `None` where an end hears too many tones.
+    pub pairs: Option<Pairs>,
+    /// Whether an echo of the samples is long in range, as a line's is.
+    pub is_long: bool,
+    /// Energy that was left when long lines were last looked for.
+    pub looked_at: f64,
+}
+
+impl State {
+    /// With nothing found yet.
+    pub fn start(search: &Search) -> Self {
+        let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
+        let flat = nothing.residual.flat(&search.bench.sensor);
+        let is_long = search.grower().unexplained(&flat, &nothing).echoes().are_long();
+        State { looked_at: nothing.cost(), is_long, pairs: None, ..State::of(nothing) }
+    }
+
+    /// With `fit` found.
+    pub fn of(fit: Fit) -> Self {
+        State { looked_at: fit.cost(), fit, is_sure: false, pairs: None, is_long: false }
+    }
+
+    /// With `answer` found.
+    pub fn reach(&mut self, answer: Answer) {
+        (self.fit, self.is_sure) = (answer.fit, answer.is_sure);
+    }
+}
+
+/// One search.
+pub struct Search<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Fits under the search's window, and the work that is left.
+    pub bench: &'a Workbench<'a>,
+    /// Looks for places.
+    pub detector: &'a Detector,
+    /// What is taken apart.
+    pub samples: &'a Samples,
+    /// What was asked for.
+    pub request: &'a Request,
+    /// Limits.
+    pub settings: &'a Settings,
+    /// Where attempts are written down.
+    pub trace: &'a Trace,
+}
+
+impl Search<'_> {
+    pub fn grower(&self) -> Grower<'_> {
+        Grower {
+            radar: self.radar,
+            bench: self.bench,
+            detector: self.detector,
+            settings: self.settings,
+            task: &self.request.task,
+            trace: Some(self.trace),
+        }
+    }
+
+    /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
+    pub fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        if !self.is_nearly_all(&fit) || self.settings.lacks(Part::NearlyThere) {
+            return Ok(fit);
+        }
+        self.bench.work.grant(self.settings.most_work / 4);
+        let grower = self.grower();
+        grower.pruned(grower.refined_where_needed(fit)?)
+    }
+
+    /// Writes down which objects of `fit` are new, and which of those `before` were exchanged.
+    pub fn tell_of(&self, before: &[Atom], fit: &Fit) {
+        let is_in = |atom: &Atom, list: &[Atom]| list.iter().any(|other| self.is_same(atom, other));
+        for atom in before.iter().filter(|atom| !is_in(atom, &fit.atoms)) {
+            self.grower().refuse(tried(atom), 0.0, Refusal::Exchanged);
+        }
+        for (atom, gains) in fit.atoms.iter().zip(&fit.gains).filter(|(atom, _)| !is_in(atom, before)) {
+            let gain_decades = self.grower().own_decades(fit, atom, gains);
+            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.bench.work.done());
+        }
+    }
+
+    /// Whether two objects are one that was moved a little.
+    fn is_same(&self, a: &Atom, b: &Atom) -> bool {
+        let apart = |[i, j]: [f64; 2]| {
+            let ([x, y], [other_x, other_y]) = (a.position_metres(i), b.position_metres(j));
+            (x - other_x).hypot(y - other_y)
+        };
+        let last = [a, b].map(|atom| atom.reflector_count() as f64 - 1.0);
+        a.reflector_count() == b.reflector_count()
+            && apart([0.0; 2]).max(apart(last)) < self.radar.range_resolution_metres()
+    }
+
+    /// Whether `fit` holds all objects, though perhaps not quite where they are.
+    pub fn is_nearly_all(&self, fit: &Fit) -> bool {
+        fit.cost() <= NEARLY_NOTHING * self.energy()
+    }
+
+    /// Energy of the windowed samples.
+    pub fn energy(&self) -> f64 {
+        self.bench.without(self.samples, &[], &[]).energy.iter().sum()
+    }
+
+    /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
+    pub fn pairs(&self, fit: &Fit) -> Pairs {
+        self.pairs_of_tones(fit, usize::MAX).unwrap_or_default()
+    }
+
+    /// The same; `None` where an end hears more tones than `most`.
+    pub fn pairs_of_tones(&self, fit: &Fit, most: usize) -> Option<Pairs> {
+        let flat = fit.residual.flat(&self.bench.sensor);
+        let noise = self.bench.hearing.noise_variance(self.radar, &flat);
+        paired_points(self.radar, &flat, noise, most)
+    }
+
+    /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
+    /// They are moved to their best places only if that is asked for.
+    pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
+        let mut atoms = known.atoms.clone();
+        atoms.extend(pairs.points.iter().map(|point| point.atom));
+        if atoms.len() == known.atoms.len() {
+            return Ok(known);
+        }
+        atoms.truncate(self.settings.most_atoms);
+        let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
+        for _ in 0..if self.settings.lacks(Part::PairsAgree) { 0 } else { MOST_DOUBTS } {
+            let alike = |gains: &Gains| {
+                let [a, b] = gains.map(|g| g.norm());
+                a.max(b) < MOST_UNLIKE * a.min(b)
+            };
+            let (kept, unlike): (Vec<_>, Vec<_>) = fit.atoms.iter().zip(&fit.gains).partition(|(_, g)| alike(g));
+            if unlike.is_empty() {
+                break;
+            }
+            for (atom, gains) in unlike {
+                self.grower().refuse(tried(atom), self.grower().own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+            }
+            let kept = kept.into_iter().map(|(atom, _)| *atom).collect();
+            fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
+        }
+        if fit.cost() > known.cost() {
+            let tried = Tried::Together { count: pairs.points.len() };
+            self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
+            return Ok(known);
+        }
+        let grower = self.grower();
+        let polished = polished && !self.settings.lacks(Part::PolishPairs);
+        if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
+    }
+
+    /// Whether nothing stands out of what `fit` leaves.
+    pub fn is_explained(&self, fit: &Fit) -> bool {
+        self.grower().is_explained(fit)
+    }
+}
