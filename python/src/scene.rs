@@ -22,7 +22,7 @@ use std::str::FromStr;
 /// Objects before a radar, and the radar that looks at them.
 ///
 /// Args:
-///     objects: `Point`, `Line` and `Cluster`, in order.
+///     objects: `Point`, `Line`, `Cluster`, `Wall`, `Box`, `Post` and `Polygon`, in order.
 ///     name: What the scene is called.
 ///     notes: What it is meant to show.
 ///     noise_seed: Picks the noise of the floor beneath it.
@@ -73,7 +73,7 @@ fn checked(file: SceneFile) -> PyResult<Scene> {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (objects=None, *, name="", notes="", noise_seed=0, radar=None, elements=None, interferer=None, mirror=None))]
+    #[pyo3(signature = (objects=None, *, name="", notes="", noise_seed=0, radar=None, elements=None, interferer=None, mirror=None, shadows=true))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         objects: Option<&Bound<'_, PyAny>>,
@@ -84,6 +84,7 @@ impl Scene {
         elements: Option<&Bound<'_, PyAny>>,
         interferer: Option<&Bound<'_, PyAny>>,
         mirror: Option<&Bound<'_, PyAny>>,
+        shadows: bool,
     ) -> PyResult<Self> {
         let mut made = Vec::new();
         if let Some(objects) = objects {
@@ -97,7 +98,7 @@ impl Scene {
             mirror: mirror.map(objects::mirror).transpose()?,
         };
         let (name, notes) = (name.to_owned(), notes.to_owned());
-        let scene = scene::Scene { name, notes, noise_seed, disturbances, objects: made };
+        let scene = scene::Scene { name, notes, noise_seed, shadows, disturbances, objects: made };
         checked(SceneFile { scene, radar: radar.map(|r| r.0.clone()).unwrap_or_default() })
     }
 
@@ -269,6 +270,12 @@ impl Scene {
     #[getter]
     fn mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.0.scene.disturbances.mirror.as_ref().map(|m| objects::of_mirror(py, m)).transpose()
+    }
+
+    /// Whether bodies hide what stands behind them.
+    #[getter]
+    fn shadows(&self) -> bool {
+        self.0.scene.shadows
     }
 
     /// Every reflector of every object, float64 `[reflectors, 3]`: x and y in metres, reflectivity.

@@ -142,7 +142,7 @@ type Spot = ([f64; 2], usize);
 
 impl Facts {
     fn of(radar: &Radar, scene: &Scene) -> Facts {
-        let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.reflectors()));
+        let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.marks()));
         let reflectors: Vec<(usize, Reflector)> =
             of_objects.flat_map(|(i, all)| all.into_iter().map(move |r| (i, r))).collect();
         let range = |r: &Reflector| r.x_metres.hypot(r.y_metres);

@@ -172,18 +172,35 @@ fn look(field: Field) -> Look {
         ),
         Field::SpreadX => spread("spread in x"),
         Field::SpreadY => spread("spread in y"),
+        Field::Length => Look { low: 1e-3, ..metres("length", "Of the wall or the box, metres") },
+        Field::Width => Look { low: 1e-3, ..metres("width", "Of the box, across its length") },
+        Field::Angle => degrees("angle of the length", "From the array's axis to the right, counter-clockwise"),
+        Field::Radius => Look { low: 0.01, high: 100.0, speed: 0.005, ..metres("radius", "Of the post") },
+        Field::Roughness => Look {
+            unit: " mm",
+            speed: 0.01,
+            low: 0.0,
+            high: 100.0,
+            ..metres(
+                "roughness",
+                "Standard deviation of the surface's height: 0 is smooth, 1 mm takes 11 dB from a glint",
+            )
+        },
         Field::Count => Look { low: 1.0, high: 10_000.0, ..whole("count", "Number of reflectors") },
         Field::Seed => Look {
             speed: 0.05,
             low: 0.0,
             high: u64::MAX as f64,
-            ..whole("seed", "Another seed scatters the reflectors otherwise")
+            ..whole("seed", "Another seed scatters the reflectors, or roughens the surface, otherwise")
         },
         Field::Reflectivity => Look {
             speed: 0.01,
             low: -1e6,
             high: 1e6,
-            ..plain("reflectivity", "σ of each reflector; the thesis uses 1")
+            ..plain(
+                "reflectivity",
+                "σ of each reflector, the thesis uses 1; the reflection coefficient of a body, 1 for metal",
+            )
         },
     }
 }
