@@ -30,6 +30,7 @@ use std::str::FromStr;
 ///     elements: Elements as they are built (`Elements`); ideal where none are given.
 ///     interferer: Another radar that sends at the same time (`Interferer`).
 ///     mirror: A wall that mirrors (`Mirror`).
+///     shadows: Whether bodies hide what stands behind them.
 ///
 /// Raises:
 ///     TypeError: An object is none of these.

@@ -435,4 +435,18 @@ mod tests {
         enter(&mut inspector, "count", "7");
         assert_eq!(inspector.state().editor.scene().objects[0].reflector_count(), 7);
     }
+
+    #[test]
+    fn a_wall_has_its_own_numbers() {
+        let wall = Object::Wall(crate::scene::Wall::new(1.0, 10.0, 5.0, 0.0));
+        let mut editor = Editor::new(Scene { objects: vec![wall], ..Scene::default() });
+        editor.select([0], SelectionMode::Replace);
+        let mut inspector = panel(editor, Coordinates::Cartesian);
+        let _called = inspector.get_by_label("Wall 1");
+        enter(&mut inspector, "length", "7");
+        enter(&mut inspector, "angle of the length", "30");
+        enter(&mut inspector, "roughness", "0.5");
+        let Object::Wall(wall) = inspector.state().editor.scene().objects[0].clone() else { panic!() };
+        assert_eq!((wall.length_metres, wall.angle_degrees, wall.roughness_millimetres), (7.0, 30.0, 0.5));
+    }
 }
