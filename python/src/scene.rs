@@ -126,7 +126,8 @@ impl Scene {
     /// Random scene `index` of a set: the one that the program makes of the same numbers.
     ///
     /// Args:
-    ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near", "noise".
+    ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near",
+    ///         "bodies", "street", "rails", "occlusion", "rough", "noise".
     ///     seed: Seed of the set.
     ///     index: Number of the scene, from 0.
     ///     purpose: "test", "validation" or "training": their scenes never meet.
