@@ -2,7 +2,8 @@
 
 use super::Place;
 use super::grip_kind::{Grip, GripPlace};
-use crate::scene::body::{MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES, direction};
+use crate::scene::body::{MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
+use crate::scene::shape::direction;
 use crate::scene::{Block, Object, Polygon, Wall};
 
 /// The grips of a body but for the body itself; the one that turns it stands `beyond_metres` away from it.

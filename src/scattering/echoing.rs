@@ -66,7 +66,7 @@ fn from_triangle(place: [f64; 2], corners: [[f64; 2]; 3]) -> f64 {
     if sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0) {
         return 0.0;
     }
-    edges.into_iter().map(|edge| crate::scene::body::from_stretch(place, edge)).fold(f64::INFINITY, f64::min)
+    edges.into_iter().map(|edge| crate::scene::shape::from_stretch(place, edge)).fold(f64::INFINITY, f64::min)
 }
 
 /// The smallest circle's worth around an object: a middle, and how far it reaches from there, metres.

@@ -1,7 +1,7 @@
 //! A closed outline as convex parts: cut from inner corners, along lines to other corners.
 
 use super::geometry::{V, crosses};
-use crate::scene::body::inner_corners;
+use crate::scene::shape::inner_corners;
 
 /// Convex parts of a counter-clockwise outline, (x, y) in metres; the outline itself where it is convex.
 pub fn convex_parts(outline: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {

@@ -4,7 +4,7 @@ use super::corner;
 use super::face::Face;
 use super::geometry::{V, crosses};
 use super::{Antennas, EchoKind, PathEcho, Wave};
-use crate::scene::body::inner_corners;
+use crate::scene::shape::inner_corners;
 use num_complex::Complex64;
 
 /// An echo nearer than this to an arm lies on it, metres.

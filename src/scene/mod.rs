@@ -4,16 +4,19 @@
 //! first into the second. What the radar sees of a [`body`] is worked out in [`crate::scattering`].
 
 pub mod body;
+mod body_check;
 mod disturbances;
 pub mod file;
 pub mod generate;
 pub mod npz;
 mod object;
 pub mod presets;
+pub mod shape;
 
-pub use body::{Block, Body, Polygon, Post, Shape, Surface, Wall};
+pub use body::{Block, Body, Polygon, Post, Surface, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use object::{GaussianCluster, Line, Object, Point};
+pub use shape::Shape;
 
 use crate::radar::{BuiltArrayError, Radar, RadarError};
 use serde::{Deserialize, Serialize};

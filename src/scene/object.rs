@@ -1,6 +1,8 @@
 //! The objects a person places: a point, a line of points, a Gaussian cluster of points, or a body.
 
-use super::body::{self, Block, Body, Polygon, Post, Wall, one, out_of_reach};
+use super::body::{Block, Body, Polygon, Post, Wall, one};
+use super::body_check;
+use super::shape::out_of_reach;
 use super::{Reflector, SceneError};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -298,7 +300,7 @@ impl Object {
     pub(super) fn validate(&self, index: usize) -> Result<(), SceneError> {
         const FINITE: &str = "a finite number";
         if let Some(body) = self.body() {
-            return body::validate(&body, index);
+            return body_check::validate(&body, index);
         }
         let fields: Vec<(&'static str, f64)> = match self {
             Object::Point(p) => {

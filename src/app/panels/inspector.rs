@@ -172,20 +172,9 @@ fn look(field: Field) -> Look {
         ),
         Field::SpreadX => spread("spread in x"),
         Field::SpreadY => spread("spread in y"),
-        Field::Length => Look { low: 1e-3, ..metres("length", "Of the wall or the box, metres") },
-        Field::Width => Look { low: 1e-3, ..metres("width", "Of the box, across its length") },
-        Field::Angle => degrees("angle of the length", "From the array's axis to the right, counter-clockwise"),
-        Field::Radius => Look { low: 0.01, high: 100.0, speed: 0.005, ..metres("radius", "Of the post") },
-        Field::Roughness => Look {
-            unit: " mm",
-            speed: 0.01,
-            low: 0.0,
-            high: 100.0,
-            ..metres(
-                "roughness",
-                "Standard deviation of the surface's height: 0 is smooth, 1 mm takes 11 dB from a glint",
-            )
-        },
+        Field::Length | Field::Width | Field::Angle | Field::Radius | Field::Roughness => {
+            look_of_body(field, metres, degrees)
+        }
         Field::Count => Look { low: 1.0, high: 10_000.0, ..whole("count", "Number of reflectors") },
         Field::Seed => Look {
             speed: 0.05,
@@ -200,6 +189,30 @@ fn look(field: Field) -> Look {
             ..plain(
                 "reflectivity",
                 "σ of each reflector, the thesis uses 1; the reflection coefficient of a body, 1 for metal",
+            )
+        },
+    }
+}
+
+/// The same for the numbers of bodies.
+fn look_of_body(
+    field: Field,
+    metres: impl Fn(&'static str, &'static str) -> Look,
+    degrees: impl Fn(&'static str, &'static str) -> Look,
+) -> Look {
+    match field {
+        Field::Length => Look { low: 1e-3, ..metres("length", "Of the wall or the box, metres") },
+        Field::Width => Look { low: 1e-3, ..metres("width", "Of the box, across its length") },
+        Field::Angle => degrees("angle of the length", "From the array's axis to the right, counter-clockwise"),
+        Field::Radius => Look { low: 0.01, high: 100.0, speed: 0.005, ..metres("radius", "Of the post") },
+        _ => Look {
+            unit: " mm",
+            speed: 0.01,
+            low: 0.0,
+            high: 100.0,
+            ..metres(
+                "roughness",
+                "Standard deviation of the surface's height: 0 is smooth, 1 mm takes 11 dB from a glint",
             )
         },
     }

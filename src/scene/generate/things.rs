@@ -63,7 +63,7 @@ fn post([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
 /// An L, turned anyhow.
 fn ell([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
     let (long, thick): (f64, f64) = (rng.random_range(1.0..3.0), rng.random_range(0.2..0.6));
-    let [cos, sin] = crate::scene::body::direction(rng.random_range(0.0..360.0));
+    let [cos, sin] = crate::scene::shape::direction(rng.random_range(0.0..360.0));
     let corners = [[0.0, 0.0], [long, 0.0], [long, thick], [thick, thick], [thick, long], [0.0, long]];
     let turned = corners
         .map(|[u, v]| [u - long / 2.0, v - long / 2.0])
@@ -126,7 +126,7 @@ impl Things {
     fn add(&mut self, rng: &mut ChaCha8Rng, make: impl Fn([f64; 2], &mut ChaCha8Rng) -> Object) {
         for _ in 0..TRIES {
             let range = rng.random_range(NEAREST_METRES..self.far);
-            let [cos, sin] = crate::scene::body::direction(rng.random_range(15.0..165.0));
+            let [cos, sin] = crate::scene::shape::direction(rng.random_range(15.0..165.0));
             let object = make([range * cos, range * sin], rng);
             if self.has_room(&object) {
                 return self.objects.push(object);
@@ -182,7 +182,7 @@ impl Things {
 
     /// A car or a wide post near the array, and behind it a body and a point, each partly hidden from some elements.
     fn occlusion(&mut self, rng: &mut ChaCha8Rng) {
-        let [cos, sin] = crate::scene::body::direction(rng.random_range(60.0..120.0));
+        let [cos, sin] = crate::scene::shape::direction(rng.random_range(60.0..120.0));
         let near = rng.random_range(5.0..0.4 * self.far);
         let at = |range: f64, beside: f64| [range * cos - beside * sin, range * sin + beside * cos];
         self.put(match rng.random::<f64>() < 0.7 {

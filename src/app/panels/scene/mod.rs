@@ -78,14 +78,13 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
     disturbances::draw(&painter, canvas, editor.scene());
-    let (at, colours) = (|place| canvas.at(place), canvas.inks.ends);
-    bodies::shadows(&painter, &at, input.radar, editor.scene(), (extent_metres, colours));
+    let at = |place| canvas.at(place);
+    bodies::shadows(&painter, &at, input.radar, editor.scene(), (extent_metres, canvas.inks.ends));
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
-        let look = Look { selected: editor.selection().contains(index), hovered };
-        canvas::object(&painter, canvas, object, look);
+        canvas::object(&painter, canvas, object, Look { selected: editor.selection().contains(index), hovered });
     }
-    bodies::glints(&painter, &at, input.radar, editor.scene(), colours);
+    bodies::glints(&painter, &at, input.radar, editor.scene(), canvas.inks.ends);
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
     trail::draw(&painter, canvas, input.trails);
     handles(input.radar.range_resolution_metres(), editor, *view, ui, rect);
