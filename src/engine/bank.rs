@@ -297,18 +297,24 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let how = format!("{} in {}", plan.algorithm, T::NAME);
                 (format!("{evaluated} of {}, {how}, the others as before", job.counted(total)), changed)
             }
-            _ => self.build_anew(job),
+            // What moved among bodies is kept apart at once: with what it hides it may be most of the scene, and will move again.
+            Some((change, _)) if job.scene.has_bodies() => self.build_anew(job, &change.staying, &change.arriving),
+            _ => self.build_anew(job, job.seen, &[]),
         }
     }
 
-    /// Makes the sum at rest hold the whole scene, and the other nothing.
-    fn build_anew(&mut self, job: &Job<'_>) -> (String, Rows) {
+    /// Makes the sum at rest hold `staying`, and the other `moving`: together the whole scene.
+    fn build_anew(&mut self, job: &Job<'_>, staying: &[Seen], moving: &[Seen]) -> (String, Rows) {
         let total = job.scene.echo_count();
         let synthesis = self.synthesis(job, total);
         let mut changed = self.rest.profiles.touched.clone();
         changed.extend(&self.active.profiles.touched);
         self.active.clear();
-        self.rest.fill(&self.syntheses[synthesis], job.seen, job);
+        self.rest.fill(&self.syntheses[synthesis], staying, job);
+        if !moving.is_empty() {
+            self.active.fill(&self.syntheses[synthesis], moving, job);
+            changed.extend(&self.active.profiles.touched);
+        }
         changed.extend(&self.rest.profiles.touched);
         let (tolerance, forced) = (job.plan.tolerance, job.forced);
         self.built = Some(Built { tolerance, forced, rounding: 0.0 });

@@ -1,5 +1,6 @@
 //! One scene for all methods, and the measures of their answers.
 
+use super::echoes::{self, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::{Origin, Row};
 use super::{Metrics, Roc};
@@ -90,6 +91,11 @@ impl Trial {
     /// What kind of failure an answer is, if any.
     pub fn failures(&self, answer: &Answer) -> Failures {
         self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
+    }
+
+    /// Which echoes stand out in the target, and which of them an answer shows.
+    pub fn echoes(&self, answer: &Answer) -> EchoTally {
+        echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
     /// The row of an answer. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.

@@ -154,6 +154,18 @@ impl Echoing {
     }
 }
 
+/// The echoes of every body as the middle of the array hears them, each with the index of its object.
+pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho)> {
+    let antennas = Antennas::at([0.0, 0.0]);
+    let mut all = Vec::new();
+    for (index, seen) in Seen::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {
+        let mut echoes = Vec::new();
+        Scatterer::new(radar, &seen.object, &seen.hidden_by).echoes(&antennas, &mut echoes);
+        all.extend(echoes.into_iter().filter(PathEcho::is_heard).map(|echo| (index, echo)));
+    }
+    all
+}
+
 /// What echoes, as whatever evaluates samples takes it.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {

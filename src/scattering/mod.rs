@@ -31,7 +31,7 @@ mod scatterer;
 pub mod shadow;
 pub mod transition;
 
-pub use echoing::{Echoing, Seen, Sources};
+pub use echoing::{Echoing, Seen, Sources, heard_in_the_middle};
 pub use scatterer::Scatterer;
 
 use crate::radar::{Pair, Radar};
