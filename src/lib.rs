@@ -77,6 +77,7 @@ pub mod platform;
 pub mod radar;
 pub mod reconstruct;
 pub mod recording;
+pub mod scattering;
 pub mod scene;
 pub mod share;
 pub mod signal;

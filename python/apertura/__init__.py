@@ -32,10 +32,24 @@ from ._apertura import (
     set_threads,
     threads,
 )
-from .objects import Cluster, Elements, Interferer, Line, Metrics, Mirror, Point, PositionBound
+from .objects import (
+    Box,
+    Cluster,
+    Elements,
+    Interferer,
+    Line,
+    Metrics,
+    Mirror,
+    Point,
+    Polygon,
+    PositionBound,
+    Post,
+    Wall,
+)
 from .program import find_program, open
 
 __all__ = [
+    "Box",
     "Cluster",
     "Elements",
     "Examples",
@@ -46,11 +60,14 @@ __all__ = [
     "Metrics",
     "Mirror",
     "Point",
+    "Polygon",
     "PositionBound",
+    "Post",
     "Radar",
     "Reconstruction",
     "Recording",
     "Scene",
+    "Wall",
     "__version__",
     "ambiguity",
     "cramer_rao",

@@ -6,7 +6,20 @@ from typing import Any, Callable, Iterable, Literal, Sequence, SupportsIndex, fi
 import numpy as np
 import numpy.typing as npt
 
-from .objects import Cluster, Elements, Interferer, Line, Metrics, Mirror, Point, PositionBound
+from .objects import (
+    Box,
+    Cluster,
+    Elements,
+    Interferer,
+    Line,
+    Metrics,
+    Mirror,
+    Point,
+    Polygon,
+    PositionBound,
+    Post,
+    Wall,
+)
 
 _Path = str | os.PathLike[str]
 _Progress = Callable[[float], object]
@@ -98,7 +111,7 @@ class Radar:
 class Scene:
     def __new__(
         cls,
-        objects: Iterable[Point | Line | Cluster] | None = None,
+        objects: Iterable[Point | Line | Cluster | Wall | Box | Post | Polygon] | None = None,
         *,
         name: str = "",
         notes: str = "",
@@ -107,6 +120,7 @@ class Scene:
         elements: Elements | None = None,
         interferer: Interferer | None = None,
         mirror: Mirror | None = None,
+        shadows: bool = True,
     ) -> Scene: ...
     @staticmethod
     def of_points(points: npt.ArrayLike, radar: Radar | None = None) -> Scene: ...
@@ -132,7 +146,9 @@ class Scene:
     def to_toml(self) -> str: ...
     def replace(self, **fields: Any) -> Scene: ...
     @property
-    def objects(self) -> list[Point | Line | Cluster]: ...
+    def shadows(self) -> bool: ...
+    @property
+    def objects(self) -> list[Point | Line | Cluster | Wall | Box | Post | Polygon]: ...
     @property
     def name(self) -> str: ...
     @property

@@ -49,6 +49,60 @@ class Cluster:
 
 
 @dataclass(frozen=True)
+class Wall:
+    """A straight wall around (x, y). `angle_degrees` is that of its length from +x, counter-clockwise. `reflectivity` is the reflection
+    coefficient, `roughness_millimetres` the standard deviation of the surface's height, `seed` picks the rough surface."""
+
+    kind: ClassVar[str] = "wall"
+    x_metres: float
+    y_metres: float
+    length_metres: float
+    angle_degrees: float = 0.0
+    reflectivity: float = 1.0
+    roughness_millimetres: float = 0.0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle around (x, y), such as a car of 4.5 m by 1.8 m; the other fields as those of a `Wall`."""
+
+    kind: ClassVar[str] = "box"
+    x_metres: float
+    y_metres: float
+    length_metres: float
+    width_metres: float
+    angle_degrees: float = 0.0
+    reflectivity: float = 1.0
+    roughness_millimetres: float = 0.0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Post:
+    """A round post around (x, y); the other fields as those of a `Wall`."""
+
+    kind: ClassVar[str] = "post"
+    x_metres: float
+    y_metres: float
+    radius_metres: float
+    reflectivity: float = 1.0
+    roughness_millimetres: float = 0.0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """A closed outline of straight faces with these corners (x, y) in order, either way round; the other fields as those of a `Wall`."""
+
+    kind: ClassVar[str] = "polygon"
+    corners_metres: Sequence[tuple[float, float]]
+    reflectivity: float = 1.0
+    roughness_millimetres: float = 0.0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
 class Interferer:
     """Another radar that sends at the same time: heard while its frequency crosses ours.
 

@@ -4,7 +4,7 @@ use crate::arrays::{numbers, owned};
 use crate::errors::value;
 use crate::radar::{Radar, or_default};
 use apertura::radar::{BuiltArray, Decibels, ElementError, Tolerances};
-use apertura::scene::{GaussianCluster, Interferer, Line, Mirror, Object, Point};
+use apertura::scene::{Block, GaussianCluster, Interferer, Line, Mirror, Object, Point, Polygon, Post, Wall};
 use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -52,10 +52,51 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
             seed: field(from, "seed", &what)?,
             reflectivity: number("reflectivity")?,
         }),
+        Some("wall") => Object::Wall(Wall {
+            x_metres: number("x_metres")?,
+            y_metres: number("y_metres")?,
+            length_metres: number("length_metres")?,
+            angle_degrees: number("angle_degrees")?,
+            reflectivity: number("reflectivity")?,
+            roughness_millimetres: number("roughness_millimetres")?,
+            seed: field(from, "seed", &what)?,
+        }),
+        Some("box") => Object::Box(Block {
+            x_metres: number("x_metres")?,
+            y_metres: number("y_metres")?,
+            length_metres: number("length_metres")?,
+            width_metres: number("width_metres")?,
+            angle_degrees: number("angle_degrees")?,
+            reflectivity: number("reflectivity")?,
+            roughness_millimetres: number("roughness_millimetres")?,
+            seed: field(from, "seed", &what)?,
+        }),
+        Some("post") => Object::Post(Post {
+            x_metres: number("x_metres")?,
+            y_metres: number("y_metres")?,
+            radius_metres: number("radius_metres")?,
+            reflectivity: number("reflectivity")?,
+            roughness_millimetres: number("roughness_millimetres")?,
+            seed: field(from, "seed", &what)?,
+        }),
+        Some("polygon") => Object::Polygon(Polygon {
+            corners_metres: corners(from, &what)?,
+            reflectivity: number("reflectivity")?,
+            roughness_millimetres: number("roughness_millimetres")?,
+            seed: field(from, "seed", &what)?,
+        }),
         _ => {
             let found = from.get_type().name()?;
-            return Err(PyTypeError::new_err(format!("{what} is a {found}; expected Point, Line or Cluster")));
+            let expected = "Point, Line, Cluster, Wall, Box, Post or Polygon";
+            return Err(PyTypeError::new_err(format!("{what} is a {found}; expected {expected}")));
         }
+    })
+}
+
+/// The corners of a polygon.
+fn corners(from: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[f64; 2]>> {
+    from.getattr("corners_metres")?.extract().map_err(|_| {
+        PyTypeError::new_err(format!("{what}: corners_metres is no sequence of (x, y); expected numbers in metres"))
     })
 }
 
@@ -67,6 +108,10 @@ fn data_class<'py>(py: Python<'py>, name: &str, fields: &Bound<'py, PyDict>) -> 
 pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, PyAny>> {
     let fields = PyDict::new(py);
     fields.set_item("reflectivity", object.reflectivity())?;
+    if let Some(body) = object.body() {
+        fields.set_item("roughness_millimetres", body.surface().roughness_millimetres)?;
+        fields.set_item("seed", body.surface().seed)?;
+    }
     let name = match object {
         Object::Point(p) => {
             fields.set_item("x_metres", p.x_metres)?;
@@ -89,6 +134,32 @@ pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, P
             fields.set_item("count", g.count)?;
             fields.set_item("seed", g.seed)?;
             "Cluster"
+        }
+        Object::Wall(w) => {
+            fields.set_item("x_metres", w.x_metres)?;
+            fields.set_item("y_metres", w.y_metres)?;
+            fields.set_item("length_metres", w.length_metres)?;
+            fields.set_item("angle_degrees", w.angle_degrees)?;
+            "Wall"
+        }
+        Object::Box(b) => {
+            fields.set_item("x_metres", b.x_metres)?;
+            fields.set_item("y_metres", b.y_metres)?;
+            fields.set_item("length_metres", b.length_metres)?;
+            fields.set_item("width_metres", b.width_metres)?;
+            fields.set_item("angle_degrees", b.angle_degrees)?;
+            "Box"
+        }
+        Object::Post(p) => {
+            fields.set_item("x_metres", p.x_metres)?;
+            fields.set_item("y_metres", p.y_metres)?;
+            fields.set_item("radius_metres", p.radius_metres)?;
+            "Post"
+        }
+        Object::Polygon(p) => {
+            let corners: Vec<(f64, f64)> = p.corners_metres.iter().map(|c| (c[0], c[1])).collect();
+            fields.set_item("corners_metres", corners)?;
+            "Polygon"
         }
     };
     data_class(py, name, &fields)

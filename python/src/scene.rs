@@ -22,7 +22,7 @@ use std::str::FromStr;
 /// Objects before a radar, and the radar that looks at them.
 ///
 /// Args:
-///     objects: `Point`, `Line` and `Cluster`, in order.
+///     objects: `Point`, `Line`, `Cluster`, `Wall`, `Box`, `Post` and `Polygon`, in order.
 ///     name: What the scene is called.
 ///     notes: What it is meant to show.
 ///     noise_seed: Picks the noise of the floor beneath it.
@@ -30,6 +30,7 @@ use std::str::FromStr;
 ///     elements: Elements as they are built (`Elements`); ideal where none are given.
 ///     interferer: Another radar that sends at the same time (`Interferer`).
 ///     mirror: A wall that mirrors (`Mirror`).
+///     shadows: Whether bodies hide what stands behind them.
 ///
 /// Raises:
 ///     TypeError: An object is none of these.
@@ -73,7 +74,7 @@ fn checked(file: SceneFile) -> PyResult<Scene> {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (objects=None, *, name="", notes="", noise_seed=0, radar=None, elements=None, interferer=None, mirror=None))]
+    #[pyo3(signature = (objects=None, *, name="", notes="", noise_seed=0, radar=None, elements=None, interferer=None, mirror=None, shadows=true))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         objects: Option<&Bound<'_, PyAny>>,
@@ -84,6 +85,7 @@ impl Scene {
         elements: Option<&Bound<'_, PyAny>>,
         interferer: Option<&Bound<'_, PyAny>>,
         mirror: Option<&Bound<'_, PyAny>>,
+        shadows: bool,
     ) -> PyResult<Self> {
         let mut made = Vec::new();
         if let Some(objects) = objects {
@@ -97,7 +99,7 @@ impl Scene {
             mirror: mirror.map(objects::mirror).transpose()?,
         };
         let (name, notes) = (name.to_owned(), notes.to_owned());
-        let scene = scene::Scene { name, notes, noise_seed, disturbances, objects: made };
+        let scene = scene::Scene { name, notes, noise_seed, shadows, disturbances, objects: made };
         checked(SceneFile { scene, radar: radar.map(|r| r.0.clone()).unwrap_or_default() })
     }
 
@@ -124,7 +126,8 @@ impl Scene {
     /// Random scene `index` of a set: the one that the program makes of the same numbers.
     ///
     /// Args:
-    ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near", "noise".
+    ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near",
+    ///         "bodies", "street", "rails", "occlusion", "rough", "noise".
     ///     seed: Seed of the set.
     ///     index: Number of the scene, from 0.
     ///     purpose: "test", "validation" or "training": their scenes never meet.
@@ -269,6 +272,12 @@ impl Scene {
     #[getter]
     fn mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.0.scene.disturbances.mirror.as_ref().map(|m| objects::of_mirror(py, m)).transpose()
+    }
+
+    /// Whether bodies hide what stands behind them.
+    #[getter]
+    fn shadows(&self) -> bool {
+        self.0.scene.shadows
     }
 
     /// Every reflector of every object, float64 `[reflectors, 3]`: x and y in metres, reflectivity.

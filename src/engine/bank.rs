@@ -6,7 +6,8 @@ use super::report::{Report, Stage};
 use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources, silence_decades};
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
-use crate::scene::{Object, Reflector, Scene};
+use crate::scattering::{Echoing, Seen};
+use crate::scene::Scene;
 use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
@@ -19,6 +20,8 @@ pub(super) struct Job<'a> {
     pub task: &'a Task,
     pub radar: &'a Radar,
     pub scene: &'a Scene,
+    /// Its objects, with what hides them.
+    pub seen: &'a [Seen],
     pub wanted: &'a Wanted,
     pub plan: Plan,
     pub forced: Option<Algorithm>,
@@ -27,6 +30,14 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// So many of what the scene echoes with.
+    fn counted(&self, count: usize) -> String {
+        match self.scene.has_bodies() {
+            true => counted(count, "echo", "echoes"),
+            false => counted(count, "reflector", "reflectors"),
+        }
+    }
+
     /// Amplitude that noise of a level of its own hardly ever exceeds: echoes may be far beneath it, as no other floor lets them be.
     fn noise_amplitude(&self) -> f64 {
         match self.wanted.floor {
@@ -75,7 +86,7 @@ impl Kept {
 
 /// Profiles of some objects, with the variance of their part of the thesis' floor.
 pub(super) struct Group<T, const W: usize> {
-    objects: Vec<Object>,
+    objects: Vec<Seen>,
     pub(super) profiles: BlockProfiles<T, W>,
     /// `None` until somebody asks.
     variance: Option<Vec<f64>>,
@@ -86,15 +97,16 @@ impl<T: Real, const W: usize> Group<T, W> {
         Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), variance: None }
     }
 
-    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Object], task: &Task) {
-        synthesis.range_profiles(&reflectors(objects), &mut self.profiles, task);
+    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Seen], job: &Job<'_>) {
+        synthesis.range_profiles(&Echoing::seen(job.radar, objects), &mut self.profiles, job.task);
         self.variance = None;
         self.objects = objects.to_vec();
     }
 
     /// Variance of the thesis' floor beneath these objects, at every element.
     fn variance(&mut self, radar: &Radar) -> &[f64] {
-        self.variance.get_or_insert_with(|| floor::thesis_noise_variance(radar, &reflectors(&self.objects)))
+        let objects = &self.objects;
+        self.variance.get_or_insert_with(|| floor::thesis_noise_variance(radar, &Echoing::seen(radar, objects)))
     }
 
     /// Holds nothing any more.
@@ -241,8 +253,8 @@ impl<T: Real, const W: usize> Bank<T, W> {
 
     /// Makes the two groups hold the scene; says how, and which rows may have changed.
     fn follow(&mut self, job: &Job<'_>) -> (String, Rows) {
-        let scene = &job.scene.objects;
-        let total = job.scene.reflector_count();
+        let scene = job.seen;
+        let total = job.scene.echo_count();
         let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
         let usable = self.built.as_ref().filter(|b| b.tolerance <= job.plan.tolerance && b.forced == job.forced);
         let change = usable.and_then(|built| {
@@ -267,15 +279,15 @@ impl<T: Real, const W: usize> Bank<T, W> {
                     self.rest.add(&self.active, 1.0);
                 }
                 if !change.leaving.is_empty() {
-                    let count = change.leaving.iter().map(Object::reflector_count).sum();
+                    let count = change.leaving.iter().map(Seen::echo_count).sum();
                     let synthesis = self.synthesis(job, count);
-                    self.leaving.fill(&self.syntheses[synthesis], &change.leaving, job.task);
+                    self.leaving.fill(&self.syntheses[synthesis], &change.leaving, job);
                     self.rest.add(&self.leaving, -1.0);
                     changed.extend(&self.leaving.profiles.touched);
                 }
-                let count = change.arriving.iter().map(Object::reflector_count).sum();
+                let count = change.arriving.iter().map(Seen::echo_count).sum();
                 let synthesis = self.synthesis(job, count);
-                self.active.fill(&self.syntheses[synthesis], &change.arriving, job.task);
+                self.active.fill(&self.syntheses[synthesis], &change.arriving, job);
                 if let Some(built) = &mut self.built {
                     built.rounding = rounding;
                 }
@@ -283,34 +295,31 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 changed.extend(&self.active.profiles.touched);
                 let plan = self.syntheses[synthesis].plan();
                 let how = format!("{} in {}", plan.algorithm, T::NAME);
-                (
-                    format!(
-                        "{evaluated} of {}, {how}, the others as before",
-                        counted(total, "reflector", "reflectors")
-                    ),
-                    changed,
-                )
+                (format!("{evaluated} of {}, {how}, the others as before", job.counted(total)), changed)
             }
-            _ => self.build_anew(job),
+            // What moved among bodies is kept apart at once: with what it hides it may be most of the scene, and will move again.
+            Some((change, _)) if job.scene.has_bodies() => self.build_anew(job, &change.staying, &change.arriving),
+            _ => self.build_anew(job, job.seen, &[]),
         }
     }
 
-    /// Makes the sum at rest hold the whole scene, and the other nothing.
-    fn build_anew(&mut self, job: &Job<'_>) -> (String, Rows) {
-        let total = job.scene.reflector_count();
+    /// Makes the sum at rest hold `staying`, and the other `moving`: together the whole scene.
+    fn build_anew(&mut self, job: &Job<'_>, staying: &[Seen], moving: &[Seen]) -> (String, Rows) {
+        let total = job.scene.echo_count();
         let synthesis = self.synthesis(job, total);
         let mut changed = self.rest.profiles.touched.clone();
         changed.extend(&self.active.profiles.touched);
         self.active.clear();
-        self.rest.fill(&self.syntheses[synthesis], &job.scene.objects, job.task);
+        self.rest.fill(&self.syntheses[synthesis], staying, job);
+        if !moving.is_empty() {
+            self.active.fill(&self.syntheses[synthesis], moving, job);
+            changed.extend(&self.active.profiles.touched);
+        }
         changed.extend(&self.rest.profiles.touched);
         let (tolerance, forced) = (job.plan.tolerance, job.forced);
         self.built = Some(Built { tolerance, forced, rounding: 0.0 });
         let plan = self.syntheses[synthesis].plan();
-        (
-            format!("{} from scratch, {} in {}", counted(total, "reflector", "reflectors"), plan.algorithm, T::NAME),
-            changed,
-        )
+        (format!("{} from scratch, {} in {}", job.counted(total), plan.algorithm, T::NAME), changed)
     }
 
     /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.
@@ -321,7 +330,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let (rest, active) = (self.rest.variance(job.radar), self.active.variance(job.radar));
                 rest.iter().zip(active).map(|(a, b)| a + b).collect()
             }
-            Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &job.scene.reflectors(), snr),
+            Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &Echoing::seen(job.radar, job.seen), snr),
             Floor::Level(level) => floor::level_noise_variance(job.radar, level),
         };
         let seed = job.wanted.seed;
@@ -332,8 +341,4 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let blocks = job.radar.elements.div_ceil(W);
         Some((0..blocks).map(|b| Lanes(std::array::from_fn(|i| of(b * W + i)))).collect())
     }
-}
-
-fn reflectors(objects: &[Object]) -> Vec<Reflector> {
-    objects.iter().flat_map(Object::reflectors).collect()
 }

@@ -1,26 +1,27 @@
-//! What has to be done so that the sums the engine keeps become another scene.
+//! What has to be done so that the sums the engine keeps become another scene. An object that something else hides than before is another
+//! one: so a body that moves has itself evaluated, and what it hides or reveals, and nothing else.
 
-use crate::scene::Object;
+use crate::scattering::Seen;
 
 /// What has to be done so that two groups of objects become a scene.
 pub(super) struct Change {
     /// Whether the active ones are added to the sum at rest first.
     pub settles: bool,
     /// Stay in the sum at rest.
-    pub staying: Vec<Object>,
+    pub staying: Vec<Seen>,
     /// Are evaluated and taken out of the sum at rest.
-    pub leaving: Vec<Object>,
+    pub leaving: Vec<Seen>,
     /// Are evaluated and become the active ones.
-    pub arriving: Vec<Object>,
+    pub arriving: Vec<Seen>,
 }
 
 impl Change {
-    pub fn between(rest: &[Object], active: &[Object], scene: &[Object]) -> Change {
+    pub fn between(rest: &[Seen], active: &[Seen], scene: &[Seen]) -> Change {
         // Both sums are unordered: compare the objects as multisets. Edits touch few of them, so that what is left to
         // search for after walking both lists in step is short.
-        let mut unmatched: Vec<&Object> = Vec::new();
+        let mut unmatched: Vec<&Seen> = Vec::new();
         let mut staying = Vec::with_capacity(rest.len());
-        let mut arriving: Vec<Object> = Vec::new();
+        let mut arriving: Vec<Seen> = Vec::new();
         let mut old = rest.iter().peekable();
         for object in scene {
             if old.peek().is_some_and(|o| *o == object) {
@@ -64,14 +65,14 @@ impl Change {
         if at_rest && stirring.cost() <= settling.cost() { stirring } else { settling }
     }
 
-    /// Reflectors to evaluate.
+    /// Echoes to evaluate.
     pub fn cost(&self) -> usize {
         count(&self.leaving) + count(&self.arriving)
     }
 }
 
-fn count(objects: &[Object]) -> usize {
-    objects.iter().map(Object::reflector_count).sum()
+fn count(objects: &[Seen]) -> usize {
+    objects.iter().map(Seen::echo_count).sum()
 }
 
 #[cfg(test)]
@@ -79,8 +80,8 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
 
-    fn points(x: impl IntoIterator<Item = f64>) -> Vec<Object> {
-        Scene::of_points(x.into_iter().map(|x| (x, 5.0))).objects
+    fn points(x: impl IntoIterator<Item = f64>) -> Vec<Seen> {
+        Scene::of_points(x.into_iter().map(|x| (x, 5.0))).objects.into_iter().map(Seen::from).collect()
     }
 
     #[test]

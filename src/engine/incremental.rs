@@ -12,6 +12,7 @@ use super::shown::Shown;
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
+use crate::scattering::Seen;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::{self, Sum};
 use crate::signal::simd::{LANES_F32, LANES_F64};
@@ -206,6 +207,7 @@ impl Engine {
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
         let same = |s: &Shown| {
             s.objects == scene.objects
+                && s.shadows == scene.shadows
                 && s.floor == wanted.floor
                 && s.seed == wanted.seed
                 && s.tolerance <= tolerance
@@ -227,17 +229,18 @@ impl Engine {
         shown: &mut Shown,
         report: &mut Report,
     ) -> Result<(), Cancelled> {
-        let amplitude = plan::amplitude_bound_of(&self.radar, &scene.objects);
-        let mut chosen = Plan::cheapest(scene.reflector_count(), amplitude, self.tolerance(wanted));
+        let seen = Seen::all(&self.radar, scene);
+        let amplitude = plan::amplitude_bound_of(&self.radar, &seen);
+        let mut chosen = Plan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
             let algorithm = self.forced.algorithm.unwrap_or(chosen.algorithm);
-            let sum = Sum { algorithm, reflectors: scene.reflector_count(), amplitude };
+            let sum = Sum { algorithm, reflectors: scene.echo_count(), amplitude };
             let refusal = tolerance::refusal(forced, &sum, wanted.floor, wanted.normalisation);
             chosen.precision = if refusal.is_some() { Precision::F64 } else { forced };
             refusal
         });
         let (radar, forced) = (&self.radar, self.forced.algorithm);
-        let job = Job { task, radar, scene, wanted, plan: chosen, forced, amplitude, missing };
+        let job = Job { task, radar, scene, seen: &seen, wanted, plan: chosen, forced, amplitude, missing };
         if self.last.replace(chosen.precision) != Some(chosen.precision) {
             // What the maps show was summed by the other bank.
             shown.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));

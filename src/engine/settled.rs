@@ -15,6 +15,7 @@ const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::
 /// The maps of one scene by [`signal::simulate`] and the plain transforms in f64; nothing of any other scene is in them.
 pub(super) struct Settled {
     objects: Vec<Object>,
+    shadows: bool,
     disturbances: Disturbances,
     floor: Floor,
     seed: u64,
@@ -48,16 +49,17 @@ impl Settled {
             *log = Some(angle_transform(radar, &profiles, APERTURES[i]).log_magnitude());
             report.computed(Stage::MAPS[i], start.elapsed(), "all rows in f64");
         }
-        let (objects, disturbances) = (scene.objects.clone(), scene.disturbances.clone());
+        let (objects, shadows, disturbances) = (scene.objects.clone(), scene.shadows, scene.disturbances.clone());
         let normalisation = wanted.normalisation;
         let (floor, seed, maps) = (wanted.floor, wanted.seed, [None, None, None]);
-        Ok(Settled { objects, disturbances, floor, seed, ends, logs, normalisation, maps })
+        Ok(Settled { objects, shadows, disturbances, floor, seed, ends, logs, normalisation, maps })
     }
 
     /// Whether it has all that is wanted of `scene`.
     pub fn has(&self, scene: &Scene, wanted: &Wanted) -> bool {
         let visible = wanted.visible();
         self.objects == scene.objects
+            && self.shadows == scene.shadows
             && self.disturbances == scene.disturbances
             && (self.floor, self.seed) == (wanted.floor, wanted.seed)
             && (0..3).all(|i| !visible[i] || self.logs[i].is_some())

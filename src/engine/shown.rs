@@ -15,6 +15,7 @@ use std::sync::Arc;
 /// What the last frame showed, and for which scene.
 pub(super) struct Shown {
     pub objects: Vec<Object>,
+    pub shadows: bool,
     pub floor: Floor,
     pub seed: u64,
     pub tolerance: f64,
@@ -41,6 +42,7 @@ impl Shown {
         }
         Shown {
             objects: scene.objects.clone(),
+            shadows: scene.shadows,
             floor: wanted.floor,
             seed: wanted.seed,
             tolerance,

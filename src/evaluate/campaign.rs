@@ -7,6 +7,7 @@ use super::trial::{Answer, RowPlace, Trial};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstructor, Request, untrained_noise};
+use crate::scattering::Echoing;
 use crate::scene::SceneError;
 use crate::scene::file::SceneFileError;
 use crate::scene::generate::{Generator, Purpose, Reading};
@@ -244,9 +245,9 @@ impl Campaign {
             let mut said = vec![(0, None); trained.len()];
             for index in (0..count).filter(|&n| self.shard.contains(n)) {
                 let Case { radar, scene } = set.case(&self.radar, &generator, index)?;
-                let reflectors = scene.reflectors();
+                let echoing = Echoing::of(&radar, &scene);
                 for (said, method) in said.iter_mut().zip(&trained) {
-                    if let Some(why) = untrained_noise(**method, &radar, &reflectors, floor) {
+                    if let Some(why) = untrained_noise(**method, &radar, &echoing, floor) {
                         *said = (said.0 + 1, said.1.take().or(Some(why)));
                     }
                 }

@@ -9,7 +9,8 @@ use super::TARGET_ETA;
 use super::blobs::Blobs;
 use crate::maps::{Aperture, LambdaScale, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::Radar;
-use crate::scene::{Object, Scene};
+use crate::scattering::{Echoing, Seen};
+use crate::scene::Scene;
 use crate::signal::plan::amplitude_bound;
 use crate::signal::{Plan, beat_signal};
 use ndarray::Axis;
@@ -117,7 +118,7 @@ impl Footprints {
     /// `scene` must have passed [`Scene::validate`].
     pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
-        let objects = scene.objects.iter().map(|o| footprint(radar, o, level)).collect();
+        let objects = Seen::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
         // Where nothing reflects, whatever the target shows is noise, and a blob of the output at its place is a ghost all the same.
         let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
         Footprints { objects, target: Blobs::of(&shown) }
@@ -211,12 +212,12 @@ fn moved(column: usize, by: i32, columns: usize) -> usize {
     (column as i64 + i64::from(by)).rem_euclid(columns as i64) as usize
 }
 
-/// The cells that `object` alone, without noise, lifts above `level` (a magnitude).
-fn footprint(radar: &Radar, object: &Object, level: f64) -> Vec<Cell> {
-    let reflectors = object.reflectors();
-    let amplitude = amplitude_bound(radar, &reflectors);
-    let plan = Plan::cheapest(reflectors.len(), amplitude, TOLERANCE);
-    let profiles = range_transform(radar, &beat_signal(radar, &reflectors, &plan)).profiles;
+/// The cells that an object alone, hidden as it is, without noise, lifts above `level` (a magnitude).
+fn footprint(radar: &Radar, seen: &Seen, level: f64) -> Vec<Cell> {
+    let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
+    let amplitude = amplitude_bound(radar, &echoing);
+    let plan = Plan::cheapest(echoing.len(), amplitude, TOLERANCE);
+    let profiles = range_transform(radar, &beat_signal(radar, &echoing, &plan)).profiles;
     // No cell of a row can exceed what its profiles add up to.
     let scale = (radar.elements as f64).sqrt().recip();
     let window = radar.window.weights(radar.elements);
@@ -233,7 +234,7 @@ fn footprint(radar: &Radar, object: &Object, level: f64) -> Vec<Cell> {
 mod tests {
     use super::*;
     use crate::maps::{LogMaps, Normalisation};
-    use crate::scene::Point;
+    use crate::scene::{Object, Point};
     use crate::signal::{Floor, simulate};
 
     /// A target, where its objects show, and how far a threshold lies from its cells' edge.

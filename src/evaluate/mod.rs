@@ -3,6 +3,7 @@
 
 mod blobs;
 pub mod campaign;
+pub mod echoes;
 mod estimate;
 pub mod failure;
 pub mod filter;

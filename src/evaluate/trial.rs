@@ -1,5 +1,6 @@
 //! One scene for all methods, and the measures of their answers.
 
+use super::echoes::{self, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::{Origin, Row};
 use super::{Metrics, Roc};
@@ -92,6 +93,11 @@ impl Trial {
         self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
     }
 
+    /// Which echoes stand out in the target, and which of them an answer shows.
+    pub fn echoes(&self, answer: &Answer) -> EchoTally {
+        echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
+    }
+
     /// The row of an answer. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
     pub fn row(&self, place: &RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
@@ -142,7 +148,7 @@ type Spot = ([f64; 2], usize);
 
 impl Facts {
     fn of(radar: &Radar, scene: &Scene) -> Facts {
-        let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.reflectors()));
+        let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.marks()));
         let reflectors: Vec<(usize, Reflector)> =
             of_objects.flat_map(|(i, all)| all.into_iter().map(move |r| (i, r))).collect();
         let range = |r: &Reflector| r.x_metres.hypot(r.y_metres);

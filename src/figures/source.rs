@@ -9,7 +9,7 @@ use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::presets::Preset;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Object, Scene, SceneError};
 use crate::signal::{self, BeatSignal, Floor};
 use ndarray::Array2;
 
@@ -135,7 +135,7 @@ impl Source {
     /// The scene's reflectors over x and y.
     pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> Panel {
         let extent = self.radar.max_range_metres();
-        let places = scene.reflectors().into_iter().map(|r| (r.x_metres, r.y_metres.abs()));
+        let places = scene.objects.iter().flat_map(Object::marks).map(|r| (r.x_metres, r.y_metres.abs()));
         let dots = Series::line("", places).with(Stroke::Dots);
         Panel::chart(title, Axis::new("x (m)", -extent, extent), Axis::new("y (m)", 0.0, extent), vec![dots])
     }

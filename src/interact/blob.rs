@@ -28,7 +28,7 @@ impl BlobHit {
 pub fn nearest(scene: &Scene, distance_points: impl Fn(&Reflector) -> f64) -> Option<BlobHit> {
     let mut best: Option<(f64, BlobHit)> = None;
     for (object, o) in scene.objects.iter().enumerate() {
-        for reflector in o.reflectors() {
+        for reflector in o.marks() {
             let distance = distance_points(&reflector);
             if distance <= best.map_or(BLOB_RADIUS_POINTS, |(d, _)| d) {
                 let place = Place::new(reflector.x_metres, reflector.y_metres);

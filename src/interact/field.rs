@@ -1,6 +1,7 @@
 //! The numbers of an object that can be read and set, by name: a form shows those of one object, or those that several have in common.
 
 use crate::scene::Object;
+use crate::scene::body::{MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use serde::{Deserialize, Serialize};
 
 /// In which numbers places are told and entered.
@@ -35,11 +36,21 @@ pub enum Field {
     SpreadX,
     /// Standard deviation of a cluster along y, metres.
     SpreadY,
+    /// Length of a wall or a box, metres.
+    Length,
+    /// Width of a box, metres.
+    Width,
+    /// Direction of the length of a wall or a box, degrees from +x, counter-clockwise.
+    Angle,
+    /// Radius of a post, metres.
+    Radius,
+    /// Height deviation of a body's surface, millimetres.
+    Roughness,
     /// Number of reflectors of a line or a cluster.
     Count,
-    /// Seed of a cluster.
+    /// Seed of a cluster, or of a rough surface.
     Seed,
-    /// Reflectivity sigma of each reflector.
+    /// Reflectivity sigma of each reflector; the reflection coefficient of a body.
     Reflectivity,
 }
 
@@ -86,6 +97,12 @@ impl Field {
             Object::Point(_) => &[Field::Reflectivity],
             Object::Line(_) => &[Field::Spacing, Field::Direction, Field::Count, Field::Reflectivity],
             Object::Gaussian(_) => &[Field::SpreadX, Field::SpreadY, Field::Count, Field::Seed, Field::Reflectivity],
+            Object::Wall(_) => &[Field::Length, Field::Angle, Field::Reflectivity, Field::Roughness, Field::Seed],
+            Object::Box(_) => {
+                &[Field::Length, Field::Width, Field::Angle, Field::Reflectivity, Field::Roughness, Field::Seed]
+            }
+            Object::Post(_) => &[Field::Radius, Field::Reflectivity, Field::Roughness],
+            Object::Polygon(_) => &[Field::Reflectivity, Field::Roughness, Field::Seed],
         }
     }
 
@@ -113,6 +130,14 @@ impl Field {
             (Field::SpreadX, Object::Gaussian(g)) => g.x_std_metres,
             (Field::SpreadY, Object::Gaussian(g)) => g.y_std_metres,
             (Field::Seed, Object::Gaussian(g)) => g.seed as f64,
+            (Field::Length, Object::Wall(w)) => w.length_metres,
+            (Field::Length, Object::Box(b)) => b.length_metres,
+            (Field::Width, Object::Box(b)) => b.width_metres,
+            (Field::Angle, Object::Wall(w)) => w.angle_degrees,
+            (Field::Angle, Object::Box(b)) => b.angle_degrees,
+            (Field::Radius, Object::Post(p)) => p.radius_metres,
+            (Field::Roughness, body) => body.body()?.surface().roughness_millimetres,
+            (Field::Seed, body) => body.body()?.surface().seed as f64,
             _ => return None,
         })
     }
@@ -120,8 +145,8 @@ impl Field {
     /// Sets it, in the nearest value that makes sense (counts are whole, cosines at most 1); nothing where the object has no such number.
     pub fn set(self, object: &mut Object, value: f64) {
         match (self, &mut *object) {
-            (Field::X, _) => *object.anchor_mut()[0] = value,
-            (Field::Y, _) => *object.anchor_mut()[1] = value,
+            (Field::X, _) => object.set_anchor([value, object.anchor_metres()[1]]),
+            (Field::Y, _) => object.set_anchor([object.anchor_metres()[0], value]),
             (Field::Range | Field::CosTheta | Field::AngleDegrees, _) => self.set_polar(object, value),
             (Field::Reflectivity, _) => object.set_reflectivity(value),
             (Field::Spacing, Object::Line(l)) => l.spacing_metres = value,
@@ -131,27 +156,46 @@ impl Field {
             (Field::SpreadX, Object::Gaussian(g)) => g.x_std_metres = value.max(0.0),
             (Field::SpreadY, Object::Gaussian(g)) => g.y_std_metres = value.max(0.0),
             (Field::Seed, Object::Gaussian(g)) => g.seed = value.round().max(0.0) as u64,
+            (Field::Length, Object::Wall(w)) => w.length_metres = size(value),
+            (Field::Length, Object::Box(b)) => b.length_metres = size(value),
+            (Field::Width, Object::Box(b)) => b.width_metres = size(value),
+            (Field::Angle, Object::Wall(w)) => w.angle_degrees = value,
+            (Field::Angle, Object::Box(b)) => b.angle_degrees = value,
+            (Field::Radius, Object::Post(p)) => p.radius_metres = value.clamp(MIN_RADIUS_METRES, MAX_SIZE_METRES),
+            (Field::Roughness | Field::Seed, body) => {
+                if let Some((roughness, seed)) = body.roughness_mut() {
+                    match self {
+                        Field::Roughness => *roughness = value.clamp(0.0, MAX_ROUGHNESS_MILLIMETRES),
+                        _ => *seed = value.round().max(0.0) as u64,
+                    }
+                }
+            }
             _ => {}
         }
     }
 
     /// Range and direction: either stays when the other is set. cos(theta) says nothing of ahead or behind; that stays, too.
     fn set_polar(self, object: &mut Object, value: f64) {
-        let [x, y] = object.anchor_mut();
-        let range = x.hypot(*y);
-        (*x, *y) = match self {
-            Field::Range if range > 0.0 => (*x * value.max(0.0) / range, *y * value.max(0.0) / range),
-            Field::Range => (0.0, value.max(0.0)),
+        let [x, y] = object.anchor_metres();
+        let range = x.hypot(y);
+        object.set_anchor(match self {
+            Field::Range if range > 0.0 => [x * value.max(0.0) / range, y * value.max(0.0) / range],
+            Field::Range => [0.0, value.max(0.0)],
             Field::CosTheta => {
                 let cos = value.clamp(-1.0, 1.0);
-                (range * cos, (range * (1.0 - cos * cos).sqrt()).copysign(*y))
+                [range * cos, (range * (1.0 - cos * cos).sqrt()).copysign(y)]
             }
             _ => {
                 let (sin, cos) = value.to_radians().sin_cos();
-                (range * sin, range * cos)
+                [range * sin, range * cos]
             }
-        };
+        });
     }
+}
+
+/// The nearest size that a body can have, metres.
+fn size(metres: f64) -> f64 {
+    metres.clamp(MIN_SIZE_METRES, MAX_SIZE_METRES)
 }
 
 /// The fields that all `objects` have, in the order of a form.
@@ -172,7 +216,7 @@ pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{GaussianCluster, Line, Point};
+    use crate::scene::{Block, GaussianCluster, Line, Point, Polygon, Post, Wall};
 
     fn cluster() -> Object {
         Object::Gaussian(GaussianCluster {
@@ -188,7 +232,15 @@ mod tests {
 
     #[test]
     fn every_field_of_every_kind_is_set_to_what_it_then_reads() {
-        for object in [Object::Point(Point::new(3.0, 4.0)), Object::Line(Line::vertical(3.0, 4.0, 0.5, 7)), cluster()] {
+        for object in [
+            Object::Point(Point::new(3.0, 4.0)),
+            Object::Line(Line::vertical(3.0, 4.0, 0.5, 7)),
+            cluster(),
+            Object::Wall(Wall::new(3.0, 4.0, 2.0, 30.0)),
+            Object::Box(Block::new([3.0, 4.0], [2.0, 1.0], 30.0)),
+            Object::Post(Post::new(3.0, 4.0, 0.5)),
+            Object::Polygon(Polygon::new(vec![[3.0, 4.0], [4.0, 4.0], [3.0, 5.0]])),
+        ] {
             for coordinates in [Coordinates::Cartesian, Coordinates::Polar] {
                 let fields = shared([&object].into_iter(), coordinates);
                 assert!(fields.len() >= 3 && fields.iter().all(|f| f.is_same), "{fields:?}");

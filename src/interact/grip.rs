@@ -1,4 +1,4 @@
-//! The parts of an object that can be grabbed, and what dragging each of them means.
+//! The parts of an object that can be grabbed, and what dragging each of them means. Those of bodies are in [`super::body_grip`].
 //!
 //! ```text
 //!     ↻  turn: the line turns about its middle; length and number kept
@@ -11,7 +11,8 @@
 //!     o  near end: more or fewer reflectors, the far end stays          spread in y
 //! ```
 
-use super::Place;
+use super::grip_kind::{Grip, GripPlace};
+use super::{Place, body_grip};
 use crate::scene::{Line, Object, Scene};
 
 /// Most reflectors a line can be stretched to by hand.
@@ -22,49 +23,6 @@ const SPACING_GRIP_OFFSET_POINTS: f64 = 16.0;
 
 /// How far beyond the far end the grip lies that turns a line, in points of the view.
 const TURN_GRIP_OFFSET_POINTS: f64 = 26.0;
-
-/// Part of an object that can be grabbed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Grip {
-    /// The object as a whole.
-    Body,
-    /// The end of a line that is nearest to the array.
-    NearEnd,
-    /// The other end.
-    FarEnd,
-    /// The spacing of a line.
-    Spacing,
-    /// The direction of a line.
-    Turn,
-    /// The standard deviation of a cluster along x.
-    SpreadX,
-    /// The standard deviation of a cluster along y.
-    SpreadY,
-}
-
-impl Grip {
-    /// What dragging it does, for tooltips and screen readers.
-    pub fn describe(self) -> &'static str {
-        match self {
-            Grip::Body => "move",
-            Grip::NearEnd => "move the near end: more or fewer reflectors",
-            Grip::FarEnd => "move the far end: more or fewer reflectors",
-            Grip::Spacing => "spread the reflectors",
-            Grip::Turn => "turn the line about its middle",
-            Grip::SpreadX => "widen the cluster",
-            Grip::SpreadY => "deepen the cluster",
-        }
-    }
-}
-
-/// A grip and where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GripPlace {
-    /// What is grabbed.
-    pub grip: Grip,
-    /// Where.
-    pub place: Place,
-}
 
 /// The grips of `object`, [`Grip::Body`] last, in a view where one point covers `metres_per_point`.
 pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
@@ -92,6 +50,11 @@ pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
             at(Grip::SpreadY, g.x_metres, g.y_metres + g.y_std_metres),
             body,
         ],
+        Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
+            let mut all = body_grip::grips(object, TURN_GRIP_OFFSET_POINTS * metres_per_point);
+            all.push(body);
+            all
+        }
     }
 }
 
@@ -123,7 +86,7 @@ pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
         }
         (Object::Gaussian(g), Grip::SpreadX) => g.x_std_metres = (to.x_metres - g.x_metres).abs(),
         (Object::Gaussian(g), Grip::SpreadY) => g.y_std_metres = (to.y_metres - g.y_metres).abs(),
-        _ => {}
+        (body, grip) => body_grip::move_grip(body, grip, to),
     }
     after
 }
@@ -177,6 +140,11 @@ pub(super) fn extent(object: &Object) -> (Place, Place) {
             Place::new(g.x_metres - g.x_std_metres, g.y_metres - g.y_std_metres),
             Place::new(g.x_metres + g.x_std_metres, g.y_metres + g.y_std_metres),
         ),
+        Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
+            let centre = object.centre_metres();
+            let (low, high) = object.body().map_or((centre, centre), |body| body.shape().extent());
+            (low.into(), high.into())
+        }
     }
 }
 

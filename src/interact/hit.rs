@@ -1,6 +1,7 @@
 //! What lies under the pointer, or inside a box.
 
-use super::grip::{Grip, grips};
+use super::grip::grips;
+use super::grip_kind::Grip;
 use super::{Place, Selection};
 use crate::scene::{Object, Scene};
 
@@ -59,6 +60,12 @@ fn body_distance(object: &Object, at: Place) -> f64 {
             // Inside the cluster its centre still counts as nearer than its rim, so that a point within can be grabbed.
             let inside = centre.distance_metres(at) / (g.x_std_metres + g.y_std_metres).max(1e-9);
             out_x.hypot(out_y) + 1e-3 * inside
+        }
+        Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
+            let Some(shape) = object.body().map(|body| body.shape()) else { return f64::INFINITY };
+            let (_, radius) = shape.around();
+            // As within a cluster: a small thing that lies on a large one can be grabbed.
+            shape.distance_metres([at.x_metres, at.y_metres]) + 1e-3 * centre.distance_metres(at) / radius.max(1e-9)
         }
     }
 }

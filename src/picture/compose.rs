@@ -72,9 +72,12 @@ pub fn compose(
         Carrier::OneWay => "one-way carrier",
         Carrier::TwoWay => "two-way carrier",
     };
-    let reflectors = match scene.reflector_count() {
-        0 => "no reflector".to_owned(),
-        n => counted(n, "reflector", "reflectors"),
+    let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
+    let reflectors = match (scene.reflector_count(), bodies) {
+        (0, 0) => "no reflector".to_owned(),
+        (n, 0) => counted(n, "reflector", "reflectors"),
+        (0, bodies) => counted(bodies, "body", "bodies"),
+        (n, bodies) => format!("{}, {}", counted(n, "reflector", "reflectors"), counted(bodies, "body", "bodies")),
     };
     let panels = Panels {
         scene,

@@ -5,7 +5,7 @@ use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
 use super::text::{self, Weight};
 use crate::maps::{RangeAngleMap, cartesian::project};
 use crate::radar::{End, Radar};
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Scene, Shape};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::f64::consts::PI;
@@ -139,8 +139,15 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
             Object::Point(_) => (5, [24, 92, 168]),
             Object::Line(_) => (2, [16, 124, 96]),
             Object::Gaussian(_) => (3, [150, 70, 160]),
+            Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => (3, [110, 80, 40]),
         };
         let colour = RGBColor(red, green, blue);
+        if let Some(body) = object.body() {
+            chart.draw_series([Polygon::new(outline(&body.shape()), colour.mix(0.5))]).map_err(PictureError::new)?;
+            chart
+                .draw_series([PathElement::new(outline(&body.shape()), colour.stroke_width(2))])
+                .map_err(PictureError::new)?;
+        }
         // A line array sees y and -y alike: what lies behind is drawn ahead, hollow.
         chart
             .draw_series(object.reflectors().iter().filter(|r| r.x_metres.hypot(r.y_metres) <= max).map(|r| {
@@ -150,4 +157,18 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
             .map_err(PictureError::new)?;
     }
     Ok(())
+}
+
+/// A body's outline, closed, (x, y) in metres.
+fn outline(shape: &Shape) -> Vec<(f64, f64)> {
+    match shape {
+        Shape::Wall([a, b]) => vec![(a[0], a[1]), (b[0], b[1])],
+        Shape::Outline(corners) => corners.iter().chain(corners.first()).map(|c| (c[0], c[1])).collect(),
+        Shape::Circle { centre_metres: [x, y], radius_metres: r } => (0..=48)
+            .map(|i| {
+                let (sin, cos) = (f64::from(i) * PI / 24.0).sin_cos();
+                (x + r * cos, y + r * sin)
+            })
+            .collect(),
+    }
 }

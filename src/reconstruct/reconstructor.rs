@@ -7,7 +7,7 @@ use super::hearing::ends_noise_variance;
 use super::noise_test::tested;
 use super::trained::TrainedNoise;
 use crate::radar::{End, Radar};
-use crate::scene::Reflector;
+use crate::scattering::Sources;
 use crate::signal::{Floor, TwoEnds};
 use ndarray::Array3;
 use num_complex::Complex64;
@@ -176,18 +176,18 @@ pub trait Reconstructor: Send + Sync {
     }
 }
 
-/// What is wrong with asking `method` of these reflectors over `floor`, if it was trained on other noise.
-pub fn untrained_noise(
+/// What is wrong with asking `method` of these sources over `floor`, if it was trained on other noise.
+pub fn untrained_noise<'a>(
     method: &dyn Reconstructor,
     radar: &Radar,
-    reflectors: &[Reflector],
+    sources: impl Into<Sources<'a>>,
     floor: Floor,
 ) -> Option<String> {
     let trained = method.trained_noise()?;
     if !floor.is_thermal() {
         return None;
     }
-    let snr = floor.snr(radar, reflectors);
+    let snr = floor.snr(radar, sources);
     let was = match trained {
         TrainedNoise::None => "without thermal noise".to_owned(),
         TrainedNoise::Snr(from, to) => {

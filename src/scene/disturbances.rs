@@ -83,6 +83,11 @@ impl Mirror {
         (y_metres - self.y_metres) * cos - (x_metres - self.x_metres) * sin
     }
 
+    /// Whether a place stands on the side of the array's centre.
+    pub fn is_before(&self, x_metres: f64, y_metres: f64) -> bool {
+        self.distance_metres(0.0, 0.0) * self.distance_metres(x_metres, y_metres) > 0.0
+    }
+
     /// Where the mirror image of a place stands, (x, y) in metres.
     pub fn image_metres(&self, x_metres: f64, y_metres: f64) -> [f64; 2] {
         let (sin, cos) = self.direction_degrees.to_radians().sin_cos();

@@ -7,6 +7,7 @@
 mod field;
 mod kind;
 mod mixture;
+mod things;
 
 pub use kind::Kind;
 pub use mixture::{Mixture, MixtureError};
@@ -102,6 +103,9 @@ impl Generator {
             Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
             Kind::Clusters | Kind::Walls | Kind::Spacings | Kind::Corner | Kind::Crowd | Kind::Dynamic | Kind::Near => {
                 Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
+            }
+            Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
+                things::objects(kind, self.max_range, rng)
             }
         };
         let name = format!("{kind:?} {number}, seed {}", self.seed);
@@ -255,6 +259,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn every_scene_of_bodies_can_be_simulated() {
+        for kind in Kind::THINGS {
+            let mut bodies = 0;
+            for (number, objects) in scenes(kind).into_iter().enumerate() {
+                let scene = Scene { objects, ..Scene::default() };
+                scene.validate(&Radar::default()).unwrap_or_else(|e| panic!("{kind} {number}: {e}"));
+                assert!(scene.has_bodies(), "{kind} {number}");
+                bodies += scene.objects.iter().filter(|o| o.body().is_some()).count();
+            }
+            assert!(bodies >= 60, "{kind}: {bodies} in 40 scenes");
+        }
+        let rough = scenes(Kind::Rough).into_iter().flatten();
+        let deviations: Vec<f64> = rough
+            .filter_map(|o| Some(o.body()?.surface().roughness_millimetres))
+            .filter(|deviation| *deviation > 0.0)
+            .collect();
+        assert!(deviations.len() >= 40 && deviations.iter().all(|d| (0.2..=1.5).contains(d)), "{deviations:?}");
     }
 
     #[test]

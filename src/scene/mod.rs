@@ -1,16 +1,22 @@
-//! What stands before the radar: points, lines and clusters, and where such scenes come from.
+//! What stands before the radar: points, lines, clusters and bodies, and where such scenes come from.
 //!
-//! An [`Object`] is what a person drags; a [`Reflector`] is what the radar sees. [`Scene::reflectors`] turns the first into the second.
+//! An [`Object`] is what a person drags; a [`Reflector`] is what the radar sees of those made of points. [`Scene::reflectors`] turns the
+//! first into the second. What the radar sees of a [`body`] is worked out in [`crate::scattering`].
 
+pub mod body;
+mod body_check;
 mod disturbances;
 pub mod file;
 pub mod generate;
 pub mod npz;
 mod object;
 pub mod presets;
+pub mod shape;
 
+pub use body::{Block, Body, Polygon, Post, Surface, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use object::{GaussianCluster, Line, Object, Point};
+pub use shape::Shape;
 
 use crate::radar::{BuiltArrayError, Radar, RadarError};
 use serde::{Deserialize, Serialize};
@@ -27,7 +33,7 @@ pub struct Reflector {
 }
 
 /// Objects before the radar, in the order they were added.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// What the scene is called, if it has a name.
@@ -39,12 +45,32 @@ pub struct Scene {
     /// Picks the noise of the floor beneath the scene, where there is noise. TOML holds it up to 2^63.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub noise_seed: u64,
+    /// Whether bodies hide what stands behind them.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub shadows: bool,
     /// What is not as the formulas assume.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// The objects.
     #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<Object>,
+}
+
+impl Default for Scene {
+    /// An empty scene.
+    fn default() -> Self {
+        let (name, notes) = (String::new(), String::new());
+        Scene { name, notes, noise_seed: 0, shadows: true, disturbances: Disturbances::default(), objects: Vec::new() }
+    }
+}
+
+pub(crate) fn yes() -> bool {
+    true
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_true(value: &bool) -> bool {
+    *value
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
@@ -92,12 +118,32 @@ pub enum SceneError {
         /// The element it lies on.
         element: usize,
     },
+    /// The outline of a body makes no sense.
+    #[error("object {} ({kind}): {fault}", object + 1)]
+    Outline {
+        /// Index of the object in the scene, from 0.
+        object: usize,
+        /// What kind of object it is.
+        kind: &'static str,
+        /// What is wrong, and what was expected.
+        fault: String,
+    },
+    /// An element of the array stands inside a body, or on a wall.
+    #[error("object {} ({kind}): element {element} of the array lies inside it or on it; move it away from the array", object + 1)]
+    Covers {
+        /// Index of the object in the scene, from 0.
+        object: usize,
+        /// What kind of object it is.
+        kind: &'static str,
+        /// The element.
+        element: usize,
+    },
     /// More reflectors, or more objects, than can be simulated.
     #[error("the scene has {count} {what}; at most {MAX_REFLECTORS} can be simulated")]
     TooMany {
         /// Reflectors or objects in the scene.
         count: usize,
-        /// "reflectors", "objects" or "reflectors and ghosts".
+        /// "reflectors", "objects", "echoes" or "reflectors and ghosts".
         what: &'static str,
     },
     /// The elements as they are built are not those of the radar.
@@ -137,10 +183,10 @@ impl Scene {
 
     /// Whether nothing in it reflects. Its samples then hold noise alone, or nothing.
     pub fn is_silent(&self) -> bool {
-        self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.reflector_count() == 0)
+        self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.echo_count() == 0)
     }
 
-    /// Every reflector, and what a mirror makes of each: all that echoes.
+    /// Every reflector, and what a mirror makes of each: all that echoes, but for bodies.
     pub fn echoing(&self, radar: &Radar) -> Vec<Reflector> {
         let mut all = self.reflectors();
         if let Some(mirror) = &self.disturbances.mirror {
@@ -153,6 +199,16 @@ impl Scene {
     /// Number of reflectors, without making them.
     pub fn reflector_count(&self) -> usize {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.reflector_count()))
+    }
+
+    /// Most echoes that it gives one element, without making them.
+    pub fn echo_count(&self) -> usize {
+        self.objects.iter().fold(0, |n, o| n.saturating_add(o.echo_count()))
+    }
+
+    /// Whether there is a body among the objects.
+    pub fn has_bodies(&self) -> bool {
+        self.objects.iter().any(|o| o.body().is_some())
     }
 
     /// Checks that the scene holds no more than [`MAX_REFLECTORS`] reflectors and objects, before anything is made of them.
@@ -168,9 +224,12 @@ impl Scene {
     /// # Errors
     /// [`SceneError::TooMany`] says how many there would be.
     pub fn check_room(&self, more: &[Object]) -> Result<(), SceneError> {
-        let reflectors = more.iter().fold(self.reflector_count(), |n, o| n.saturating_add(o.reflector_count()));
+        let count = |of: fn(&Object) -> usize| {
+            self.objects.iter().chain(more).fold(0usize, |n, object| n.saturating_add(of(object)))
+        };
         within_limit(self.objects.len() + more.len(), "objects")?;
-        within_limit(reflectors, "reflectors")
+        within_limit(count(Object::reflector_count), "reflectors")?;
+        within_limit(count(Object::echo_count), "echoes")
     }
 
     /// Checks that `radar` can see this scene: the radar valid, every number finite and in range, no reflector on an element.
@@ -188,6 +247,9 @@ impl Scene {
         }
         for (index, object) in self.objects.iter().enumerate() {
             object.validate(index)?;
+            if let Some(element) = object.body().and_then(|body| body.covered_element(radar)) {
+                return Err(SceneError::Covers { object: index, kind: object.kind(), element });
+            }
             for r in object.reflectors() {
                 if let Some(element) = touched_element(radar, &r) {
                     return Err(SceneError::OnElement {

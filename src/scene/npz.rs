@@ -1,6 +1,6 @@
 //! The thesis author's scene archives: `all_point_x` and `all_point_y`, one number a reflector, in metres.
 
-use super::{MAX_REFLECTORS, Scene};
+use super::{MAX_REFLECTORS, Object, Scene};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use ndarray::{Array1, Ix1};
 use std::path::Path;
@@ -30,7 +30,8 @@ pub fn read(path: &Path) -> Result<Scene, NpzError> {
     Ok(Scene::of_points(x.into_iter().zip(y)))
 }
 
-/// Writes the reflectors of a scene. Reflectivities, names and what made the points (a line, a cluster) are not part of this format.
+/// Writes the reflectors of a scene, and of its bodies where the array's middle sees them echo. Reflectivities, names, shadows and what made
+/// the points (a line, a cluster, a body) are not part of this format.
 ///
 /// # Errors
 /// [`NpzError::Io`] when the file can't be written.
@@ -43,9 +44,13 @@ pub fn write(path: &Path, scene: &Scene) -> Result<(), NpzError> {
 /// # Errors
 /// [`NpzError::Io`] when the file can't be written.
 pub fn add_positions(out: &mut NpzOutput, scene: &Scene) -> Result<(), NpzError> {
-    let reflectors = scene.reflectors();
-    out.add(X_KEY, &reflectors.iter().map(|r| r.x_metres).collect::<Array1<f64>>())?;
-    out.add(Y_KEY, &reflectors.iter().map(|r| r.y_metres).collect::<Array1<f64>>())
+    let places = |object: &Object| match object.body() {
+        Some(body) => body.echo_places_metres([0.0, 0.0]),
+        None => object.reflectors().iter().map(|r| [r.x_metres, r.y_metres]).collect(),
+    };
+    let places: Vec<[f64; 2]> = scene.objects.iter().flat_map(places).collect();
+    out.add(X_KEY, &places.iter().map(|p| p[0]).collect::<Array1<f64>>())?;
+    out.add(Y_KEY, &places.iter().map(|p| p[1]).collect::<Array1<f64>>())
 }
 
 #[cfg(test)]

@@ -1,5 +1,8 @@
-//! The objects a person places: a point, a line of points, a Gaussian cluster of points.
+//! The objects a person places: a point, a line of points, a Gaussian cluster of points, or a body.
 
+use super::body::{Block, Body, Polygon, Post, Wall, one};
+use super::body_check;
+use super::shape::out_of_reach;
 use super::{Reflector, SceneError};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -16,6 +19,14 @@ pub enum Object {
     Line(Line),
     /// Reflectors scattered around a centre (thesis figure 5-5).
     Gaussian(GaussianCluster),
+    /// A straight wall.
+    Wall(Wall),
+    /// A rectangle, such as a car.
+    Box(Block),
+    /// A round post.
+    Post(Post),
+    /// A closed outline of straight faces.
+    Polygon(Polygon),
 }
 
 /// One reflector.
@@ -73,10 +84,6 @@ pub struct GaussianCluster {
     pub reflectivity: f64,
 }
 
-fn one() -> f64 {
-    1.0
-}
-
 fn straight_ahead() -> f64 {
     90.0
 }
@@ -126,6 +133,10 @@ impl Object {
             Object::Point(_) => "point",
             Object::Line(_) => "line",
             Object::Gaussian(_) => "gaussian",
+            Object::Wall(_) => "wall",
+            Object::Box(_) => "box",
+            Object::Post(_) => "post",
+            Object::Polygon(_) => "polygon",
         }
     }
 
@@ -137,25 +148,46 @@ impl Object {
         }
     }
 
-    /// Number of reflectors.
+    /// The body that it is; `None` for what is made of points.
+    pub fn body(&self) -> Option<Body<'_>> {
+        match self {
+            Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => None,
+            Object::Wall(w) => Some(Body::Wall(w)),
+            Object::Box(b) => Some(Body::Box(b)),
+            Object::Post(p) => Some(Body::Post(p)),
+            Object::Polygon(p) => Some(Body::Polygon(p)),
+        }
+    }
+
+    /// Number of reflectors; bodies have none.
     pub fn reflector_count(&self) -> usize {
         match self {
             Object::Point(_) => 1,
             Object::Line(l) => l.count,
             Object::Gaussian(g) => g.count,
+            Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => 0,
         }
     }
 
-    /// Reflectivity sigma of each of its reflectors.
+    /// Most echoes that it gives one element: one a reflector, or those of a body.
+    pub fn echo_count(&self) -> usize {
+        self.body().map_or_else(|| self.reflector_count(), |body| body.echo_count())
+    }
+
+    /// Reflectivity sigma of each of its reflectors; the reflection coefficient of a body.
     pub fn reflectivity(&self) -> f64 {
         match self {
             Object::Point(p) => p.reflectivity,
             Object::Line(l) => l.reflectivity,
             Object::Gaussian(g) => g.reflectivity,
+            Object::Wall(w) => w.reflectivity,
+            Object::Box(b) => b.reflectivity,
+            Object::Post(p) => p.reflectivity,
+            Object::Polygon(p) => p.reflectivity,
         }
     }
 
-    /// The reflectors this object stands for, in a fixed order.
+    /// The reflectors this object stands for, in a fixed order; a body is none.
     pub fn reflectors(&self) -> Vec<Reflector> {
         match self {
             Object::Point(p) => {
@@ -178,55 +210,98 @@ impl Object {
                     })
                     .collect()
             }
+            Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => Vec::new(),
         }
     }
 
-    /// Sets the reflectivity sigma of each of its reflectors.
+    /// Its reflectors; of a body the places where the array's middle sees it echo, each with its reflectivity.
+    pub fn marks(&self) -> Vec<Reflector> {
+        let Some(body) = self.body() else { return self.reflectors() };
+        let reflectivity = self.reflectivity();
+        let places = body.echo_places_metres([0.0, 0.0]).into_iter();
+        places.map(|[x_metres, y_metres]| Reflector { x_metres, y_metres, reflectivity }).collect()
+    }
+
+    /// Sets the reflectivity sigma of each of its reflectors, or the reflection coefficient of a body.
     pub fn set_reflectivity(&mut self, reflectivity: f64) {
         *match self {
             Object::Point(p) => &mut p.reflectivity,
             Object::Line(l) => &mut l.reflectivity,
             Object::Gaussian(g) => &mut g.reflectivity,
+            Object::Wall(w) => &mut w.reflectivity,
+            Object::Box(b) => &mut b.reflectivity,
+            Object::Post(p) => &mut p.reflectivity,
+            Object::Polygon(p) => &mut p.reflectivity,
         } = reflectivity;
     }
 
-    /// The place that its file gives: the point, a line's first reflector, a cluster's centre. (x, y) in metres.
+    /// The numbers of its surface that can be changed; `None` for what is made of points: roughness in millimetres, and seed.
+    pub fn roughness_mut(&mut self) -> Option<(&mut f64, &mut u64)> {
+        match self {
+            Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => None,
+            Object::Wall(w) => Some((&mut w.roughness_millimetres, &mut w.seed)),
+            Object::Box(b) => Some((&mut b.roughness_millimetres, &mut b.seed)),
+            Object::Post(p) => Some((&mut p.roughness_millimetres, &mut p.seed)),
+            Object::Polygon(p) => Some((&mut p.roughness_millimetres, &mut p.seed)),
+        }
+    }
+
+    /// The place that its file gives: the point, a line's first reflector, the middle of a cluster or a body. (x, y) in metres.
     pub fn anchor_metres(&self) -> [f64; 2] {
         match self {
             Object::Point(p) => [p.x_metres, p.y_metres],
             Object::Line(l) => [l.x_metres, l.y_start_metres],
             Object::Gaussian(g) => [g.x_metres, g.y_metres],
+            Object::Wall(w) => [w.x_metres, w.y_metres],
+            Object::Box(b) => [b.x_metres, b.y_metres],
+            Object::Post(p) => [p.x_metres, p.y_metres],
+            Object::Polygon(p) => p.centre_metres(),
         }
     }
 
-    /// The same place, to be changed: the whole object moves with it.
-    pub fn anchor_mut(&mut self) -> [&mut f64; 2] {
-        match self {
+    /// Moves the whole object so that its anchor is at `place_metres`.
+    pub fn set_anchor(&mut self, place_metres: [f64; 2]) {
+        let [x, y] = match self {
             Object::Point(p) => [&mut p.x_metres, &mut p.y_metres],
             Object::Line(l) => [&mut l.x_metres, &mut l.y_start_metres],
             Object::Gaussian(g) => [&mut g.x_metres, &mut g.y_metres],
-        }
+            Object::Wall(w) => [&mut w.x_metres, &mut w.y_metres],
+            Object::Box(b) => [&mut b.x_metres, &mut b.y_metres],
+            Object::Post(p) => [&mut p.x_metres, &mut p.y_metres],
+            Object::Polygon(p) => {
+                let centre = p.centre_metres();
+                let by = [0, 1].map(|i| place_metres[i] - centre[i]);
+                p.corners_metres.iter_mut().for_each(|c| *c = [c[0] + by[0], c[1] + by[1]]);
+                return;
+            }
+        };
+        [*x, *y] = place_metres;
     }
 
     /// Moves the whole object.
     pub fn translate(&mut self, dx_metres: f64, dy_metres: f64) {
-        let [x, y] = self.anchor_mut();
-        *x += dx_metres;
-        *y += dy_metres;
+        if let Object::Polygon(p) = self {
+            p.corners_metres.iter_mut().for_each(|c| *c = [c[0] + dx_metres, c[1] + dy_metres]);
+            return;
+        }
+        let [x, y] = self.anchor_metres();
+        self.set_anchor([x + dx_metres, y + dy_metres]);
     }
 
-    /// The place a person would grab: the point, the middle of the line, the centre of the cluster. (x, y) in metres.
+    /// The place a person would grab: the point, the middle of the line, the centre of the cluster or the body. (x, y) in metres.
     pub fn centre_metres(&self) -> [f64; 2] {
         match self {
-            Object::Point(p) => [p.x_metres, p.y_metres],
             Object::Line(l) => l.place_metres(l.count.saturating_sub(1) as f64 / 2.0),
-            Object::Gaussian(g) => [g.x_metres, g.y_metres],
+            other => other.anchor_metres(),
         }
     }
 
     /// Checks every number; `index` is used in the message only.
     pub(super) fn validate(&self, index: usize) -> Result<(), SceneError> {
         const FINITE: &str = "a finite number";
+        if let Some(body) = self.body() {
+            return body_check::validate(&body, index);
+        }
         let fields: Vec<(&'static str, f64)> = match self {
             Object::Point(p) => {
                 vec![("x_metres", p.x_metres), ("y_metres", p.y_metres), ("reflectivity", p.reflectivity)]
@@ -245,6 +320,7 @@ impl Object {
                 ("y_std_metres", g.y_std_metres),
                 ("reflectivity", g.reflectivity),
             ],
+            Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => Vec::new(),
         };
         let error =
             |field, value, expected| SceneError::Value { object: index, kind: self.kind(), field, value, expected };
@@ -253,7 +329,7 @@ impl Object {
                 return Err(error(field, value, FINITE));
             }
             let distance = matches!(field, "x_metres" | "y_metres" | "y_start_metres" | "spacing_metres");
-            if distance && value.abs() > 1e12 {
+            if distance && out_of_reach(value) {
                 return Err(error(field, value, "a distance of at most 1e12 m"));
             }
             if field.ends_with("std_metres") && !(0.0..=1e12).contains(&value) {

@@ -1,6 +1,6 @@
 //! The signal as a built array hears it, and calibrating such an array on a reflector of known place.
 
-use super::echo::{ArrayEcho, add_echo};
+use super::echo::{ArrayEcho, add_echo, add_path_echo};
 use super::floor::Floor;
 use super::interference::add_interference;
 use super::over_floor::simulate_echoes;
@@ -8,6 +8,7 @@ use super::phase::EchoModel;
 use super::samples::BeatSignal;
 use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
+use crate::scattering::{Echoing, Sources};
 use crate::scene::{Reflector, Scene, SceneError};
 use crate::task::Task;
 use num_complex::Complex64;
@@ -39,7 +40,7 @@ pub(super) fn simulate_built_for(
 ) -> Result<BeatSignal, Unfinished> {
     scene.validate(radar)?;
     array.validate(radar).map_err(SceneError::from)?;
-    let reflectors = scene.echoing(radar);
+    let echoing = Echoing::of(radar, scene);
     let heard = |signal: &mut BeatSignal| {
         let model = EchoModel::new(radar);
         signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
@@ -47,7 +48,10 @@ pub(super) fn simulate_built_for(
                 samples.fill(Complex64::default());
                 let Some(samples) = samples.as_slice_mut() else { return };
                 let pair = array.pair(radar, n);
-                reflectors.iter().for_each(|r| add_echo(&model, pair, r, Complex64::from(1.0), samples));
+                echoing.points.iter().for_each(|r| add_echo(&model, pair, r, Complex64::from(1.0), samples));
+                let mut echoes = Vec::new();
+                Sources::from(&echoing).scattered(pair, &mut echoes);
+                echoes.iter().filter(|e| e.is_heard()).for_each(|e| add_path_echo(&model, e, samples));
             }
         });
         if let Some(interferer) = &scene.disturbances.interferer {
@@ -55,7 +59,7 @@ pub(super) fn simulate_built_for(
         }
         apply_responses(array, signal);
     };
-    let mut signal = simulate_echoes(radar, &reflectors, floor, seed, heard, task);
+    let mut signal = simulate_echoes(radar, &echoing, floor, seed, heard, task);
     task.check()?;
     for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
         if array.element(n).dead {
@@ -155,6 +159,7 @@ impl Calibration {
 mod tests {
     use super::*;
     use crate::radar::Tolerances;
+    use crate::scene::{Object, Wall};
     use crate::signal::simulate;
 
     fn small() -> Radar {
@@ -262,6 +267,30 @@ mod tests {
         let ends = crate::signal::simulate_ends(&radar, &scene, Floor::Thesis, 3).unwrap();
         assert_eq!(ends, simulate(&radar, &scene, Floor::Thesis, 3).unwrap().two_ends(&radar));
         assert_eq!(ends.first.row(5).iter().map(|v| v.norm()).sum::<f64>(), 0.0);
+    }
+
+    #[test]
+    fn disturbances_act_on_bodies_as_on_points() {
+        let radar = small();
+        let wall = Object::Wall(Wall::new(0.5, 11.0, 6.0, 0.0));
+        let mut scene = Scene { objects: vec![wall], ..Scene::default() };
+        let ideal = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
+        scene.disturbances.elements = BuiltArray { elements: vec![ElementError::default(); 64] };
+        scene.disturbances.elements.elements[5].dead = true;
+        scene.disturbances.elements.elements[7].position_millimetres = 0.5;
+        let built = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
+        assert!(built.samples.row(5).iter().all(|v| v.norm() == 0.0));
+        assert!((&built.samples.row(8) - &ideal.samples.row(8)).iter().all(|v| v.norm() < 1e-12));
+        assert!((&built.samples.row(7) - &ideal.samples.row(7)).iter().any(|v| v.norm() > 1e-6));
+        // A mirror beside a body adds what its image echoes.
+        let mut mirrored = Scene { disturbances: crate::scene::Disturbances::default(), ..scene.clone() };
+        mirrored.disturbances.mirror = Some(crate::scene::Mirror::default());
+        let with = simulate(&radar, &mirrored, Floor::Exact, 3).unwrap();
+        mirrored.disturbances.mirror = Some(crate::scene::Mirror { reflection: 0.0, ..Default::default() });
+        let without = simulate(&radar, &mirrored, Floor::Exact, 3).unwrap();
+        let differs =
+            |other: &BeatSignal| (&other.samples - &ideal.samples).iter().fold(0.0f64, |m, v| m.max(v.norm()));
+        assert!(differs(&without) < 1e-12 && differs(&with) > 1e-3, "{} {}", differs(&without), differs(&with));
     }
 
     #[test]

@@ -12,8 +12,9 @@
 //! where no digits cancel but at the kernels' centres, `d = 0` and `d = +-N/(N-1)`, around which `z - 1` and the small factor of `g` are
 //! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins either side for 1e-3, 110 for 1e-6.
 
-use super::path::{Pairs, range_span_metres};
-use super::phase::EchoModel;
+use super::heard::Heard;
+use super::path::{Pairs, Path, range_span_metres};
+use super::phase::{EchoLanes, EchoModel};
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::radar::{Radar, WindowFunction};
@@ -64,45 +65,51 @@ impl<T: Real> ClosedForm<T> {
         })
     }
 
-    /// Every row that [`ClosedForm::add_block`] may write to, for elements up to `elements`, in blocks of any width.
+    /// Every row that [`ClosedForm::add_block`] may write to for these reflectors, for elements up to `elements`, in blocks of any width.
     pub fn rows(&self, radar: &Radar, reflectors: &[Reflector], elements: usize) -> Rows {
         let mut rows = Rows::none(self.samples);
         for r in reflectors {
-            let (nearest, farthest) = range_span_metres(radar, elements, r);
-            let bins = |metres: f64| metres / radar.range_resolution_metres();
-            // The last bits of a very far range may be whole bins.
-            let unsure = 2.0 + bins(farthest) * 1e-15;
-            let margin = self.reach as f64 + unsure;
-            rows.insert_wrapped((bins(nearest) - margin).floor(), (bins(farthest) + margin).ceil());
+            self.touch(radar, range_span_metres(radar, elements, r), &mut rows);
         }
         rows
     }
 
-    /// Adds the range profiles of `reflectors` at `pairs` to `cells`, `[range bins]`.
+    /// Adds the rows that [`ClosedForm::add_block`] may write to for `paths`.
+    pub(super) fn touch_paths<const W: usize>(&self, radar: &Radar, paths: &[Path<W>], rows: &mut Rows) {
+        for path in paths {
+            let ranges = path.range_metres.hi.0;
+            let span = ranges.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| (a.min(*r), b.max(*r)));
+            self.touch(radar, span, rows);
+        }
+    }
+
+    /// Adds the rows around ranges from the nearest to the farthest, in metres.
+    fn touch(&self, radar: &Radar, (nearest, farthest): (f64, f64), rows: &mut Rows) {
+        let bins = |metres: f64| metres / radar.range_resolution_metres();
+        // The last bits of a very far range may be whole bins.
+        let unsure = 2.0 + bins(farthest) * 1e-15;
+        let margin = self.reach as f64 + unsure;
+        rows.insert_wrapped((bins(nearest) - margin).floor(), (bins(farthest) + margin).ceil());
+    }
+
+    /// Adds the range profiles of all that is `heard` at `pairs` to `cells`, `[range bins]`.
     #[inline(always)]
-    pub fn add_block<const W: usize, const FMA: bool>(
+    pub(super) fn add_block<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
         pairs: Pairs<W>,
-        reflectors: &[Reflector],
+        heard: Heard<'_, W>,
         cells: &mut [ComplexLanes<T, W>],
     ) {
-        for r in reflectors {
-            self.add::<W, FMA>(model, pairs, r, cells);
+        for i in 0..heard.len() {
+            self.add::<W, FMA>(&heard.echo::<FMA>(model, pairs, i), cells);
         }
     }
 
     #[inline(always)]
-    fn add<const W: usize, const FMA: bool>(
-        &self,
-        model: &EchoModel,
-        pairs: Pairs<W>,
-        r: &Reflector,
-        cells: &mut [ComplexLanes<T, W>],
-    ) {
+    fn add<const W: usize, const FMA: bool>(&self, echo: &EchoLanes<W>, cells: &mut [ComplexLanes<T, W>]) {
         let of = Lanes::<f64, W>::splat;
         let bins = self.samples as f64;
-        let echo = model.echo_lanes::<W, FMA>(pairs, r);
         // Range in bins, on the same side of the wrap as the first lane's, from the bin nearest to that.
         let position = echo.beat_turns * of(bins);
         let wraps = ((position - of(position.0[0])) * of(1.0 / bins)).nearest();
@@ -218,7 +225,8 @@ mod tests {
     use super::super::simd::{LANES_F32, LANES_F64, Simd};
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
-    use crate::scene::Scene;
+    use crate::scattering::{Echoing, Sources};
+    use crate::scene::{Block, Object, Point, Post, Scene};
     use crate::task::Task;
     use ndarray::{Array1, Array2};
     use num_complex::Complex64;
@@ -237,7 +245,8 @@ mod tests {
     }
 
     /// Largest error of a cell relative to the largest cell, by either precision.
-    fn error(radar: &Radar, reflectors: &[Reflector], plan: Plan) -> f64 {
+    fn error<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: Plan) -> f64 {
+        let reflectors = sources.into();
         let expected = profiles_of(radar, exact::beat_signal(radar, reflectors).samples);
         let peak = expected.iter().fold(0.0f64, |m, v| m.max(v.norm()));
         let worst = |profile: &dyn Fn(usize) -> Vec<num_complex::Complex64>| {
@@ -274,6 +283,21 @@ mod tests {
                     assert!(e < tolerance, "({x}, {y}) at {tolerance:e} with {simd:?}: {e:e}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn profiles_of_bodies_equal_the_windowed_transform_of_samples() {
+        let radar = Radar { elements: 90, ..Radar::default() };
+        let objects = vec![
+            Object::Box(Block::new([1.0, 9.0], [4.5, 1.8], 80.0)),
+            Object::Post(Post::new(-2.0, 12.0, 0.2)),
+            Object::Point(Point::new(1.5, 25.0)),
+        ];
+        let echoing = Echoing::of(&radar, &Scene { objects, ..Scene::default() });
+        for tolerance in [1e-3, 1e-6, 1e-12] {
+            let e = error(&radar, &echoing, plan(tolerance, Simd::best()));
+            assert!(e < tolerance, "{tolerance:e}: {e:e}");
         }
     }
 

@@ -11,6 +11,7 @@ use super::path::{Pairs, plain_path};
 use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{DecibelMilliwatts, Decibels, Radar};
+use crate::scattering::{PathEcho, Sources};
 use crate::scene::Reflector;
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -52,11 +53,13 @@ impl Floor {
 
     /// The signal-to-noise ratio of a scene over this floor, per sample over the whole array; `None` where the floor is not thermal
     /// noise, or nothing reflects.
-    pub fn snr(self, radar: &Radar, reflectors: &[Reflector]) -> Option<Decibels> {
+    pub fn snr<'a>(self, radar: &Radar, sources: impl Into<Sources<'a>>) -> Option<Decibels> {
+        let sources = sources.into();
+        let reflects = !sources.scatterers.is_empty() || sources.points.iter().any(|r| r.reflectivity != 0.0);
         match self {
             Floor::Thesis | Floor::Exact => None,
-            Floor::Snr(snr) => Some(snr).filter(|_| reflectors.iter().any(|r| r.reflectivity != 0.0)),
-            Floor::Level(level) => snr_over(radar, reflectors, level.watts()),
+            Floor::Snr(snr) => Some(snr).filter(|_| reflects),
+            Floor::Level(level) => snr_over(radar, sources, level.watts()),
         }
     }
 }
@@ -101,8 +104,8 @@ impl fmt::Display for Floor {
 
 /// Variance of the white complex noise, for each element, that leaves the floor of the thesis' f64 evaluation: the sum over
 /// reflectors of `1.5 * amplitude^2 * ulp(2 pi |s q| R / lambda)^2 / 12`. Measured to give the same minimum, median and metrics.
-pub fn thesis_noise_variance(radar: &Radar, reflectors: &[Reflector]) -> Vec<f64> {
-    powers(radar, reflectors, THESIS_ROUNDING, Some(thesis_radians_per_metre(radar)))
+pub fn thesis_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> Vec<f64> {
+    powers(radar, sources.into(), THESIS_ROUNDING, Some(thesis_radians_per_metre(radar)))
 }
 
 /// Variance of an echo's rounding, for each unit of its power and of the squared ulp of its phase.
@@ -120,13 +123,13 @@ pub fn thesis_noise_of_echo(radar: &Radar, power: f64, range_metres: f64) -> f64
 
 /// Variance of thermal noise at `snr`, the same for every element: the reflectors' own powers, added up and averaged over the
 /// array, over the ratio. Whether their echoes happen to interfere does not change the noise; silence has none.
-pub fn snr_noise_variance(radar: &Radar, reflectors: &[Reflector], snr: Decibels) -> Vec<f64> {
-    vec![mean_power(radar, reflectors) / snr.power_ratio(); radar.elements]
+pub fn snr_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, snr: Decibels) -> Vec<f64> {
+    vec![mean_power(radar, sources.into()) / snr.power_ratio(); radar.elements]
 }
 
 /// Signal-to-noise ratio of `reflectors` over noise of `variance` a sample, over the whole array; `None` where nothing reflects.
-pub fn snr_over(radar: &Radar, reflectors: &[Reflector], variance: f64) -> Option<Decibels> {
-    let ratio = mean_power(radar, reflectors) / variance;
+pub fn snr_over<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, variance: f64) -> Option<Decibels> {
+    let ratio = mean_power(radar, sources.into()) / variance;
     (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))
 }
 
@@ -136,29 +139,41 @@ pub fn level_noise_variance(radar: &Radar, level: DecibelMilliwatts) -> Vec<f64>
 }
 
 /// Variance of the noise that is `floor`, for each element, if there is any.
-pub fn noise_variance(radar: &Radar, reflectors: &[Reflector], floor: Floor) -> Option<Vec<f64>> {
+pub fn noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, floor: Floor) -> Option<Vec<f64>> {
+    let sources = sources.into();
     match floor {
         Floor::Exact => None,
-        Floor::Thesis => Some(thesis_noise_variance(radar, reflectors)),
-        Floor::Snr(snr) => Some(snr_noise_variance(radar, reflectors, snr)),
+        Floor::Thesis => Some(thesis_noise_variance(radar, sources)),
+        Floor::Snr(snr) => Some(snr_noise_variance(radar, sources, snr)),
         Floor::Level(level) => Some(level_noise_variance(radar, level)),
     }
 }
 
 /// The reflectors' own powers, added up and averaged over the array: `|y|^2` of a sample where echoes don't interfere.
-fn mean_power(radar: &Radar, reflectors: &[Reflector]) -> f64 {
-    let power = powers(radar, reflectors, 1.0, None);
+fn mean_power(radar: &Radar, sources: Sources<'_>) -> f64 {
+    let power = powers(radar, sources, 1.0, None);
     power.iter().sum::<f64>() / radar.elements.max(1) as f64
 }
 
 /// For each element, the sum over reflectors of `factor * amplitude^2`, times `ulp(radians)^2` where radians per metre are given.
-fn powers(radar: &Radar, reflectors: &[Reflector], factor: f64, radians_per_metre: Option<f64>) -> Vec<f64> {
+fn powers(radar: &Radar, sources: Sources<'_>, factor: f64, radians_per_metre: Option<f64>) -> Vec<f64> {
+    let reflectors = sources.points;
     let mut out = vec![0.0; radar.elements];
     out.par_chunks_mut(LANES_F64).enumerate().for_each(|(block, out)| {
         let first_element = block * LANES_F64;
         let block = Simd::chosen().run(BlockPowers { radar, reflectors, factor, radians_per_metre, first_element });
         out.iter_mut().zip(block.0).for_each(|(out, power)| *out = power);
     });
+    if !sources.scatterers.is_empty() {
+        out.par_iter_mut().enumerate().for_each_init(Vec::new, |echoes, (n, out)| {
+            sources.scattered(radar.pair(n), echoes);
+            let power = |echo: &PathEcho| {
+                let rounding = radians_per_metre.map_or(1.0, |rate| ulp(rate * echo.range_metres).powi(2));
+                echo.amplitude.norm_sqr() * rounding
+            };
+            *out += factor * echoes.iter().map(power).sum::<f64>();
+        });
+    }
     out
 }
 

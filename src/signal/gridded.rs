@@ -4,12 +4,12 @@
 //! Klinteberg, SIAM J. Sci. Comput. 41, C479, 2019); one transform of the grid and a division by the kernel's own transform give the
 //! samples. The cost of a reflector is a dozen cells instead of 512 samples.
 
+use super::heard::Heard;
 use super::lane_fft::LaneFft;
 use super::path::Pairs;
-use super::phase::EchoModel;
+use super::phase::{EchoLanes, EchoModel};
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::radar::Radar;
-use crate::scene::Reflector;
 use std::f64::consts::{PI, TAU};
 
 /// Widest kernel; its error is near the last bits of f64.
@@ -135,39 +135,39 @@ const SUMMED_AT_ONCE: usize = 64;
 /// what every addition rounds off is kept and added at the end (Kahan, Commun. ACM 8, 1965): a sum of any length is as good as a short one.
 const SHORT: usize = 16;
 
-/// Beat signal of `reflectors` at `pairs`, written to `out`, one vector a sample.
+/// Beat signal of all that is `heard` at `pairs`, written to `out`, one vector a sample.
 #[inline(always)]
-pub fn block_signal<T: Real, const W: usize, const FMA: bool>(
+pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
     pairs: Pairs<W>,
-    reflectors: &[Reflector],
+    heard: Heard<'_, W>,
     scratch: &mut Scratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
     let Scratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
-    if reflectors.len() > SHORT {
+    if heard.len() > SHORT {
         spare.fill(ComplexLanes::zero());
     }
-    if T::EPSILON > f64::EPSILON && reflectors.len() > SHORT {
-        for r in reflectors {
-            spread::<T, W, FMA, true>(plan, model, pairs, r, grid, spare);
+    if T::EPSILON > f64::EPSILON && heard.len() > SHORT {
+        for i in 0..heard.len() {
+            spread::<T, W, FMA, true>(plan, &heard.echo::<FMA>(model, pairs, i), grid, spare);
         }
         grid.iter_mut().zip(spare.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
     } else {
-        for (i, chunk) in reflectors.chunks(SUMMED_AT_ONCE).enumerate() {
-            if i > 0 {
+        for begin in (0..heard.len()).step_by(SUMMED_AT_ONCE) {
+            if begin > 0 {
                 for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
                     *total = *total + *cell;
                     *cell = ComplexLanes::zero();
                 }
             }
-            for r in chunk {
-                spread::<T, W, FMA, false>(plan, model, pairs, r, grid, &mut []);
+            for i in begin..heard.len().min(begin + SUMMED_AT_ONCE) {
+                spread::<T, W, FMA, false>(plan, &heard.echo::<FMA>(model, pairs, i), grid, &mut []);
             }
         }
-        if reflectors.len() > SUMMED_AT_ONCE {
+        if heard.len() > SUMMED_AT_ONCE {
             grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
         }
     }
@@ -218,19 +218,16 @@ fn kernel_values<T: Real, const W: usize, const FMA: bool>(
     values
 }
 
-/// Adds one reflector to `grid`; what is rounded off goes to `lost`, cell for cell, if it is to be kept (`KEEP`).
+/// Adds one echo to `grid`; what is rounded off goes to `lost`, cell for cell, if it is to be kept (`KEEP`).
 #[inline(always)]
 fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
     plan: &Gridding<T>,
-    model: &EchoModel,
-    pairs: Pairs<W>,
-    r: &Reflector,
+    echo: &EchoLanes<W>,
     grid: &mut [ComplexLanes<T, W>],
     lost: &mut [ComplexLanes<T, W>],
 ) {
     let of = Lanes::<f64, W>::splat;
     let cells = plan.grid as f64;
-    let echo = model.echo_lanes::<W, FMA>(pairs, r);
     // Samples are counted from the middle of the chirp, where the kernel's transform is largest.
     let middle = (plan.samples / 2) as f64;
     let p = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(middle) + echo.carrier_turns);

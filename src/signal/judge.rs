@@ -4,16 +4,17 @@
 
 use super::samples::BeatSignal;
 use crate::radar::{Pair, Radar};
-use crate::scene::Reflector;
+use crate::scattering::Sources;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use twofloat::TwoFloat;
 
-/// Beat signal of `reflectors`, `[elements, samples]`, correctly rounded to f64 but for a last bit.
-pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
+/// Beat signal of what echoes, `[elements, samples]`, correctly rounded to f64 but for a last bit.
+pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSignal {
+    let sources = sources.into();
     let mut signal = BeatSignal::silence(radar);
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut row)| {
-        for (sample, value) in row.iter_mut().zip(element_signal(radar, reflectors, n)) {
+        for (sample, value) in row.iter_mut().zip(element_signal(radar, sources, n)) {
             *sample = value;
         }
     });
@@ -21,29 +22,39 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector]) -> BeatSignal {
 }
 
 /// Beat signal of one element, `[samples]`.
-pub fn element_signal(radar: &Radar, reflectors: &[Reflector], element: usize) -> Vec<Complex64> {
-    pair_signal(radar, reflectors, radar.pair(element))
+pub fn element_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, element: usize) -> Vec<Complex64> {
+    pair_signal(radar, sources, radar.pair(element))
 }
 
-/// Beat signal of one pair of antennas, `[samples]`.
-pub fn pair_signal(radar: &Radar, reflectors: &[Reflector], pair: Pair) -> Vec<Complex64> {
+/// Beat signal of one pair of antennas, `[samples]`. Ranges and amplitudes of bodies are taken as f64 has them.
+pub fn pair_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, pair: Pair) -> Vec<Complex64> {
+    let sources = sources.into();
     let zero = TwoFloat::from(0.0);
     let mut sums = vec![Phasor { re: zero, im: zero }; radar.samples];
-    for r in reflectors {
+    let mut add = |distance: TwoFloat, amplitude: Phasor| {
+        let carrier = distance / radar.wavelength_metres() * radar.carrier.turns_per_wavelength();
+        let bins = distance / radar.range_resolution_metres();
+        for (n1, sum) in sums.iter_mut().enumerate() {
+            let phase = fraction(bins * n1 as f64 / radar.samples as f64) + fraction(carrier);
+            let p = Phasor::of_turns(phase);
+            sum.re += p.re * amplitude.re - p.im * amplitude.im;
+            sum.im += p.im * amplitude.re + p.re * amplitude.im;
+        }
+    };
+    for r in sources.points {
         let [there, back] = [pair.transmitter_x_metres, pair.receiver_x_metres].map(|antenna| {
             let dx = TwoFloat::new_sub(antenna, r.x_metres);
             root(dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres))
         });
         let distance = (there + back) / 2.0;
         let amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / (there * back);
-        let carrier = distance / radar.wavelength_metres() * radar.carrier.turns_per_wavelength();
-        let bins = distance / radar.range_resolution_metres();
-        for (n1, sum) in sums.iter_mut().enumerate() {
-            let phase = fraction(bins * n1 as f64 / radar.samples as f64) + fraction(carrier);
-            let p = Phasor::of_turns(phase);
-            sum.re += p.re * amplitude;
-            sum.im += p.im * amplitude;
-        }
+        add(distance, Phasor { re: amplitude, im: zero });
+    }
+    let mut scattered = Vec::new();
+    sources.scattered(pair, &mut scattered);
+    for echo in scattered.iter().filter(|e| e.is_heard()) {
+        let [re, im] = [echo.amplitude.re, echo.amplitude.im].map(TwoFloat::from);
+        add(TwoFloat::from(echo.range_metres), Phasor { re, im });
     }
     sums.iter().map(|p| Complex64::new(p.re.hi() + p.re.lo(), p.im.hi() + p.im.lo())).collect()
 }

@@ -1,4 +1,4 @@
-//! From reflectors to the sampled beat signal of every element (thesis equation 3.3).
+//! From what echoes to the sampled beat signal of every element (thesis equation 3.3).
 //!
 //! | file | what it is | use it for |
 //! |---|---|---|
@@ -8,6 +8,8 @@
 //! | [`gridded`] | reflectors spread on a range grid, then transformed | many reflectors |
 //! | [`closed_form`] | range profiles from three Dirichlet kernels, on the rows that matter | one or few reflectors, loose tolerances |
 //! | [`judge`] | equation 3.3 in double-double | holding all others to their promise |
+//!
+//! What echoes is given as [`Sources`](crate::scattering::Sources): points, and bodies with what they hide.
 //!
 //! [`path`] says which range and which amplitude an echo has at a pair of antennas, [`phase`] which phases that gives: the forward
 //! model, which everything that simulates, fits or bounds samples calls.
@@ -30,6 +32,7 @@ pub mod echo;
 pub mod exact;
 pub mod floor;
 pub mod gridded;
+mod heard;
 mod interference;
 pub mod judge;
 pub mod lane_fft;

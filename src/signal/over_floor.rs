@@ -5,26 +5,26 @@ use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
 use super::run::samples_of;
 use super::samples::BeatSignal;
 use crate::radar::Radar;
-use crate::scene::Reflector;
+use crate::scattering::Echoing;
 use crate::task::Task;
 
-/// The echoes of reflectors that the radar can see, over a floor; `heard` does to the echoes what the array does before its receivers add
+/// The echoes of what the radar can see, over a floor; `heard` does to the echoes what the array does before its receivers add
 /// their noise. Of no meaning once `task` is cancelled.
 pub(super) fn simulate_echoes(
     radar: &Radar,
-    reflectors: &[Reflector],
+    echoing: &Echoing,
     floor: Floor,
     seed: u64,
     heard: impl FnOnce(&mut BeatSignal),
     task: &Task,
 ) -> BeatSignal {
-    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, reflectors), tolerance(floor));
-    let mut signal = BeatSignal { samples: samples_of(radar, reflectors, &plan, 0..radar.elements, task) };
+    let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, echoing), tolerance(floor));
+    let mut signal = BeatSignal { samples: samples_of(radar, echoing.into(), &plan, 0..radar.elements, task) };
     heard(&mut signal);
     if task.is_cancelled() {
         return signal;
     }
-    if let Some(variance) = floor::noise_variance(radar, reflectors, floor) {
+    if let Some(variance) = floor::noise_variance(radar, echoing, floor) {
         floor::add_noise(&mut signal, &variance, seed);
     }
     signal

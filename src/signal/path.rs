@@ -5,7 +5,7 @@
 //! `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from the transmitter and from the receiver; where both are one antenna, that is
 //! the distance and `P g / R^2`.
 //!
-//! A kind of object that isn't made of points is added here: as range and complex amplitude of each of its echoes ([`Path::new`]).
+//! Bodies give range and complex amplitude of each of their echoes ([`crate::scattering`]); [`Path::new`] takes them.
 
 use super::double::{Double, product, sum};
 use super::simd::Lanes;

@@ -5,7 +5,7 @@ use super::closed_form;
 use super::path::largest_amplitude;
 use super::simd::Simd;
 use crate::radar::Radar;
-use crate::scene::{Object, Reflector};
+use crate::scattering::{Echoing, Seen, Sources};
 use serde::Serialize;
 
 /// What is to be computed, and how: the planner's answer. Any field may be changed before it runs ([`super::beat_signal`]).
@@ -104,12 +104,28 @@ fn holds(amplitude: f64) -> bool {
     amplitude == 0.0 || F32_AMPLITUDES.contains(&amplitude)
 }
 
-/// Sum of the largest amplitude each reflector can have at the array: the scale that tolerances refer to.
-pub fn amplitude_bound(radar: &Radar, reflectors: &[Reflector]) -> f64 {
-    reflectors.iter().map(|r| largest_amplitude(radar, r)).sum()
+/// Elements whose echoes of bodies are looked at for [`amplitude_bound`].
+const LOOKED_AT: usize = 48;
+
+/// Sum of the largest amplitude each reflector can have at the array, and of those that each echo of a body has at some elements of it: the
+/// scale that tolerances refer to.
+pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f64 {
+    let sources = sources.into();
+    let of_points: f64 = sources.points.iter().map(|r| largest_amplitude(radar, r)).sum();
+    if sources.scatterers.is_empty() {
+        return of_points;
+    }
+    let mut largest: Vec<f64> = vec![0.0; sources.len() - sources.points.len()];
+    let mut echoes = Vec::new();
+    let last = radar.elements - 1;
+    for n in (0..last).step_by((radar.elements / LOOKED_AT).max(1)).chain([last]) {
+        sources.scattered(radar.pair(n), &mut echoes);
+        largest.iter_mut().zip(&echoes).for_each(|(l, echo)| *l = l.max(echo.amplitude.norm()));
+    }
+    of_points + largest.iter().sum::<f64>()
 }
 
-/// [`amplitude_bound`] of all that `objects` reflect, object by object.
-pub fn amplitude_bound_of(radar: &Radar, objects: &[Object]) -> f64 {
-    objects.iter().map(|o| amplitude_bound(radar, &o.reflectors())).sum()
+/// [`amplitude_bound`] of all that these objects reflect, object by object.
+pub fn amplitude_bound_of(radar: &Radar, seen: &[Seen]) -> f64 {
+    seen.iter().map(|one| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(one)))).sum()
 }

@@ -7,7 +7,7 @@ use super::simd::{LANES_F32, LANES_F64};
 use super::synthesis::Synthesis;
 use super::{direct, exact};
 use crate::radar::Radar;
-use crate::scene::Reflector;
+use crate::scattering::Sources;
 use crate::task::Task;
 use ndarray::{Array2, s};
 use num_complex::Complex64;
@@ -15,12 +15,13 @@ use std::ops::Range;
 
 /// Runs a plan: the whole array's beat signal, noiseless.
 ///
-/// The reflectors must have passed [`crate::scene::Scene::validate`].
-pub fn beat_signal(radar: &Radar, reflectors: &[Reflector], plan: &Plan) -> BeatSignal {
+/// What echoes must have passed [`crate::scene::Scene::validate`].
+pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: &Plan) -> BeatSignal {
+    let sources = sources.into();
     match plan.algorithm {
-        Algorithm::Direct => direct::beat_signal(radar, reflectors),
-        Algorithm::Exact => exact::beat_signal(radar, reflectors),
-        _ => BeatSignal { samples: samples_of(radar, reflectors, plan, 0..radar.elements, &Task::default()) },
+        Algorithm::Direct => direct::beat_signal(radar, sources),
+        Algorithm::Exact => exact::beat_signal(radar, sources),
+        _ => BeatSignal { samples: samples_of(radar, sources, plan, 0..radar.elements, &Task::default()) },
     }
 }
 
@@ -28,7 +29,7 @@ pub fn beat_signal(radar: &Radar, reflectors: &[Reflector], plan: &Plan) -> Beat
 /// the whole array. Of no meaning once `task` is cancelled.
 pub(super) fn samples_of(
     radar: &Radar,
-    reflectors: &[Reflector],
+    sources: Sources<'_>,
     plan: &Plan,
     elements: Range<usize>,
     task: &Task,
@@ -38,8 +39,8 @@ pub(super) fn samples_of(
     let begin = elements.start / lanes * lanes;
     let blocks = begin..elements.end.next_multiple_of(lanes).min(radar.elements);
     let mut samples = match plan.precision {
-        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).samples(reflectors, blocks, task),
-        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).samples(reflectors, blocks, task),
+        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).samples(sources, blocks, task),
+        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).samples(sources, blocks, task),
     };
     samples.slice_collapse(s![elements.start - begin..elements.end - begin, ..]);
     samples
@@ -51,7 +52,9 @@ mod tests {
     use super::super::plan::BEST_TOLERANCE;
     use super::super::simd::Simd;
     use super::*;
-    use crate::scene::Scene;
+    use crate::radar::Carrier;
+    use crate::scattering::Echoing;
+    use crate::scene::{Block, Object, Point, Post, Reflector, Scene, Wall};
 
     fn worst_error(radar: &Radar, reflectors: &[Reflector], chosen: &Plan) -> f64 {
         let signal = beat_signal(radar, reflectors, chosen);
@@ -93,6 +96,37 @@ mod tests {
         }
     }
 
+    /// A street of bodies, some hidden by others.
+    fn bodies() -> Scene {
+        let objects = vec![
+            Object::Wall(Wall { roughness_millimetres: 0.4, ..Wall::new(-3.0, 20.0, 2.0, 10.0) }),
+            Object::Box(Block::new([1.0, 9.0], [4.5, 1.8], 80.0)),
+            Object::Post(Post::new(-2.0, 12.0, 0.2)),
+            Object::Point(Point::new(1.5, 25.0)),
+            Object::Point(Point::new(-20.0, 5.0)),
+        ];
+        Scene { objects, ..Scene::default() }
+    }
+
+    #[test]
+    fn every_algorithm_keeps_its_promise_for_bodies() {
+        for carrier in [Carrier::OneWay, Carrier::TwoWay] {
+            let radar = Radar { elements: 64, carrier, ..Radar::default() };
+            let echoing = Echoing::of(&radar, &bodies());
+            let scale = crate::signal::plan::amplitude_bound(&radar, &echoing);
+            let expected = judge::beat_signal(&radar, &echoing).samples;
+            for algorithm in [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded] {
+                for tolerance in [1e-6, 1e-12] {
+                    let plan = Plan::cheapest(echoing.len(), 1.0, tolerance).with_algorithm(algorithm);
+                    let found = beat_signal(&radar, &echoing, &plan).samples;
+                    let worst = (&found - &expected).iter().fold(0.0f64, |m, v| m.max(v.norm())) / scale;
+                    let bound = if algorithm == Algorithm::Direct { 1e-10 } else { tolerance };
+                    assert!(worst < bound, "{algorithm} at {tolerance:e}: {worst:e}");
+                }
+            }
+        }
+    }
+
     /// Sums of any length keep f32's promise, also where all roundings agree because all reflectors coincide.
     #[test]
     fn thousands_of_reflectors_keep_the_promise_in_single_precision() {
@@ -122,7 +156,7 @@ mod tests {
 
     #[test]
     fn unusual_scenes_keep_the_promise() {
-        let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
+        let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
         let max = radar.max_range_metres();
         let reflectors =
             Scene::of_points([(0.5, max / 2.0), (3.0, max - 0.01), (-20.0, 3.0 * max), (1e5, 1e4)]).reflectors();

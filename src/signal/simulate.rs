@@ -8,6 +8,7 @@ use super::run::samples_of;
 use super::samples::{BeatSignal, TwoEnds};
 use super::unfinished::Unfinished;
 use crate::radar::{End, Radar};
+use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
 
@@ -39,7 +40,7 @@ pub fn simulate_for(
         return simulate_built_for(task, radar, scene, &scene.disturbances.elements, floor, seed);
     }
     scene.validate(radar)?;
-    let signal = simulate_echoes(radar, &scene.reflectors(), floor, seed, |_| {}, task);
+    let signal = simulate_echoes(radar, &Echoing::of(radar, scene), floor, seed, |_| {}, task);
     task.check()?;
     Ok(signal)
 }
@@ -67,12 +68,12 @@ pub fn simulate_ends_for(
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }
     scene.validate(radar)?;
-    let reflectors = scene.reflectors();
-    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance(floor));
-    let variance = floor::noise_variance(radar, &reflectors, floor);
+    let echoing = Echoing::of(radar, scene);
+    let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
+    let variance = floor::noise_variance(radar, &echoing, floor);
     let [first, last] = End::BOTH.map(|end| {
         let elements = radar.end_range(end);
-        let mut samples = samples_of(radar, &reflectors, &plan, elements.clone(), task);
+        let mut samples = samples_of(radar, (&echoing).into(), &plan, elements.clone(), task);
         if let Some(variance) = &variance {
             floor::add_noise_from(&mut samples, elements.start, &variance[elements], seed);
         }
@@ -86,6 +87,22 @@ pub fn simulate_ends_for(
 mod tests {
     use super::*;
     use crate::radar::Decibels;
+    use crate::scene::{Block, Object, Point, Wall};
+
+    #[test]
+    fn the_ends_of_bodies_are_those_of_the_whole_array_bit_for_bit() {
+        let radar = Radar { elements: 90, samples: 64, end_elements: 7, ..Radar::default() };
+        let objects = vec![
+            Object::Wall(Wall::new(-1.0, 3.0, 2.0, 10.0)),
+            Object::Box(Block::new([0.3, 2.0], [0.5, 0.4], 80.0)),
+            Object::Point(Point::new(0.2, 4.0)),
+        ];
+        let scene = Scene { objects, ..Scene::default() };
+        for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0))] {
+            let whole = simulate(&radar, &scene, floor, 3).unwrap().two_ends(&radar);
+            assert_eq!(simulate_ends(&radar, &scene, floor, 3).unwrap(), whole, "over {floor}");
+        }
+    }
 
     #[test]
     fn the_ends_alone_are_those_of_the_whole_array_bit_for_bit() {

@@ -3,8 +3,9 @@
 //! Recurrences drift as they run; this does not: every phasor is the product of four that were evaluated from their exact phase.
 //! Summed over reflectors it is a matrix product, carried out in registers, one lane an element.
 
+use super::heard::Heard;
 use super::path::Pairs;
-use super::phase::EchoModel;
+use super::phase::{EchoLanes, EchoModel};
 use super::simd::{ComplexLanes, Real, phasor};
 use crate::scene::Reflector;
 
@@ -70,23 +71,25 @@ impl<T: Real, const W: usize> Scratch<T, W> {
     }
 }
 
-/// Beat signal of `reflectors` at `pairs`, one vector a sample.
+/// Beat signal of all that is `heard` at `pairs`, one vector a sample.
 #[inline(always)]
-pub fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
+pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
     pairs: Pairs<W>,
-    reflectors: &[Reflector],
+    heard: Heard<'_, W>,
     samples: usize,
     scratch: &'s mut Scratch<T, W>,
 ) -> &'s mut [ComplexLanes<T, W>] {
     let Scratch { factors, padded } = scratch;
     padded.fill(ComplexLanes::zero());
-    for chunk in reflectors.chunks(CHUNK) {
-        for (r, f) in chunk.iter().zip(factors.iter_mut()) {
-            fill_factors::<T, W, FMA>(model, pairs, r, &mut f.rows, &mut f.columns);
+    for begin in (0..heard.len()).step_by(CHUNK) {
+        let count = CHUNK.min(heard.len() - begin);
+        for (i, f) in factors.iter_mut().enumerate().take(count) {
+            let echo = heard.echo::<FMA>(model, pairs, begin + i);
+            fill_with::<T, W, FMA>(&echo, &mut f.rows, &mut f.columns);
         }
         let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
-        add_products::<T, W, FMA>(&products[..chunk.len()], padded);
+        add_products::<T, W, FMA>(&products[..count], padded);
     }
     &mut padded[..samples]
 }
@@ -100,7 +103,16 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     rows: &mut [ComplexLanes<T, W>],
     columns: &mut [ComplexLanes<T, W>; STRIDE],
 ) {
-    let echo = model.echo_lanes::<W, FMA>(pairs, r);
+    fill_with::<T, W, FMA>(&model.echo_lanes::<W, FMA>(pairs, r), rows, columns);
+}
+
+/// Phasors of an echo, see [`Factors`].
+#[inline(always)]
+fn fill_with<T: Real, const W: usize, const FMA: bool>(
+    echo: &EchoLanes<W>,
+    rows: &mut [ComplexLanes<T, W>],
+    columns: &mut [ComplexLanes<T, W>; STRIDE],
+) {
     let mut fine = [ComplexLanes::zero(); STEP];
     for (i, fine) in fine.iter_mut().enumerate() {
         *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64));

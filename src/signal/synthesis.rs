@@ -6,14 +6,16 @@ use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
+use super::heard::{self, Heard};
 use super::lane_fft::LaneFft;
-use super::path::Pairs;
+use super::path::{Pairs, Path};
 use super::phase::EchoModel;
 use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
 use crate::radar::Radar;
+use crate::scattering::Sources;
 use crate::scene::Reflector;
 use crate::task::Task;
 use ndarray::{Array2, Axis};
@@ -103,7 +105,8 @@ enum Scratch<T, const W: usize> {
 struct Block<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
     first_element: usize,
-    reflectors: &'a [Reflector],
+    points: &'a [Reflector],
+    paths: &'a [Path<W>],
     scratch: &'b mut Scratch<T, W>,
 }
 
@@ -113,14 +116,13 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
         let s = self.synthesis;
         let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
         let samples = s.radar.samples;
+        let heard = Heard::new(self.points, self.paths);
         match (self.scratch, &s.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
-                gridded::block_signal::<T, W, FMA>(gridding, &s.model, pairs, self.reflectors, scratch, out);
+                gridded::block_signal::<T, W, FMA>(gridding, &s.model, pairs, heard, scratch, out);
                 out
             }
-            (Scratch::Split(scratch), _) => {
-                split::block_signal::<T, W, FMA>(&s.model, pairs, self.reflectors, samples, scratch)
-            }
+            (Scratch::Split(scratch), _) => split::block_signal::<T, W, FMA>(&s.model, pairs, heard, samples, scratch),
             (Scratch::Gridded(_, out), _) => out,
         }
     }
@@ -171,7 +173,8 @@ struct AddProfiles<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
     plan: &'a ClosedForm<T>,
     first_element: usize,
-    reflectors: &'a [Reflector],
+    points: &'a [Reflector],
+    paths: &'a [Path<W>],
     cells: &'b mut [ComplexLanes<T, W>],
 }
 
@@ -181,7 +184,8 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     fn run<const FMA: bool>(self) {
         let s = self.synthesis;
         let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
-        self.plan.add_block::<W, FMA>(&s.model, pairs, self.reflectors, self.cells);
+        let heard = Heard::new(self.points, self.paths);
+        self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.cells);
     }
 }
 
@@ -225,14 +229,22 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
 
     /// Samples of a run of neighbouring elements, `[elements, samples]`. Blocks that are left when `task` is cancelled are left out:
     /// who cancels it must not use the samples.
-    pub fn samples(&self, reflectors: &[Reflector], elements: Range<usize>, task: &Task) -> Array2<Complex64> {
+    pub fn samples<'a>(
+        &self,
+        sources: impl Into<Sources<'a>>,
+        elements: Range<usize>,
+        task: &Task,
+    ) -> Array2<Complex64> {
+        let sources = sources.into();
         let mut out = Array2::zeros((elements.len(), self.radar.samples));
         out.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each_init(
             || self.scratch(),
             |scratch, (block, mut rows)| {
                 let first_element = elements.start + block * W;
                 if let (Some(rows), false) = (rows.as_slice_mut(), task.is_cancelled()) {
-                    self.simd().run(ToRows(Block { synthesis: self, first_element, reflectors, scratch }, rows));
+                    let paths = heard::paths(&self.radar, sources, first_element);
+                    let (points, paths) = (sources.points, paths.as_slice());
+                    self.simd().run(ToRows(Block { synthesis: self, first_element, points, paths, scratch }, rows));
                 }
             },
         );
@@ -241,13 +253,17 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
 
     /// Windowed range profiles of every element; replaces what `out` held. Blocks that are left when `task` is cancelled are left out: who
     /// cancels it must not use the profiles.
-    pub fn range_profiles(&self, reflectors: &[Reflector], out: &mut BlockProfiles<T, W>, task: &Task) {
-        let bins = self.radar.samples;
-        if reflectors.is_empty() {
+    pub fn range_profiles<'a>(&self, sources: impl Into<Sources<'a>>, out: &mut BlockProfiles<T, W>, task: &Task) {
+        let (sources, bins) = (sources.into(), self.radar.samples);
+        if sources.is_empty() {
             return out.clear();
         }
         if let Method::ClosedForm(plan) = &self.method {
-            let rows = plan.rows(&self.radar, reflectors, self.radar.elements.next_multiple_of(W));
+            let mut rows = plan.rows(&self.radar, sources.points, self.radar.elements.next_multiple_of(W));
+            let blocks = 0..if sources.scatterers.is_empty() { 0 } else { self.radar.elements.div_ceil(W) };
+            let paths: Vec<Vec<Path<W>>> =
+                blocks.into_par_iter().map(|block| heard::paths(&self.radar, sources, block * W)).collect();
+            paths.iter().for_each(|paths| plan.touch_paths(&self.radar, paths, &mut rows));
             let before = std::mem::replace(&mut out.touched, rows).runs();
             return out.cells.par_chunks_mut(bins).enumerate().for_each(|(block, cells)| {
                 before.iter().for_each(|run| cells[run.clone()].fill(ComplexLanes::zero()));
@@ -255,7 +271,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                     return;
                 }
                 let first_element = block * W;
-                self.simd().run(AddProfiles { synthesis: self, plan, first_element, reflectors, cells });
+                let paths = paths.get(block).map_or(&[][..], Vec::as_slice);
+                let points = sources.points;
+                self.simd().run(AddProfiles { synthesis: self, plan, first_element, points, paths, cells });
             });
         }
         out.touched = Rows::all(bins);
@@ -265,7 +283,10 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                 if task.is_cancelled() {
                     return;
                 }
-                let block = Block { synthesis: self, first_element: block * W, reflectors, scratch };
+                let first_element = block * W;
+                let paths = heard::paths(&self.radar, sources, first_element);
+                let (points, paths) = (sources.points, paths.as_slice());
+                let block = Block { synthesis: self, first_element, points, paths, scratch };
                 self.simd().run(ToProfiles(self, Some(block), cells, spare));
             },
         );

@@ -4,7 +4,7 @@ use super::effect::Effect;
 use super::shared;
 use crate::app::state::{EditCommand, NewObject, State};
 use crate::interact::Place;
-use crate::scene::{GaussianCluster, Line, Object, Point};
+use crate::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, Wall};
 use crate::share::is_shared;
 
 /// Does such a command, but for what the clipboard has to do.
@@ -96,5 +96,13 @@ fn add(state: &mut State, kind: NewObject, place: Option<Place>) {
             seed: state.editor.scene().objects.len() as u64,
             reflectivity: 1.0,
         }),
+        NewObject::Wall => Object::Wall(Wall::new(x_metres, y_metres, 5.0, 0.0)),
+        NewObject::Box => Object::Box(Block::new([x_metres, y_metres.max(3.0)], [4.5, 1.8], 90.0)),
+        NewObject::Post => Object::Post(Post::new(x_metres, y_metres, 0.2)),
+        NewObject::Polygon => {
+            // An L whose inner corner faces the array.
+            let corners = [[-1.5, 0.0], [-0.5, 0.0], [-0.5, 1.5], [1.5, 1.5], [1.5, 2.5], [-1.5, 2.5]];
+            Object::Polygon(Polygon::new(corners.map(|[x, y]| [x + x_metres, y + y_metres]).to_vec()))
+        }
     });
 }

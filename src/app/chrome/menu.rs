@@ -194,11 +194,7 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 
 fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Command>) {
     ui.set_min_width(260.0);
-    entries(
-        ui,
-        [NewObject::Point, NewObject::Line, NewObject::Cluster].map(|kind| Command::Edit(EditCommand::Add(kind, None))),
-        asked,
-    );
+    entries(ui, NewObject::ALL.map(|kind| Command::Edit(EditCommand::Add(kind, None))), asked);
     ui.separator();
     ui.menu_button("Presets", |ui| presets_of(ui, memory, false, asked));
     ui.menu_button("Recordings", |ui| {

@@ -10,6 +10,8 @@ use std::time::Duration;
 pub struct Input {
     /// Where the pointer is, if it is over a map or the scene.
     pub cursor: Option<Cursor>,
+    /// Which echo of which body is there.
+    pub echo: Option<String>,
     /// Objects of the scene.
     pub objects: usize,
     /// Their reflectors.
@@ -29,7 +31,7 @@ pub fn show(ui: &mut Ui, input: Input) {
             let (room, font) = (ui.available_width(), TextStyle::Monospace.resolve(ui.style()));
             let painter = ui.painter().clone();
             let width = |text: &str| painter.layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
-            let left = texts_of(input.cursor).into_iter().rfind(|text| width(text) <= room);
+            let left = texts_of(input.cursor, input.echo.as_deref()).into_iter().rfind(|text| width(text) <= room);
             let left = left.unwrap_or_default();
             let mut rest = room - width(&left) - GAP;
             if input.cursor.is_some() {
@@ -62,7 +64,7 @@ pub fn show(ui: &mut Ui, input: Input) {
 }
 
 /// What may stand on the left, the shortest first.
-fn texts_of(cursor: Option<Cursor>) -> Vec<String> {
+fn texts_of(cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
     let Some(c) = cursor else {
         let hints = ["Drag a reflector", "double-click to add one", "scroll to zoom", "right-click for more"];
         return (1..=hints.len()).map(|count| hints[..count].join(" · ")).collect();
@@ -73,7 +75,12 @@ fn texts_of(cursor: Option<Cursor>) -> Vec<String> {
     let cell = format!("bin {:5.1}   column {:6.1}", c.bin, c.column);
     let both = format!("{place}   {polar}");
     let texts = [range.clone(), polar, format!("{place}   {range}"), both.clone(), format!("{both}   {cell}")];
-    texts.map(|text| text.replace('-', "−")).to_vec()
+    let texts = texts.map(|text| text.replace('-', "−"));
+    match echo {
+        // What echoes there says more than a further number.
+        Some(echo) => texts.map(|text| format!("{text}   {echo}")).to_vec(),
+        None => texts.to_vec(),
+    }
 }
 
 fn plural(count: usize) -> &'static str {
@@ -90,7 +97,7 @@ mod tests {
     #[test]
     fn the_cursor_is_told_in_degrees_from_straight_ahead() {
         let cursor = Cursor::at_place(&Radar::default(), crate::interact::Place::new(-10.0, 10.0));
-        let texts = texts_of(Some(cursor));
+        let texts = texts_of(Some(cursor), None);
         assert!(texts.iter().all(|text| text.contains("−45.0°")), "{texts:?}");
         assert!(texts.iter().any(|text| text.contains("−45.0°   cos θ −0.707")), "{texts:?}");
     }
@@ -107,7 +114,7 @@ mod tests {
             for cursor in [Some(Cursor::at_cell(&Radar::default(), 258.7, 448.7)), None] {
                 let bar = Harness::builder().with_size([width, 60.0]).build_ui(move |ui| {
                     let took = Some(Duration::from_secs_f64(12.3456));
-                    show(ui, Input { cursor, objects: 5, reflectors: 12_345, took });
+                    show(ui, Input { cursor, echo: None, objects: 5, reflectors: 12_345, took });
                 });
                 seen::assert_readable(bar.output());
                 let texts = seen::texts(bar.output());

@@ -2,7 +2,8 @@
 
 use crate::app::chrome::{menu, status_bar};
 use crate::app::jobs::Jobs;
-use crate::app::state::{Command, Panel, State};
+use crate::app::state::{Command, Cursor, Panel, State};
+use crate::scattering::{PathEcho, heard_in_the_middle};
 
 /// What the menu bar shows.
 pub fn menu_input<'a>(
@@ -35,8 +36,34 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
     let scene = state.editor.scene();
     status_bar::Input {
         cursor: state.shown_cursor(),
+        echo: state.shown_cursor().and_then(|cursor| echo_at(state, &cursor)),
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
         took: jobs.pipeline.took(),
     }
+}
+
+/// Most bodies among which the echo under the pointer is looked for.
+const MOST_BODIES: usize = 60;
+/// How far from an echo the pointer may be, in range bins and columns.
+const NEAR_CELLS: [f64; 2] = [1.5, 8.0];
+
+/// Which echo of which body the map shows where the pointer is, in words: the strongest, if several are there.
+fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
+    let (radar, scene) = (state.radar(), state.editor.scene());
+    let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
+    if !(1..=MOST_BODIES).contains(&bodies) {
+        return None;
+    }
+    let [bins, columns] = NEAR_CELLS;
+    let near = |(_, echo): &(usize, PathEcho)| {
+        let [x, y] = echo.place_metres;
+        let bin = radar.bin_of_range(echo.range_metres - cursor.range_metres).abs();
+        let column = (x / x.hypot(y) - cursor.cos_theta).abs() * radar.elements as f64 / radar.fold_period_cos();
+        bin < bins && column < columns
+    };
+    let strength = |(_, echo): &(usize, PathEcho)| echo.amplitude.norm_sqr();
+    let all = heard_in_the_middle(radar, scene).into_iter().filter(near);
+    let (index, echo) = all.max_by(|a, b| strength(a).total_cmp(&strength(b)))?;
+    Some(format!("{} of {} {}", echo.kind.name(), scene.objects[index].noun(), index + 1))
 }

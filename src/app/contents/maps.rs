@@ -7,6 +7,7 @@ use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
 use crate::evaluate::TARGET_ETA;
 use crate::reconstruct::untrained_noise;
+use crate::scattering::Echoing;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
 
 impl Contents<'_> {
@@ -127,7 +128,8 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map
 fn note(state: &State, kind: MapKind) -> Option<String> {
     let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
     method.trained_noise()?;
-    untrained_noise(method.as_ref(), state.radar(), &state.editor.scene().reflectors(), state.settings.floor)
+    let echoing = Echoing::of(state.radar(), state.editor.scene());
+    untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
 }
 
 /// What became of every object, where that is to be marked: on the maps of the whole array.

@@ -56,7 +56,7 @@ impl Reflectors {
     fn of(&mut self, scene: &Arc<Scene>) -> &[map::Marked] {
         if !self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, scene)) {
             let marked = |object: &Object| map::Marked {
-                reflectors: object.reflectors(),
+                reflectors: object.marks(),
                 is_line: matches!(object, Object::Line(_)),
             };
             self.list = scene.objects.iter().map(marked).collect();

@@ -48,11 +48,7 @@ pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
     let index = editor.selection().iter().next().unwrap_or(0);
     let object = editor.scene().objects.get(index)?;
     let [x_metres, y_metres] = object.centre_metres();
-    let reflectivity = match object {
-        Object::Point(p) => p.reflectivity,
-        Object::Line(l) => l.reflectivity,
-        Object::Gaussian(g) => g.reflectivity,
-    };
+    let reflectivity = object.reflectivity();
     let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
     let reflector = Reflector { x_metres, y_metres, reflectivity };
     (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{} {}", object.noun(), index + 1), reflector))

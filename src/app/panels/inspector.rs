@@ -172,18 +172,48 @@ fn look(field: Field) -> Look {
         ),
         Field::SpreadX => spread("spread in x"),
         Field::SpreadY => spread("spread in y"),
+        Field::Length | Field::Width | Field::Angle | Field::Radius | Field::Roughness => {
+            look_of_body(field, metres, degrees)
+        }
         Field::Count => Look { low: 1.0, high: 10_000.0, ..whole("count", "Number of reflectors") },
         Field::Seed => Look {
             speed: 0.05,
             low: 0.0,
             high: u64::MAX as f64,
-            ..whole("seed", "Another seed scatters the reflectors otherwise")
+            ..whole("seed", "Another seed scatters the reflectors, or roughens the surface, otherwise")
         },
         Field::Reflectivity => Look {
             speed: 0.01,
             low: -1e6,
             high: 1e6,
-            ..plain("reflectivity", "σ of each reflector; the thesis uses 1")
+            ..plain(
+                "reflectivity",
+                "σ of each reflector, the thesis uses 1; the reflection coefficient of a body, 1 for metal",
+            )
+        },
+    }
+}
+
+/// The same for the numbers of bodies.
+fn look_of_body(
+    field: Field,
+    metres: impl Fn(&'static str, &'static str) -> Look,
+    degrees: impl Fn(&'static str, &'static str) -> Look,
+) -> Look {
+    match field {
+        Field::Length => Look { low: 1e-3, ..metres("length", "Of the wall or the box, metres") },
+        Field::Width => Look { low: 1e-3, ..metres("width", "Of the box, across its length") },
+        Field::Angle => degrees("angle of the length", "From the array's axis to the right, counter-clockwise"),
+        Field::Radius => Look { low: 0.01, high: 100.0, speed: 0.005, ..metres("radius", "Of the post") },
+        _ => Look {
+            unit: " mm",
+            speed: 0.01,
+            low: 0.0,
+            high: 100.0,
+            ..metres(
+                "roughness",
+                "Standard deviation of the surface's height: 0 is smooth, 1 mm takes 11 dB from a glint",
+            )
         },
     }
 }
@@ -417,5 +447,19 @@ mod tests {
         let mut inspector = panel(editor, Coordinates::Cartesian);
         enter(&mut inspector, "count", "7");
         assert_eq!(inspector.state().editor.scene().objects[0].reflector_count(), 7);
+    }
+
+    #[test]
+    fn a_wall_has_its_own_numbers() {
+        let wall = Object::Wall(crate::scene::Wall::new(1.0, 10.0, 5.0, 0.0));
+        let mut editor = Editor::new(Scene { objects: vec![wall], ..Scene::default() });
+        editor.select([0], SelectionMode::Replace);
+        let mut inspector = panel(editor, Coordinates::Cartesian);
+        let _called = inspector.get_by_label("Wall 1");
+        enter(&mut inspector, "length", "7");
+        enter(&mut inspector, "angle of the length", "30");
+        enter(&mut inspector, "roughness", "0.5");
+        let Object::Wall(wall) = inspector.state().editor.scene().objects[0].clone() else { panic!() };
+        assert_eq!((wall.length_metres, wall.angle_degrees, wall.roughness_millimetres), (7.0, 30.0, 0.5));
     }
 }

@@ -165,7 +165,7 @@ fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<
     };
     let [x, y] = place_fields(input.coordinates).map(place);
     let many = match object.reflector_count() {
-        1 => name,
+        0 | 1 => name,
         n => format!("{name} (×{n})"),
     };
     cells(ui, rect, [many, x, y, format!("{:.2}", object.reflectivity())], visuals.text_color());

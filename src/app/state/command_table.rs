@@ -72,6 +72,25 @@ const TABLE: &[Entry] = {
             key(Key::G),
         ),
         entry(
+            Edit(EditCommand::Add(NewObject::Wall, None)),
+            "Add wall",
+            "Add a wall of 5 m: it shines where it faces the array, and hides what stands behind it",
+            None,
+        ),
+        entry(
+            Edit(EditCommand::Add(NewObject::Box, None)),
+            "Add box",
+            "Add a box of a car's size, 4.5 m by 1.8 m",
+            None,
+        ),
+        entry(Edit(EditCommand::Add(NewObject::Post, None)), "Add post", "Add a round post of 0.2 m radius", None),
+        entry(
+            Edit(EditCommand::Add(NewObject::Polygon, None)),
+            "Add polygon",
+            "Add an outline with an inner corner, whose corners can be dragged",
+            None,
+        ),
+        entry(
             Document(DocumentCommand::New),
             "New scene",
             "Start with an empty scene; undo brings this one back",

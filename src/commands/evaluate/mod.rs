@@ -1,5 +1,6 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values. Also writes rows, runs shards, and takes your own scenes.
 
+mod by_echo;
 mod kept;
 mod progress;
 mod report;
@@ -14,6 +15,7 @@ use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
 use crate::task::Task;
+use by_echo::ByEcho;
 use kept::{Key, RowFile, Wanted, key, on_file, write_merged};
 use progress::Progress;
 use report::Report;
@@ -49,7 +51,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
     method: Vec<String>,
 
-    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, noise), separated by commas
+    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near; of bodies: bodies, street, rails, occlusion, rough; noise), separated by commas
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
 
@@ -169,13 +171,18 @@ impl Args {
             !done.is_empty() && done.contains(&(set.to_owned(), index, method.to_owned()))
         };
         let task = Task::default();
-        let found = campaign.run_rest(&sets, &methods, &origins, &is_done, &task, |row, _, _| {
+        let mut by_echo = ByEcho::default();
+        let found = campaign.run_rest(&sets, &methods, &origins, &is_done, &task, |row, trial, answer| {
             progress.row(row);
+            by_echo.count(row, || trial.echoes(answer));
             if file.as_mut().is_some_and(|file| !file.append(row)) {
                 task.cancel();
             }
         });
         progress.finish();
+        if let Some(text) = by_echo.to_text() {
+            eprint!("{text}");
+        }
         match file {
             None => found.map_err(CommandError::failed),
             Some(mut file) => match file.failure() {

@@ -58,11 +58,11 @@ impl Search {
             for (object, home) in scene.objects.iter_mut().zip(&start.objects) {
                 let db = MOST_LOUDER_DB * rng.random_range(-1.0..=1.0);
                 let part = if anywhere { 1.0 } else { state.step };
-                let (now, at_home) = (reflectivity(object), *reflectivity(&mut home.clone()));
-                *now *= 10f64.powf(part * db / 20.0);
+                let at_home = home.reflectivity();
+                let now = object.reflectivity() * 10f64.powf(part * db / 20.0);
                 let most = 10f64.powf(MOST_LOUDER_DB / 20.0);
                 let (low, high) = (at_home.abs() / most, at_home.abs() * most);
-                *now = now.abs().clamp(low, high).copysign(at_home);
+                object.set_reflectivity(now.abs().clamp(low, high).copysign(at_home));
             }
         }
         if rng.random::<f64>() < OTHER_NOISE {
@@ -119,13 +119,5 @@ fn keep_within(object: &mut Object, home: &Object, within_metres: f64) {
         let ([x, y], [home_x, home_y]) = (object.centre_metres(), home.centre_metres());
         let back = 1.0 - within_metres / away;
         object.translate(back * (home_x - x), back * (home_y - y));
-    }
-}
-
-fn reflectivity(object: &mut Object) -> &mut f64 {
-    match object {
-        Object::Point(p) => &mut p.reflectivity,
-        Object::Line(l) => &mut l.reflectivity,
-        Object::Gaussian(g) => &mut g.reflectivity,
     }
 }

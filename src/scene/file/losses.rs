@@ -25,6 +25,15 @@ pub enum Loss {
         /// Objects that have one.
         objects: usize,
     },
+    /// That bodies hide nothing: reopened, there are no bodies.
+    Shadows,
+    /// Bodies: reopened, they are points where the array's middle sees them echo, which hide nothing.
+    Bodies {
+        /// Walls, boxes, posts and polygons.
+        objects: usize,
+        /// Points they become.
+        points: usize,
+    },
     /// Lines and clusters: reopened, they are points.
     Structure {
         /// Lines and clusters.
@@ -41,6 +50,11 @@ impl fmt::Display for Loss {
             Loss::Notes => f.write_str("its notes"),
             Loss::NoiseSeed => f.write_str("its noise seed"),
             Loss::Radar => f.write_str("its radar"),
+            Loss::Shadows => f.write_str("that its bodies hide nothing"),
+            Loss::Bodies { objects: 1, points } => write!(f, "one body, which becomes {points} points where it echoes"),
+            Loss::Bodies { objects, points } => {
+                write!(f, "{objects} bodies, which become {points} points where they echo")
+            }
             Loss::Disturbances => f.write_str("what disturbs it"),
             Loss::Recording => f.write_str("the recording that it is laid over"),
             Loss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
@@ -56,7 +70,8 @@ impl fmt::Display for Loss {
 impl Format {
     /// What a file of this format would not give back of `file`; empty where it gives back everything.
     pub fn losses(self, file: &SceneFile) -> Vec<Loss> {
-        let SceneFile { scene: Scene { name, notes, noise_seed, disturbances, objects }, radar } = file;
+        let SceneFile { scene, radar } = file;
+        let Scene { name, notes, noise_seed, shadows, disturbances, objects } = scene;
         if self == Format::Toml {
             return Vec::new();
         }
@@ -68,7 +83,11 @@ impl Format {
         losses.extend((!disturbances.is_none()).then_some(Loss::Disturbances));
         let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
         losses.extend((reflective > 0).then_some(Loss::Reflectivity { objects: reflective }));
-        let structured = || objects.iter().filter(|o| !matches!(o, Object::Point(_)));
+        losses.extend((!shadows).then_some(Loss::Shadows));
+        let bodies: Vec<_> = objects.iter().filter_map(Object::body).collect();
+        let points = bodies.iter().map(|b| b.echo_places_metres([0.0, 0.0]).len()).sum();
+        losses.extend((!bodies.is_empty()).then_some(Loss::Bodies { objects: bodies.len(), points }));
+        let structured = || objects.iter().filter(|o| o.body().is_none() && !matches!(o, Object::Point(_)));
         let (structures, points) = (structured().count(), structured().map(Object::reflector_count).sum());
         losses.extend((structures > 0).then_some(Loss::Structure { objects: structures, points }));
         losses
@@ -80,12 +99,12 @@ mod tests {
     use super::super::{load, save};
     use super::*;
     use crate::radar::Carrier;
-    use crate::scene::{GaussianCluster, Line, Point};
+    use crate::scene::{Block, GaussianCluster, Line, Point, Polygon, Post, Wall};
     use proptest::prelude::*;
 
     fn object() -> impl Strategy<Value = Object> {
         let reflectivity = prop_oneof![3 => Just(1.0), 1 => 0.01f64..3.0];
-        (0..8, -20.0f64..20.0, 1.0f64..30.0, reflectivity).prop_map(|(kind, x_metres, y_metres, reflectivity)| {
+        (0..12, -20.0f64..20.0, 4.0f64..30.0, reflectivity).prop_map(|(kind, x_metres, y_metres, reflectivity)| {
             match kind {
                 0 => Object::Line(Line { reflectivity, ..Line::vertical(x_metres, y_metres, 0.1, 4) }),
                 1 => Object::Gaussian(GaussianCluster {
@@ -97,6 +116,18 @@ mod tests {
                     seed: 5,
                     reflectivity,
                 }),
+                2 => Object::Wall(Wall { reflectivity, ..Wall::new(x_metres, y_metres, 3.0, y_metres) }),
+                3 => Object::Box(Block { reflectivity, seed: 4, ..Block::new([x_metres, y_metres], [4.5, 1.8], 20.0) }),
+                4 => Object::Post(Post {
+                    reflectivity,
+                    roughness_millimetres: 0.5,
+                    ..Post::new(x_metres, y_metres, 0.2)
+                }),
+                5 => {
+                    let corners = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]];
+                    let corners = corners.map(|[x, y]| [x + x_metres, y + y_metres]).to_vec();
+                    Object::Polygon(Polygon { reflectivity, ..Polygon::new(corners) })
+                }
                 _ => Object::Point(Point { x_metres, y_metres, reflectivity }),
             }
         })
@@ -107,12 +138,12 @@ mod tests {
         let carrier = prop_oneof![2 => Just(Carrier::OneWay), 1 => Just(Carrier::TwoWay)];
         let objects = prop::collection::vec(object(), 0..4);
         let noise_seed = prop_oneof![2 => Just(0u64), 1 => 1..99u64];
-        (text(), text(), noise_seed, objects, carrier).prop_map(|(name, notes, noise_seed, objects, carrier)| {
-            SceneFile {
-                scene: Scene { name, notes, noise_seed, objects, ..Scene::default() },
+        (text(), text(), noise_seed, objects, carrier, any::<bool>()).prop_map(
+            |(name, notes, noise_seed, objects, carrier, shadows)| SceneFile {
+                scene: Scene { name, notes, noise_seed, shadows, objects, ..Scene::default() },
                 radar: Radar { carrier, ..Radar::default() },
-            }
-        })
+            },
+        )
     }
 
     proptest! {
@@ -132,7 +163,8 @@ mod tests {
     #[test]
     fn losses_are_told_in_words() {
         let line = Line { reflectivity: 0.05, ..Line::vertical(0.0, 9.0, 0.1, 40) };
-        let scene = Scene { notes: "n".to_owned(), objects: vec![Object::Line(line)], ..Scene::default() };
+        let objects = vec![Object::Line(line), Object::Wall(Wall::new(0.0, 20.0, 5.0, 0.0))];
+        let scene = Scene { notes: "n".to_owned(), shadows: false, objects, ..Scene::default() };
         let file = SceneFile { scene, radar: Radar { elements: 64, ..Radar::default() } };
         let told: Vec<String> = Format::Npz.losses(&file).iter().map(Loss::to_string).collect();
         assert_eq!(
@@ -141,6 +173,8 @@ mod tests {
                 "its notes",
                 "its radar",
                 "the reflectivity of one object",
+                "that its bodies hide nothing",
+                "one body, which becomes 3 points where it echoes",
                 "one line or cluster, which becomes 40 points"
             ]
         );

@@ -2,7 +2,9 @@
 
 use super::content::{SceneFile, SceneTextError};
 use crate::radar::Radar;
-use crate::scene::{Disturbances, GaussianCluster, Line, Object, Point, Scene, SceneError};
+use crate::scene::{
+    Block, Disturbances, GaussianCluster, Line, Object, Point, Polygon, Post, Scene, SceneError, Wall, yes,
+};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -25,18 +27,21 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
         notes: &'a str,
         #[serde(skip_serializing_if = "Option::is_none")]
         noise_seed: Option<u64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        shadows: Option<bool>,
         #[serde(skip_serializing_if = "toml::Table::is_empty")]
         radar: toml::Table,
         #[serde(skip_serializing_if = "Disturbances::is_none")]
         disturbances: &'a Disturbances,
         object: &'a [Object],
     }
-    let Scene { name, notes, noise_seed, disturbances, objects } = &file.scene;
+    let Scene { name, notes, noise_seed, shadows, disturbances, objects } = &file.scene;
+    let shadows = Some(*shadows).filter(|shadows| !shadows);
     let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
     let usual = toml::Table::try_from(Radar::default())?;
     let mut radar = toml::Table::try_from(&file.radar)?;
     radar.retain(|key, value| usual.get(key) != Some(value));
-    toml::to_string_pretty(&Document { name, notes, noise_seed, radar, disturbances, object: objects })
+    toml::to_string_pretty(&Document { name, notes, noise_seed, shadows, radar, disturbances, object: objects })
 }
 
 /// [`to_toml`] with a further table, called `key`, after it.
@@ -64,7 +69,10 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
     file.scene.validate(&file.radar).map_err(|error| {
         let span = match &error {
             SceneError::Value { object, field, .. } => object_spans(text, *object).field(field),
-            SceneError::OnElement { object, .. } => object_spans(text, *object).whole,
+            SceneError::Outline { object, .. } => object_spans(text, *object).field("corners_metres"),
+            SceneError::OnElement { object, .. } | SceneError::Covers { object, .. } => {
+                object_spans(text, *object).whole
+            }
             SceneError::Elements(_) | SceneError::Disturbance { .. } => disturbances_span(text),
             SceneError::TooMany { .. } | SceneError::Radar(_) => 0..0,
         };
@@ -115,6 +123,8 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
         notes: String,
         #[serde(default)]
         noise_seed: u64,
+        #[serde(default = "yes")]
+        shadows: bool,
         #[serde(default)]
         radar: Radar,
         #[serde(default)]
@@ -147,6 +157,7 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
                 name: head.name,
                 notes: head.notes,
                 noise_seed: head.noise_seed,
+                shadows: head.shadows,
                 disturbances: head.disturbances,
                 objects,
             },
@@ -176,7 +187,7 @@ fn objects(text: &str, entries: Spanned<DeValue<'_>>) -> Result<Vec<Object>, Sce
 
 /// Reads one `[[object]]`. Its kind is taken off first, so that the other keys are read with their places known.
 fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, String)> {
-    const KINDS: &str = "expected \"point\", \"line\" or \"gaussian\"";
+    const KINDS: &str = "expected \"point\", \"line\", \"gaussian\", \"wall\", \"box\", \"post\" or \"polygon\"";
     let span = entry.span();
     let DeValue::Table(mut table) = entry.into_inner() else {
         return Err((Some(span), "not a table; expected [[object]] with a kind".to_owned()));
@@ -189,6 +200,10 @@ fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, 
         Some("point") => Point::deserialize(rest).map(Object::Point),
         Some("line") => Line::deserialize(rest).map(Object::Line),
         Some("gaussian") => GaussianCluster::deserialize(rest).map(Object::Gaussian),
+        Some("wall") => Wall::deserialize(rest).map(Object::Wall),
+        Some("box") => Block::deserialize(rest).map(Object::Box),
+        Some("post") => Post::deserialize(rest).map(Object::Post),
+        Some("polygon") => Polygon::deserialize(rest).map(Object::Polygon),
         Some(other) => return Err((Some(kind.span()), format!("unknown kind \"{other}\"; {KINDS}"))),
         None => return Err((Some(kind.span()), format!("\"kind\" is not a string; {KINDS}"))),
     };
@@ -263,11 +278,16 @@ mod tests {
                 seed: 9,
                 reflectivity: 1.0,
             }),
+            Object::Wall(Wall { roughness_millimetres: 0.3, ..Wall::new(1.0, 9.0, 4.0, 0.0) }),
+            Object::Box(Block { reflectivity: 0.5, seed: 3, ..Block::new([3.0, 9.0], [4.5, 1.8], 12.0) }),
+            Object::Post(Post::new(-3.0, 9.0, 0.1)),
+            Object::Polygon(Polygon::new(vec![[-9.0, 9.0], [-8.0, 9.0], [-8.0, 10.5]])),
         ];
         let scene = Scene {
             name: "All \"three\"".to_owned(),
             notes: "First line.\nSecond: 'x'.".to_owned(),
             noise_seed: 9,
+            shadows: false,
             disturbances: Disturbances {
                 interferer: Some(crate::scene::Interferer { x_metres: -1.5, ..Default::default() }),
                 mirror: Some(crate::scene::Mirror { reflection: 0.25, ..Default::default() }),
@@ -332,6 +352,18 @@ mod tests {
             (&crowd("gaussian", "y_metres = 1\nx_std_metres = 1\ny_std_metres = 1"), 1, vec!["reflectors", "200000"]),
             (&format!("notes = \"{}\"", ".".repeat(MAX_MARKS)), 1, vec!["values and tables"]),
             ("[[object]", 1, vec!["]"]),
+            (
+                "[[object]]\nkind = \"polygon\"\ncorners_metres = [[0, 5], [1, 6], [1, 5], [0, 6]]",
+                3,
+                vec!["object 1 (polygon)", "cross"],
+            ),
+            ("[[object]]\nkind = \"wall\"\nx_metres = 0\ny_metres = 5", 1, vec!["object 1", "length_metres"]),
+            (
+                "[[object]]\nkind = \"post\"\nx_metres = 0\ny_metres = 0\nradius_metres = 3",
+                1,
+                vec!["object 1 (post)", "element 0"],
+            ),
+            ("shadows = 3", 1, vec!["boolean"]),
             ("a = 1\na = 2", 2, vec!["duplicate"]),
         ] {
             let error = from_toml(text).unwrap_err();

@@ -61,7 +61,7 @@ impl Field {
                 })
                 .collect(),
             Kind::Near => (0..rng.random_range(1..=3)).map(|_| near_point(rng)).collect(),
-            Kind::Set1 | Kind::Set2 | Kind::Set3 | Kind::Noise | Kind::Points(_) | Kind::Mixed(_) => Vec::new(),
+            _ => Vec::new(),
         }
     }
 

@@ -32,6 +32,16 @@ pub enum Kind {
     Dynamic,
     /// 1 to 3 points near the array: ranges from 0.3 to 8 m, uniform in their logarithm, 15 degrees or more off the array's axis.
     Near,
+    /// 1 to 3 bodies (walls of 1 to 10 m, cars, posts, inner corners) turned anyhow, and at most one point.
+    Bodies,
+    /// Two cars along the road, two or three walls, two to four posts.
+    Street,
+    /// Guard rails left and right of the road, a car between them, one to three posts.
+    Rails,
+    /// A car or a wide post, and behind it two bodies and a point, hidden from some elements or all.
+    Occlusion,
+    /// One or two rough bodies (height deviation 0.2 to 1.5 mm) and a post.
+    Rough,
     /// Nothing: over thermal noise of a level of its own the samples are noise alone.
     Noise,
     /// Experiment 1: this many points (1 to 4).
@@ -48,12 +58,15 @@ impl Kind {
     pub const BEYOND: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 
-    /// Every kind that has a name of its own: the test sets, what lies beyond them, and noise alone.
+    /// The kinds of bodies: they shine where they face the array, and hide what stands behind them.
+    pub const THINGS: [Kind; 5] = [Kind::Bodies, Kind::Street, Kind::Rails, Kind::Occlusion, Kind::Rough];
+
+    /// Every kind that has a name of its own: the test sets, what lies beyond them, bodies, and noise alone.
     pub fn all() -> impl Iterator<Item = Kind> {
-        Kind::with_echoes().chain([Kind::Noise])
+        Kind::with_echoes().chain(Kind::THINGS).chain([Kind::Noise])
     }
 
-    /// The test sets and what lies beyond them: scenes with something to detect.
+    /// The test sets and what lies beyond them: scenes of points with something to detect.
     pub fn with_echoes() -> impl Iterator<Item = Kind> {
         Kind::TEST_SETS.into_iter().chain(Kind::BEYOND)
     }
@@ -76,6 +89,11 @@ impl Kind {
             Kind::Crowd => "12 to 40 points",
             Kind::Dynamic => "5 points up to 40 dB apart",
             Kind::Near => "points from 0.3 m",
+            Kind::Bodies => "walls, cars, posts and corners",
+            Kind::Street => "a street of cars, walls and posts",
+            Kind::Rails => "guard rails, a car and posts",
+            Kind::Occlusion => "bodies behind a car or a post",
+            Kind::Rough => "rough bodies and a post",
             Kind::Noise => "noise alone",
             Kind::Points(_) => "points of experiment 1",
             Kind::Mixed(_) => "points and lines of experiment 2",
@@ -109,6 +127,11 @@ impl Kind {
             Kind::Dynamic => 9,
             Kind::Near => 10,
             Kind::Noise => 11,
+            Kind::Bodies => 12,
+            Kind::Street => 13,
+            Kind::Rails => 14,
+            Kind::Occlusion => 15,
+            Kind::Rough => 16,
             Kind::Points(n) => 0x100 + u64::from(n),
             Kind::Mixed(n) => 0x200 + u64::from(n),
         }
@@ -129,6 +152,11 @@ impl fmt::Display for Kind {
             Kind::Crowd => "crowd",
             Kind::Dynamic => "dynamic",
             Kind::Near => "near",
+            Kind::Bodies => "bodies",
+            Kind::Street => "street",
+            Kind::Rails => "rails",
+            Kind::Occlusion => "occlusion",
+            Kind::Rough => "rough",
             Kind::Noise => "noise",
             Kind::Points(n) => return write!(f, "points-{n}"),
             Kind::Mixed(n) => return write!(f, "mixed-{n}"),
@@ -144,7 +172,8 @@ impl FromStr for Kind {
     fn from_str(s: &str) -> Result<Self, String> {
         let wanted = s.trim();
         Kind::all().find(|k| k.to_string() == wanted).ok_or_else(|| {
-            let names: Vec<String> = Kind::BEYOND.iter().chain(&[Kind::Noise]).map(Kind::to_string).collect();
+            let names: Vec<String> =
+                Kind::BEYOND.iter().chain(&Kind::THINGS).chain(&[Kind::Noise]).map(Kind::to_string).collect();
             format!("there are no scenes called \"{s}\"; expected test set 1, 2 or 3, or {}", names.join(", "))
         })
     }

@@ -164,10 +164,7 @@ impl Monkey {
             19 => Command::Document(DocumentCommand::Recover(if left.is_empty() { 0 } else { self.pick(&left) })),
             20 if self.rng.random_bool(0.5) => Command::Lesson(LessonCommand::Begin(0)),
             20 => Command::Lesson(LessonCommand::Leave),
-            _ => Command::Edit(EditCommand::Add(
-                self.pick(&[NewObject::Point, NewObject::Line, NewObject::Cluster]),
-                None,
-            )),
+            _ => Command::Edit(EditCommand::Add(self.pick(&NewObject::ALL), None)),
         }
     }
 }

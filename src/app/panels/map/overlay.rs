@@ -87,7 +87,7 @@ fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> 
 pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
     let mut left = MARKS;
     for object in selection.iter().filter_map(|i| scene.objects.get(i)) {
-        let reflectors: Vec<Reflector> = object.reflectors().into_iter().take(left).collect();
+        let reflectors: Vec<Reflector> = object.marks().into_iter().take(left).collect();
         left -= reflectors.len();
         if let (Object::Line(_), [first, .., last]) = (object, reflectors.as_slice()) {
             curve(painter, frame, first, last);

@@ -1,5 +1,6 @@
 //! How the scene is drawn: ground, rings, spokes, array, objects, grips.
 
+use super::bodies;
 use crate::app::state::{Cursor, SceneView};
 use crate::app::widgets::axes;
 use crate::app::widgets::theme::Inks;
@@ -184,12 +185,20 @@ pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look
             });
             dots(painter, object, 1.8, colour, at);
         }
+        Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
+            if let Some(body) = object.body() {
+                bodies::outline(painter, &at, &body.shape(), colour, halo);
+            }
+        }
     }
     if selected {
         let handles = grips(object, view.metres_per_point);
         let place = |grip| handles.iter().find(|g| g.grip == grip).map(|g| at(g.place));
         if let Some((end, turn)) = place(Grip::FarEnd).zip(place(Grip::Turn)) {
             painter.line_segment([end, turn], Stroke::new(1.0, colour));
+        }
+        if let Some(turn) = place(Grip::Rotate) {
+            painter.line_segment([centre, turn], Stroke::new(1.0, colour.gamma_multiply(0.6)));
         }
         for g in handles.into_iter().filter(|g| g.grip != Grip::Body) {
             grip(painter, at(g.place), g.grip, colour, inks);
@@ -208,12 +217,12 @@ fn dots(painter: &Painter, object: &Object, radius: f32, colour: Color32, at: im
 fn grip(painter: &Painter, at: Pos2, grip: Grip, colour: Color32, inks: Inks) {
     let stroke = Stroke::new(1.5, colour);
     match grip {
-        Grip::Spacing | Grip::SpreadX | Grip::SpreadY => {
+        Grip::Spacing | Grip::SpreadX | Grip::SpreadY | Grip::Radius => {
             let r = 5.5;
             let diamond = vec![at + vec2(0.0, -r), at + vec2(r, 0.0), at + vec2(0.0, r), at + vec2(-r, 0.0)];
             painter.add(Shape::convex_polygon(diamond, inks.ground, stroke));
         }
-        Grip::Turn => {
+        Grip::Turn | Grip::Rotate => {
             painter.circle(at, 7.0, inks.ground, stroke);
             turning_arrow(painter, at, stroke);
         }

@@ -2,6 +2,7 @@
 
 mod behind;
 mod beyond;
+mod bodies;
 mod canvas;
 mod disturbances;
 mod hint;
@@ -77,11 +78,13 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
     disturbances::draw(&painter, canvas, editor.scene());
+    let at = |place| canvas.at(place);
+    bodies::shadows(&painter, &at, input.radar, editor.scene(), (extent_metres, canvas.inks.ends));
     for (index, object) in editor.scene().objects.iter().enumerate() {
         let hovered = hovered.is_some_and(|h| h.object == index);
-        let look = Look { selected: editor.selection().contains(index), hovered };
-        canvas::object(&painter, canvas, object, look);
+        canvas::object(&painter, canvas, object, Look { selected: editor.selection().contains(index), hovered });
     }
+    bodies::glints(&painter, &at, input.radar, editor.scene(), canvas.inks.ends);
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
     trail::draw(&painter, canvas, input.trails);
     handles(input.radar.range_resolution_metres(), editor, *view, ui, rect);
@@ -104,10 +107,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
             (Grip::Body, Some(_)) => CursorIcon::Grabbing,
-            (Grip::Body | Grip::Turn, None) => CursorIcon::Grab,
-            (Grip::Turn, Some(_)) => CursorIcon::Grabbing,
-            (Grip::SpreadX, _) => CursorIcon::ResizeHorizontal,
-            (Grip::NearEnd | Grip::FarEnd, _) => CursorIcon::Move,
+            (Grip::Body | Grip::Turn | Grip::Rotate, None) => CursorIcon::Grab,
+            (Grip::Turn | Grip::Rotate, Some(_)) => CursorIcon::Grabbing,
+            (Grip::SpreadX | Grip::Radius, _) => CursorIcon::ResizeHorizontal,
+            (Grip::NearEnd | Grip::FarEnd | Grip::Corner(_), _) => CursorIcon::Move,
             _ => CursorIcon::ResizeVertical,
         });
     }
@@ -305,8 +308,14 @@ fn handles(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect:
 
 /// The part of the canvas that an object takes.
 fn on_screen(object: &Object, view: SceneView, rect: Rect) -> Rect {
-    let places = object.reflectors();
-    let places = places.iter().map(|r| view.to_screen(rect, Place::new(r.x_metres, r.y_metres)));
+    let places = match object.body() {
+        Some(body) => {
+            let (low, high) = body.shape().extent();
+            vec![low.into(), high.into()]
+        }
+        None => object.reflectors().iter().map(|r| Place::new(r.x_metres, r.y_metres)).collect(),
+    };
+    let places = places.into_iter().map(|place: Place| view.to_screen(rect, place));
     Rect::from_points(&places.collect::<Vec<_>>()).expand(8.0).intersect(rect)
 }
 
@@ -344,7 +353,7 @@ fn context_menu(
     popup.show(|ui| {
         let clicked = ui.data(|d| d.get_temp::<([f64; 2], bool)>(id));
         let (place, on_object) = (clicked.map(|(place, _)| Place::from(place)), clicked.is_some_and(|(_, hit)| hit));
-        for kind in [NewObject::Point, NewObject::Line, NewObject::Cluster] {
+        for kind in NewObject::ALL {
             entry(ui, EditCommand::Add(kind, place), true, asked);
         }
         ui.separator();

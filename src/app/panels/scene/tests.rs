@@ -323,3 +323,32 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
     scene.run_steps(2);
     assert!(centre(&scene).y_metres > panned.y_metres, "with Ctrl they pan whatever is selected");
 }
+
+#[test]
+fn a_corner_of_a_box_resizes_it_in_one_step_of_undo() {
+    use crate::scene::{Block, Object};
+    let object = Object::Box(Block::new([4.0, 12.0], [4.0, 2.0], 0.0));
+    let mut scene = panel(Scene { objects: vec![object.clone()], ..Scene::default() });
+    scene.state_mut().editor.select([0], SelectionMode::Replace);
+    scene.step();
+    let metres = drag(&mut scene, "box 1: move corner 3", vec2(40.0, -30.0));
+    let Object::Box(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
+    assert!((after.length_metres - 4.0 - 40.0 * metres).abs() < 0.3, "{after:?}");
+    assert!((after.width_metres - 2.0 - 30.0 * metres).abs() < 0.3, "{after:?}");
+    let [x, y] = after.corners_metres()[0];
+    assert!((x - 2.0).hypot(y - 11.0) < 1e-9, "the opposite corner stays: {x}, {y}");
+    assert!(scene.state_mut().editor.undo() && scene.state().editor.scene().objects[0] == object);
+}
+
+#[test]
+fn the_round_handle_turns_a_wall_about_its_middle() {
+    use crate::scene::{Object, Wall};
+    let wall = Object::Wall(Wall::new(0.0, 15.0, 6.0, 0.0));
+    let mut scene = panel(Scene { objects: vec![wall], ..Scene::default() });
+    scene.state_mut().editor.select([0], SelectionMode::Replace);
+    scene.step();
+    drag(&mut scene, "wall 1: turn it about its middle", vec2(0.0, -40.0));
+    let Object::Wall(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
+    assert!(after.angle_degrees > 5.0 && (after.x_metres, after.y_metres) == (0.0, 15.0), "{after:?}");
+    assert_eq!(after.length_metres, 6.0);
+}

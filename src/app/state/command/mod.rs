@@ -30,6 +30,27 @@ pub enum NewObject {
     Line,
     /// A Gaussian cluster.
     Cluster,
+    /// A straight wall.
+    Wall,
+    /// A rectangle of a car's size.
+    Box,
+    /// A round post.
+    Post,
+    /// A closed outline of straight faces.
+    Polygon,
+}
+
+impl NewObject {
+    /// All of them, in the order of menus.
+    pub const ALL: [NewObject; 7] = [
+        NewObject::Point,
+        NewObject::Line,
+        NewObject::Cluster,
+        NewObject::Wall,
+        NewObject::Box,
+        NewObject::Post,
+        NewObject::Polygon,
+    ];
 }
 
 /// Which methods are to be evaluated, and on what.

@@ -1,0 +1,173 @@
+//! Detection by echo: of each echo that stands out in the target, whether an output shows it.
+//!
+//! P_D counts cells whose Lambda exceeds 0.9 in the target. The end of a wall lies 30 to 60 dB below its glint and never counts there, so that
+//! a method that finds glints alone looks perfect. Here each echo counts once, in classes of 10 dB below the strongest.
+
+use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::{End, Pair, Radar};
+use crate::scattering::{EchoKind, Echoing, PathEcho, Sources};
+use crate::scene::Scene;
+
+/// Classes of 10 dB below the strongest echo; the last one has all that is weaker.
+pub const CLASSES: usize = 6;
+
+/// An echo counts if it stands out of its surroundings in the target by this much, in dB.
+const STANDS_OUT_DB: f64 = 10.0;
+/// An output shows it if it stands out there by this much, in dB.
+const SHOWN_DB: f64 = 3.0;
+/// Half a resolution cell, in range bins.
+const HALF_BINS: f64 = 1.0;
+/// The same in columns, for an echo that no near field smears.
+const HALF_COLUMNS: f64 = 1.5;
+/// How far beyond the cell its surroundings reach, in rows and columns.
+const AROUND: usize = 5;
+
+/// Echoes that stand out in targets, by their strength, and how many of them an output shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct EchoTally {
+    /// Echoes that stand out in the target, one number a class.
+    pub there: [usize; CLASSES],
+    /// Those of them that the output shows.
+    pub found: [usize; CLASSES],
+}
+
+impl EchoTally {
+    /// Adds what was counted elsewhere.
+    pub fn add(&mut self, other: &EchoTally) {
+        for class in 0..CLASSES {
+            self.there[class] += other.there[class];
+            self.found[class] += other.found[class];
+        }
+    }
+
+    /// Part of all echoes that were found; `None` where there are none.
+    pub fn part(&self) -> Option<f64> {
+        let all: usize = self.there.iter().sum();
+        (all > 0).then(|| self.found.iter().sum::<usize>() as f64 / all as f64)
+    }
+}
+
+/// An echo as the middle of the array hears it, where the map shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shown {
+    bin: f64,
+    column: f64,
+    /// Half of its width, columns.
+    half_columns: f64,
+    /// dB below the strongest.
+    below_db: f64,
+}
+
+/// Where the map of `scene` shows its echoes, but for those of rough surfaces, which have no place of their own.
+fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
+    let echoing = Echoing::of(radar, scene);
+    let mut heard = Vec::new();
+    Sources::from(&echoing).scattered(Pair::at(0.0), &mut heard);
+    let points = echoing.points.iter().map(|r| {
+        let range = r.x_metres.hypot(r.y_metres);
+        let strength = radar.transmit_power_watts * r.reflectivity.abs() / (range * range);
+        ([r.x_metres, r.y_metres], range, strength, false)
+    });
+    let bodies = heard.iter().filter(|e| e.is_heard() && e.kind != EchoKind::Diffuse);
+    let of_body = |e: &PathEcho| (e.place_metres, e.range_metres, e.amplitude.norm(), e.kind == EchoKind::Glint);
+    let all: Vec<_> = points.chain(bodies.map(of_body)).filter(|(_, _, strength, _)| *strength > 0.0).collect();
+    let strongest = all.iter().map(|(_, _, strength, _)| *strength).fold(0.0, f64::max);
+    all.into_iter()
+        .map(|([x, y], range, strength, is_glint)| {
+            let cos = |centre: f64| radar.blob_of(centre, x, y).cos_theta;
+            let [first, last] = End::BOTH.map(|end| cos(radar.end_centre_metres(end)));
+            let per_cos = radar.elements as f64 / radar.fold_period_cos();
+            // The near field smears all but the glints of flat faces, whose direction is the same from every element.
+            let smeared = if is_glint { 0.0 } else { (first - last).abs() * per_cos / 2.0 };
+            Shown {
+                bin: radar.bin_of_range(range),
+                column: radar.column_of_cos(cos(0.0)),
+                half_columns: HALF_COLUMNS + smeared,
+                below_db: 20.0 * (strongest / strength).log10(),
+            }
+        })
+        .filter(|shown| shown.bin + HALF_BINS < radar.samples as f64 - 1.0)
+        .collect()
+}
+
+/// By how many dB the largest cell of an echo's place stands out of what surrounds it; `None` where it is no peak.
+fn stands_out(map: &RangeAngleMap, echo: &Shown, decibels_of_lambda: f64) -> Option<f64> {
+    let (rows, columns) = map.lambda.dim();
+    let value = |row: usize, column: i64| map.lambda[[row, column.rem_euclid(columns as i64) as usize]];
+    let (low, high) = ((echo.bin - HALF_BINS).round().max(0.0), (echo.bin + HALF_BINS).round());
+    let within = low as usize..=(high as usize).min(rows - 1);
+    let half = echo.half_columns.min(columns as f64 / 4.0);
+    let (left, right) = ((echo.column - half).round() as i64, (echo.column + half).round() as i64);
+    let cells = within.clone().flat_map(|row| (left..=right).map(move |column| (row, column)));
+    let (row, column) = cells.max_by(|a, b| value(a.0, a.1).total_cmp(&value(b.0, b.1)))?;
+    let peak = value(row, column);
+    let near = row.saturating_sub(1)..=(row + 1).min(rows - 1);
+    if near.flat_map(|r| (column - 1..=column + 1).map(move |c| (r, c))).any(|(r, c)| value(r, c) > peak) {
+        return None;
+    }
+    let reach = AROUND as i64;
+    let around = within.start().saturating_sub(AROUND)..=(within.end() + AROUND).min(rows - 1);
+    let mut surroundings: Vec<f32> = around
+        .flat_map(|r| (left - reach..=right + reach).map(move |c| (r, c)))
+        .filter(|(r, c)| !within.contains(r) || !(left..=right).contains(c))
+        .map(|(r, c)| value(r, c))
+        .collect();
+    let middle = surroundings.len() / 2;
+    let (_, median, _) = surroundings.select_nth_unstable_by(middle, f32::total_cmp);
+    Some(f64::from(peak - *median) * decibels_of_lambda)
+}
+
+/// Which echoes of `scene` stand out in `target`, and which of them `output` shows. `scale` is that between the target's decades and Lambda.
+pub fn tally(
+    radar: &Radar,
+    scene: &Scene,
+    target: &RangeAngleMap,
+    output: &RangeAngleMap,
+    scale: &LambdaScale,
+) -> EchoTally {
+    let decibels_of_lambda = 20.0 * (scale.peak - scale.floor);
+    let mut tally = EchoTally::default();
+    for echo in shown(radar, scene) {
+        if stands_out(target, &echo, decibels_of_lambda).is_none_or(|decibels| decibels < STANDS_OUT_DB) {
+            continue;
+        }
+        let class = ((echo.below_db / 10.0) as usize).min(CLASSES - 1);
+        tally.there[class] += 1;
+        let is_found = stands_out(output, &echo, decibels_of_lambda).is_some_and(|decibels| decibels >= SHOWN_DB);
+        tally.found[class] += usize::from(is_found);
+    }
+    tally
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::{LogMaps, Normalisation};
+    use crate::scene::{Object, Wall};
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn a_method_that_finds_glints_alone_scores_below_one_that_finds_their_walls_ends() {
+        let radar = Radar::default();
+        let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0))];
+        let scene = Scene { objects, ..Scene::default() };
+        let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
+        let full = LogMaps::of_signal(&radar, &signal).full;
+        let (target, scale) = (full.normalise(Normalisation::MinMax), full.scale(Normalisation::MinMax));
+        let count = |output: &RangeAngleMap| tally(&radar, &scene, &target, output, &scale);
+        let all = count(&target);
+        assert_eq!(all.there, all.found);
+        assert_eq!((all.there[0], all.there.iter().sum::<usize>()), (1, 3), "a glint and two ends: {all:?}");
+        let mut glint = target.clone();
+        let row = (10.0 / radar.range_resolution_metres()).round() as usize;
+        for ((bin, column), lambda) in glint.lambda.indexed_iter_mut() {
+            if bin.abs_diff(row) > 1 || column.abs_diff(radar.elements / 2) > 2 {
+                *lambda = 0.0;
+            }
+        }
+        let alone = count(&glint);
+        assert_eq!((alone.there, alone.found[0], alone.found.iter().sum::<usize>()), (all.there, 1, 1), "{alone:?}");
+        let silence = RangeAngleMap { lambda: ndarray::Array2::zeros(target.lambda.raw_dim()) };
+        assert_eq!(count(&silence).part(), Some(0.0));
+    }
+}

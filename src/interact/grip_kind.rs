@@ -1,0 +1,59 @@
+//! What can be grabbed.
+
+use super::Place;
+
+/// Part of an object that can be grabbed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Grip {
+    /// The object as a whole.
+    Body,
+    /// The end of a line that is nearest to the array.
+    NearEnd,
+    /// The other end.
+    FarEnd,
+    /// The spacing of a line.
+    Spacing,
+    /// The direction of a line.
+    Turn,
+    /// The standard deviation of a cluster along x.
+    SpreadX,
+    /// The standard deviation of a cluster along y.
+    SpreadY,
+    /// An end of a wall or a corner of an outline, by its number.
+    Corner(usize),
+    /// The direction of a body.
+    Rotate,
+    /// The radius of a post.
+    Radius,
+}
+
+impl Grip {
+    /// What dragging it does, for tooltips and screen readers.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Grip::Body => "move",
+            Grip::NearEnd => "move the near end: more or fewer reflectors",
+            Grip::FarEnd => "move the far end: more or fewer reflectors",
+            Grip::Spacing => "spread the reflectors",
+            Grip::Turn => "turn the line about its middle",
+            Grip::SpreadX => "widen the cluster",
+            Grip::SpreadY => "deepen the cluster",
+            Grip::Corner(0) => "move corner 1",
+            Grip::Corner(1) => "move corner 2",
+            Grip::Corner(2) => "move corner 3",
+            Grip::Corner(3) => "move corner 4",
+            Grip::Corner(_) => "move this corner",
+            Grip::Rotate => "turn it about its middle",
+            Grip::Radius => "change the radius",
+        }
+    }
+}
+
+/// A grip and where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GripPlace {
+    /// What is grabbed.
+    pub grip: Grip,
+    /// Where.
+    pub place: Place,
+}

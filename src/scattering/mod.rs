@@ -1,0 +1,171 @@
+//! What the radar sees of a body: for every pair of antennas a few echoes, each with a range and a complex amplitude.
+//!
+//! | file | what it gives |
+//! |---|---|
+//! | [`face`] | a straight face: its glint, where the angles in and out agree, and the diffraction of its two ends |
+//! | [`post`] | a circle: the echo of its specular point |
+//! | [`polygon`] | a closed outline: the sum of its lit faces |
+//! | [`corner`] | an inner corner: the double reflection |
+//! | [`roughness`] | what a rough surface takes from these echoes, and scatters instead |
+//! | [`shadow`] | what passes an obstacle on the way from an antenna to where an echo comes from |
+//! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
+//! | [`parts`] | a polygon as convex parts, for shadows |
+//!
+//! [`Scatterer`] is one object made ready; [`Echoing`] a whole scene. An echo of range `R` and amplitude `A` adds
+//! `A exp(-j kappa_n R)` to sample `n`, where `kappa_n` is the phase of the whole way there and back for each metre of range ([`Wave`]).
+//!
+//! The formulas are physical optics in the plane: Balanis, *Advanced Engineering Electromagnetics*, chapter 7; Keller, J. Opt. Soc. Am. 52
+//! (1962); Kouyoumjian and Pathak, Proc. IEEE 62 (1974). A perfect post of radius 1 m is, from afar, a point of reflectivity 1, and a
+//! perfect face at `R` metres a point of reflectivity `sqrt(R)`. What is left out: height and ground, reflections from one body to
+//! another, polarisation but for the sign of a double bounce and the post's second term, waves that creep around a post.
+
+pub mod corner;
+mod echoing;
+pub mod face;
+mod geometry;
+pub mod parts;
+pub mod polygon;
+pub mod post;
+pub mod roughness;
+mod scatterer;
+pub mod shadow;
+pub mod transition;
+
+pub use echoing::{Echoing, Seen, Sources, heard_in_the_middle};
+pub use scatterer::Scatterer;
+
+use crate::radar::{Pair, Radar};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// The length that makes a line density of reflectivity of a face's reflection coefficient, metres.
+pub const REFERENCE_LENGTH_METRES: f64 = 1.0;
+
+/// Where an echo leaves and where it is heard, (x, y) in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Antennas {
+    /// The transmitter.
+    pub transmitter_metres: [f64; 2],
+    /// The receiver.
+    pub receiver_metres: [f64; 2],
+}
+
+impl From<Pair> for Antennas {
+    /// The antennas of a pair stand on the x axis.
+    fn from(pair: Pair) -> Self {
+        Antennas {
+            transmitter_metres: [pair.transmitter_x_metres, 0.0],
+            receiver_metres: [pair.receiver_x_metres, 0.0],
+        }
+    }
+}
+
+impl Antennas {
+    /// Both antennas at one place.
+    pub fn at(place_metres: [f64; 2]) -> Self {
+        Antennas { transmitter_metres: place_metres, receiver_metres: place_metres }
+    }
+}
+
+/// The wave in the middle of the chirp, where amplitudes are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wave {
+    /// Transmit power, watts.
+    pub power_watts: f64,
+    /// Phase of the whole way for each metre of range: twice the physical wave number.
+    pub radians_per_metre: f64,
+    /// Whether phases grow with the range: then every amplitude is the conjugate.
+    pub is_conjugate: bool,
+}
+
+impl Wave {
+    /// The wave of `radar`.
+    pub fn of(radar: &Radar) -> Self {
+        let turns = radar.middle_turns_per_metre();
+        Wave {
+            power_watts: radar.transmit_power_watts,
+            radians_per_metre: TAU * turns.abs(),
+            is_conjugate: turns > 0.0,
+        }
+    }
+}
+
+/// What kind of echo it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum EchoKind {
+    /// A point's.
+    Point,
+    /// The mirror reflection of a face.
+    Glint,
+    /// The end of a face, or a corner between two.
+    Edge,
+    /// The nearest part of a post.
+    Post,
+    /// Reflected by both arms of an inner corner.
+    DoubleBounce,
+    /// A place of a rough surface.
+    Diffuse,
+}
+
+impl EchoKind {
+    /// What people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            EchoKind::Point => "point",
+            EchoKind::Glint => "glint",
+            EchoKind::Edge => "edge",
+            EchoKind::Post => "post",
+            EchoKind::DoubleBounce => "double bounce",
+            EchoKind::Diffuse => "rough surface",
+        }
+    }
+}
+
+/// One echo at one pair of antennas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathEcho {
+    /// Half the way there and back, metres.
+    pub range_metres: f64,
+    /// Its amplitude in the middle of the chirp; 0 where there is no such echo.
+    pub amplitude: Complex64,
+    /// Change of the amplitude for each radian per metre by which the wave differs from that of the middle of the chirp.
+    pub tilt: Complex64,
+    /// Where it comes from, (x, y) in metres.
+    pub place_metres: [f64; 2],
+    /// Cosine of the angle of incidence there.
+    pub cos_incidence: f64,
+    /// What kind of echo it is.
+    pub kind: EchoKind,
+    /// Whether it is reflected as by a mirror, so that its way goes on straight behind the face.
+    pub is_mirrored: bool,
+}
+
+impl PathEcho {
+    /// No echo, from this place.
+    pub(crate) fn silent(place_metres: [f64; 2], kind: EchoKind) -> Self {
+        PathEcho {
+            range_metres: 0.0,
+            amplitude: Complex64::default(),
+            tilt: Complex64::default(),
+            place_metres,
+            cos_incidence: 1.0,
+            kind,
+            is_mirrored: false,
+        }
+    }
+
+    /// Whether there is such an echo.
+    pub fn is_heard(&self) -> bool {
+        self.amplitude != Complex64::default()
+    }
+
+    /// This echo, its amplitude times a number.
+    pub(crate) fn times(self, factor: Complex64) -> Self {
+        PathEcho { amplitude: self.amplitude * factor, tilt: self.tilt * factor, ..self }
+    }
+}
+
+#[cfg(test)]
+mod reference;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,214 @@
+//! What passes an obstacle on the way from an antenna to where an echo comes from: two knife edges, left and right.
+//!
+//! Near the boundary of a shadow nothing is cut off at once: [`passing`] falls over the width of a Fresnel zone. What hides is taken with the
+//! detour over its nearer edge, so that its phase is right; what stands far beside has no effect at all, to the last bit.
+
+use super::geometry::{V, hypotenuse, root};
+use super::transition::passing;
+use super::{Antennas, PathEcho, Wave};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Past an obstacle, its ripple fades out between these distances in Fresnel's measure: farther out it belongs at another range.
+const FADE: [f64; 2] = [3.0, 6.0];
+
+/// Most corners of an obstacle that need no memory of their own.
+const FEW: usize = 16;
+
+/// What hides: convex.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    shape: Convex,
+    /// A circle around it.
+    centre: V,
+    radius_metres: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Convex {
+    Circle,
+    /// Corners, in order; the two ends of a wall.
+    Corners(Vec<V>),
+}
+
+/// What passes on one way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passage {
+    /// Factor of the field, but for the phase of the detour.
+    pub factor: Complex64,
+    /// How much longer the way over the nearer edge is, metres; 0 where the way is clear.
+    pub detour_metres: f64,
+    /// Where the edge stands: its distance from the antenna over the rest of the way.
+    pub part: f64,
+}
+
+impl Passage {
+    /// Nothing stands in the way.
+    const CLEAR: Passage = Passage { factor: Complex64::new(1.0, 0.0), detour_metres: 0.0, part: 0.0 };
+}
+
+impl Obstacle {
+    /// A post.
+    pub fn circle(centre_metres: [f64; 2], radius_metres: f64) -> Self {
+        Obstacle { shape: Convex::Circle, centre: centre_metres.into(), radius_metres }
+    }
+
+    /// A wall's two ends, or the corners of a convex outline in order; (x, y) in metres.
+    pub fn corners(corners_metres: &[[f64; 2]]) -> Self {
+        let corners: Vec<V> = corners_metres.iter().map(|c| V::from(*c)).collect();
+        let sum = corners.iter().fold(V(0.0, 0.0), |a, b| a + *b);
+        let centre = sum * (corners.len().max(1) as f64).recip();
+        let radius_metres = corners.iter().map(|c| (*c - centre).norm()).fold(0.0, f64::max);
+        Obstacle { shape: Convex::Corners(corners), centre, radius_metres }
+    }
+
+    /// What passes from `antenna` to `place` at a wave of `radians_per_metre` there and back; `beyond_metres` is how far the way goes on
+    /// behind `place`, straight in the mirror of a face.
+    pub(super) fn passage(&self, radians_per_metre: f64, antenna: V, place: V, beyond_metres: f64) -> Passage {
+        let way = place - antenna;
+        let full = way.norm();
+        let whole = full + beyond_metres;
+        let unit = way * full.recip();
+        let to_centre = self.centre - antenna;
+        let (along, across) = (to_centre.dot(unit), unit.cross(to_centre));
+        if along + self.radius_metres < 0.0 || along - self.radius_metres > full || full == 0.0 {
+            return Passage::CLEAR;
+        }
+        // Nearest to the way an edge may be for its ripple to have faded: where a detour in the middle has w = FADE[1].
+        let faded = FADE[1] * FADE[1] / radians_per_metre;
+        let beside = across.abs() - self.radius_metres;
+        if beside > 0.0 && beside * beside >= faded * (whole + faded) {
+            return Passage::CLEAR;
+        }
+        let ray = Ray { full, whole, half_kappa: radians_per_metre / 2.0 };
+        let mut edges = Edges::none();
+        match &self.shape {
+            Convex::Circle => {
+                if along > 0.0 && along < full {
+                    edges.meet(&ray, along, across - self.radius_metres);
+                    edges.meet(&ray, along, across + self.radius_metres);
+                }
+            }
+            Convex::Corners(corners) => {
+                let seen = |c: &V| ((*c - antenna).dot(unit), unit.cross(*c - antenna));
+                if corners.len() <= FEW {
+                    let mut few = [(0.0, 0.0); FEW];
+                    few.iter_mut().zip(corners).for_each(|(f, c)| *f = seen(c));
+                    edges.meet_outline(&ray, &few[..corners.len()]);
+                } else {
+                    edges.meet_outline(&ray, &corners.iter().map(seen).collect::<Vec<_>>());
+                }
+            }
+        }
+        edges.passage(&ray)
+    }
+}
+
+/// A way, with lengths in metres.
+struct Ray {
+    /// To the place.
+    full: f64,
+    /// And on behind it.
+    whole: f64,
+    half_kappa: f64,
+}
+
+impl Ray {
+    /// Fresnel's measure of an edge `l` along the way and `q` beside it, with the sign of `q`.
+    fn measure(&self, l: f64, q: f64) -> f64 {
+        if q == 0.0 {
+            return 0.0;
+        }
+        let l = l.clamp(0.0, self.full);
+        let leg = |l: f64| q * q / (hypotenuse(l, q) + l);
+        root(self.half_kappa * (leg(l) + leg(self.whole - l))).copysign(q)
+    }
+}
+
+/// The outermost edges that were met.
+struct Edges {
+    top: f64,
+    low: f64,
+    /// Measure and place along the way of the edge nearest to it.
+    nearest: (f64, f64),
+}
+
+impl Edges {
+    fn none() -> Self {
+        Edges { top: f64::NEG_INFINITY, low: f64::INFINITY, nearest: (f64::INFINITY, 0.0) }
+    }
+
+    fn meet(&mut self, ray: &Ray, l: f64, q: f64) {
+        let w = ray.measure(l, q);
+        self.top = self.top.max(w);
+        self.low = self.low.min(w);
+        if w.abs() < self.nearest.0 {
+            self.nearest = (w.abs(), l.clamp(0.0, ray.full));
+        }
+    }
+
+    /// Meets the corners beside the way, and the outline where it crosses the ends of the way.
+    fn meet_outline(&mut self, ray: &Ray, corners: &[(f64, f64)]) {
+        for (i, &(l, q)) in corners.iter().enumerate() {
+            if l >= 0.0 && l <= ray.full {
+                self.meet(ray, l, q);
+            }
+            let (l2, q2) = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
+            for level in [0.0, ray.full] {
+                let part = (level - l) / (l2 - l);
+                if part > 0.0 && part < 1.0 {
+                    self.meet(ray, level, q + part * (q2 - q));
+                }
+            }
+        }
+    }
+
+    fn passage(&self, ray: &Ray) -> Passage {
+        let Edges { top, low, nearest: (_, l) } = *self;
+        if top < low {
+            return Passage::CLEAR;
+        }
+        let part = l / (ray.whole - l).max(1e-9);
+        if top > 0.0 && low < 0.0 {
+            let shorter = top.min(-low);
+            let turn = Complex64::cis(shorter * shorter);
+            let detour_metres = shorter * shorter / ray.half_kappa;
+            return Passage { factor: (passing(top) + passing(-low)) * turn, detour_metres, part };
+        }
+        let near = top.abs().min(low.abs());
+        let left = ((FADE[1] - near) / (FADE[1] - FADE[0])).clamp(0.0, 1.0);
+        if left == 0.0 {
+            return Passage::CLEAR;
+        }
+        let fade = left * left * (3.0 - 2.0 * left);
+        let factor = 1.0 + (passing(top) + passing(-low) - 1.0) * fade;
+        Passage { factor, detour_metres: 0.0, part }
+    }
+}
+
+/// An echo as it is behind an obstacle.
+///
+/// A glint's way passes the obstacle, the mirror and the obstacle's image in it: two edges that act as one where the obstacle touches the
+/// face, and apart where it is far from it.
+pub(super) fn behind(obstacle: &Obstacle, wave: &Wave, antennas: &Antennas, echo: PathEcho) -> PathEcho {
+    let place = V::from(echo.place_metres);
+    let kappa = wave.radians_per_metre;
+    let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
+    let is_one = antennas.transmitter_metres == antennas.receiver_metres;
+    let beyond = |other: V| if echo.is_mirrored { (place - other).norm() } else { 0.0 };
+    let there = obstacle.passage(kappa, t, place, beyond(r));
+    let back = if is_one { there } else { obstacle.passage(kappa, r, place, beyond(t)) };
+    if there == Passage::CLEAR && back == Passage::CLEAR {
+        return echo;
+    }
+    let more = (there.detour_metres + back.detour_metres) / 2.0;
+    let (factor, power) = if echo.is_mirrored {
+        let correlation = (there.part * back.part).max(0.0).sqrt().min(1.0);
+        let power = -(0.25 + correlation.asin() / TAU).log2();
+        // Each way to its own power: neither turns by half a turn, their product may.
+        (there.factor.powf(power / 2.0) * back.factor.powf(power / 2.0), power)
+    } else {
+        (there.factor * back.factor, 2.0)
+    };
+    PathEcho { range_metres: echo.range_metres + more * power / 2.0, ..echo.times(factor) }
+}

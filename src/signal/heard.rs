@@ -1,0 +1,57 @@
+//! What a block of elements hears: points, whose paths are worked out on the way, and paths that were worked out before.
+
+use super::path::{Pairs, Path};
+use super::phase::{EchoLanes, EchoModel};
+use crate::radar::Radar;
+use crate::scattering::{PathEcho, Sources};
+use crate::scene::Reflector;
+
+/// Echoes at a block of pairs, in a fixed order.
+#[derive(Clone, Copy)]
+pub(super) struct Heard<'a, const W: usize> {
+    points: &'a [Reflector],
+    paths: &'a [Path<W>],
+}
+
+impl<'a, const W: usize> Heard<'a, W> {
+    /// The points first, then the paths.
+    pub fn new(points: &'a [Reflector], paths: &'a [Path<W>]) -> Self {
+        Heard { points, paths }
+    }
+
+    /// How many.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.points.len() + self.paths.len()
+    }
+
+    /// Echo `index` at `pairs`.
+    #[inline(always)]
+    pub fn echo<const FMA: bool>(&self, model: &EchoModel, pairs: Pairs<W>, index: usize) -> EchoLanes<W> {
+        match self.points.get(index) {
+            Some(point) => model.echo_lanes::<W, FMA>(pairs, point),
+            None => model.heard::<W, FMA>(self.paths[index - self.points.len()]),
+        }
+    }
+}
+
+/// The paths of all scatterers among `sources` to channels `first` and following of `radar`, one a lane; those that none of them hears are
+/// left out.
+pub(super) fn paths<const W: usize>(radar: &Radar, sources: Sources<'_>, first: usize) -> Vec<Path<W>> {
+    if sources.scatterers.is_empty() {
+        return Vec::new();
+    }
+    let lanes: [Vec<PathEcho>; W] = std::array::from_fn(|lane| {
+        let mut echoes = Vec::new();
+        sources.scattered(radar.pair(first + lane), &mut echoes);
+        echoes
+    });
+    let path = |index: usize| {
+        let heard = lanes.iter().find(|echoes| echoes[index].is_heard())?;
+        // A lane without the echo is told the range of one that has it: ranges side by side are cheaper.
+        let range = |echo: &PathEcho| if echo.is_heard() { echo.range_metres } else { heard[index].range_metres };
+        let ranges = std::array::from_fn(|lane| range(&lanes[lane][index]));
+        Some(Path::new(ranges, std::array::from_fn(|lane| lanes[lane][index].amplitude)))
+    };
+    (0..lanes[0].len()).filter_map(path).collect()
+}
