@@ -6,6 +6,10 @@ use crate::{lesson, platform, recording, scene};
 
 /// Opens the window on the page's canvas, with what the address asks for.
 pub fn open_page() {
+    // Every thread of a page begins with `main`.
+    if !platform::has_window() {
+        return;
+    }
     let address = platform::address();
     let (options, problem) = match options_of(&address) {
         Ok(options) => (options, None),

@@ -3,6 +3,7 @@
 use crate::app::chrome::{menu, status_bar};
 use crate::app::jobs::Jobs;
 use crate::app::state::{Command, Panel, State};
+use crate::platform;
 
 /// What the menu bar shows.
 pub fn menu_input<'a>(
@@ -38,5 +39,6 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
         took: jobs.pipeline.took(),
+        alone: !platform::has_threads(),
     }
 }
