@@ -47,3 +47,19 @@ test("two fingers zoom a map", async () => {
   assert.deepEqual(told, []);
   await context.close();
 });
+
+test("on a telephone a point is dragged in the column", async () => {
+  const options = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+  const { context, page, told } = await open(browser, "", { options });
+  const touch = await fingers(context, page);
+  // The post, as the scene lies in the first third of the column.
+  await touch("touchStart", [198, 214]);
+  for (let step = 1; step <= 5; step += 1) {
+    await touch("touchMove", [198 + step * 8, 214 - step * 4]);
+    await page.waitForTimeout(100);
+  }
+  await touch("touchEnd");
+  assert.match(await autosave(page), /kind = "point"/);
+  assert.deepEqual(told, []);
+  await context.close();
+});
