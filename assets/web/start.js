@@ -1,39 +1,84 @@
-// Fetches the program with a bar that tells how much is there, and starts it.
+// Fetches the program and the weights with a bar that tells how much is there, and starts the program.
 import start from "./apertura-page.js";
 
 const message = document.getElementById("message");
 const bar = document.getElementById("loaded");
 const PROGRAM = "apertura-page_bg.wasm";
+// A service worker that is not there after so long never is.
+const WORKER_MILLISECONDS = 3000;
+const WEIGHTS = "live.safetensors";
 
-// The program's bytes as they come; the bar shows the part of `total` bytes that is there.
-function watched(response, total) {
-  let loaded = 0;
+let loaded = 0;
+
+// The bytes of a file as they come; the bar shows the part of `total` bytes that is there.
+async function watched(name, type, total) {
+  const response = await fetch(name);
+  if (!response.ok) {
+    throw new Error(`The program could not be loaded: ${name} gave ${response.status}.`);
+  }
   const count = new TransformStream({
     transform(part, to) {
       loaded += part.byteLength;
-      bar.value = total > 0 ? Math.min(1, loaded / total) : 0;
+      bar.value = Math.min(1, loaded / total);
       to.enqueue(part);
     },
   });
-  return new Response(response.body.pipeThrough(count), { headers: { "Content-Type": "application/wasm" } });
+  return new Response(response.body.pipeThrough(count), { headers: { "Content-Type": type } });
+}
+
+// The browser lends threads to a page that is isolated from other origins. Where the host doesn't send the headers for it, a service
+// worker adds them, and the page is loaded once more. Whether it is.
+async function isolates() {
+  if (crossOriginIsolated || !isSecureContext || !("serviceWorker" in navigator)) return false;
+  try {
+    if (sessionStorage.getItem("isolated")) return false;
+    sessionStorage.setItem("isolated", "tried");
+    await navigator.serviceWorker.register("isolate.js");
+    const ready = navigator.serviceWorker.ready.then(() => true);
+    const late = new Promise((resolve) => setTimeout(resolve, WORKER_MILLISECONDS, false));
+    if (!(await Promise.race([ready, late]))) return false;
+  } catch {
+    return false;
+  }
+  location.reload();
+  return true;
+}
+
+// Keys that the program uses and that the browser gives away.
+function keepKeys() {
+  const alone = ["F1", "F3", "F6", "F7", "F10"];
+  const withControl = [..."123adekyz+-=0"];
+  addEventListener("keydown", (event) => {
+    const control = event.ctrlKey || event.metaKey;
+    if (control ? withControl.includes(event.key.toLowerCase()) && !event.altKey : alone.includes(event.key)) {
+      event.preventDefault();
+    }
+  }, { capture: true });
 }
 
 async function open() {
   if (!document.createElement("canvas").getContext("webgl2")) {
     throw new Error("This browser shows no WebGL 2, which the window is drawn with. Switch on hardware acceleration, or use another browser.");
   }
-  const response = await fetch(PROGRAM);
-  if (!response.ok) {
-    throw new Error(`The program could not be loaded: ${PROGRAM} gave ${response.status}.`);
-  }
-  // The length that is announced is that of the compressed file: the page carries the other.
+  if (await isolates()) return;
+  keepKeys();
+  // A link to this page that is opened in this tab.
+  addEventListener("hashchange", () => location.reload());
+  // The lengths that are announced are those of the compressed files: the page carries the others.
   const sizes = await (await fetch("sizes.json")).json();
-  await start({ module_or_path: watched(response, sizes[PROGRAM]) });
+  const total = sizes[PROGRAM] + sizes[WEIGHTS];
+  const weights = watched(WEIGHTS, "application/octet-stream", total).then((response) => response.arrayBuffer());
+  // Awaited below; without this line a failure before that would be told on the console too.
+  weights.catch(() => {});
+  const program = await watched(PROGRAM, "application/wasm", total);
+  globalThis.aperturaWeights = new Uint8Array(await weights);
+  const { memory } = await start({ module_or_path: program });
+  // Whoever asks how much memory the program has (the tests do) finds it here.
+  globalThis.aperturaMemory = memory;
+  delete globalThis.aperturaWeights;
 }
 
 open().catch((error) => {
-  // The window itself goes on by such an exception.
-  if (String(error).includes("Using exceptions for control flow")) return;
   message.textContent = error.message ?? String(error);
   bar.hidden = true;
 });

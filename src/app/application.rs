@@ -214,6 +214,9 @@ impl App {
             selected: !self.state.editor.selection().is_empty(),
             bin_metres: self.state.radar().range_resolution_metres(),
         };
+        if let Some(file) = ctx.input(|i| i.raw.dropped_files.first().cloned()) {
+            commands.extend(self.jobs.open_dropped(&mut self.state, &file));
+        }
         commands.extend(input::read(ctx, input));
         commands
     }

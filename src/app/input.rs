@@ -1,6 +1,6 @@
-//! Keys, clipboard events and dropped files become commands.
+//! Keys and clipboard events become commands.
 
-use super::state::{Command, DocumentCommand, EditCommand, RowsCommand, WindowCommand, shortcuts};
+use super::state::{Command, EditCommand, WindowCommand, shortcuts};
 use super::widgets::nudge::nudge;
 use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
@@ -53,11 +53,6 @@ pub struct Input {
 /// Everything that was asked for since the last frame, but for what panels will be asked in this one.
 pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
     let mut commands = Vec::new();
-    let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
-    commands.extend(dropped.map(|path| match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
-        true => Command::Rows(RowsCommand::OpenTable(path)),
-        false => Command::Document(DocumentCommand::OpenPath(path)),
-    }));
     // Enter and Tab end an entry in a field as letting go ends a drag: each is a step of its own.
     if ctx.input(|i| i.pointer.any_released() || i.key_pressed(Key::Enter) || i.key_pressed(Key::Tab)) {
         commands.push(EditCommand::Seal.into());

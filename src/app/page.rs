@@ -2,11 +2,19 @@
 
 use super::state::{Command, DocumentCommand, LessonCommand};
 use super::{App, Options};
+use crate::benchmark::one_thread;
 use crate::{lesson, platform, recording, scene};
 
 /// Opens the window on the page's canvas, with what the address asks for.
 pub fn open_page() {
+    // Every thread of a page begins with `main`.
+    if !platform::has_window() {
+        return;
+    }
     let address = platform::address();
+    if address == "?measure" {
+        return platform::tell(&measured());
+    }
     let (options, problem) = match options_of(&address) {
         Ok(options) => (options, None),
         Err(problem) => (Options::default(), Some(problem)),
@@ -21,6 +29,12 @@ pub fn open_page() {
     if let Err(error) = platform::open_window(super::APP_ID, create) {
         platform::tell(&format!("The window could not be opened: {error}"));
     }
+}
+
+/// Run times on this page's first thread alone, as JSON.
+fn measured() -> String {
+    let timed = one_thread::measure().and_then(|timed| serde_json::to_string(&timed).map_err(|e| e.to_string()));
+    timed.unwrap_or_else(|problem| format!("The run times can't be measured: {problem}"))
 }
 
 /// What an address asks for: `?scene=street`, `?lesson=two-ends`, `?recording=chip-8`, or what was copied as text behind `#`.

@@ -1,8 +1,10 @@
-//! What the program itself is worth: run time against error ([`front`]), numerical stress ([`stress`]), and the bare transform that
+//! What the program itself is worth: run time against error ([`front`]), numerical stress ([`stress`]), the page against the native program
+//! ([`one_thread`]), and the bare transform that
 //! times are measured in. How good a map is stands in [`evaluate`](crate::evaluate).
 
 mod bare;
 pub mod front;
+pub mod one_thread;
 pub mod stress;
 
 pub use bare::BareTransform;

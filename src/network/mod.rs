@@ -49,6 +49,7 @@ mod shipped;
 #[cfg(feature = "network")]
 pub use shipped::{from_file, shipped, shipped_on};
 
+use crate::platform;
 #[cfg(not(feature = "network"))]
 use crate::reconstruct::Reconstructor;
 use live::LiveMethod;
@@ -57,12 +58,11 @@ use std::sync::{Arc, LazyLock};
 use weights::{WeightFile, WeightsError};
 
 /// Weights of the live network.
-const LIVE: &[u8] = include_bytes!("../../assets/weights/live.safetensors");
 const LIVE_FILE: &str = "assets/weights/live.safetensors";
 
 /// The live network whose weights are part of the program, by itself; `None`, with a warning in the log, where they can't be used.
 pub fn live() -> Option<LiveMethod> {
-    usable(WeightFile::parse(LIVE_FILE, LIVE).and_then(LiveMethod::new))
+    usable(WeightFile::parse(LIVE_FILE, &platform::live_weights()).and_then(LiveMethod::new))
 }
 
 /// The networks whose weights are part of the program: the live network alone, without the feature `network`.

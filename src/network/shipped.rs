@@ -8,7 +8,8 @@ use super::thesis::Thesis;
 use super::thesis_method::{ThesisMethod, UnetMethod};
 use super::unet::Unet;
 use super::weights::{WeightFile, WeightsError};
-use super::{LIVE, LIVE_FILE, usable};
+use super::{LIVE_FILE, usable};
+use crate::platform;
 use crate::reconstruct::Reconstructor;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
@@ -29,8 +30,9 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     let unet: &[u8] = include_bytes!("../../assets/weights/unet.safetensors");
     let thesis: &[u8] = include_bytes!("../../assets/weights/thesis.safetensors");
     let thesis_1: &[u8] = include_bytes!("../../assets/weights/thesis-1.safetensors");
+    let live = platform::live_weights();
     [
-        (LIVE_FILE, LIVE),
+        (LIVE_FILE, live.as_ref()),
         ("assets/weights/thesis.safetensors", thesis),
         ("assets/weights/thesis-1.safetensors", thesis_1),
         ("assets/weights/unet.safetensors", unet),

@@ -1,9 +1,25 @@
 //! The system: threads, files on disk, its dialogs.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 /// What the address of a page says; a desktop has none.
 pub fn address() -> String {
     String::new()
 }
+
+/// Where the page stands; a desktop has no page.
+pub fn page_address() -> Option<String> {
+    None
+}
+
+/// The weight file of the live network.
+#[cfg(feature = "live")]
+pub(crate) fn live_weights() -> std::borrow::Cow<'static, [u8]> {
+    include_bytes!("../../assets/weights/live.safetensors").as_slice().into()
+}
+
+/// Whether the window is a page in a browser.
+pub const IN_A_BROWSER: bool = false;
 
 /// Tells a sentence where there is no window to tell it in.
 pub fn tell(sentence: &str) {
@@ -11,7 +27,51 @@ pub fn tell(sentence: &str) {
 }
 
 /// Whether long work runs beside the window.
-pub const HAS_THREADS: bool = true;
+pub fn has_threads() -> bool {
+    true
+}
+
+/// Whether this thread can have a window.
+pub fn has_window() -> bool {
+    true
+}
+
+/// Whether writing a file may take long enough to be seen.
+pub const WRITES_WAIT: bool = true;
+
+/// Holds `mutex`.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What a thread does where it panics and the panic can't be caught; here it can.
+pub fn on_panic(_then: impl FnOnce(String) + 'static) {}
+
+/// What went wrong beside the window since the last call; here it is told with the work.
+pub fn problems() -> Vec<String> {
+    Vec::new()
+}
+
+/// A pool of threads of its own for slow work; `None` where the system can't start them.
+pub fn pool(name: &'static str) -> Option<rayon::ThreadPool> {
+    rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{name} {i}")).build().ok()
+}
+
+/// A function that draws another frame of the window, from any thread.
+#[cfg(feature = "app")]
+pub fn waker(ctx: &eframe::egui::Context) -> impl Fn() + Clone + Send + Sync + 'static {
+    let ctx = ctx.clone();
+    move || ctx.request_repaint()
+}
+
+/// The path of a file that was dropped on the window.
+#[cfg(feature = "app")]
+pub fn dropped(
+    file: &std::sync::Arc<dyn eframe::egui::DroppedFile + Send + Sync>,
+    answer: impl FnOnce(Result<std::path::PathBuf, String>) + 'static,
+) {
+    answer(Ok(file.path().to_path_buf()));
+}
 
 /// Runs `work` on a thread called `name`.
 ///

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 #[derive(Default)]
 struct Tree {
@@ -15,7 +15,7 @@ struct Tree {
 static TREE: Mutex<Tree> = Mutex::new(Tree { files: BTreeMap::new(), folders: BTreeSet::new() });
 
 fn tree() -> MutexGuard<'static, Tree> {
-    TREE.lock().unwrap_or_else(PoisonError::into_inner)
+    super::lock(&TREE)
 }
 
 fn missing(path: &Path) -> io::Error {

@@ -9,18 +9,28 @@ mod memory_files;
 #[cfg(target_arch = "wasm32")]
 mod page;
 
+#[cfg(all(feature = "live", not(target_arch = "wasm32")))]
+pub(crate) use desktop::live_weights;
 #[cfg(all(feature = "pictures", not(target_arch = "wasm32")))]
 pub(crate) use desktop::register_font;
 #[cfg(not(target_arch = "wasm32"))]
-pub use desktop::{HAS_THREADS, address, fs, spawn, tell};
+pub use desktop::{
+    IN_A_BROWSER, WRITES_WAIT, address, fs, has_threads, has_window, lock, on_panic, page_address, pool, problems,
+    spawn, tell,
+};
 #[cfg(all(feature = "app", not(target_arch = "wasm32")))]
-pub use desktop::{choose_file, open_window, storage_folder};
+pub use desktop::{choose_file, dropped, open_window, storage_folder, waker};
+#[cfg(all(feature = "live", target_arch = "wasm32"))]
+pub(crate) use page::live_weights;
 #[cfg(all(feature = "pictures", target_arch = "wasm32"))]
 pub(crate) use page::register_font;
 #[cfg(target_arch = "wasm32")]
-pub use page::{HAS_THREADS, address, fs, spawn, tell};
+pub use page::{
+    IN_A_BROWSER, WRITES_WAIT, address, fs, has_threads, has_window, lock, on_panic, page_address, pool, problems,
+    spawn, tell,
+};
 #[cfg(all(feature = "app", target_arch = "wasm32"))]
-pub use page::{choose_file, open_window, storage_folder};
+pub use page::{choose_file, dropped, open_window, storage_folder, waker};
 
 /// A clock that goes on a desktop and in a page.
 pub use web_time::Instant;

@@ -21,9 +21,73 @@ export function soon() {
   return new Promise((resolve) => setTimeout(resolve, 20));
 }
 
+// Whether this is the thread that draws.
+export function isFirst() {
+  return typeof document !== "undefined";
+}
+
+export function isIsolated() {
+  return globalThis.crossOriginIsolated === true;
+}
+
+export function cores() {
+  return navigator.hardwareConcurrency || 2;
+}
+
+let wake = () => {};
+let problem = () => {};
+
+export function listen(onWake, onProblem) {
+  wake = onWake;
+  problem = onProblem;
+}
+
+export function startThread(name, program, memory, work) {
+  const thread = new Worker("worker.js", { type: "module", name });
+  thread.onmessage = ({ data }) => {
+    switch (data.ask) {
+      case "wake": return wake();
+      case "thread": return startThread(data.name, program, memory, data.work);
+      case "problem": return problem(data.text);
+      case "download": return download(data.name, data.bytes);
+      case "forget": return forget(data.key);
+      case "store":
+        if (!store(data.key, data.text)) {
+          problem("The browser's storage is full or forbidden: what was computed is lost when the page is closed.");
+        }
+        return undefined;
+      case "end": return thread.terminate();
+    }
+  };
+  // It has told why before it ended.
+  thread.onerror = (event) => {
+    event.preventDefault();
+    thread.terminate();
+  };
+  thread.postMessage({ program, memory, work });
+}
+
+export function askForThread(name, work) {
+  postMessage({ ask: "thread", name, work });
+}
+
+export function wakeFirst() {
+  postMessage({ ask: "wake" });
+}
+
+export function tellFirst(text) {
+  postMessage({ ask: "problem", text });
+}
+
 export function download(name, bytes) {
+  // A copy: what lies in memory that threads share can't be handed to the browser.
+  const own = bytes.slice();
+  if (!isFirst()) {
+    postMessage({ ask: "download", name, bytes: own }, [own.buffer]);
+    return;
+  }
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([bytes]));
+  link.href = URL.createObjectURL(new Blob([own]));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
@@ -41,7 +105,12 @@ export function stored(key) {
   return localStorage.getItem(key) ?? undefined;
 }
 
+// Whether the browser had room for it; from another thread than the first, which has no storage, that is told later.
 export function store(key, text) {
+  if (!isFirst()) {
+    postMessage({ ask: "store", key, text });
+    return true;
+  }
   try {
     localStorage.setItem(key, text);
     return true;
@@ -51,6 +120,10 @@ export function store(key, text) {
 }
 
 export function forget(key) {
+  if (!isFirst()) {
+    postMessage({ ask: "forget", key });
+    return;
+  }
   try {
     localStorage.removeItem(key);
   } catch {
@@ -82,6 +155,14 @@ export function releaseLock(key) {
 
 export function address() {
   return location.search + location.hash;
+}
+
+export function pageAddress() {
+  return location.origin + location.pathname;
+}
+
+export function fetchedWeights() {
+  return globalThis.aperturaWeights ?? new Uint8Array();
 }
 
 export function tell(sentence) {

@@ -1,10 +1,15 @@
-//! A page: the browser's turns in place of threads, files in memory, the browser's storage and downloads.
+//! A page: Web Workers as threads, files in memory, the browser's storage and downloads.
+
+mod threads;
 
 use super::memory_files;
 use std::io;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "app")]
+pub use threads::waker;
+pub use threads::{has_threads, lock, on_panic, pool, problems, spawn};
 use wasm_bindgen::prelude::wasm_bindgen;
-use wasm_bindgen_futures::{JsFuture, spawn_local};
+use wasm_bindgen_futures::spawn_local;
 
 /// Folder whose files the browser keeps from one visit to the next.
 const STORAGE: &str = "/storage";
@@ -17,7 +22,6 @@ const DOWNLOADS: &str = "/downloads";
 
 #[wasm_bindgen(module = "/src/platform/page.js")]
 extern "C" {
-    fn soon() -> js_sys::Promise;
     #[wasm_bindgen(js_name = download)]
     fn save_as_download(name: &str, bytes: &[u8]);
     #[wasm_bindgen(js_name = storedKeys)]
@@ -32,25 +36,36 @@ extern "C" {
     fn release_lock(key: &str);
     /// What the address says behind `?` and `#`.
     pub fn address() -> String;
+    #[wasm_bindgen(js_name = pageAddress)]
+    fn page_address_here() -> String;
+    #[cfg(feature = "live")]
+    #[wasm_bindgen(js_name = fetchedWeights)]
+    fn fetched_weights() -> Vec<u8>;
     /// Shows a sentence in place of the window.
     pub fn tell(sentence: &str);
 }
 
-/// Whether long work runs beside the window.
-pub const HAS_THREADS: bool = false;
-
-/// Runs `work` in a later turn of the page.
-///
-/// # Errors
-/// None here.
-pub fn spawn(_name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
-    spawn_local(async move {
-        // A frame is drawn first, so that what was asked for shows.
-        let _turn = JsFuture::from(soon()).await;
-        work();
-    });
-    Ok(())
+/// Where the page stands, without what it is asked for.
+pub fn page_address() -> Option<String> {
+    Some(page_address_here())
 }
+
+/// The weight file of the live network, which the page fetched before it started the program.
+#[cfg(feature = "live")]
+pub(crate) fn live_weights() -> std::borrow::Cow<'static, [u8]> {
+    fetched_weights().into()
+}
+
+/// Whether the window is a page in a browser.
+pub const IN_A_BROWSER: bool = true;
+
+/// Whether this thread has a window.
+pub fn has_window() -> bool {
+    threads::on_first_thread()
+}
+
+/// Whether writing a file may take long enough to be seen.
+pub const WRITES_WAIT: bool = false;
 
 /// Files in memory. Those in the storage folder are kept by the browser, those in the folder of downloads are saved by it.
 pub mod fs {
@@ -177,8 +192,21 @@ pub fn choose_file(
     Ok(())
 }
 
+/// The path of a file that was dropped on the window: `answer` gets it when the browser has read the file.
+#[cfg(feature = "app")]
+pub fn dropped(
+    file: &std::sync::Arc<dyn eframe::egui::DroppedFile + Send + Sync>,
+    answer: impl FnOnce(Result<PathBuf, String>) + 'static,
+) {
+    let file = file.clone();
+    spawn_local(async move {
+        let name = file.path().to_string_lossy().into_owned();
+        answer(file.bytes_async().await.map(|bytes| opened(&name, bytes)));
+    });
+}
+
 /// Keeps the bytes of a file that was opened or dropped; the path under which it is read.
-pub(crate) fn opened(name: &str, bytes: Vec<u8>) -> PathBuf {
+fn opened(name: &str, bytes: Vec<u8>) -> PathBuf {
     let path = Path::new(OPENED).join(name);
     memory_files::put(&path, bytes);
     path
@@ -213,8 +241,11 @@ pub fn open_window(_app_id: &str, create: eframe::AppCreator<'static>) -> Result
         tell("The page has no canvas with the name \"window\".");
         return Ok(());
     };
+    threads::begin();
+    let runner = eframe::WebRunner::new();
+    threads::watch_panics();
     spawn_local(async move {
-        let started = eframe::WebRunner::new().start(canvas, eframe::WebOptions::default(), create).await;
+        let started = runner.start(canvas, eframe::WebOptions::default(), create).await;
         match started {
             Ok(()) => tell(""),
             Err(error) => tell(&format!("The window could not be opened; it needs WebGL. ({error:?})")),

@@ -12,7 +12,7 @@
 use super::Task;
 use crate::platform::{self, Instant};
 use std::any::Any;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -41,9 +41,15 @@ pub enum Reply<T> {
     },
 }
 
+struct Running {
+    generation: Generation,
+    task: Task,
+    began: Instant,
+}
+
 struct Slot<Q, T> {
     pending: Option<(Generation, Q, Task)>,
-    running: Option<(Task, Instant)>,
+    running: Option<Running>,
     replies: Vec<Reply<T>>,
     generation: Generation,
     stop: bool,
@@ -52,29 +58,33 @@ struct Slot<Q, T> {
 struct Shared<Q, T> {
     slot: Mutex<Slot<Q, T>>,
     ready: Condvar,
-}
-
-impl<Q, T> Shared<Q, T> {
-    fn lock(&self) -> MutexGuard<'_, Slot<Q, T>> {
-        self.slot.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+    /// Makes the work, with new state.
+    step: Box<dyn Fn() -> Step<Q, T> + Send + Sync>,
+    wake: Box<dyn Fn() + Send + Sync>,
 }
 
 /// Takes one request and gives its reply; the state of the work is inside.
 type Step<Q, T> = Box<dyn FnMut(Generation, Q, &Task) -> Reply<T>>;
 
+/// Where the work is done.
+enum Place<Q, T> {
+    /// On a thread, which has the name; it starts with the first request.
+    Thread { name: String, started: Cell<bool> },
+    /// On the thread that asks for replies, where there is no other.
+    Here(RefCell<Step<Q, T>>),
+}
+
 /// A thread that turns requests `Q` into results `T`, latest request first. Dropping it stops the thread. Where there are no threads the work
 /// is done when replies are asked for.
 pub struct Worker<Q, T> {
     shared: Arc<Shared<Q, T>>,
-    /// The work and the waking, where there is no thread to do them.
-    here: Option<(RefCell<Step<Q, T>>, Box<dyn Fn()>)>,
+    place: Place<Q, T>,
 }
 
 /// Does the work of one request; a panic drops the state.
 fn step<S, Q, T>(
     start: impl Fn() -> S,
-    mut work: impl FnMut(&mut S, Q, &Task) -> T,
+    work: impl Fn(&mut S, Q, &Task) -> T,
 ) -> impl FnMut(Generation, Q, &Task) -> Reply<T> {
     let mut state = None;
     move |generation, request, task| {
@@ -89,32 +99,63 @@ fn step<S, Q, T>(
     }
 }
 
+/// Starts a thread that does what `shared` is asked for until it is told to stop. Where a panic ends the thread, another takes its place.
+fn serve<Q: Send + 'static, T: Send + 'static>(name: String, shared: Arc<Shared<Q, T>>) -> std::io::Result<()> {
+    let called = name.clone();
+    platform::spawn(&called, move || {
+        let ours = shared.clone();
+        platform::on_panic(move |message| {
+            ours.give_up(message);
+            if let Err(error) = serve(name, ours) {
+                tracing::error!("a thread that ended by a panic can't be started afresh: {error}");
+            }
+        });
+        let mut step = (shared.step)();
+        while let Some((generation, request, task)) = shared.next() {
+            shared.reply(step(generation, request, &task));
+        }
+    })
+}
+
 impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
-    /// Starts a thread called `name`. `start` makes the state that `work` keeps from request to request; `wake` is called from the
-    /// thread after each reply.
+    /// A worker whose thread is called `name` and starts with the first request. `start` makes the state that `work` keeps from request to
+    /// request; `wake` is called from the thread after each reply.
     ///
     /// # Errors
-    /// When the system can't start a thread.
+    /// None at present: a thread that can't be started is told with the first reply.
     pub fn spawn<S: 'static>(
         name: &str,
-        start: impl Fn() -> S + Send + 'static,
-        work: impl FnMut(&mut S, Q, &Task) -> T + Send + 'static,
-        wake: impl Fn() + Send + 'static,
+        start: impl Fn() -> S + Send + Sync + 'static,
+        work: impl Fn(&mut S, Q, &Task) -> T + Send + Sync + 'static,
+        wake: impl Fn() + Send + Sync + 'static,
     ) -> std::io::Result<Self> {
+        let (start, work) = (Arc::new(start), Arc::new(work));
+        let again = move || -> Step<Q, T> {
+            let (start, work) = (start.clone(), work.clone());
+            Box::new(step(move || start(), move |state: &mut S, request, task: &Task| work(state, request, task)))
+        };
+        let place = match platform::has_threads() {
+            true => Place::Thread { name: name.to_owned(), started: Cell::new(false) },
+            false => Place::Here(RefCell::new(again())),
+        };
         let slot = Slot { pending: None, running: None, replies: Vec::new(), generation: 0, stop: false };
-        let shared = Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new() });
-        if !platform::HAS_THREADS {
-            return Ok(Worker { shared, here: Some((RefCell::new(Box::new(step(start, work))), Box::new(wake))) });
-        }
-        let theirs = shared.clone();
-        platform::spawn(name, move || {
-            let mut step = step(start, work);
-            while let Some((generation, request, task)) = theirs.next() {
-                theirs.reply(step(generation, request, &task));
-                wake();
+        let (step, wake) = (Box::new(again), Box::new(wake));
+        Ok(Worker { shared: Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new(), step, wake }), place })
+    }
+
+    /// Has the request that waits done.
+    fn begin(&self) {
+        match &self.place {
+            Place::Here(_) => (self.shared.wake)(),
+            Place::Thread { name, started } => {
+                if !started.replace(true)
+                    && let Err(error) = serve(name.clone(), self.shared.clone())
+                {
+                    started.set(false);
+                    self.shared.give_up(format!("the thread \"{name}\" can't be started: {error}"));
+                }
             }
-        })?;
-        Ok(Worker { shared, here: None })
+        }
     }
 
     /// Asks for `request` next; one that waits is replaced, one that runs goes on.
@@ -128,10 +169,9 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         slot.generation += 1;
         let generation = slot.generation;
         slot.pending = Some((generation, request, task));
+        drop(slot);
         self.shared.ready.notify_one();
-        if let Some((_, wake)) = &self.here {
-            wake();
-        }
+        self.begin();
         generation
     }
 
@@ -139,16 +179,16 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
     pub fn cancel(&self) {
         let mut slot = self.shared.lock();
         slot.pending = None;
-        if let Some((task, _)) = &slot.running {
-            task.cancel();
+        if let Some(running) = &slot.running {
+            running.task.cancel();
         }
     }
 
     /// Cancels what runs if it began longer ago than `patience`, and says whether it did; what waits stays.
     pub fn cancel_older_than(&self, patience: Duration) -> bool {
         match &self.shared.lock().running {
-            Some((task, began)) if began.elapsed() > patience => {
-                task.cancel();
+            Some(running) if running.began.elapsed() > patience => {
+                running.task.cancel();
                 true
             }
             _ => false,
@@ -163,7 +203,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
 
     /// Progress of what runs, 0 to 1; `None` when idle.
     pub fn progress(&self) -> Option<f32> {
-        self.shared.lock().running.as_ref().map(|(task, _)| task.progress())
+        self.shared.lock().running.as_ref().map(|running| running.task.progress())
     }
 
     /// The replies since the last call, oldest first.
@@ -174,7 +214,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
 
     /// Does what waits, where there is no thread to do it.
     fn work_here(&self) {
-        let Some((step, _)) = &self.here else { return };
+        let Place::Here(step) = &self.place else { return };
         let pending = self.shared.lock().pending.take();
         if let Some((generation, request, task)) = pending {
             let reply = (*step.borrow_mut())(generation, request, &task);
@@ -184,11 +224,27 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
 }
 
 impl<Q, T> Shared<Q, T> {
+    fn lock(&self) -> MutexGuard<'_, Slot<Q, T>> {
+        platform::lock(&self.slot)
+    }
+
     /// Hands over what came of the request that ran.
     fn reply(&self, reply: Reply<T>) {
         let mut slot = self.lock();
         slot.running = None;
         slot.replies.push(reply);
+        drop(slot);
+        (self.wake)();
+    }
+
+    /// Hands over why nothing came of the request that runs, or else of the one that waits.
+    fn give_up(&self, message: String) {
+        let mut slot = self.lock();
+        let running = slot.running.take().map(|running| running.generation);
+        let generation = running.or_else(|| slot.pending.take().map(|(generation, ..)| generation));
+        slot.replies.extend(generation.map(|generation| Reply::Panicked { generation, message }));
+        drop(slot);
+        (self.wake)();
     }
 
     /// Waits for a request; `None` when told to stop.
@@ -199,7 +255,7 @@ impl<Q, T> Shared<Q, T> {
                 return None;
             }
             if let Some(next) = slot.pending.take() {
-                slot.running = Some((next.2.clone(), Instant::now()));
+                slot.running = Some(Running { generation: next.0, task: next.2.clone(), began: Instant::now() });
                 return Some(next);
             }
             slot = self.ready.wait(slot).unwrap_or_else(PoisonError::into_inner);
@@ -211,8 +267,8 @@ impl<Q, T> Drop for Worker<Q, T> {
     fn drop(&mut self) {
         let mut slot = self.shared.lock();
         slot.stop = true;
-        if let Some((task, _)) = &slot.running {
-            task.cancel();
+        if let Some(running) = &slot.running {
+            running.task.cancel();
         }
         drop(slot);
         // Nobody waits for the thread: work that doesn't look at its task would keep the window from closing.
@@ -239,14 +295,15 @@ mod tests {
 
     #[test]
     fn the_latest_request_wins() {
-        let (gate, entered) = (mpsc::channel::<()>(), mpsc::channel::<()>());
+        let ((open, gate), entered) = (mpsc::channel::<()>(), mpsc::channel::<()>());
+        let gate = Mutex::new(gate);
         let (wake, woken) = mpsc::channel();
         let worker = Worker::spawn(
             "test",
             || (),
             move |_, n: u32, _| {
                 entered.0.send(()).unwrap();
-                gate.1.recv().unwrap();
+                gate.lock().unwrap().recv().unwrap();
                 n
             },
             move || wake.send(()).unwrap(),
@@ -258,8 +315,8 @@ mod tests {
             worker.request(n);
         }
         assert!(worker.is_busy());
-        gate.0.send(()).unwrap();
-        gate.0.send(()).unwrap();
+        open.send(()).unwrap();
+        open.send(()).unwrap();
         let mut seen = Vec::new();
         while seen.len() < 2 {
             seen.extend(wait(&worker, &woken).into_iter().map(|r| match r {
@@ -268,6 +325,18 @@ mod tests {
             }));
         }
         assert_eq!(seen, [(1, 1), (9, 9)]);
+    }
+
+    #[test]
+    fn a_thread_starts_with_the_first_request() {
+        let (wake, woken) = mpsc::channel();
+        let (start, started) = mpsc::channel();
+        let state = move || start.send(std::thread::current().id()).unwrap();
+        let worker = Worker::spawn("test", state, |(), n: u32, _| n, move || wake.send(()).unwrap()).unwrap();
+        assert!(started.recv_timeout(Duration::from_millis(50)).is_err());
+        worker.request(3);
+        assert!(matches!(wait(&worker, &woken)[..], [Reply::Done { result: 3, .. }]));
+        assert_ne!(started.recv().unwrap(), std::thread::current().id());
     }
 
     #[test]

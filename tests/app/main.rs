@@ -8,6 +8,7 @@ mod keyboard;
 mod lessons;
 mod monkey;
 mod names;
+mod narrow;
 mod panels;
 mod pictures;
 mod presentation;

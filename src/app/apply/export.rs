@@ -10,6 +10,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
     let said = match command {
         ExportCommand::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),
         ExportCommand::CopyShared => return shared::text(state).map(Effect::Copy),
+        ExportCommand::CopyLink => return shared::link(state).map(Effect::Copy),
         ExportCommand::CopyEvaluation => return Some(Effect::Copy(jobs.evaluation.to_csv())),
         ExportCommand::Picture => return choose(state, jobs, Purpose::ExportPicture),
         ExportCommand::Maps => return choose(state, jobs, Purpose::ExportMaps),

@@ -4,6 +4,7 @@ use super::lesson;
 use crate::app::state::{MapView, Projection, State};
 use crate::interact::Document;
 use crate::lesson::shipped;
+use crate::platform;
 use crate::share::{LessonPlace, Part, ShareError, Shared, View};
 use eframe::egui::pos2;
 
@@ -19,6 +20,32 @@ pub fn text(state: &mut State) -> Option<String> {
             None
         }
     }
+}
+
+/// A link to this page that shows what is on screen; says why where there can be none.
+pub fn link(state: &mut State) -> Option<String> {
+    let address = platform::page_address();
+    match address.ok_or_else(|| "only a page has an address".to_owned()).and_then(|address| {
+        let text = of(state).map_err(|e| e.to_string())?;
+        let link = format!("{address}#{text}");
+        if link.len() <= MOST_OF_A_LINK { Ok(link) } else { Err(too_long(link.len())) }
+    }) {
+        Ok(link) => {
+            state.notices.info("Copied. Whoever opens the link sees what is on screen.");
+            Some(link)
+        }
+        Err(error) => {
+            state.notices.error(format!("Nothing was copied: {error}"));
+            None
+        }
+    }
+}
+
+/// Longest link that browsers open.
+const MOST_OF_A_LINK: usize = 2 << 20;
+
+fn too_long(letters: usize) -> String {
+    format!("the link would have {letters} letters, browsers open {MOST_OF_A_LINK}; save the scene as a file instead")
 }
 
 /// What is on screen as text.

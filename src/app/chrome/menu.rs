@@ -1,5 +1,6 @@
 //! The menu bar and the buttons beside it.
 
+use super::column::NARROW;
 use super::unsaved;
 use crate::app::state::{
     Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task,
@@ -76,6 +77,7 @@ impl Default for Memory {
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
+        let is_narrow = ui.available_width() < NARROW;
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file(ui, &input, &mut asked));
             ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
@@ -83,17 +85,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             ui.menu_button("View", |ui| view(ui, &input, &mut asked));
             ui.menu_button("Tools", |ui| tools(ui, &input, memory, &mut asked));
             ui.menu_button("Help", |ui| help(ui, &input, &mut asked));
-            ui.separator();
-            for (kind, label) in
-                [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
-            {
-                button(ui, label, EditCommand::Add(kind, None), true, &mut asked);
+            // In a narrow window they would stand past its edge; all of them are in the menus.
+            if !is_narrow {
+                buttons(ui, &input, &mut asked);
             }
-            ui.separator();
-            button(ui, "Undo", EditCommand::Undo, input.can_undo, &mut asked);
-            button(ui, "Redo", EditCommand::Redo, input.can_redo, &mut asked);
-            ui.separator();
-            button(ui, "Lessons", WindowCommand::OpenPanel(Panel::Lesson), true, &mut asked);
             if input.presents {
                 button(ui, "End presentation", WindowCommand::Present, true, &mut asked);
             }
@@ -102,6 +97,19 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         });
     });
     asked
+}
+
+fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    ui.separator();
+    for (kind, label) in [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
+    {
+        button(ui, label, EditCommand::Add(kind, None), true, asked);
+    }
+    ui.separator();
+    button(ui, "Undo", EditCommand::Undo, input.can_undo, asked);
+    button(ui, "Redo", EditCommand::Redo, input.can_redo, asked);
+    ui.separator();
+    button(ui, "Lessons", WindowCommand::OpenPanel(Panel::Lesson), true, asked);
 }
 
 fn right(ui: &mut Ui, shown: Projection, asked: &mut Vec<Command>) {
@@ -151,6 +159,7 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             Command::Document(DocumentCommand::Save),
             Command::Document(DocumentCommand::SaveAs),
             Command::Export(ExportCommand::CopyShared),
+            Command::Export(ExportCommand::CopyLink),
         ],
         asked,
     );

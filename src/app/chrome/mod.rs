@@ -1,5 +1,6 @@
-//! What stands around the panels: tiles, menu bar, palette of commands, messages, status bar, file dialog, questions.
+//! What stands around the panels: tiles, one column in a narrow window, menu bar, palette of commands, messages, status bar, file dialog, questions.
 
+pub mod column;
 mod file_browser;
 pub mod file_dialog;
 pub mod help;

@@ -18,6 +18,8 @@ pub struct Input {
     pub reflectors: usize,
     /// Time of the last update of maps and pictures.
     pub took: Option<Duration>,
+    /// Whether everything is computed on the thread that draws.
+    pub alone: bool,
 }
 
 /// Between two texts.
@@ -39,7 +41,7 @@ pub fn show(ui: &mut Ui, input: Input) {
             } else {
                 ui.weak(left);
             }
-            let Input { objects, reflectors, took, .. } = input;
+            let Input { objects, reflectors, took, alone, .. } = input;
             let count = format!("{objects} object{} · {reflectors} reflector{}", plural(objects), plural(reflectors));
             let took = took.map(|took| format!("maps {:.1} ms", took.as_secs_f64() * 1e3));
             // The monospaced width is the larger one.
@@ -49,8 +51,14 @@ pub fn show(ui: &mut Ui, input: Input) {
                 rest -= if fits { wanted } else { 0.0 };
                 fits
             };
+            let alone = alone.then(|| "one thread".to_owned()).filter(&mut fits);
             let (count, took) = (Some(count).filter(&mut fits), took.filter(&mut fits));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if let Some(alone) = alone {
+                    let tip = "This page has no threads, so the window stops while something is computed. It has them in a tab of its own, \
+                        where the browser isolates it from other pages.";
+                    ui.weak(alone).on_hover_text(tip);
+                }
                 if let Some(took) = took {
                     let tip = "Time of the last update of maps and pictures; the Timing panel (F7) has the stages";
                     ui.weak(took).on_hover_text(tip);
@@ -114,7 +122,7 @@ mod tests {
             for cursor in [Some(Cursor::at_cell(&Radar::default(), 258.7, 448.7)), None] {
                 let bar = Harness::builder().with_size([width, 60.0]).build_ui(move |ui| {
                     let took = Some(Duration::from_secs_f64(12.3456));
-                    show(ui, Input { cursor, echo: None, objects: 5, reflectors: 12_345, took });
+                    show(ui, Input { cursor, echo: None, objects: 5, reflectors: 12_345, took, alone: false });
                 });
                 seen::assert_readable(bar.output());
                 let texts = seen::texts(bar.output());

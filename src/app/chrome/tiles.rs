@@ -1,5 +1,6 @@
 //! The panels' tiles: tabs, title bars, one panel that fills the window.
 
+use super::column;
 use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
 use crate::app::widgets::icons::{Icon, icon};
 use eframe::egui;
@@ -24,12 +25,14 @@ pub trait Draw {
 /// Draws the panels.
 pub fn show(ui: &mut Ui, arrangement: &mut Arrangement, panels: &mut dyn Draw) -> Vec<Command> {
     let mut behavior = Behavior { panels, shown: BTreeSet::new(), asked: Vec::new() };
+    let is_narrow = ui.available_width() < column::NARROW;
     match arrangement.maximised() {
         Some(panel) => maximised(ui, panel, &mut behavior),
+        None if is_narrow => column::show(ui, &column::order(arrangement), |ui, panel| behavior.draw(ui, panel)),
         None => arrangement.tree_mut().ui(&mut behavior, ui),
     }
     let Behavior { shown, asked, .. } = behavior;
-    if arrangement.set_shown(shown) | arrangement.make_room() {
+    if arrangement.set_shown(shown) | (!is_narrow && arrangement.make_room()) {
         // A tab that has just come to the front is laid out in this frame and drawn in the next.
         ui.request_repaint();
     }

@@ -3,6 +3,7 @@
 use crate::app::chrome::{menu, status_bar};
 use crate::app::jobs::Jobs;
 use crate::app::state::{Command, Cursor, Panel, State};
+use crate::platform;
 use crate::scattering::{PathEcho, heard_in_the_middle};
 
 /// What the menu bar shows.
@@ -40,6 +41,7 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
         took: jobs.pipeline.took(),
+        alone: !platform::has_threads(),
     }
 }
 

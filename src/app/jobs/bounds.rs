@@ -128,7 +128,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// Starts the worker, which waits; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Bounds> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Bounds> {
         let work = |_: &mut (), request: BoundsRequest, _: &Task| bounds_of(request);
         let worker = Worker::spawn("bounds", || (), work, wake)?;
         Ok(Bounds { worker, asked: None, subject: false, result: None, error: None, requests: 0 })

@@ -82,7 +82,7 @@ impl Calibration {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         let work = |_: &mut (), request: Request, _: &Task| work(request);
         Ok(Calibration { worker: Worker::spawn("calibration", || (), work, wake)?, asked: None, result: None })
     }

@@ -3,6 +3,7 @@
 
 use crate::app::state::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
 use crate::platform::{self, FileQuestion, Instant};
+use eframe::egui::DroppedFile;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -158,6 +159,7 @@ type Reply = Box<dyn FnOnce(Option<PathBuf>) + Send>;
 enum Answer {
     Chosen(Command),
     NotShown(Question),
+    Unreadable(String),
 }
 
 /// File dialogs on threads of their own: a window that waits for one would look dead.
@@ -197,7 +199,7 @@ impl Dialogs {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn ask(&mut self, question: Question, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
+    pub fn ask(&mut self, question: Question, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<()> {
         let Some(system) = self.system.clone() else {
             self.unanswered = Some(question);
             self.told = self.apology.take();
@@ -219,12 +221,14 @@ impl Dialogs {
         system(asked, Box::new(reply))
     }
 
-    /// What the user chose since the last call. Returns also what to tell the user, when it turns out that the system has no dialogs.
-    pub fn poll(&mut self) -> (Vec<Command>, Option<&'static str>) {
-        let (mut chosen, mut told) = (Vec::new(), self.told.take());
+    /// What the user chose since the last call, which files could not be read, and what to tell the user when it turns out that the system has
+    /// no dialogs.
+    pub fn poll(&mut self) -> (Vec<Command>, Vec<String>, Option<&'static str>) {
+        let (mut chosen, mut problems, mut told) = (Vec::new(), Vec::new(), self.told.take());
         while let Ok(answer) = self.answers.1.try_recv() {
             match answer {
                 Answer::Chosen(command) => chosen.push(command),
+                Answer::Unreadable(problem) => problems.push(problem),
                 Answer::NotShown(question) => {
                     self.unanswered = Some(question);
                     if self.system.take().is_some() {
@@ -233,12 +237,35 @@ impl Dialogs {
                 }
             }
         }
-        (chosen, told)
+        (chosen, problems, told)
+    }
+
+    /// Opens a file that was dropped on the window; [`Dialogs::poll`] has the command, at once or later.
+    pub fn open_dropped(&self, file: &Arc<dyn DroppedFile + Send + Sync>, wake: impl Fn() + 'static) {
+        let answers = self.answers.0.clone();
+        let name = file.path().display().to_string();
+        platform::dropped(file, move |read| {
+            let answer = match read {
+                Ok(path) => Answer::Chosen(command_of_dropped(path)),
+                Err(why) => Answer::Unreadable(format!("{name} can't be read: {why}")),
+            };
+            // The window may be gone by now.
+            let _closed = answers.send(answer);
+            wake();
+        });
     }
 
     /// A question that the window has to ask.
     pub fn take_unanswered(&mut self) -> Option<Question> {
         self.unanswered.take()
+    }
+}
+
+/// What is done with a file that was dropped.
+fn command_of_dropped(path: PathBuf) -> Command {
+    match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        true => Command::Rows(RowsCommand::OpenTable(path)),
+        false => Command::Document(DocumentCommand::OpenPath(path)),
     }
 }
 
@@ -258,7 +285,8 @@ mod tests {
         dialogs.ask(question, move || wake.send(()).unwrap()).unwrap();
         // Nobody wakes for a dialog that was closed, and nobody needs to for one of the window.
         let _closed = woken.recv_timeout(Duration::from_secs(2));
-        dialogs.poll()
+        let (chosen, _, told) = dialogs.poll();
+        (chosen, told)
     }
 
     #[test]
@@ -274,7 +302,7 @@ mod tests {
         let mut dialogs = Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) };
         for told in [Some(APOLOGY), None] {
             dialogs.ask(Question::beside(Purpose::Open, None), || ()).unwrap();
-            assert_eq!(dialogs.poll(), (Vec::new(), told), "told once");
+            assert_eq!(dialogs.poll(), (Vec::new(), Vec::new(), told), "told once");
             assert!(dialogs.take_unanswered().is_some());
         }
     }

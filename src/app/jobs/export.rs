@@ -237,12 +237,13 @@ fn in_background(
     path: PathBuf,
     write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
 ) -> std::io::Result<()> {
+    let wake = platform::waker(&wake);
     let work = move || {
         let written = catch_unwind(AssertUnwindSafe(|| write(&path)))
             .unwrap_or_else(|panic| Err(format!("failed: {}", panic_message(panic.as_ref()))));
         // The window may be gone by now.
         let _closed = done.send(Export { path, written });
-        wake.request_repaint();
+        wake();
     };
     platform::spawn("export", work)
 }

@@ -97,7 +97,7 @@ impl Kinds {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Kinds> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Kinds> {
         let work = |kept: &mut Kept, request: Request, _: &Task| judge(kept.footprints(&request.truth), &request);
         let worker = Worker::spawn("kinds of failure", Kept::default, work, wake)?;
         Ok(Kinds { worker, asked: None, shown: [None, None] })

@@ -2,7 +2,7 @@
 
 use super::scene_maps::{MapsRequest, MapsResult, Pair};
 use crate::maps::{Normalisation, RangeAngleMap};
-use crate::platform::Instant;
+use crate::platform::{self, Instant};
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
 use crate::reconstruct::search::Attempt;
@@ -152,8 +152,7 @@ struct Kept {
 
 impl Kept {
     fn new(thread: &'static str) -> Kept {
-        let threads = rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{thread} {i}")).build().ok();
-        Kept { threads, follower: None }
+        Kept { threads: platform::pool(thread), follower: None }
     }
 
     fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
@@ -186,7 +185,7 @@ impl MethodJob {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(thread: &'static str, wake: impl Fn() + Send + 'static) -> std::io::Result<MethodJob> {
+    pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<MethodJob> {
         let work = |kept: &mut Kept, q: MethodRequest, task: &Task| kept.work(q, task);
         let worker = Worker::spawn(thread, move || Kept::new(thread), work, wake)?;
         Ok(MethodJob { worker, asked: None, outdated: None, output: None, refusal: None, time: None })

@@ -58,9 +58,10 @@ pub use training::{Log, Training};
 
 use crate::app::state::{Command, Panel, RowsCommand, State};
 use crate::interact::Autosave;
-use crate::platform::Instant;
-use eframe::egui::Context;
+use crate::platform::{self, Instant};
+use eframe::egui::{Context, DroppedFile};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Time between two looks at what runs, where a bar shows how far it is.
@@ -113,10 +114,7 @@ impl Jobs {
     /// # Errors
     /// When the system can't start a thread.
     pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> std::io::Result<Jobs> {
-        let wake = {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
+        let wake = platform::waker(ctx);
         Ok(Jobs {
             pipeline: Pipeline::start(wake.clone())?,
             bounds: Bounds::start(wake.clone())?,
@@ -142,7 +140,8 @@ impl Jobs {
 
     /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
-        let mut errors = self.pipeline.poll();
+        let mut errors = platform::problems();
+        errors.extend(self.pipeline.poll());
         self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.bounds.poll());
         errors.extend(self.phasors.poll());
@@ -167,8 +166,7 @@ impl Jobs {
         for said in self.recorder.poll() {
             tell(state, said);
         }
-        let (mut chosen, told) = self.dialogs.poll();
-        told.into_iter().for_each(|t| state.notices.info(t));
+        let mut chosen = self.chosen(state);
         chosen.extend(begun);
         // What was found takes the place of what it was looked for near, but not of what somebody made of that meanwhile.
         if found && self.failures.search.is_about(state.editor.scene()) {
@@ -255,12 +253,26 @@ impl Jobs {
 
     /// Opens a file dialog; what is chosen comes back as a command.
     pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
-        let ctx = self.wake.clone();
+        let wake = platform::waker(&self.wake);
         let question = Question::beside(purpose, state.editor.document().likely_path().as_deref());
-        if let Err(error) = self.dialogs.ask(question, move || ctx.request_repaint()) {
+        if let Err(error) = self.dialogs.ask(question, wake) {
             let advice = "Drop a file on the window instead.";
             state.notices.error(format!("The file dialog could not be opened: {error}. {advice}"));
         }
+    }
+
+    /// Opens a file that was dropped on the window; what is to be done with it, where that is known at once.
+    pub fn open_dropped(&mut self, state: &mut State, file: &Arc<dyn DroppedFile + Send + Sync>) -> Vec<Command> {
+        self.dialogs.open_dropped(file, platform::waker(&self.wake));
+        self.chosen(state)
+    }
+
+    /// What is to be done with files that were chosen.
+    fn chosen(&mut self, state: &mut State) -> Vec<Command> {
+        let (chosen, problems, told) = self.dialogs.poll();
+        told.into_iter().for_each(|t| state.notices.info(t));
+        problems.into_iter().for_each(|e| state.notices.error(e));
+        chosen
     }
 
     /// The folder of one's own scenes: the one chosen, or else one beside the app's other files.

@@ -53,7 +53,7 @@ impl Pipeline {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + 'static) -> std::io::Result<Pipeline> {
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Pipeline> {
         let work = |state: &mut MapsState, request: MapsRequest, task: &Task| state.work(request, task);
         let maps = Worker::spawn("maps", MapsState::default, work, wake.clone())?;
         let methods = [MethodJob::start("reconstruction", wake.clone())?, MethodJob::start("second method", wake)?];

@@ -84,8 +84,7 @@ impl Recorder {
     /// When the system can't start a thread.
     pub fn start(wake: Context) -> std::io::Result<Recorder> {
         let work = |_: &mut (), steps: Steps, task: &Task| draw_steps(&steps, task);
-        let again = wake.clone();
-        let steps = Worker::spawn("lesson pictures", || (), work, move || again.request_repaint())?;
+        let steps = Worker::spawn("lesson pictures", || (), work, platform::waker(&wake))?;
         Ok(Recorder { camera: Camera::new(wake.clone()), wake, recording: None, steps, done: channel() })
     }
 
@@ -94,20 +93,20 @@ impl Recorder {
     /// # Errors
     /// Why it can't be begun.
     pub fn record_drag(&mut self, mut path: PathBuf) -> Result<String, String> {
-        if !platform::HAS_THREADS {
-            return Err("A page can't record drags; the desktop program can.".to_owned());
+        if !platform::has_threads() {
+            return Err("Drags are recorded beside the window, which this page can't: open it in a page of its own, or use the desktop program.".to_owned());
         }
         path.set_extension("gif");
         let (frames, arriving) = sync_channel(WAITING);
         let task = Task::default();
-        let (done, wake) = (self.done.0.clone(), self.wake.clone());
+        let (done, wake) = (self.done.0.clone(), platform::waker(&self.wake));
         let (theirs, to) = (task.clone(), path.clone());
         let work = move || {
             let written = catch_unwind(AssertUnwindSafe(|| animate(&to, &arriving, &theirs)))
                 .unwrap_or_else(|panic| Err(format!("failed: {}", panic_message(panic.as_ref()))));
             // The window may be gone by now.
             let _closed = done.send(written);
-            wake.request_repaint();
+            wake();
         };
         platform::spawn("recording", work)
             .map_err(|e| format!("{}: the recording can't be started: {e}", path.display()))?;

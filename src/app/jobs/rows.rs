@@ -1,5 +1,6 @@
 //! Long work that finds one row after another, on a thread of its own: it can be watched and cancelled, and what it found stays.
 
+use crate::platform;
 use crate::task::{Reply, Task, Worker};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -55,7 +56,7 @@ impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R
         wake: impl Fn() + Clone + Send + Sync + 'static,
     ) -> std::io::Result<Self> {
         // Threads of its own: on shared ones the maps would wait for it.
-        let threads = move || rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{name} {i}")).build().ok();
+        let threads = move || platform::pool(name);
         let each = wake.clone();
         let run = move |threads: &mut Option<rayon::ThreadPool>, (plan, rows): (P, Sender<R>), task: &Task| {
             let teller = Teller { rows, wake: &each, task };

@@ -75,7 +75,7 @@ impl SeveralMaps {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + 'static) -> std::io::Result<SeveralMaps> {
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<SeveralMaps> {
         let (done, arriving) = channel();
         let each = wake.clone();
         let work = move |_: &mut (), request: Request, task: &Task| make(&request, task, &done, &each);

@@ -57,7 +57,7 @@ pub struct Theory {
 
 impl Theory {
     /// Starts the worker, which waits; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Theory> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Theory> {
         let work = |_: &mut (), request: TheoryRequest, _: &Task| work(request);
         Ok(Theory { worker: Worker::spawn("theory", || (), work, wake)?, asked: None, result: None })
     }

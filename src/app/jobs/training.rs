@@ -96,7 +96,7 @@ pub struct Training {
 
 impl Training {
     /// Starts the thread that reads logs, which waits; `wake` is called from it.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Training> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Training> {
         let read = |_: &mut (), path: PathBuf, _: &Task| {
             let text = read_log(&path).map_err(|e| format!("{}: {e}", path.display()))?;
             Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))

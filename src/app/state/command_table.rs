@@ -5,12 +5,14 @@ use super::command::{
     ViewCommand, WindowCommand, WorkCommand,
 };
 use super::help::HelpPage;
+use super::page_commands::{on_a_desktop, on_a_page};
 use super::panel::{MapKind, Panel};
 use super::settings::{Projection, Units};
 use super::task_layouts::Task;
 use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
+use crate::platform;
 use crate::radar::presets::{self as radar_presets, RadarPreset};
 use crate::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use crate::recording::presets as recordings;
@@ -152,6 +154,12 @@ const TABLE: &[Entry] = {
             Export(ExportCommand::CopyShared),
             "Copy all as text",
             "Copy scene, radar, view, method and lesson step as one line; paste it into another apertura, or start one with it",
+            None,
+        ),
+        entry(
+            Export(ExportCommand::CopyLink),
+            "Copy link",
+            "Copy an address that opens this page with scene, radar, view, method and lesson step",
             None,
         ),
         entry(
@@ -549,28 +557,32 @@ fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
     named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
 }
 
-/// Every command of the table, of every panel, of every kind of random scene and of every preset, in the order the palette lists them. The methods are not among
-/// them: they are the app's.
+/// Every command of the table, of every panel, of every kind of random scene and of every preset, in the order the palette lists them, as far as
+/// there are such here. The methods are not among them: they are the app's.
 pub fn listed() -> &'static [Entry] {
     static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
-    LISTED.get_or_init(|| {
-        let radar = |(index, preset): (usize, &RadarPreset)| {
-            named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
-        };
-        let recording = |(index, preset): (usize, &recordings::Preset)| {
-            let name = format!("Recording: {}", preset.id.replace('-', " "));
-            let tooltip = "Open samples that a radar measured";
-            named(Command::Document(DocumentCommand::Recording(index)), name, tooltip, None)
-        };
-        let mut all = TABLE.to_vec();
-        all.extend(Kind::all().map(random));
-        all.extend(Task::ALL.into_iter().zip(TASK_KEYS).map(|(task, digit)| arrange(task, digit)));
-        all.extend(of_panels());
-        all.extend(presets::ALL.iter().enumerate().map(preset));
-        all.extend(recordings::ALL.iter().enumerate().map(recording));
-        all.extend(radar_presets::ALL.iter().enumerate().map(radar));
-        all
-    })
+    let here = if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop };
+    LISTED.get_or_init(|| everything().into_iter().filter_map(here).collect())
+}
+
+/// Every command, whether a desktop has it or a page.
+pub(super) fn everything() -> Vec<Entry> {
+    let radar = |(index, preset): (usize, &RadarPreset)| {
+        named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
+    };
+    let recording = |(index, preset): (usize, &recordings::Preset)| {
+        let name = format!("Recording: {}", preset.id.replace('-', " "));
+        let tooltip = "Open samples that a radar measured";
+        named(Command::Document(DocumentCommand::Recording(index)), name, tooltip, None)
+    };
+    let mut all = TABLE.to_vec();
+    all.extend(Kind::all().map(random));
+    all.extend(Task::ALL.into_iter().zip(TASK_KEYS).map(|(task, digit)| arrange(task, digit)));
+    all.extend(of_panels());
+    all.extend(presets::ALL.iter().enumerate().map(preset));
+    all.extend(recordings::ALL.iter().enumerate().map(recording));
+    all.extend(radar_presets::ALL.iter().enumerate().map(radar));
+    all
 }
 
 /// The commands that have a key, longer shortcuts first: Ctrl+Shift+Z would also match Ctrl+Z.

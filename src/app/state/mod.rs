@@ -14,6 +14,7 @@ mod lesson_run;
 mod method_times;
 mod methods;
 mod notices;
+mod page_commands;
 mod panel;
 mod phasor_settings;
 mod room;

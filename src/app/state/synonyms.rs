@@ -35,6 +35,7 @@ pub fn synonyms(command: &Command) -> &'static str {
             ExportCommand::Metrics => "csv numbers figures save",
             ExportCommand::RecordDrag => "gif animation video movie",
             ExportCommand::CopyShared => "share link send",
+            ExportCommand::CopyLink => "share text send url",
             _ => "",
         },
         Command::Window(command) => window_words(command),
@@ -103,7 +104,8 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             | ExportCommand::RecordDrag
             | ExportCommand::DrawLesson
             | ExportCommand::StopRecording
-            | ExportCommand::CopyShared => &["File"],
+            | ExportCommand::CopyShared
+            | ExportCommand::CopyLink => &["File"],
             _ => &[],
         },
         Command::View(command) => view_menus(command),

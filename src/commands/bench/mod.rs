@@ -16,6 +16,7 @@ mod others;
 use super::arguments::whole;
 use super::{CommandError, print};
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
+use crate::benchmark::one_thread::measure;
 use crate::files::write_bytes;
 use crate::radar::counted;
 use measured::measured;
@@ -72,6 +73,11 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
     methods: bool,
 
+    /// Measure what the window computes most instead: three maps, and the live network; with RAYON_NUM_THREADS=1 on one thread, as a page
+    /// does by ?measure. With --json a list of name and milliseconds (median)
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "every_simd", "output"])]
+    one_thread: bool,
+
     /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
     /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
     #[cfg(feature = "network")]
@@ -103,6 +109,9 @@ impl Args {
         #[cfg(feature = "network")]
         if self.live {
             return live::run(self.json);
+        }
+        if self.one_thread {
+            return one_thread(self.json);
         }
         if self.every_simd {
             return instructions::run(&self.reflectors, self.repeats, self.json);
@@ -136,6 +145,14 @@ impl Args {
         }
         report.others.as_ref().map_or(Ok(()), Equal::print)
     }
+}
+
+fn one_thread(json: bool) -> Result<(), CommandError> {
+    let timed = measure().map_err(CommandError::failed)?;
+    if json {
+        return print(&serde_json::to_string_pretty(&timed).map_err(CommandError::failed)?);
+    }
+    timed.iter().try_for_each(|t| print(&format!("{:40} {:>9.3} ms", t.name, t.milliseconds)))
 }
 
 fn heading(front: &Front, repeats: u32) -> String {

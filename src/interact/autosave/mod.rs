@@ -55,7 +55,7 @@ impl Autosave {
         let (stem, lock) = claim_slot(folder);
         let store = Store::new(folder, stem);
         let answers = channel();
-        let (jobs, thread) = match platform::HAS_THREADS {
+        let (jobs, thread) = match platform::WRITES_WAIT {
             true => writer(store.clone(), answers.0.clone()).map(|(jobs, thread)| (Some(jobs), Some(thread)))?,
             false => (None, None),
         };

@@ -8,7 +8,7 @@ mod source;
 use imports::{House, circles, rust_files};
 use source::Source;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Longest a function may be, lines.
 const LONGEST_FUNCTION: usize = 60;
@@ -111,6 +111,17 @@ fn circles_are_found() {
     assert!(circles(&graph(&[("a", "b"), ("b", "c"), ("a", "c")])).is_empty());
     let circle = circles(&graph(&[("a", "b"), ("b", "c"), ("c", "b"), ("c", "d")]));
     assert_eq!(circle, [BTreeSet::from(["b", "c"])]);
+}
+
+/// Only `platform` asks whether it runs on a page; SIMD kernels ask for the processor's instructions.
+#[test]
+fn the_target_is_asked_for_in_the_platform_alone() {
+    let src = root().join("src");
+    let kernels = ["platform", "signal/simd", "network/live/vector.rs", "network/live/kernel.rs"].map(|p| src.join(p));
+    let asks = |path: &PathBuf| std::fs::read_to_string(path).unwrap().contains("target_arch");
+    let (may, must_not): (Vec<PathBuf>, Vec<PathBuf>) =
+        rust_files(&src).into_iter().filter(asks).partition(|path| kernels.iter().any(|k| path.starts_with(k)));
+    assert!(!may.is_empty() && must_not.is_empty(), "{must_not:?}");
 }
 
 /// Paths are followed through `pub use`, `super`, renamed modules and inline test modules.

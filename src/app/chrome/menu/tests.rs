@@ -167,10 +167,12 @@ fn menus_ask_for_what_they_list() {
 
 #[test]
 fn no_button_stands_over_another_at_any_width() {
-    for width in (520..1000).step_by(20) {
+    for width in (360..1000).step_by(20) {
         let menu = bar(width as f32);
         let right = |label| menu.query_by_label(label).map(|node| node.rect().right());
-        let Some(lessons) = right("Lessons") else { panic!("no lessons at {width}") };
+        // In a narrow window the buttons are left to the menus.
+        let last = if (width as f32) < NARROW { "Help" } else { "Lessons" };
+        let Some(lessons) = right(last) else { panic!("no {last} at {width}") };
         for label in ["Commands", "Cartesian", "Range–angle"] {
             let Some(node) = menu.query_by_label(label) else { continue };
             assert!(node.rect().left() >= lessons, "{label} at {width}");

@@ -141,7 +141,7 @@ pub struct Store {
 
 impl Store {
     /// Starts the thread, which waits; `wake` is called from it.
-    pub fn start(wake: impl Fn() + Send + 'static) -> io::Result<Store> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> io::Result<Store> {
         let work = |_: &mut (), request, _: &crate::task::Task| match request {
             Request::Read { path, own } => {
                 let kept = read(&path);

@@ -6,11 +6,12 @@ use crate::app::state::Conditions;
 use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{Answer, Trial};
 use crate::maps::RangeAngleMap;
+use crate::platform;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::task::panic_message;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Columns of a thumbnail.
 pub const WIDTH: usize = 96;
@@ -94,18 +95,18 @@ pub struct Album(Arc<Mutex<Cache>>);
 impl Album {
     /// The thumbnail of a row of table `generation`, if it is there.
     pub fn get(&self, generation: u64, row: &Row) -> Option<Made> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&(generation, RowKey::of(row)))
+        platform::lock(&self.0).get(&(generation, RowKey::of(row)))
     }
 
     /// Keeps one.
     pub fn insert(&self, generation: u64, row: &Row, made: Made) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert((generation, RowKey::of(row)), made);
+        platform::lock(&self.0).insert((generation, RowKey::of(row)), made);
     }
 
     /// How many there are.
     #[cfg(test)]
     fn len(&self) -> usize {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).made.len()
+        platform::lock(&self.0).made.len()
     }
 }
 

@@ -32,6 +32,8 @@ pub enum ExportCommand {
     CopyMap(MapKind),
     /// Copy scene, radar, view, method and lesson step as one line of text.
     CopyShared,
+    /// Copy a link to the page that shows what is on screen.
+    CopyLink,
     /// Copy what the evaluation found, as CSV.
     CopyEvaluation,
 }

@@ -1,0 +1,17 @@
+// A service worker that adds the headers which isolate the page from other origins, for hosts that can't send them. The browser lends
+// threads to an isolated page only.
+self.addEventListener("install", () => self.skipWaiting());
+self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim()));
+self.addEventListener("fetch", (event) => {
+  const { request } = event;
+  if (request.cache === "only-if-cached" && request.mode !== "same-origin") return;
+  event.respondWith(
+    fetch(request).then((response) => {
+      if (response.status === 0) return response;
+      const headers = new Headers(response.headers);
+      headers.set("Cross-Origin-Opener-Policy", "same-origin");
+      headers.set("Cross-Origin-Embedder-Policy", "require-corp");
+      return new Response(response.body, { status: response.status, statusText: response.statusText, headers });
+    }),
+  );
+});

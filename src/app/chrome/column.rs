@@ -1,0 +1,49 @@
+//! The panels in one column, for a window as narrow as a telephone: what fills the screen comes first, the rest is scrolled to.
+
+use crate::app::state::{Arrangement, MapKind, Panel};
+use eframe::egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
+
+/// A window narrower than this, points, has its panels in one column: beside a scene a map could not be read.
+pub const NARROW: f32 = 520.0;
+
+/// Panels that fill the height of the window together.
+const AT_ONCE: f32 = 3.0;
+
+/// Least height of a panel that is no map, points.
+const LEAST_HEIGHT: f32 = 260.0;
+
+/// Height of a panel's title, points.
+const TITLE: f32 = 20.0;
+
+/// The open panels from above: tools that somebody opened, then the scene, what a method makes of it and what there is to see, then the rest.
+pub fn order(arrangement: &Arrangement) -> Vec<Panel> {
+    let first = [Panel::Scene, Panel::Map(MapKind::Output), Panel::Map(MapKind::Target), Panel::Controls];
+    let tools = Panel::TOOLS.into_iter();
+    let rest = Panel::all().into_iter().filter(|panel| !Panel::TOOLS.contains(panel) && !first.contains(panel));
+    tools.chain(first).chain(rest).filter(|panel| arrangement.is_open(*panel)).collect()
+}
+
+/// Draws `panels`, those in sight by `draw`.
+pub fn show(ui: &mut Ui, panels: &[Panel], mut draw: impl FnMut(&mut Ui, Panel)) {
+    let map_height = (ui.available_height() / AT_ONCE - TITLE - ui.spacing().item_spacing.y).max(140.0);
+    // Where a finger is on a panel it means the panel: a point is dragged, a map is moved.
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(0.0, 2.0);
+        for &panel in panels {
+            let is_picture = matches!(panel, Panel::Scene | Panel::Map(_));
+            let height = if is_picture { map_height } else { map_height.max(LEAST_HEIGHT) };
+            let (title, _) = ui.allocate_exact_size(vec2(ui.available_width(), TITLE), eframe::egui::Sense::hover());
+            ui.put(title, eframe::egui::Label::new(panel.title()).selectable(false));
+            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), eframe::egui::Sense::hover());
+            if ui.clip_rect().intersects(rect) {
+                within(ui, rect, panel, &mut draw);
+            }
+        }
+    });
+}
+
+fn within(ui: &mut Ui, rect: Rect, panel: Panel, draw: &mut impl FnMut(&mut Ui, Panel)) {
+    let mut inside = ui.new_child(UiBuilder::new().id_salt(panel).max_rect(rect));
+    inside.set_clip_rect(rect.intersect(ui.clip_rect()));
+    draw(&mut inside, panel);
+}

@@ -1,0 +1,116 @@
+//! Run times of what the window computes most, on one thread: the native program and the page run the same, and `scripts/measure-page`
+//! compares them.
+
+use crate::engine::{Engine, Wanted};
+use crate::methods;
+use crate::platform::Instant;
+use crate::radar::Radar;
+use crate::reconstruct::Request;
+use crate::scene::Scene;
+use crate::signal::{Floor, simulate};
+use std::f64::consts::TAU;
+
+/// Runs whose median counts.
+const REPEATS: usize = 7;
+
+/// Runs before them.
+const WARM_UP: usize = 2;
+
+/// Numbers of reflectors.
+const REFLECTORS: [usize; 2] = [10, 300];
+
+/// How far the first reflector is dragged and back, metres.
+const DRAG_METRES: f64 = 0.01;
+
+/// A computation and its run time.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Timed {
+    /// What was computed.
+    pub name: String,
+    /// Median of its run times.
+    pub milliseconds: f64,
+}
+
+/// Reflectors spread over the field of view, the same ones everywhere.
+fn spread(count: usize) -> Scene {
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    Scene::of_points((0..count).map(|i| {
+        let (part, range_metres) = ((i as f64 * golden).fract(), 5.0 + 30.0 * (i as f64 + 0.5) / count as f64);
+        let angle = TAU * (part - 0.5) / 3.0;
+        (range_metres * angle.sin(), range_metres * angle.cos())
+    }))
+}
+
+/// The median time of `work`, which is told the number of the run.
+fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, String> {
+    let mut times = Vec::new();
+    for run in 0..WARM_UP + REPEATS {
+        let began = Instant::now();
+        work(run)?;
+        times.push(1e3 * began.elapsed().as_secs_f64());
+    }
+    let mut counted = times.split_off(WARM_UP);
+    counted.sort_by(f64::total_cmp);
+    Ok(counted[REPEATS / 2])
+}
+
+/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on whatever threads rayon has here.
+///
+/// # Errors
+/// Why one of them can't be computed.
+pub fn measure() -> Result<Vec<Timed>, String> {
+    let radar = Radar::default();
+    let mut timed = Vec::new();
+    for count in REFLECTORS {
+        let scene = spread(count);
+        let mut moved = scene.clone();
+        if let Some(object) = moved.objects.first_mut() {
+            object.translate(DRAG_METRES, 0.0);
+        }
+        let mut engine = Engine::new(radar.clone());
+        let wanted = Wanted { floor: Floor::Exact, ends: false, ..Wanted::default() };
+        let mut update = |scene: &Scene, afresh: bool| {
+            if afresh {
+                engine.forget();
+            }
+            engine.update(scene, &wanted).map(|_| ()).map_err(|e| e.to_string())
+        };
+        let scratch = median(|_| update(&scene, true))?;
+        let dragged = median(|run| update(if run % 2 == 0 { &moved } else { &scene }, false))?;
+        timed.push(Timed { name: format!("maps of {count} reflectors, from scratch"), milliseconds: scratch });
+        timed.push(Timed { name: format!("maps of {count} reflectors, one dragged"), milliseconds: dragged });
+    }
+    let live = methods::by_name("live").map_err(|e| e.to_string())?;
+    let signal = simulate(&radar, &spread(REFLECTORS[0]), Floor::Thesis, 0).map_err(|e| e.to_string())?;
+    let ends = signal.two_ends(&radar);
+    let milliseconds =
+        median(|_| live.reconstruct(&radar, &ends, &Request::default()).map(|_| ()).map_err(|e| e.to_string()))?;
+    timed.push(Timed { name: "live".to_owned(), milliseconds });
+    Ok(timed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_leaves_out_the_first_runs() {
+        let mut runs = 0;
+        let wait = |run: usize| {
+            runs += 1;
+            std::thread::sleep(std::time::Duration::from_millis(if run < WARM_UP { 60 } else { 1 }));
+            Ok(())
+        };
+        assert!(median(wait).unwrap() < 50.0);
+        assert_eq!(runs, WARM_UP + REPEATS);
+    }
+
+    #[test]
+    fn spread_reflectors_lie_in_range() {
+        let radar = Radar::default();
+        for count in REFLECTORS {
+            let scene = spread(count);
+            assert!(scene.validate(&radar).is_ok() && scene.reflector_count() == count);
+        }
+    }
+}
