@@ -10,7 +10,7 @@ Maps are `[range bins, columns]`: row k is range `radar.range_metres[k]`, column
 becomes ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
 """
 
-from . import torch
+from . import data, torch
 from ._apertura import (
     Examples,
     Maps,
@@ -22,7 +22,9 @@ from ._apertura import (
     __version__,
     ambiguity,
     cramer_rao,
+    dataset,
     evaluate,
+    live_input,
     maps,
     method,
     methods,
@@ -31,6 +33,7 @@ from ._apertura import (
     roc,
     set_threads,
     threads,
+    write_rows,
 )
 from .objects import (
     Box,
@@ -46,7 +49,9 @@ from .objects import (
     Post,
     Wall,
 )
+from .page import Shown, find_page, show
 from .program import find_program, open
+from .serve import Request, serve
 
 __all__ = [
     "Box",
@@ -66,13 +71,19 @@ __all__ = [
     "Radar",
     "Reconstruction",
     "Recording",
+    "Request",
     "Scene",
+    "Shown",
     "Wall",
     "__version__",
     "ambiguity",
     "cramer_rao",
+    "data",
+    "dataset",
     "evaluate",
+    "find_page",
     "find_program",
+    "live_input",
     "maps",
     "method",
     "methods",
@@ -80,7 +91,10 @@ __all__ = [
     "open",
     "read_rows",
     "roc",
+    "serve",
     "set_threads",
+    "show",
     "threads",
     "torch",
+    "write_rows",
 ]

@@ -14,6 +14,7 @@ mod mouse;
 mod others;
 
 use super::arguments::whole;
+use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
 use crate::benchmark::one_thread::measure;
@@ -77,6 +78,8 @@ pub struct Args {
     /// does by ?measure. With --json a list of name and milliseconds (median)
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "every_simd", "output"])]
     one_thread: bool,
+    #[command(flatten)]
+    own: OwnMethodArgs,
 
     /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
     /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
@@ -104,6 +107,7 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let repeats = self.repeats as usize;
         if self.methods {
+            self.own.start()?;
             return methods::run(self.count, self.json, self.output.as_deref());
         }
         #[cfg(feature = "network")]
