@@ -133,7 +133,7 @@ impl Phasors {
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Phasors> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Phasors> {
         let work = |kept: &mut Kept, request: Request, _: &Task| kept.work(&request);
         Ok(Phasors {
             worker: Worker::spawn("phasors", Kept::default, work, wake)?,
