@@ -257,7 +257,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let total = job.scene.echo_count();
         let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
         let usable = self.built.as_ref().filter(|b| b.tolerance <= job.plan.tolerance && b.forced == job.forced);
-        let change = usable.and_then(|built| {
+        let change = usable.map(|built| {
             let change = Change::between(&self.rest.objects, &self.active.objects, scene);
             let more = if !change.settles {
                 0.0
@@ -266,13 +266,14 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let leaving = plan::amplitude_bound_of(job.radar, &change.leaving);
                 2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * leaving
             };
-            (built.rounding + more <= limit).then_some((change, built.rounding + more))
+            let rounding = built.rounding + more;
+            (change, rounding, rounding <= limit)
         });
         match change {
-            Some((change, _)) if !change.settles && change.arriving == self.active.objects => {
+            Some((change, _, true)) if !change.settles && change.arriving == self.active.objects => {
                 ("as before".to_owned(), Rows::none(job.radar.samples))
             }
-            Some((change, rounding)) if change.cost() < total.max(1) => {
+            Some((change, rounding, true)) if change.cost() < total.max(1) => {
                 let evaluated = change.cost();
                 let mut changed = self.active.profiles.touched.clone();
                 if change.settles {
@@ -298,7 +299,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 (format!("{evaluated} of {}, {how}, the others as before", job.counted(total)), changed)
             }
             // What moved among bodies is kept apart at once: with what it hides it may be most of the scene, and will move again.
-            Some((change, _)) if job.scene.has_bodies() => self.build_anew(job, &change.staying, &change.arriving),
+            Some((change, ..)) if job.scene.has_bodies() => self.build_anew(job, &change.staying, &change.arriving),
             _ => self.build_anew(job, job.seen, &[]),
         }
     }

@@ -3,7 +3,7 @@
 use super::canvas::Canvas;
 use crate::interact::Place;
 use crate::radar::Radar;
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Object, Scene, Shape as Body};
 use eframe::egui::{self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 /// From the edge of the canvas to the middle of a sign there, points.
@@ -57,9 +57,9 @@ fn beyond<'a>(radar: &Radar, scene: &'a Scene) -> Vec<Beyond<'a>> {
         let places: Vec<Place> = match object {
             Object::Line(l) => vec![[l.x_metres, l.y_start_metres].into(), l.end_metres().into()],
             other => match other.body().map(|body| body.shape()) {
-                Some(Shape::Wall(ends)) => ends.map(Place::from).to_vec(),
-                Some(Shape::Outline(corners)) => corners.into_iter().map(Place::from).collect(),
-                Some(Shape::Circle { .. }) | None => vec![other.centre_metres().into()],
+                Some(Body::Wall(ends)) => ends.map(Place::from).to_vec(),
+                Some(Body::Outline(corners)) => corners.into_iter().map(Place::from).collect(),
+                Some(Body::Circle { .. }) | None => vec![other.centre_metres().into()],
             },
         };
         let farthest = places.iter().copied().max_by(|a, b| range(a).total_cmp(&range(b)))?;
