@@ -14,6 +14,7 @@ mod mouse;
 mod others;
 
 use super::arguments::whole;
+use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
 use crate::files::write_bytes;
@@ -72,6 +73,9 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
     methods: bool,
 
+    #[command(flatten)]
+    own: OwnMethodArgs,
+
     /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
     /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
     #[cfg(feature = "network")]
@@ -98,6 +102,7 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let repeats = self.repeats as usize;
         if self.methods {
+            self.own.start()?;
             return methods::run(self.count, self.json, self.output.as_deref());
         }
         #[cfg(feature = "network")]
