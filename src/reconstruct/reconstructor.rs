@@ -234,6 +234,7 @@ pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Reflector;
 
     /// Answers one reflector as strong as the strongest sample.
     struct Echo;
