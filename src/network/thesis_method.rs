@@ -75,6 +75,7 @@ impl ThesisMethod {
             confidences: Vec::new(),
             eta: Some(eta),
             least_eta: None,
+            trace: Vec::new(),
         })
     }
 }
@@ -197,6 +198,7 @@ impl Reconstructor for UnetMethod {
             confidences: Vec::new(),
             eta: None,
             least_eta: None,
+            trace: Vec::new(),
         })
     }
 }

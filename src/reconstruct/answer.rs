@@ -1,6 +1,7 @@
 //! What a reconstruction is asked for, and what it answers.
 
 use super::prior::NoisePrior;
+use super::search::Attempt;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
@@ -53,6 +54,8 @@ pub struct Reconstruction {
     ///
     /// [`reconstruct`]: super::Reconstructor::reconstruct
     pub least_eta: Option<f32>,
+    /// What the method tried, the first first; empty where it does not say.
+    pub trace: Vec<Attempt>,
 }
 
 /// A reflector as the array's centre hears it.
@@ -84,7 +87,14 @@ impl Reconstruction {
     /// The answer to silence: Lambda 0 everywhere, no reflector.
     pub fn silence(radar: &Radar) -> Self {
         let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
-        Reconstruction { lambda, reflectors: Vec::new(), confidences: Vec::new(), eta: None, least_eta: None }
+        Reconstruction {
+            lambda,
+            reflectors: Vec::new(),
+            confidences: Vec::new(),
+            eta: None,
+            least_eta: None,
+            trace: Vec::new(),
+        }
     }
 
     /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.

@@ -40,6 +40,8 @@ impl Contents<'_> {
             draws_only: self.state.method().map(|m| m.name()).filter(|_| !self.state.finds_reflectors()),
             method: output.map(|o| o.method),
             found: output.filter(|_| !self.state.is_predicting()).and_then(|o| o.found.as_deref()),
+            attempts: output.map_or(&[], |o| o.attempts.as_slice()),
+            objects: &self.state.editor.scene().objects,
             refusal: pipeline.refusal().map(|r| r.reason.as_str()),
             stale: pipeline.is_stale(MapKind::Output),
             has_ranges: self.state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),

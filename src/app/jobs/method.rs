@@ -5,6 +5,7 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::platform::{self, Instant};
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
+use crate::reconstruct::search::Attempt;
 use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::Reflector;
 use crate::signal::TwoEnds;
@@ -113,6 +114,8 @@ pub struct MethodResult {
     pub found: Option<Vec<Detection>>,
     /// Where it found reflectors.
     pub reflectors: Vec<Reflector>,
+    /// What it tried, the first first.
+    pub attempts: Vec<Attempt>,
     /// Time it took.
     pub took: Duration,
     basis: Basis,
@@ -225,7 +228,7 @@ impl MethodJob {
         if at_rest || method.following().is_none() {
             self.time = Some((basis.radar.clone(), method.name(), took));
         }
-        let Reconstruction { lambda, mut reflectors, eta, .. } = answer;
+        let Reconstruction { lambda, mut reflectors, eta, trace: attempts, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }
@@ -233,7 +236,8 @@ impl MethodJob {
         let document = latest.map_or(document, |r| r.request.document);
         let pair = Pair { target: latest.and_then(MapsResult::target).or(target), output: Arc::new(lambda) };
         self.refusal = None;
-        self.output = Some(MethodResult { method: method.name(), document, pair, eta, found, reflectors, took, basis });
+        let method = method.name();
+        self.output = Some(MethodResult { method, document, pair, eta, found, reflectors, attempts, took, basis });
     }
 
     /// There is no output, and the last one is not its own: nothing of it stays.

@@ -1,9 +1,13 @@
 //! What the method found, as a list: angle, range, strength.
 
+mod attempts;
+
 use crate::app::state::Command;
 use crate::app::widgets::direction::{CONVENTION, angle_degrees};
 use crate::app::widgets::numbers::{plain, signed};
 use crate::reconstruct::Detection;
+use crate::reconstruct::search::Attempt;
+use crate::scene::Object;
 use eframe::egui;
 use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 
@@ -25,6 +29,10 @@ pub struct Input<'a> {
     pub method: Option<&'static str>,
     /// What it found, the strongest first; `None` until the list is there.
     pub found: Option<&'a [Detection]>,
+    /// What the method tried, the first first.
+    pub attempts: &'a [Attempt],
+    /// The objects of the scene on screen.
+    pub objects: &'a [Object],
     /// Why there is no output.
     pub refusal: Option<&'a str>,
     /// Whether it is of an earlier scene, and has been for long enough to be told.
@@ -35,6 +43,7 @@ pub struct Input<'a> {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    let mut commands = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         if let Some(method) = input.draws_only {
             ui.weak(format!("{method} draws a map and finds no echoes to list. Choose another method in Settings."));
@@ -77,9 +86,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             if more > 0 {
                 ui.weak(format!("and {more} weaker ones"));
             }
+            commands = attempts::show(ui, input.attempts, input.objects);
         });
     });
-    Vec::new()
+    commands
 }
 
 fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
@@ -105,7 +115,9 @@ mod tests {
     fn panel(found: Option<Vec<Detection>>, refusal: Option<&'static str>, has_ranges: bool) -> Harness<'static> {
         let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
             let (method, found) = (Some("iaa"), found.as_deref());
-            let asked = show(ui, Input { draws_only: None, method, found, refusal, stale: false, has_ranges });
+            let (attempts, objects) = (&[], &[]);
+            let input = Input { draws_only: None, method, found, attempts, objects, refusal, stale: false, has_ranges };
+            let asked = show(ui, input);
             assert!(asked.is_empty());
         });
         panel.run();
@@ -150,6 +162,8 @@ mod tests {
                 draws_only: Some("live"),
                 method: Some("iaa"),
                 found: Some(&list),
+                attempts: &[],
+                objects: &[],
                 refusal: None,
                 stale: false,
                 has_ranges: true,

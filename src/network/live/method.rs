@@ -180,6 +180,7 @@ impl Reconstructor for LiveMethod {
             confidences: Vec::new(),
             eta: Some(eta),
             least_eta: Some(least_eta),
+            trace: Vec::new(),
         })
     }
 }

@@ -122,7 +122,7 @@ impl<'a> Settled<'a> {
 
     pub(super) fn grower(&self) -> Grower<'_> {
         let Settled { radar, task, bench, detector, settings, .. } = self;
-        Grower { radar, bench, detector, settings, task }
+        Grower { radar, bench, detector, settings, task, trace: None }
     }
 
     /// What the reflectors leave of the samples.

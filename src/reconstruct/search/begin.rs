@@ -1,11 +1,12 @@
 //! Where walls begin: rows between two points, over two, from the edge of a wall, or long lines as a whole, and which of them are borne out.
 
-use super::grow::Grower;
+use super::grow::{Grower, tried};
 use super::on_wall::is_on;
 use super::propose::between::rows_between;
 use super::propose::edges::rows_from_edges;
 use super::propose::phased::PhasedBeams;
 use super::propose::strides::{Stride, rows_over_pairs};
+use super::trace::{Refusal, decades};
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Spectra, Tie, rows_of};
 use num_complex::Complex64;
@@ -206,7 +207,12 @@ impl Grower<'_> {
             let wall = self.followed_to_its_ends(&fit.residual, begun.atom);
             let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
             tracing::debug!(?begun, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
-            seeds.are_borne_out(self.radar, &wall.atoms[0], begun.part.max(explained)).then_some(wall)
+            let part = begun.part.max(explained);
+            if seeds.are_borne_out(self.radar, &wall.atoms[0], part) {
+                return Some(wall);
+            }
+            self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::ExplainsTooLittle(part));
+            None
         })
     }
 

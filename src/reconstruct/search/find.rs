@@ -5,6 +5,7 @@ use super::ladder::climbed;
 use super::propose::peaks::Detector;
 use super::settings::Settings;
 use super::state::Search;
+use super::trace::Trace;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::fit::{Samples, Workbench};
 use crate::reconstruct::hearing::Hearing;
@@ -50,12 +51,15 @@ fn find_with(
         .over(Hearing::beneath(radar, &ends, request.noise));
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
-    let search = Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings };
+    let trace = Trace::default();
+    let search =
+        Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
     let answer = followed.map_or_else(|| climbed(&search), Ok)?;
     request.task.check()?;
     request.task.set_progress(1.0);
     let found = finish(radar, &bench, &samples, answer.fit, answer.is_sure, request, scale)?;
-    Ok(Found { left_by_search: measure.unwrap_or(found.left_by_search), ..found })
+    let left_by_search = measure.unwrap_or(found.left_by_search);
+    Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
 }

@@ -1,5 +1,6 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
+use super::trace::Attempt;
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
@@ -47,6 +48,8 @@ pub struct Found {
     pub not_agreed: Vec<Complex64>,
     /// Whether nothing stands out of the residual any more.
     pub complete: bool,
+    /// What the search tried, the first first; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
+    pub trace: Vec<Attempt>,
 }
 
 impl Found {
@@ -68,6 +71,7 @@ impl Found {
             gains: Vec::new(),
             not_agreed: Vec::new(),
             complete: true,
+            trace: Vec::new(),
         }
     }
 }
@@ -121,6 +125,7 @@ pub(super) fn finish(
         gains: best.gains,
         scale,
         complete,
+        trace: Vec::new(),
     })
 }
 

@@ -3,6 +3,7 @@
 use super::finish::Found;
 use super::ladder::{COMPLETION, climbed_from};
 use super::state::{Answer, Search, State};
+use super::trace::FOLLOWING;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit};
 
@@ -20,6 +21,7 @@ impl Search<'_> {
     /// where the residual asks for it, and more or fewer of them where that is not enough. `None` where they don't explain the samples
     /// as well as they did.
     pub fn followed(&self, previous: &Found, scale: f64) -> Result<Option<Answer>, ReconstructError> {
+        self.trace.enter(FOLLOWING);
         let ratio = scale / previous.scale;
         let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
         let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
@@ -30,6 +32,7 @@ impl Search<'_> {
             return Ok(None);
         }
         if let Some(fit) = self.found_anew(&fit)? {
+            self.tell_of(&previous.atoms, &fit);
             return Ok(Some(Answer { fit, is_sure: true }));
         }
         // What vanished leaves an atom that the rest can do without.
@@ -39,6 +42,7 @@ impl Search<'_> {
         let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < most_left;
         let mut is_sure = self.is_explained(&fit);
         if !is_sure && !is_as_good(&fit) {
+            self.tell_of(&previous.atoms, &fit);
             Answer { fit, is_sure } = climbed_from(self, COMPLETION, State::of(fit))?;
         }
         // Many new atoms make up for old ones that went astray.

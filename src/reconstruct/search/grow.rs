@@ -4,11 +4,13 @@ use super::propose::end_beams::beam_noise_power;
 use super::propose::peaks::{Candidate, Detector};
 use super::propose::runs::EchoBins;
 use super::settings::Settings;
+use super::trace::{Refusal, Trace, Tried, Verdict, decades};
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{
     Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, Workbench, groups, rows_of, union_of,
 };
+use crate::scene::Reflector;
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -91,9 +93,26 @@ pub struct Grower<'a> {
     pub settings: &'a Settings,
     /// To be cancelled by.
     pub task: &'a Task,
+    /// Where attempts are written down, if anywhere.
+    pub trace: Option<&'a Trace>,
 }
 
 impl Grower<'_> {
+    /// Writes down an attempt that was refused.
+    pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
+        if let Some(trace) = self.trace {
+            trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
+        }
+    }
+
+    /// Decades by which the energy that `fit` leaves would grow without this object of it, the others staying as they are.
+    pub fn own_decades(&self, fit: &Fit, atom: &Atom, gains: &Gains) -> f64 {
+        let own =
+            |r: Reflector| self.bench.worth_of(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)), self.radar);
+        let energy: f64 = atom.reflectors((gains[0].norm() + gains[1].norm()) / 2.0).map(own).sum();
+        decades(fit.cost() + energy, fit.cost())
+    }
+
     /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
     pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool + Sync) -> Vec<Candidate> {
         self.detector.peaks(self.radar, flat, self.least_power(flat), most, closed)
@@ -194,9 +213,13 @@ impl Grower<'_> {
         let mut placed: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.placed(&fit, *p)).collect();
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
-        placed.retain(|(_, gains)| {
+        placed.retain(|(atom, gains)| {
             let [a, b] = gains.map(|g| g.norm());
-            std::mem::take(&mut strongest) || a.max(b) < MOST_UNLIKE * a.min(b)
+            let is_kept = std::mem::take(&mut strongest) || a.max(b) < MOST_UNLIKE * a.min(b);
+            if !is_kept {
+                self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+            }
+            is_kept
         });
         let known = fit.atoms.len();
         for (atom, gains) in placed {
@@ -322,6 +345,15 @@ impl Grower<'_> {
             }
         }
         Ok(fit)
+    }
+}
+
+/// `atom` as an attempt names it.
+pub fn tried(atom: &Atom) -> Tried {
+    let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
+    match *atom {
+        Atom::Point { .. } => Tried::Point { at_metres: from_metres },
+        Atom::Segment { count, .. } => Tried::Line { from_metres, to_metres, count },
     }
 }
 

@@ -8,6 +8,7 @@
 
 use super::rungs::{MOST_AGAIN, WORTH_ANOTHER_LOOK};
 use super::state::{Answer, Search, State};
+use super::trace::{Refusal, Tried};
 use crate::reconstruct::ReconstructError;
 
 /// What a rung does to the state of a search.
@@ -106,8 +107,13 @@ pub(super) fn climbed(search: &Search) -> Result<Answer, ReconstructError> {
 /// [`ReconstructError::Cancelled`].
 pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<Answer, ReconstructError> {
     for rung in rungs {
+        search.trace.enter(rung.name);
         if (rung.is_due)(&state) {
+            let before = state.fit.atoms.clone();
             (rung.climb)(search, &mut state)?;
+            search.tell_of(&before, &state.fit);
+        } else if let Some(why) = rung.skipped {
+            search.grower().refuse(Tried::Nothing, 0.0, Refusal::Skipped(why));
         }
         if state.is_sure {
             break;

@@ -18,6 +18,7 @@
 //! | `walls` | all lines together |
 //! | `wall_ends` | a line followed to where it ends |
 //! | `grow` | the greedy loop over points |
+//! | `trace` | what the search tried, and what became of it |
 //! | `prune` | atoms that the rest can do without |
 //! | `settings` | bounds on time and memory |
 //! | `follow` | the answer from the last one, where little changed |
@@ -45,6 +46,9 @@ mod settings;
 mod state;
 #[cfg(test)]
 mod tests;
+mod trace;
+#[cfg(test)]
+mod trace_tests;
 #[cfg(test)]
 mod tracking_tests;
 mod wall_ends;
@@ -58,6 +62,7 @@ pub(super) use grow::Grower;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
+pub use trace::{Attempt, FOLLOWING, MOST_ATTEMPTS, Refusal, Tried, Verdict};
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
@@ -130,7 +135,7 @@ impl Found {
     /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta }
+        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta, trace: self.trace.clone() }
     }
 
     /// The expected map of what was found, and its scale.

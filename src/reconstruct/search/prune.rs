@@ -1,6 +1,7 @@
 //! Atoms that the rest can do without.
 
-use super::grow::Grower;
+use super::grow::{Grower, tried};
+use super::trace::{Refusal, decades};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
 
@@ -44,6 +45,9 @@ impl Grower<'_> {
             }
             if gone.is_empty() {
                 break;
+            }
+            for &i in &gone {
+                self.refuse(tried(&fit.atoms[i]), decades(fit.cost() + worth[i], fit.cost()), Refusal::RestDoesWithout);
             }
             fit = self.bench.less(fit, &gone);
             let kept = (0..rows.len()).filter(|i| !gone.contains(i));

@@ -5,6 +5,7 @@ use super::on_wall::is_on;
 use super::propose::lines::lines_in;
 use super::propose::pairs::Pairs;
 use super::state::{Answer, Search, State};
+use super::trace::{Refusal, Tried, decades};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Tie};
 
@@ -38,9 +39,19 @@ impl Search<'_> {
             let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {
                 state.reach(Answer { fit, is_sure: true });
+            } else {
+                self.refuse_together(&state.fit, &fit);
             }
+        } else {
+            self.grower().refuse(Tried::Nothing, 0.0, Refusal::TooManyTones);
         }
         Ok(())
+    }
+
+    /// Writes down that `fit` was refused in favour of `known`, since something else is left.
+    fn refuse_together(&self, known: &Fit, fit: &Fit) {
+        let tried = Tried::Together { count: fit.atoms.len().saturating_sub(known.atoms.len()) };
+        self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::LeavesSomething);
     }
 
     /// Long lines along y, looked for as a whole.
@@ -62,7 +73,11 @@ impl Search<'_> {
             let answer = self.paired_again(fit, left, state.is_long)?;
             if answer.is_sure {
                 state.reach(answer);
+            } else {
+                self.refuse_together(&state.fit, &answer.fit);
             }
+        } else {
+            self.refuse_together(&state.fit, &fit);
         }
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! What a search works on, how far it has come, and what several rungs ask of it.
 
-use super::grow::Grower;
+use super::grow::{Grower, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
+use super::trace::{Refusal, Trace, Tried, Verdict, decades};
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
 use crate::reconstruct::{ReconstructError, Request};
@@ -72,6 +73,8 @@ pub struct Search<'a> {
     pub request: &'a Request,
     /// Limits.
     pub settings: &'a Settings,
+    /// Where attempts are written down.
+    pub trace: &'a Trace,
 }
 
 impl Search<'_> {
@@ -82,6 +85,7 @@ impl Search<'_> {
             detector: self.detector,
             settings: self.settings,
             task: &self.request.task,
+            trace: Some(self.trace),
         }
     }
 
@@ -93,6 +97,29 @@ impl Search<'_> {
         self.bench.work.grant(self.settings.most_work / 4);
         let grower = self.grower();
         grower.pruned(grower.refined_where_needed(fit)?)
+    }
+
+    /// Writes down which objects of `fit` are new, and which of those `before` were exchanged.
+    pub fn tell_of(&self, before: &[Atom], fit: &Fit) {
+        let is_in = |atom: &Atom, list: &[Atom]| list.iter().any(|other| self.is_same(atom, other));
+        for atom in before.iter().filter(|atom| !is_in(atom, &fit.atoms)) {
+            self.grower().refuse(tried(atom), 0.0, Refusal::Exchanged);
+        }
+        for (atom, gains) in fit.atoms.iter().zip(&fit.gains).filter(|(atom, _)| !is_in(atom, before)) {
+            let gain_decades = self.grower().own_decades(fit, atom, gains);
+            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.bench.work.done());
+        }
+    }
+
+    /// Whether two objects are one that was moved a little.
+    fn is_same(&self, a: &Atom, b: &Atom) -> bool {
+        let apart = |[i, j]: [f64; 2]| {
+            let ([x, y], [other_x, other_y]) = (a.position_metres(i), b.position_metres(j));
+            (x - other_x).hypot(y - other_y)
+        };
+        let last = [a, b].map(|atom| atom.reflector_count() as f64 - 1.0);
+        a.reflector_count() == b.reflector_count()
+            && apart([0.0; 2]).max(apart(last)) < self.radar.range_resolution_metres()
     }
 
     /// Whether `fit` holds all objects, though perhaps not quite where they are.
@@ -132,13 +159,19 @@ impl Search<'_> {
                 let [a, b] = gains.map(|g| g.norm());
                 a.max(b) < MOST_UNLIKE * a.min(b)
             };
-            let kept: Vec<Atom> = fit.atoms.iter().zip(&fit.gains).filter(|(_, g)| alike(g)).map(|(a, _)| *a).collect();
-            if kept.len() == fit.atoms.len() {
+            let (kept, unlike): (Vec<_>, Vec<_>) = fit.atoms.iter().zip(&fit.gains).partition(|(_, g)| alike(g));
+            if unlike.is_empty() {
                 break;
             }
+            for (atom, gains) in unlike {
+                self.grower().refuse(tried(atom), self.grower().own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+            }
+            let kept = kept.into_iter().map(|(atom, _)| *atom).collect();
             fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
         }
         if fit.cost() > known.cost() {
+            let tried = Tried::Together { count: pairs.points.len() };
+            self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
         let grower = self.grower();

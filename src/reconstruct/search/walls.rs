@@ -1,9 +1,10 @@
 //! Walls: rows of points that were found one by one, followed to where they end.
 
 use super::begin::{Seeds, is_long};
-use super::grow::Grower;
+use super::grow::{Grower, tried};
 use super::on_wall::stands_on;
 use super::propose::chains::rows_of_points;
+use super::trace::{Refusal, decades};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, rows_of};
 
@@ -94,7 +95,15 @@ impl Grower<'_> {
         };
         let doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
         tracing::debug!(doubtful = doubtful.len(), walls = fit.atoms.len() - known, "walls");
-        if doubtful.is_empty() { fit } else { self.bench.less(fit, &doubtful) }
+        if doubtful.is_empty() {
+            return fit;
+        }
+        let less = self.bench.less(fit.clone(), &doubtful);
+        for &i in &doubtful {
+            let part = 1.0 - left.at(&rows_of(self.radar, &fit.atoms[i])) / all.at(&rows_of(self.radar, &fit.atoms[i]));
+            self.refuse(tried(&fit.atoms[i]), decades(less.cost(), fit.cost()), Refusal::ExplainsTooLittle(part));
+        }
+        less
     }
 
     /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.
@@ -117,6 +126,8 @@ impl Grower<'_> {
                 atoms.push(wall.atoms[0]);
                 gains.push(wall.gains[0]);
                 fit = Fit { atoms, gains, residual: wall.residual, energy: wall.energy };
+            } else {
+                self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::GainsTooLittle);
             }
         }
         Ok(fit)
