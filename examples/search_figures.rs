@@ -1,27 +1,33 @@
-//! How well methods do on validation scenes of every kind, scene by scene: what the limits of the search were chosen by.
+//! How well methods do on validation scenes of every kind, and what each part of the search is good for.
 //!
 //! `cargo run --release --example search_figures -- --method nomp,hybrid,live --set clusters,walls --count 6`; `--snr-db 40` lays noise
-//! beneath the samples.
+//! beneath the samples. `--without NAME` (any number of times; `--without all` for every part) runs the search of `nomp` with and
+//! without that part on the same scenes.
 
 use apertura::evaluate::Roc;
 use apertura::evaluate::trial::Trial;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::Request;
+use apertura::reconstruct::search::{Nomp, Settings, parts, without};
+use apertura::reconstruct::{Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
 use clap::Parser;
 use std::error::Error;
+use std::sync::Arc;
 
 /// The false-alarm rate that P_D is taken at.
 const FALSE_ALARM: f64 = 0.01;
 
-/// Squared error, P_D at a P_FA of 1 % and time of methods on validation scenes, scene by scene.
+/// Squared error, P_D at a P_FA of 1 % and time of methods on validation scenes.
 #[derive(Parser)]
 struct Args {
     /// Methods, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "nomp,hybrid,live")]
     method: Vec<String>,
+    /// A rung, source or rule of the search: `nomp` is run with and without it, in place of the methods; `all` for each
+    #[arg(long)]
+    without: Vec<String>,
     /// Kinds of scenes, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
@@ -34,14 +40,86 @@ struct Args {
     /// White noise this far beneath the samples in place of the thesis' floor
     #[arg(long)]
     snr_db: Option<f64>,
+    /// Print every scene, not only the mean of each kind
+    #[arg(long)]
+    scenes: bool,
 }
 
 /// What one method did on all scenes of a kind.
-#[derive(Default)]
-struct Sum {
+struct Column {
+    name: String,
+    method: Arc<dyn Reconstructor>,
     squared_errors: Vec<f64>,
     milliseconds: Vec<f64>,
     detections: Vec<f64>,
+}
+
+/// The methods, or the search as a whole and without each part that is named.
+fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
+    let column = |name: String, method| Column {
+        name,
+        method,
+        squared_errors: Vec::new(),
+        milliseconds: Vec::new(),
+        detections: Vec::new(),
+    };
+    if args.without.is_empty() {
+        return Ok(args
+            .method
+            .iter()
+            .map(|name| Ok(column(name.clone(), methods::by_name(name)?)))
+            .collect::<Result<_, Box<dyn Error>>>()?);
+    }
+    let names = if args.without.iter().any(|name| name == "all") { parts() } else { args.without.clone() };
+    let mut found = vec![column("whole".into(), Arc::new(Nomp::default()) as Arc<dyn Reconstructor>)];
+    for name in names {
+        let part =
+            without(&name).ok_or_else(|| format!("no part is called {name}; there are {}", parts().join(", ")))?;
+        let nomp = Nomp::with_settings(Settings { without: part, ..Settings::default() });
+        found.push(column(format!("-{name}"), Arc::new(nomp)));
+    }
+    Ok(found)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Standard error of the mean.
+fn standard_error(values: &[f64]) -> f64 {
+    let middle = mean(values);
+    let square = values.iter().map(|v| (v - middle).powi(2)).sum::<f64>();
+    (square / (values.len().max(2) - 1) as f64 / values.len() as f64).sqrt()
+}
+
+/// How far `values` are from those of the first column, scene by scene: mean and standard error.
+fn change(values: &[f64], first: &[f64]) -> String {
+    let differences: Vec<f64> = values.iter().zip(first).map(|(a, b)| a - b).collect();
+    format!("{:>+8.2} ± {:<7.2}", mean(&differences), standard_error(&differences))
+}
+
+fn print(kind: Kind, columns: &mut [Column]) {
+    let (errors, detections) = (columns[0].squared_errors.clone(), columns[0].detections.clone());
+    for column in columns {
+        let mut sorted = column.milliseconds.clone();
+        sorted.sort_by(f64::total_cmp);
+        println!(
+            "{:<9} {:<26} SE {:>7.1} ± {:<5.1} ({}) P_D {:>6.2} ({}) mean {:>5.0} median {:>5.0} worst {:>5.0} ms",
+            kind.to_string(),
+            column.name,
+            mean(&column.squared_errors),
+            standard_error(&column.squared_errors),
+            change(&column.squared_errors, &errors),
+            mean(&column.detections),
+            change(&column.detections, &detections),
+            mean(&sorted),
+            sorted[sorted.len() / 2],
+            sorted[sorted.len() - 1]
+        );
+        column.squared_errors.clear();
+        column.milliseconds.clear();
+        column.detections.clear();
+    }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -50,42 +128,31 @@ fn main() -> Result<(), Box<dyn Error>> {
     let floor = args.snr_db.map_or(Floor::Thesis, |db| Floor::Snr(Decibels(db)));
     let request = Request { noise: floor.into(), ..Request::default() };
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
-    let methods = args.method.iter().map(|name| methods::by_name(name)).collect::<Result<Vec<_>, _>>()?;
+    let mut columns = columns(&args)?;
     for kind in &args.set {
-        let mut sums: Vec<Sum> = methods.iter().map(|_| Sum::default()).collect();
         for number in args.first..args.first + args.count {
             let scene = generator.scene(*kind, number);
             let trial = Trial::new(&radar, &scene, floor, request.normalisation)?;
-            print!("{kind:<9}{number:>3}{:>5}", scene.reflector_count());
-            for (method, sum) in methods.iter().zip(&mut sums) {
-                let answer = trial.ask(&**method, &request)?;
+            for column in &mut columns {
+                let answer = trial.ask(&*column.method, &request)?;
                 let roc = Roc::of(&trial.target, &answer.found.lambda);
                 let detection = roc.at_false_alarm(FALSE_ALARM).map_or(0.0, |p| 100.0 * p.detection);
                 let error = answer.metrics.squared_error;
-                print!(
-                    " | {} SE {error:>6.0} P_D {detection:>5.1} {:>4} found {:>6.0} ms",
-                    method.name(),
-                    answer.found.reflectors.len(),
-                    answer.milliseconds
-                );
-                sum.squared_errors.push(error);
-                sum.milliseconds.push(answer.milliseconds);
-                sum.detections.push(detection);
+                if args.scenes {
+                    let found = answer.found.reflectors.len();
+                    println!(
+                        "{kind:<9}{number:>3} {:>5} reflectors: {:<26} SE {error:>7.1} P_D {detection:>6.2} found {found:>4} {:>6.0} ms",
+                        scene.reflector_count(),
+                        column.name,
+                        answer.milliseconds
+                    );
+                }
+                column.squared_errors.push(error);
+                column.milliseconds.push(answer.milliseconds);
+                column.detections.push(detection);
             }
-            println!();
         }
-        for (method, sum) in methods.iter().zip(&mut sums) {
-            let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-            sum.milliseconds.sort_by(f64::total_cmp);
-            println!(
-                "== {kind:<9} {:<8} SE {:>6.0} P_D {:>6.2} median {:>6.0} ms worst {:>6.0} ms",
-                method.name(),
-                mean(&sum.squared_errors),
-                mean(&sum.detections),
-                sum.milliseconds[sum.milliseconds.len() / 2],
-                sum.milliseconds[sum.milliseconds.len() - 1]
-            );
-        }
+        print(*kind, &mut columns);
     }
     Ok(())
 }

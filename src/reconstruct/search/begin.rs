@@ -7,6 +7,7 @@ use super::propose::edges::rows_from_edges;
 use super::propose::phased::PhasedBeams;
 use super::propose::strides::{Stride, rows_over_pairs};
 use super::trace::{Refusal, decades};
+use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Spectra, Tie, rows_of};
 use num_complex::Complex64;
@@ -137,16 +138,24 @@ impl Grower<'_> {
         let beams = PhasedBeams::new(self.radar, flat);
         let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
         let are_long = self.echoes_in(flat).are_long();
-        let between = if are_long { self.between_ends(left, &beams, points) } else { None };
+        let between = if are_long && !self.settings.lacks(Part::Between) {
+            self.between_ends(left, &beams, points)
+        } else {
+            None
+        };
         if let Some(row) = between.filter(|row| row.part > CONVINCING)
             && let Some(wall) = self.borne_out(left, seeds, &[row.atom])
         {
             return Some(wall);
         }
-        let over_pairs = atoms(rows_over_pairs(&beams, points, self.task));
+        let over_pairs = if self.settings.lacks(Part::Strides) {
+            Vec::new()
+        } else {
+            atoms(rows_over_pairs(&beams, points, self.task))
+        };
         let rows: Vec<Atom> = between.iter().map(|row| row.atom).chain(over_pairs).collect();
         self.borne_out(left, seeds, &rows).or_else(|| {
-            if !are_long {
+            if !are_long || self.settings.lacks(Part::Edges) {
                 return None;
             }
             let edges = self.within_range(points, MOST_EDGES);
@@ -167,7 +176,7 @@ impl Grower<'_> {
         let mut counts = BTreeSet::new();
         begun.retain(|row| row.part >= least && counts.insert(row.atom.reflector_count()));
         begun.truncate(MOST_MOVED);
-        if begun.len() == 1 {
+        if begun.len() == 1 || self.settings.lacks(Part::MovedCounts) {
             return Some(begun[0]);
         }
         let moved = |row: &Begun| {
@@ -201,8 +210,10 @@ impl Grower<'_> {
         let begun: Vec<Begun> = rows.par_iter().take(MOST_TRIED).map(|&atom| self.begun(left, atom)).collect();
         tracing::debug!(rows = rows.len(), "rows");
         let by_part = begun.iter().max_by(|a, b| a.part.total_cmp(&b.part))?;
-        let by_energy =
-            begun.iter().max_by(|a, b| a.energy.total_cmp(&b.energy)).filter(|row| row.atom != by_part.atom);
+        let by_energy = begun
+            .iter()
+            .max_by(|a, b| a.energy.total_cmp(&b.energy))
+            .filter(|row| row.atom != by_part.atom && !self.settings.lacks(Part::ByEnergy));
         [Some(by_part), by_energy].into_iter().flatten().filter(|row| row.part > LEAST_BEGUN).find_map(|begun| {
             let wall = self.followed_to_its_ends(&fit.residual, begun.atom);
             let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));

@@ -1,6 +1,8 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
+use super::settings::Settings;
 use super::trace::Attempt;
+use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
@@ -87,20 +89,21 @@ pub(super) fn finish(
     fit: Fit,
     complete: bool,
     request: &Request,
+    settings: &Settings,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
-    let flat_bench = (complete && reflectors <= MOST_UNWINDOWED)
+    let flat_bench = (complete && reflectors <= MOST_UNWINDOWED && !settings.lacks(Part::Unwindowed))
         .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, MOST_WORK))
         .map(|flat| flat.hearing(&samples.flat(&bench.sensor)));
     let bench = flat_bench.as_ref().unwrap_or(bench);
     let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
     let mut best = apart.clone();
-    if complete && reflectors <= MOST_TIED {
+    if complete && reflectors <= MOST_TIED && !settings.lacks(Part::Tied) {
         let mut tied = bench.refine(samples, apart.atoms.clone(), apart.gains.clone(), Tie::Both, TIED);
-        if request.noise.is_white() && tied.atoms.len() <= MOST_COMBED {
+        if request.noise.is_white() && tied.atoms.len() <= MOST_COMBED && !settings.lacks(Part::Teeth) {
             tied = combed(bench, samples, tied);
         }
         // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
@@ -120,7 +123,11 @@ pub(super) fn finish(
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,
-        not_agreed: if complete { residual } else { not_agreed(bench, &best, request.noise) },
+        not_agreed: if complete || settings.lacks(Part::NotAgreed) {
+            residual
+        } else {
+            not_agreed(bench, &best, request.noise)
+        },
         atoms: best.atoms,
         gains: best.gains,
         scale,

@@ -5,6 +5,7 @@ use super::propose::peaks::{Candidate, Detector};
 use super::propose::runs::EchoBins;
 use super::settings::Settings;
 use super::trace::{Refusal, Trace, Tried, Verdict, decades};
+use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{
@@ -167,8 +168,9 @@ impl Grower<'_> {
             let flat = fit.residual.flat(&self.bench.sensor);
             let profile = Profile::new(self.radar, &flat);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let candidates =
-                self.candidates(&flat, MOST_A_ROUND.min(room), |bin| trials.is_closed(bin, self.settings.trials));
+            let candidates = self.candidates(&flat, MOST_A_ROUND.min(room), |bin| {
+                !self.settings.lacks(Part::Closing) && trials.is_closed(bin, self.settings.trials)
+            });
             if candidates.is_empty() {
                 break;
             }
@@ -177,11 +179,13 @@ impl Grower<'_> {
             }
             let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
             fit = self.with_points(fit, &points)?;
-            fit = self.settled(fit)?;
+            if !self.settings.lacks(Part::Settling) {
+                fit = self.settled(fit)?;
+            }
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
-                if fit.cost() > WORTH_GOING_ON * cost {
+                if fit.cost() > WORTH_GOING_ON * cost && !self.settings.lacks(Part::LookBack) {
                     // Too dense to be told apart: what more there is to gain is small and dear.
                     self.bench.work.give_up();
                 }
@@ -215,7 +219,9 @@ impl Grower<'_> {
         let mut strongest = true;
         placed.retain(|(atom, gains)| {
             let [a, b] = gains.map(|g| g.norm());
-            let is_kept = std::mem::take(&mut strongest) || a.max(b) < MOST_UNLIKE * a.min(b);
+            let is_kept = std::mem::take(&mut strongest)
+                || self.settings.lacks(Part::PointsAgree)
+                || a.max(b) < MOST_UNLIKE * a.min(b);
             if !is_kept {
                 self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
@@ -240,6 +246,10 @@ impl Grower<'_> {
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone =
             |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ALONE);
+        if self.settings.lacks(Part::Wraps) {
+            let own = alone(own);
+            return (own.atoms[0], own.gains[0]);
+        }
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
@@ -290,7 +300,11 @@ impl Grower<'_> {
     fn ridge(&self, fit: &Fit, base: &Samples, rows: &Rows) -> f64 {
         let of = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor)).at(rows);
         let (left, all) = rayon::join(|| of(&fit.residual), || of(base));
-        if all > 0.0 { self.settings.gain_price * (left / all).min(1.0) } else { 0.0 }
+        if all > 0.0 && !self.settings.lacks(Part::Price) {
+            self.settings.gain_price * (left / all).min(1.0)
+        } else {
+            0.0
+        }
     }
 
     /// For every atom whether more is left in its rows than noise, and than the side lobes of what is left in others.

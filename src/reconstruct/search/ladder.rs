@@ -9,6 +9,7 @@
 use super::rungs::{MOST_AGAIN, WORTH_ANOTHER_LOOK};
 use super::state::{Answer, Search, State};
 use super::trace::{Refusal, Tried};
+use super::without::Without;
 use crate::reconstruct::ReconstructError;
 
 /// What a rung does to the state of a search.
@@ -93,6 +94,18 @@ const POINTS_AGAIN: Rung = Rung {
     climb: |search, state| search.climb_points(state),
 };
 
+/// Without the rung, source or rule of this name: a rung's has hyphens between its words.
+pub fn without(name: &str) -> Option<Without> {
+    let rung = LADDER.iter().position(|rung| rung.name.replace(' ', "-") == name);
+    rung.map(Without::rung).or_else(|| Without::part(name))
+}
+
+/// Every name that [`without`] knows, rungs first.
+pub fn parts() -> Vec<String> {
+    let rungs = LADDER.iter().map(|rung| rung.name.replace(' ', "-"));
+    rungs.chain(Without::parts().map(str::to_owned)).collect()
+}
+
 /// The answer of the whole ladder to samples of which nothing is known.
 ///
 /// # Errors
@@ -107,6 +120,10 @@ pub(super) fn climbed(search: &Search) -> Result<Answer, ReconstructError> {
 /// [`ReconstructError::Cancelled`].
 pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<Answer, ReconstructError> {
     for rung in rungs {
+        let number = LADDER.iter().position(|other| other.name == rung.name);
+        if number.is_some_and(|number| search.settings.without.lacks_rung(number)) {
+            continue;
+        }
         search.trace.enter(rung.name);
         if (rung.is_due)(&state) {
             let before = state.fit.atoms.clone();

@@ -21,6 +21,7 @@
 //! | `trace` | what the search tried, and what became of it |
 //! | `prune` | atoms that the rest can do without |
 //! | `settings` | bounds on time and memory |
+//! | `without` | parts that an ablation leaves out |
 //! | `follow` | the answer from the last one, where little changed |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
@@ -53,16 +54,18 @@ mod trace_tests;
 mod tracking_tests;
 mod wall_ends;
 mod walls;
+mod without;
 
 pub use super::fit::Atom;
 pub use draw::Expected;
 pub use find::{find, find_from};
 pub use finish::Found;
 pub(super) use grow::Grower;
-pub use ladder::{LADDER, Rung};
+pub use ladder::{LADDER, Rung, parts, without};
 pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
 pub use trace::{Attempt, FOLLOWING, MOST_ATTEMPTS, Refusal, Tried, Verdict};
+pub use without::Without;
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;

@@ -2,6 +2,7 @@
 
 use super::grow::{Grower, tried};
 use super::trace::{Refusal, decades};
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
 
@@ -24,7 +25,7 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..if self.settings.lacks(Part::Prune) { 0 } else { MOST_ROUNDS } {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;

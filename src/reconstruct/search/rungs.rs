@@ -6,6 +6,7 @@ use super::propose::lines::lines_in;
 use super::propose::pairs::Pairs;
 use super::state::{Answer, Search, State};
 use super::trace::{Refusal, Tried, decades};
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Tie};
 
@@ -34,7 +35,10 @@ impl Search<'_> {
     /// Points that both ends' tones lead to, kept where they are all there is.
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
         // Many tones take long to tell apart, and are mostly those of lines.
-        state.pairs = self.pairs_of_tones(&state.fit, if state.is_long { FEW_TONES } else { usize::MAX });
+        state.pairs = self.pairs_of_tones(
+            &state.fit,
+            if state.is_long && !self.settings.lacks(Part::FewTones) { FEW_TONES } else { usize::MAX },
+        );
         if let Some(pairs) = &state.pairs {
             let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {
@@ -146,6 +150,7 @@ impl Search<'_> {
             let sure = pairs.points.iter().filter(|point| point.is_sure());
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
+            let more = if self.settings.lacks(Part::PointsWithLines) { Vec::new() } else { more };
             if fit.atoms.len() + more.len() == before {
                 if fit.cost() != cost {
                     pairs = self.pairs(&fit);

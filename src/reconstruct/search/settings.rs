@@ -1,5 +1,7 @@
 //! What bounds a search.
 
+use super::without::{Part, Without};
+
 /// Bounds on time and memory, and what counts as found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -16,10 +18,27 @@ pub struct Settings {
     pub trials: usize,
     /// Work granted to the search: about ten microseconds a unit, counted and not timed.
     pub most_work: usize,
+    /// Parts that are left out, to see what they are good for.
+    pub without: Without,
+}
+
+impl Settings {
+    /// Whether a part of the search is left out.
+    pub fn lacks(&self, part: Part) -> bool {
+        self.without.lacks(part)
+    }
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { most_atoms: 150, least_prominence: 14.0, rounds: 6, gain_price: 0.3, trials: 4, most_work: 40_000 }
+        Settings {
+            most_atoms: 150,
+            least_prominence: 14.0,
+            rounds: 6,
+            gain_price: 0.3,
+            trials: 4,
+            most_work: 40_000,
+            without: Without::default(),
+        }
     }
 }

@@ -5,6 +5,7 @@ use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
 use super::trace::{Refusal, Trace, Tried, Verdict, decades};
+use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
 use crate::reconstruct::{ReconstructError, Request};
@@ -91,7 +92,7 @@ impl Search<'_> {
 
     /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
     pub fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        if !self.is_nearly_all(&fit) {
+        if !self.is_nearly_all(&fit) || self.settings.lacks(Part::NearlyThere) {
             return Ok(fit);
         }
         self.bench.work.grant(self.settings.most_work / 4);
@@ -154,7 +155,7 @@ impl Search<'_> {
         }
         atoms.truncate(self.settings.most_atoms);
         let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..MOST_DOUBTS {
+        for _ in 0..if self.settings.lacks(Part::PairsAgree) { 0 } else { MOST_DOUBTS } {
             let alike = |gains: &Gains| {
                 let [a, b] = gains.map(|g| g.norm());
                 a.max(b) < MOST_UNLIKE * a.min(b)
@@ -175,6 +176,7 @@ impl Search<'_> {
             return Ok(known);
         }
         let grower = self.grower();
+        let polished = polished && !self.settings.lacks(Part::PolishPairs);
         if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
     }
 

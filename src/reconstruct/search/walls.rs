@@ -5,6 +5,7 @@ use super::grow::{Grower, tried};
 use super::on_wall::stands_on;
 use super::propose::chains::rows_of_points;
 use super::trace::{Refusal, decades};
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, rows_of};
 
@@ -59,7 +60,7 @@ impl Grower<'_> {
 
     /// Every wall followed to its ends once more, now that the others are known, and all moved together; by turns, as long as it helps.
     fn with_settled_ends(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_TURNS {
+        for _ in 0..if self.settings.lacks(Part::SettledEnds) { 0 } else { MOST_TURNS } {
             self.task.check()?;
             let before = fit.cost();
             fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, TOGETHER);
@@ -93,7 +94,10 @@ impl Grower<'_> {
             let most = if is_long(self.radar, &fit.atoms[*i]) { MOST_LEFT_OF_LONG } else { MOST_LEFT };
             left.at(&rows) > most * all.at(&rows)
         };
-        let doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
+        let mut doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
+        if self.settings.lacks(Part::DoubtfulLines) {
+            doubtful.clear();
+        }
         tracing::debug!(doubtful = doubtful.len(), walls = fit.atoms.len() - known, "walls");
         if doubtful.is_empty() {
             return fit;
@@ -111,7 +115,8 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn with_walls(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for seed in rows_of_points(&fit.atoms, &fit.gains) {
+        let seeds = if self.settings.lacks(Part::Chains) { Vec::new() } else { rows_of_points(&fit.atoms, &fit.gains) };
+        for seed in seeds {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;
