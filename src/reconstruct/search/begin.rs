@@ -2,33 +2,22 @@
 
 use super::grow::{Grower, tried};
 use super::on_wall::is_on;
-use super::propose::between::rows_between;
-use super::propose::edges::rows_from_edges;
-use super::propose::phased::PhasedBeams;
-use super::propose::strides::{Stride, rows_over_pairs};
+use super::propose::between::Between;
+use super::propose::edges::Edges;
+use super::propose::source::Unexplained;
+use super::propose::strides::Strides;
 use super::trace::{Refusal, decades};
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Spectra, Tie, rows_of};
-use num_complex::Complex64;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Rows that are held against the samples themselves, at each look.
 const MOST_TRIED: usize = 24;
 
 /// What a row must explain of the energy in its range bins to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
-
-/// Points, those first on which the ends agree best, that a wall may begin at alone.
-const MOST_EDGES: usize = 24;
-
-/// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
-const LEAST_FROM_EDGE: usize = 24;
-
-/// Directions this near to each other, radians, are one.
-const ONE_DIRECTION: f64 = 0.005;
 
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
 const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
@@ -44,9 +33,6 @@ const LEAST_OF_LINE: [f64; 2] = [0.3, 0.45];
 
 /// Fewest reflectors of such a line.
 const LEAST_OF_LINE_REFLECTORS: usize = 50;
-
-/// Points, those first on which the ends agree best, that a wall may begin and end at.
-const MOST_ENDS: usize = 80;
 
 /// Rows between two points that are held against the samples.
 const MOST_BETWEEN: usize = 32;
@@ -119,8 +105,7 @@ impl Grower<'_> {
                 points.retain(|&[x_metres, y_metres]| {
                     !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
                 });
-                let points = points.clone();
-                self.next_from_points(&left, &flat, seeds, &points)
+                self.next_from_points(&left, &self.unexplained(&flat, fit).with_points(points), seeds)
             }
             Seeds::LongLines(lines) => {
                 // What a line that is not quite right yet has left is no other.
@@ -132,45 +117,29 @@ impl Grower<'_> {
         }
     }
 
-    /// A wall between two of `points`, over two of them or from one alone; the last takes longest.
-    fn next_from_points(&self, left: &Left, flat: &[Complex64], seeds: &Seeds, points: &[[f64; 2]]) -> Option<Fit> {
-        self.bench.work.spend(LOOK_A_POINT * points.len());
-        let beams = PhasedBeams::new(self.radar, flat);
-        let atoms = |rows: Vec<Stride>| rows.into_iter().map(|row| row.atom).collect::<Vec<_>>();
-        let are_long = self.echoes_in(flat).are_long();
-        let between = if are_long && !self.settings.lacks(Part::Between) {
-            self.between_ends(left, &beams, points)
-        } else {
-            None
-        };
+    /// A wall between two points, over two of them or from one alone; the last takes longest.
+    fn next_from_points(&self, left: &Left, all: &Unexplained, seeds: &Seeds) -> Option<Fit> {
+        self.bench.work.spend(LOOK_A_POINT * all.points_metres.len());
+        let are_long = all.echoes().are_long();
+        let between = if are_long { self.between_ends(left, all) } else { None };
         if let Some(row) = between.filter(|row| row.part > CONVINCING)
             && let Some(wall) = self.borne_out(left, seeds, &[row.atom])
         {
             return Some(wall);
         }
-        let over_pairs = if self.settings.lacks(Part::Strides) {
-            Vec::new()
-        } else {
-            atoms(rows_over_pairs(&beams, points, self.task))
-        };
-        let rows: Vec<Atom> = between.iter().map(|row| row.atom).chain(over_pairs).collect();
+        let rows: Vec<Atom> =
+            between.iter().map(|row| row.atom).chain(self.proposed(Part::Strides, &Strides, all)).collect();
         self.borne_out(left, seeds, &rows).or_else(|| {
-            if !are_long || self.settings.lacks(Part::Edges) {
-                return None;
-            }
-            let edges = self.within_range(points, MOST_EDGES);
-            let mut from_edges = atoms(rows_from_edges(&beams, &edges, &directions(left.fit), self.task));
-            from_edges.retain(|row| row.reflector_count() >= LEAST_FROM_EDGE);
+            let from_edges = if are_long { self.proposed(Part::Edges, &Edges, all) } else { Vec::new() };
             self.borne_out(left, seeds, &from_edges)
         })
     }
 
-    /// The row between two of `points` that explains the greatest part of what there is in its range bins. Those of the counts that do
+    /// The row between two points that explains the greatest part of what there is in its range bins. Those of the counts that do
     /// about as well are moved to their best places first: the beams hardly tell a count from one whose steps differ by whole waves.
-    fn between_ends(&self, left: &Left, beams: &PhasedBeams, points: &[[f64; 2]]) -> Option<Begun> {
-        let points = self.within_range(points, MOST_ENDS);
-        let rows = rows_between(beams, &points, self.task);
-        let mut begun: Vec<Begun> = rows.par_iter().take(MOST_BETWEEN).map(|row| self.begun(left, row.atom)).collect();
+    fn between_ends(&self, left: &Left, all: &Unexplained) -> Option<Begun> {
+        let rows = self.proposed(Part::Between, &Between, all);
+        let mut begun: Vec<Begun> = rows.par_iter().take(MOST_BETWEEN).map(|row| self.begun(left, *row)).collect();
         begun.sort_by(|a, b| b.part.total_cmp(&a.part));
         let least = ABOUT_AS_WELL * begun.first()?.part;
         let mut counts = BTreeSet::new();
@@ -226,28 +195,4 @@ impl Grower<'_> {
             None
         })
     }
-
-    /// The first of `points` within the maximum range, `most` of them: those on which the ends agree best.
-    fn within_range(&self, points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
-        let within = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
-        points.iter().filter(within).take(most).copied().collect()
-    }
-}
-
-/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
-fn directions(fit: &Fit) -> Vec<f64> {
-    let of_atom = |atom: &Atom| match atom {
-        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
-        Atom::Point { .. } => None,
-    };
-    let mut directions: Vec<f64> = Vec::new();
-    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
-        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
-            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
-            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
-                directions.push(radians);
-            }
-        }
-    }
-    directions
 }

@@ -2,7 +2,7 @@
 
 use super::propose::end_beams::beam_noise_power;
 use super::propose::peaks::{Candidate, Detector};
-use super::propose::runs::EchoBins;
+use super::propose::source::{Propose, Unexplained};
 use super::settings::Settings;
 use super::trace::{Refusal, Trace, Tried, Verdict, decades};
 use super::without::Part;
@@ -131,9 +131,14 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// The range bins that hold an echo of what is left.
-    pub fn echoes_in(&self, flat: &[Complex64]) -> EchoBins {
-        EchoBins::of(self.radar, flat, self.bench.hearing.noise_variance(self.radar, flat))
+    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
+    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
+        Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
+    }
+
+    /// What a source proposes; nothing where an ablation leaves it out.
+    pub fn proposed(&self, part: Part, source: &dyn Propose, left: &Unexplained) -> Vec<Atom> {
+        if self.settings.lacks(part) { Vec::new() } else { source.propose(left) }
     }
 
     /// Amplitude of what rounding to f64 makes of a reflector's place, if its samples are 1: many reflectors of one wall are each off

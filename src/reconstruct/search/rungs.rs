@@ -2,8 +2,9 @@
 
 use super::begin::Seeds;
 use super::on_wall::is_on;
-use super::propose::lines::lines_in;
+use super::propose::lines::LongLines;
 use super::propose::pairs::Pairs;
+use super::propose::source::Propose;
 use super::state::{Answer, Search, State};
 use super::trace::{Refusal, Tried, decades};
 use super::without::Part;
@@ -125,15 +126,17 @@ impl Search<'_> {
     /// `fit` and long lines along y, looked for as a whole as long as something long is left.
     fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
+            let (grower, before) = (self.grower(), fit.atoms.len());
             let flat = fit.residual.flat(&self.bench.sensor);
-            let echoes = self.grower().echoes_in(&flat);
-            if !echoes.are_long() {
-                break;
-            }
-            let before = fit.atoms.len();
-            self.bench.work.spend(LOOK_FOR_LINES);
-            let lines = lines_in(self.radar, &flat, &echoes, &self.request.task);
-            fit = self.grower().more_walls(self.samples, fit, Seeds::LongLines(lines))?;
+            let lines = {
+                let left = grower.unexplained(&flat, &fit);
+                if !left.echoes().are_long() {
+                    break;
+                }
+                self.bench.work.spend(LOOK_FOR_LINES);
+                LongLines.propose(&left)
+            };
+            fit = grower.more_walls(self.samples, fit, Seeds::LongLines(lines))?;
             if fit.atoms.len() == before {
                 break;
             }

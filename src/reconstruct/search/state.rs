@@ -45,7 +45,8 @@ impl State {
     /// With nothing found yet.
     pub fn start(search: &Search) -> Self {
         let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
-        let is_long = search.grower().echoes_in(&nothing.residual.flat(&search.bench.sensor)).are_long();
+        let flat = nothing.residual.flat(&search.bench.sensor);
+        let is_long = search.grower().unexplained(&flat, &nothing).echoes().are_long();
         State { looked_at: nothing.cost(), is_long, pairs: None, ..State::of(nothing) }
     }
 

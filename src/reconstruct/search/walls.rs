@@ -3,7 +3,7 @@
 use super::begin::{Seeds, is_long};
 use super::grow::{Grower, tried};
 use super::on_wall::stands_on;
-use super::propose::chains::rows_of_points;
+use super::propose::chains::Chains;
 use super::trace::{Refusal, decades};
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
@@ -115,7 +115,7 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn with_walls(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let seeds = if self.settings.lacks(Part::Chains) { Vec::new() } else { rows_of_points(&fit.atoms, &fit.gains) };
+        let seeds = self.proposed(Part::Chains, &Chains, &self.unexplained(&[], &fit));
         for seed in seeds {
             self.task.check()?;
             if self.bench.work.is_spent() {

@@ -2,6 +2,7 @@
 //! are heard all the same, and only how many stand between them is unknown.
 
 use super::phased::{Heard, PhasedBeams, Row, Strongest};
+use super::source::{Propose, Unexplained};
 use super::strides::{MOST_REFLECTORS, Stride, climbed};
 use crate::reconstruct::fit::Atom;
 use crate::signal::simd::{Kernel, Simd};
@@ -42,8 +43,21 @@ const LEAST_WEIGHT: f64 = 10.0;
 /// Rows of as many reflectors whose ends are this near to each other, metres, are one.
 const ALIKE_METRES: f64 = 0.1;
 
+/// Points, those first on which the ends agree best, that a wall may begin and end at.
+const MOST_ENDS: usize = 80;
+
+/// Lines between two points.
+pub struct Between;
+
+impl Propose for Between {
+    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
+        let rows = rows_between(left.beams(), &left.points_within_range(MOST_ENDS), left.task);
+        rows.into_iter().map(|row| row.atom).collect()
+    }
+}
+
 /// Rows between some two of `points` (x, y; metres), best first.
-pub fn rows_between(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
+fn rows_between(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
     let strongest = beams.strongest();
     let is_filled = |[from, to]: &[[f64; 2]; 2]| {
         let by = [to[0] - from[0], to[1] - from[1]];

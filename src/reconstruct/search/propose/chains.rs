@@ -1,5 +1,6 @@
 //! Points found one by one that stand in a row at equal steps: where a wall may be.
 
+use super::source::{Propose, Unexplained};
 use crate::reconstruct::fit::{Atom, Gains};
 
 /// Longest step from one reflector of a wall to the next, metres.
@@ -24,8 +25,17 @@ struct Standing {
     size: f64,
 }
 
+/// Lines through points that were found one by one.
+pub struct Chains;
+
+impl Propose for Chains {
+    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
+        rows_of_points(&left.found.atoms, &left.found.gains)
+    }
+}
+
 /// Rows of points at equal steps, longest first, none of which shares a point with a longer one.
-pub fn rows_of_points(atoms: &[Atom], gains: &[Gains]) -> Vec<Atom> {
+fn rows_of_points(atoms: &[Atom], gains: &[Gains]) -> Vec<Atom> {
     let standing = |(atom, gains): (&Atom, &Gains)| {
         matches!(atom, Atom::Point { .. })
             .then(|| Standing { at: atom.position_metres(0.0), size: (gains[0].norm() + gains[1].norm()) / 2.0 })

@@ -4,11 +4,13 @@
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
 use super::phased::{Heard, PhasedBeams, Presence, Row};
+use super::source::{Propose, Unexplained};
 use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
+use crate::reconstruct::fit::{Atom, Fit};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Range bins over which echoes must go on, and beyond which it no longer matters.
 const BINS: [u32; 2] = [20, 100];
@@ -42,14 +44,29 @@ const PITCH_WAVELENGTHS: f64 = 0.5;
 /// Rows of one look that are tried over twice as many reflectors, and those that are followed.
 const KEPT: [usize; 2] = [40, 4];
 
+/// Points, those first on which the ends agree best, that a wall may begin at alone.
+const MOST_EDGES: usize = 24;
+
+/// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
+const LEAST_FROM_EDGE: usize = 24;
+
+/// Directions this near to each other, radians, are one.
+const ONE_DIRECTION: f64 = 0.005;
+
+/// Lines from one point alone.
+pub struct Edges;
+
+impl Propose for Edges {
+    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
+        let points = left.points_within_range(MOST_EDGES);
+        let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
+        rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
+    }
+}
+
 /// Rows that begin at one of `points` (x, y; metres) and lead in about one of the directions (radians from the array's axis), best
 /// first; one for each point at most.
-pub fn rows_from_edges(
-    beams: &PhasedBeams,
-    points: &[[f64; 2]],
-    directions_radians: &[f64],
-    task: &Task,
-) -> Vec<Stride> {
+fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians: &[f64], task: &Task) -> Vec<Stride> {
     let strongest = beams.strongest();
     let along = |first: usize, radians: f64| {
         going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
@@ -81,6 +98,24 @@ pub fn rows_from_edges(
         .collect();
     tracing::debug!(looks = kept.len(), starts = starts.len(), "edges");
     best_of_each(beams, starts, task)
+}
+
+/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
+fn directions(fit: &Fit) -> Vec<f64> {
+    let of_atom = |atom: &Atom| match atom {
+        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
+        Atom::Point { .. } => None,
+    };
+    let mut directions: Vec<f64> = Vec::new();
+    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
+        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
+            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
+            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
+                directions.push(radians);
+            }
+        }
+    }
+    directions
 }
 
 /// How clearly and how far echoes go on from `from` in a direction; `None` where they soon end.
@@ -190,7 +225,6 @@ mod tests {
     use crate::radar::Radar;
     use crate::scene::{Line, Object, Point, Scene};
     use crate::signal::{Floor, simulate};
-    use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn a_wall_is_found_from_its_last_reflector_where_another_hides_the_first() {

@@ -8,6 +8,7 @@
 use super::blocks::{BLOCK, Blocks, GLANCED, glance, heard_along};
 use super::phased::{PhasedBeams, Row};
 use super::runs::EchoBins;
+use super::source::{Propose, Unexplained};
 use crate::radar::Radar;
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
@@ -82,9 +83,17 @@ fn vertical(x_metres: f64, y_metres: f64, dy_metres: f64, count: usize) -> Atom 
     Atom::Segment { x_metres, y_metres, dx_metres: 0.0, dy_metres, count }
 }
 
+/// Long lines along y, looked up as a whole.
+pub struct LongLines;
+
+impl Propose for LongLines {
+    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
+        lines_in(left.radar, left.beams(), left.echoes(), left.task)
+    }
+}
+
 /// Long lines along y that `residual` (all samples of both ends, not windowed) may hold, where it has `echoes`.
-pub fn lines_in(radar: &Radar, residual: &[Complex64], echoes: &EchoBins, task: &Task) -> Vec<Atom> {
-    let beams = &PhasedBeams::new(radar, residual);
+fn lines_in(radar: &Radar, beams: &PhasedBeams, echoes: &EchoBins, task: &Task) -> Vec<Atom> {
     let weights = radar.window.weights(radar.samples);
     let [sum, square] = weights.iter().fold([0.0; 2], |[sum, square], w| [sum + w, square + w * w]);
     let detector = LineDetector {
@@ -316,7 +325,7 @@ mod tests {
             let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
             let flat = ends.flat();
             let echoes = EchoBins::of(&radar, &flat, Hearing::any().noise_variance(&radar, &flat));
-            let seen = lines_in(&radar, &flat, &echoes, &Task::default());
+            let seen = lines_in(&radar, &PhasedBeams::new(&radar, &flat), &echoes, &Task::default());
             // 75 of the line's 90 reflectors, whichever end they are nearer to.
             let is_part = |atom: &Atom| {
                 let [first, last] = [0.0, 74.0].map(|i| atom.position_metres(i));

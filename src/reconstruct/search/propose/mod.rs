@@ -2,6 +2,7 @@
 //!
 //! | file | what it is |
 //! |---|---|
+//! | `source` | what every source of candidates is, and what it looks at |
 //! | `end_beams` | each end's plain beams |
 //! | `registered` | both ends' beams laid over each other |
 //! | `peaks` | points where a residual stands out, both ends registered |
@@ -27,5 +28,6 @@ pub mod peaks;
 pub mod phased;
 mod registered;
 pub mod runs;
+pub mod source;
 pub mod strides;
 mod tones;

@@ -5,6 +5,7 @@
 //! wrong ones go along.
 
 use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
+use super::source::{Propose, Unexplained};
 use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -65,8 +66,17 @@ pub struct Stride {
     pub weight: f64,
 }
 
+/// Lines over two neighbouring points.
+pub struct Strides;
+
+impl Propose for Strides {
+    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
+        rows_over_pairs(left.beams(), left.points_metres, left.task).into_iter().map(|row| row.atom).collect()
+    }
+}
+
 /// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
-pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
+fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
     let pairs = (0..points.len()).flat_map(|i| neighbours(points, i).map(move |j| (i, j)));
     let mut grids: Vec<Grid> = pairs.map(|(i, j)| Grid::new(beams, i, points[i], points[j])).collect();
     grids.par_iter_mut().for_each(|grid| {
