@@ -105,7 +105,8 @@ impl Grower<'_> {
                 points.retain(|&[x_metres, y_metres]| {
                     !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
                 });
-                self.next_from_points(&left, &self.unexplained(&flat, fit).with_points(points), seeds)
+                let points = points.clone();
+                self.next_from_points(&left, &self.unexplained(&flat, fit).with_points(&points), seeds)
             }
             Seeds::LongLines(lines) => {
                 // What a line that is not quite right yet has left is no other.
