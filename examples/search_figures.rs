@@ -2,13 +2,13 @@
 //!
 //! `cargo run --release --example search_figures -- --method nomp,hybrid,live --set clusters,walls --count 6`; `--snr-db 40` lays noise
 //! beneath the samples. `--without NAME` (any number of times; `--without all` for every part) runs the search of `nomp` with and
-//! without that part on the same scenes.
+//! without that part on the same scenes; `NAME+NAME` leaves out several at once.
 
 use apertura::evaluate::Roc;
 use apertura::evaluate::trial::Trial;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::search::{Nomp, Settings, parts, without};
+use apertura::reconstruct::search::{Nomp, Settings, Without, parts, without};
 use apertura::reconstruct::{Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
@@ -73,9 +73,12 @@ fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
     let names = if args.without.iter().any(|name| name == "all") { parts() } else { args.without.clone() };
     let mut found = vec![column("whole".into(), Arc::new(Nomp::default()) as Arc<dyn Reconstructor>)];
     for name in names {
-        let part =
-            without(&name).ok_or_else(|| format!("no part is called {name}; there are {}", parts().join(", ")))?;
-        let nomp = Nomp::with_settings(Settings { without: part, ..Settings::default() });
+        let mut left_out = Without::default();
+        for part in name.split('+') {
+            let known = || format!("no part is called {part}; there are {}", parts().join(", "));
+            left_out = left_out.and(without(part).ok_or_else(known)?);
+        }
+        let nomp = Nomp::with_settings(Settings { without: left_out, ..Settings::default() });
         found.push(column(format!("-{name}"), Arc::new(nomp)));
     }
     Ok(found)
