@@ -1,0 +1,64 @@
+//! What every source of candidates is, and what all of them look at.
+
+use super::phased::PhasedBeams;
+use super::runs::EchoBins;
+use crate::radar::Radar;
+use crate::reconstruct::fit::{Atom, Fit};
+use crate::reconstruct::hearing::Hearing;
+use crate::task::Task;
+use num_complex::Complex64;
+use std::cell::OnceCell;
+
+/// What is left of the samples, and what is known so far.
+pub struct Unexplained<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// What is left of the samples, channel by channel, not windowed.
+    pub flat: &'a [Complex64],
+    /// The noise beneath it.
+    pub hearing: Hearing,
+    /// The objects found so far.
+    pub found: &'a Fit,
+    /// Places (x, y), metres, where points may be: those first on which the ends agree best.
+    pub points_metres: &'a [[f64; 2]],
+    /// To be cancelled by.
+    pub task: &'a Task,
+    beams: OnceCell<PhasedBeams>,
+    echoes: OnceCell<EchoBins>,
+}
+
+impl<'a> Unexplained<'a> {
+    /// What `found` leaves, laid out as `flat`.
+    pub fn new(radar: &'a Radar, flat: &'a [Complex64], hearing: Hearing, found: &'a Fit, task: &'a Task) -> Self {
+        let (beams, echoes) = (OnceCell::new(), OnceCell::new());
+        Unexplained { radar, flat, hearing, found, points_metres: &[], task, beams, echoes }
+    }
+
+    /// The same with places where points may be.
+    pub fn with_points(self, points_metres: &'a [[f64; 2]]) -> Self {
+        Unexplained { points_metres, ..self }
+    }
+
+    /// Each end's beams, with their phases.
+    pub fn beams(&self) -> &PhasedBeams {
+        self.beams.get_or_init(|| PhasedBeams::new(self.radar, self.flat))
+    }
+
+    /// The range bins that hold an echo.
+    pub fn echoes(&self) -> &EchoBins {
+        let variance = || self.hearing.noise_variance(self.radar, self.flat);
+        self.echoes.get_or_init(|| EchoBins::of(self.radar, self.flat, variance()))
+    }
+
+    /// The first points within the maximum range, `most` of them.
+    pub fn points_within_range(&self, most: usize) -> Vec<[f64; 2]> {
+        let within = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
+        self.points_metres.iter().filter(within).take(most).copied().collect()
+    }
+}
+
+/// A source of candidates.
+pub trait Propose {
+    /// Objects that may be among what is left, the most promising first.
+    fn propose(&self, left: &Unexplained) -> Vec<Atom>;
+}
