@@ -126,9 +126,12 @@ pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) ->
         }
         search.trace.enter(rung.name);
         if (rung.is_due)(&state) {
-            let before = state.fit.atoms.clone();
+            let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());
             (rung.climb)(search, &mut state)?;
             search.tell_of(&before, &state.fit);
+            if search.trace.count() == attempts {
+                search.grower().refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
+            }
         } else if let Some(why) = rung.skipped {
             search.grower().refuse(Tried::Nothing, 0.0, Refusal::Skipped(why));
         }

@@ -73,6 +73,8 @@ pub enum Verdict {
 /// Why an attempt was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
+    /// No candidate was found, or none that was worth an attempt.
+    NothingFound,
     /// The rung was skipped.
     Skipped(&'static str),
     /// An end hears more tones than can be paired in the time.
@@ -103,6 +105,7 @@ impl fmt::Display for Verdict {
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Refusal::NothingFound => write!(f, "found nothing"),
             Refusal::Skipped(why) => write!(f, "skipped: {why}"),
             Refusal::TooManyTones => write!(f, "refused: an end hears too many tones"),
             Refusal::LeavesSomething => write!(f, "refused: something else is left"),
@@ -161,6 +164,11 @@ impl Trace {
             let rung = kept.rung;
             kept.attempts.push(Attempt { rung, tried, gain_decades, verdict, work });
         }
+    }
+
+    /// How many attempts are kept.
+    pub fn count(&self) -> usize {
+        self.kept().attempts.len()
     }
 
     /// All attempts, the first first.
