@@ -1,6 +1,7 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
 use super::settings::Settings;
+use super::state::Answer;
 use super::trace::Attempt;
 use super::without::Part;
 use crate::radar::Radar;
@@ -86,12 +87,12 @@ pub(super) fn finish(
     radar: &Radar,
     bench: &Workbench,
     samples: &Samples,
-    fit: Fit,
-    complete: bool,
+    answer: Answer,
     request: &Request,
     settings: &Settings,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
+    let Answer { fit, is_sure: complete } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
