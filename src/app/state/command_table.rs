@@ -561,12 +561,19 @@ fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
 /// there are such here. The methods are not among them: they are the app's.
 pub fn listed() -> &'static [Entry] {
     static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
-    let here = if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop };
-    LISTED.get_or_init(|| everything().into_iter().filter_map(here).collect())
+    LISTED.get_or_init(|| listed_where(if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop }))
+}
+
+/// What there is of [`everything`] where `keys` says, with the keys that it says.
+fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>>) -> Vec<Entry> {
+    everything()
+        .into_iter()
+        .filter_map(|entry| Some(Entry { key: keys(&entry.command, entry.key)?, ..entry }))
+        .collect()
 }
 
 /// Every command, whether a desktop has it or a page.
-pub(super) fn everything() -> Vec<Entry> {
+fn everything() -> Vec<Entry> {
     let radar = |(index, preset): (usize, &RadarPreset)| {
         named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
     };
@@ -625,6 +632,28 @@ mod tests {
                 assert!(keys.insert(text, entry.name.clone()).is_none(), "{} shares its key", entry.name);
             }
         }
+    }
+
+    #[test]
+    fn no_command_of_a_page_has_a_key_of_the_browser() {
+        let mut keys = BTreeMap::new();
+        for entry in listed_where(on_a_page) {
+            let Some(KeyboardShortcut { modifiers, logical_key: key }) = entry.key else { continue };
+            let of_the_browser = matches!(key, Key::F5 | Key::F11 | Key::F12)
+                || modifiers.command && !modifiers.shift && matches!(key, Key::T | Key::W | Key::N);
+            assert!(!of_the_browser, "{}", entry.name);
+            let before = keys.insert(format!("{modifiers:?} {key:?}"), entry.name.clone());
+            assert!(before.is_none(), "{} shares its key with {before:?}", entry.name);
+        }
+    }
+
+    #[test]
+    fn a_page_offers_a_link_in_place_of_closing_the_window() {
+        let [link, quit] = [Command::Export(ExportCommand::CopyLink), Command::Window(WindowCommand::Quit)];
+        let offers = |list: &[Entry], command: &Command| list.iter().any(|entry| entry.command == *command);
+        let (page, desktop) = (listed_where(on_a_page), listed_where(on_a_desktop));
+        assert!(offers(&page, &link) && !offers(&page, &quit));
+        assert!(!offers(&desktop, &link) && offers(&desktop, &quit));
     }
 
     #[test]

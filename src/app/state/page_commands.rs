@@ -1,7 +1,6 @@
 //! The list of commands as a page in a browser has it: some keys belong to the browser, and some commands to a desktop.
 
-use super::command::{Command, DocumentCommand, ExportCommand, RowsCommand, WindowCommand, WorkCommand};
-use super::command_table::Entry;
+use super::command::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WindowCommand, WorkCommand};
 use super::panel::Panel;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
@@ -30,50 +29,18 @@ fn free_key(command: &Command) -> Option<Key> {
         Command::Window(WindowCommand::ToggleTheme) => Key::T,
         Command::Window(WindowCommand::TogglePanel(Panel::Lesson)) => Key::L,
         Command::Window(WindowCommand::Present) => Key::P,
-        Command::Lesson(super::command::LessonCommand::Present) => Key::F,
+        Command::Lesson(LessonCommand::Present) => Key::F,
         _ => return None,
     })
 }
 
-/// The entry as a page has it; `None` where a page can't do it.
-pub fn on_a_page(entry: Entry) -> Option<Entry> {
-    if needs_a_desktop(&entry.command) {
-        return None;
-    }
-    let free = free_key(&entry.command).map(|key| KeyboardShortcut::new(Modifiers::SHIFT, key));
-    Some(Entry { key: free.or(entry.key), ..entry })
+/// The key that a command has on a page, where it has one; `None` where a page can't do it.
+pub fn on_a_page(command: &Command, key: Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>> {
+    let free = free_key(command).map(|key| KeyboardShortcut::new(Modifiers::SHIFT, key));
+    (!needs_a_desktop(command)).then_some(free.or(key))
 }
 
-/// The entry as a desktop has it; `None` where only a page can do it.
-pub fn on_a_desktop(entry: Entry) -> Option<Entry> {
-    (!needs_a_page(&entry.command)).then_some(entry)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::command_table::everything;
-    use super::*;
-    use std::collections::BTreeSet;
-
-    #[test]
-    fn no_command_of_a_page_has_a_key_of_the_browser() {
-        let mut keys = BTreeSet::new();
-        for entry in everything().into_iter().filter_map(on_a_page) {
-            let Some(KeyboardShortcut { modifiers, logical_key: key }) = entry.key else { continue };
-            let of_the_browser = matches!(key, Key::F5 | Key::F11 | Key::F12)
-                || modifiers.command && !modifiers.shift && matches!(key, Key::T | Key::W | Key::N);
-            assert!(!of_the_browser, "{}", entry.name);
-            assert!(keys.insert(format!("{modifiers:?} {key:?}")), "{} shares its key", entry.name);
-        }
-    }
-
-    #[test]
-    fn a_page_offers_a_link_in_place_of_closing_the_window() {
-        let offers = |filter: fn(Entry) -> Option<Entry>, command: Command| {
-            everything().into_iter().filter_map(filter).any(|entry| entry.command == command)
-        };
-        let [link, quit] = [Command::Export(ExportCommand::CopyLink), Command::Window(WindowCommand::Quit)];
-        assert!(offers(on_a_page, link.clone()) && !offers(on_a_page, quit.clone()));
-        assert!(!offers(on_a_desktop, link) && offers(on_a_desktop, quit));
-    }
+/// The same on a desktop; `None` where only a page can do it.
+pub fn on_a_desktop(command: &Command, key: Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>> {
+    (!needs_a_page(command)).then_some(key)
 }
