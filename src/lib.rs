@@ -43,6 +43,7 @@
 //! | [`signal`] | reflectors | the sampled beat signal, over a named floor |
 //! | [`maps`] | the beat signal | range-angle maps, Lambda, masks, Cartesian views |
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
+//! | `external` | a command | a method that another program computes |
 //! | [`bounds`] | a layout and a noise level | how well any unbiased estimator can do |
 //! | [`theory`] | a radar and a place | what the formulas predict of the map: peak, beam width, lobes, comb, streak, squint |
 //! | [`evaluate`] | target and output | SE, P_D, P_FA, ROC, the thesis' tables |
@@ -63,6 +64,8 @@ pub mod bounds;
 pub mod commands;
 pub mod engine;
 pub mod evaluate;
+#[cfg(feature = "external")]
+pub mod external;
 #[cfg(all(feature = "network", feature = "pictures"))]
 pub mod figures;
 pub mod files;

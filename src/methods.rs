@@ -6,10 +6,42 @@ use crate::reconstruct::{
     BARTLETT, Baseline, CAPON, CAPON_PEAKS, ESPRIT, Fista, Hybrid, IAA, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS,
     MUSIC, MUSIC_PEAKS, MatchedFilter, Omp, ROOT_MUSIC, ROOT_MUSIC_PEAKS, Reconstructor, SBL,
 };
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 
-/// Every method this build knows, in the order they are shown.
+/// Methods that were added while the program runs.
+static ADDED: RwLock<Vec<Arc<dyn Reconstructor>>> = RwLock::new(Vec::new());
+
+/// Every method this build knows and every added one, in the order they are shown.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
+    let mut methods = shipped();
+    methods.extend(ADDED.read().unwrap_or_else(PoisonError::into_inner).iter().cloned());
+    methods
+}
+
+/// Adds a method to [`all`], in place of one that was added under this name before.
+///
+/// # Errors
+/// [`NameTaken`] where a method of this build has the name.
+pub fn add(method: Arc<dyn Reconstructor>) -> Result<(), NameTaken> {
+    let name = method.name();
+    if shipped().iter().any(|m| m.name() == name) {
+        return Err(NameTaken { name });
+    }
+    let mut added = ADDED.write().unwrap_or_else(PoisonError::into_inner);
+    added.retain(|m| m.name() != name);
+    added.push(method);
+    Ok(())
+}
+
+/// A method's name that another method has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("a method of this program is called \"{name}\"; expected another name")]
+pub struct NameTaken {
+    name: &'static str,
+}
+
+/// Every method of this build.
+fn shipped() -> Vec<Arc<dyn Reconstructor>> {
     #[cfg(feature = "live")]
     let networks = crate::network::shipped();
     #[cfg(not(feature = "live"))]

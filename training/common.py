@@ -4,10 +4,10 @@ import os
 import numpy as np
 import torch
 
-import scenes as sc
+import apertura as ap
 
 #: False-alarm rates at which P_D is given: the thesis' for its own sets.
-P_FA = {1: 0.0037, 2: 0.0056, 3: 0.0102}
+P_FA = {"1": 0.0037, "2": 0.0056, "3": 0.0102}
 ELSEWHERE = 0.01
 
 
@@ -21,28 +21,30 @@ def unit(maps):
     return (maps - lo) / (hi - lo)
 
 
-def validation_scenes(seed, count, entry, kinds=tuple(P_FA)):
-    """For each of the kinds, what `entry(scene, rng)` makes of `count` validation scenes."""
-    sets = {}
-    for number, k in enumerate(kinds, 1):
-        sets[k] = []
-        for i in range(count):
-            rng = sc.rng_for("validation", seed, 10_000 * number + i)
-            sets[k] += entry(sc.GENERATORS[k](rng), rng)
-    return sets
+def validation_scenes(seed, count, kinds=tuple(P_FA), network="live", noisy=()):
+    """Examples of `count` validation scenes of each of the kinds, in f16, and of (kind, dB of thermal noise) of `noisy`."""
+    floors = [(kind, kind, "thesis") for kind in kinds] + [(f"{kind} at {snr} dB", kind, f"snr={snr}") for kind, snr in noisy]
+    made = lambda kind, floor: ap.torch.Scenes(kind, seed, length=count, purpose="validation", floor=floor, network=network)
+    half = lambda example: {name: t.half() if t.ndim > 1 and t.dtype == torch.float32 else t for name, t in example.items() if name != "ends"}
+    return {name: [half(made(kind, floor)[i]) for i in range(count)] for name, kind, floor in floors}
+
+
+def stacked(entries):
+    """Entries as a batch in f32."""
+    return {name: torch.stack([entry[name] for entry in entries]).float() for name in entries[0]}
 
 
 @torch.no_grad()
 def figures(estimate, sets):
     """SE, and P_D with its threshold at `false_alarm(kind)`, for each kind; `eta` is where the mean P_FA is the mean of these.
 
-    `estimate` turns a list of entries into Lambda of output and target, and what is held against a threshold, [n, 512, 1024] each."""
+    `estimate` turns a batch into Lambda of output and target, and what is held against a threshold, [n, 512, 1024] each."""
     etas = np.linspace(0.5, 1.0, 251)
     report, alarms = {}, []
     for k, entries in sets.items():
         se, pd, pfa = [], [], []
         for i in range(0, len(entries), 4):
-            for output, target, shown in zip(*estimate(entries[i : i + 4])):
+            for output, target, shown in zip(*(t.cpu() for t in estimate(stacked(entries[i : i + 4])))):
                 se.append(float(((output - target) ** 2).sum()))
                 mask = target > 0.9
                 on, off = np.sort(shown[mask].numpy()), np.sort(shown[~mask].numpy())
@@ -51,7 +53,7 @@ def figures(estimate, sets):
         pd, pfa = np.mean(pd, 0), np.mean(pfa, 0)
         alarms.append(pfa)
         j = int(np.argmax(pfa <= false_alarm(k)))
-        report[str(k)] = {"se": float(np.mean(se)), "pd": float(pd[j]) * 100, "eta": float(etas[j]), "at": false_alarm(k)}
+        report[k] = {"se": float(np.mean(se)), "pd": float(pd[j]) * 100, "eta": float(etas[j]), "at": false_alarm(k)}
     mean = float(np.mean([false_alarm(k) for k in sets]))
     report["eta"] = float(etas[int(np.argmax(np.mean(alarms, 0) <= mean))])
     return report

@@ -4,6 +4,12 @@ import os
 
 
 def common(parser):
+    parser.add_argument("--out", metavar="DIR", help="folder of the run, new or to go on with")
+    parser.add_argument("--threads", type=int, default=1, help="threads a process")
+    parser.add_argument("--loaders", type=int, default=0, help="processes that make scenes beside each training process")
+    parser.add_argument("--validate-every", type=float, default=15, help="minutes")
+    parser.add_argument("--save-every", type=float, default=2, help="minutes")
+    parser.add_argument("--steps", type=int, help="stop at this step, whatever the minutes")
     parser.add_argument("--untrained", action="store_true", help="with --export: write weights that no step was taken with, all the same")
     parser.add_argument("--export", metavar="FILE", help="write the averaged weights to this file, with their validation figures, and stop")
 
@@ -27,33 +33,25 @@ def checked(parser, arguments):
 
 def live(arguments=None):
     ap = argparse.ArgumentParser(description="Trains the live network; train_live.py says more in its head.")
-    ap.add_argument("--out", metavar="DIR", help="folder of the run, new or to go on with; needed but for --judge")
     ap.add_argument("--minutes", type=float, default=80, help="of this part of the run")
     ap.add_argument("--seed", type=int, default=0)
-    ap.add_argument("--batch", type=int, default=4)
-    ap.add_argument("--new-scenes", type=int, default=1, help="scenes simulated a step (each enters with its mirror image)")
-    ap.add_argument("--buffer", type=int, default=512, help="maps kept a worker")
-    ap.add_argument("--workers", type=int, default=1)
-    ap.add_argument("--threads", type=int, default=1, help="threads a worker")
+    ap.add_argument("--batch", type=int, default=4, help="scenes a step of each process, all of them new")
     ap.add_argument("--lr", type=float, default=5e-4)
     ap.add_argument("--bf16", action="store_true", help="convolutions in bfloat16 (weights, sums and loss stay in f32): faster where the processor has AMX")
     ap.add_argument("--edge-weight", type=float, default=0.0)
     ap.add_argument("--validation", type=int, default=6, help="validation scenes a kind")
-    ap.add_argument("--validate-every", type=float, default=15, help="minutes")
     ap.add_argument("--snr-share", type=float, default=1 / 3, help="part of the scenes over thermal noise, 10 to 60 dB SNR")
     ap.add_argument("--init", metavar="FILE", help="weight file to start from; one of the first edition gets channels of zeros for what it lacks")
     ap.add_argument("--first-scene", type=int, default=0, help="with --init: number of the first training scene, so that none is seen twice")
     common(ap)
-    ap.add_argument("--judge", metavar="FILE", help="print the validation figures of this weight file, and stop")
+    ap.add_argument("--judge", metavar="FILE", help="print the validation figures of this weight file, and stop; needs no --out")
     return checked(ap, arguments)
 
 
 def thesis(arguments=None):
     ap = argparse.ArgumentParser(description="Trains the thesis' network; train_thesis.py says more in its head.")
     ap.add_argument("--experiment", type=int, choices=[1, 2], required=True)
-    ap.add_argument("--out", metavar="DIR", help="folder of the run, new or to go on with; always needed")
     ap.add_argument("--minutes", type=float, default=60, help="of this part of the run")
-    ap.add_argument("--threads", type=int, default=1)
     ap.add_argument("--lr", type=float, default=3e-3)
     ap.add_argument("--whole-from", type=int, default=2000, help="step from which on batches hold whole maps")
     ap.add_argument("--init", metavar="FILE", help="checkpoint (.pt) or weights (.safetensors) of another run to start from")
@@ -61,6 +59,5 @@ def thesis(arguments=None):
     ap.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: weights, sums and loss stay in f32")
     ap.add_argument("--first-scene", type=int, default=0, help="with --init of weights: number of the first training scene, so that none is seen twice")
     ap.add_argument("--validation", type=int, default=8, help="validation scenes a set")
-    ap.add_argument("--validate-every", type=float, default=15, help="minutes")
     common(ap)
     return checked(ap, arguments)

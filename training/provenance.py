@@ -42,6 +42,7 @@ class Part:
             "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
             "commit": commit(), "programs_sha256": programs(), "arguments": [a.rsplit("/", 1)[-1] for a in sys.argv[1:]], "torch": torch.__version__, "optimiser": optimiser,
             "initial_weights_sha256": sha256(initial) if initial else None, "maps_before": maps,
+            "processes": int(os.environ.get("WORLD_SIZE", 1)), "restarts": int(os.environ.get("TORCHELASTIC_RESTART_COUNT", 0)),
         }
 
     def now(self, maps):

@@ -1,5 +1,7 @@
 """Writes the references that the tests of `src/network` compare with the Rust side: a tiny live network with random weights,
-the samples of a small scene, and what this twin makes of them. Usage: python3 reference.py ../tests/data
+its input for a small scene, and what this twin makes of it. Usage: python3 reference.py ../tests/data
+
+The input is the package's own. That in ../tests/data was computed by a second program in NumPy, which gave the same numbers.
 """
 import sys
 
@@ -7,8 +9,7 @@ import numpy as np
 import torch
 from safetensors.torch import save_file
 
-import features as ft
-import scenes as sc
+import apertura as ap
 from live import Live
 from thesis import Thesis
 
@@ -22,15 +23,15 @@ def main(folder):
         for p in model.parameters():
             if p.dim() > 1:
                 p.add_(0.05 * torch.randn_like(p))
-    samples = sc.ends(sc.simulate(POINTS, np.random.default_rng(0), floor=False))
-    fine, coarse, rows, scalars, gain = ft.features(samples)
+    given = ap.live_input(ap.Scene.of_points(POINTS).simulate(floor="exact").ends)
+    fine, coarse, rows, scalars = (torch.from_numpy(given[name]) for name in ("fine", "coarse", "rows", "scalars"))
     with torch.no_grad():
         log, minimum = model(fine[None], coarse[None], rows[None], scalars[None])
     weights = {k: v.contiguous() for k, v in model.state_dict().items()}
     save_file(weights, f"{folder}/live_reference_weights.safetensors", metadata={"network": "live"})
     tensors = {
         "fine": fine[:, ::32, ::8].contiguous(), "coarse": coarse[:, ::32, ::4].contiguous(), "rows": rows[:, ::8].contiguous(),
-        "scalars": scalars, "gain": gain.float().reshape(1), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum,
+        "scalars": scalars, "gain": torch.tensor([given["gain"]]), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum,
         "points": torch.from_numpy(POINTS).float(),
     }
     save_file(tensors, f"{folder}/live_reference.safetensors", metadata={"network": "live-reference"})

@@ -2,20 +2,25 @@
 on a CPU. The shipped weights come from here.
 
     python3 train_live.py --out DIR --minutes 80                     # start, or go on from DIR/checkpoint.pt
+    torchrun --nproc-per-node 2 --max-restarts 3 \\
+        train_live.py --out DIR --minutes 80                         # the same in two processes
     python3 train_live.py --out DIR --minutes 80 \\
         --init ../assets/weights/live.safetensors                    # go on from the shipped weights
     python3 train_live.py --out DIR --validation 24 \\
         --export ../assets/weights/live.safetensors                  # write the averaged weights and their figures, and stop
     python3 train_live.py --validation 24 --judge FILE               # figures of any weights on the validation scenes, and stop
 
-Needs torch, numpy and safetensors. The learning rate rises over 200 steps and then falls with the square root of the steps of this run; so a run needs
-no end, and a moving average of the weights is what is validated and written. With `--workers` above 1 they take steps on the same weights
-without waiting for each other, and a run does not repeat bit for bit. A checkpoint holds weights, their moving average, optimizer, generator
-state, the number of scenes drawn and the record of every part of the run, and is replaced in one step. After a resume the scene buffers fill
-again with the next scenes of the training stream.
+Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new. A third
+lies over thermal noise from 60 to 10 dB. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
+any number of processes.
 
-Every scene comes with a noise draw of its own, a third of them over thermal noise from 60 to 10 dB. Training, validation and test scenes come
-from generators with different keys; the figures in the README come from `apertura evaluate`, whose test scenes this program never sees.
+The learning rate rises over 200 steps and then falls with the square root of the steps of this run; so a run needs no end, and a moving average of the
+weights is what is validated and written. Several processes average their gradients, so that a step sees `--batch` scenes of each. A checkpoint holds
+weights, their moving average, optimizer, the number of scenes drawn and the record of every part of the run, and is replaced in one step. When a process
+is killed, torchrun starts all of them again from it.
+
+Training, validation and test scenes come from streams that never meet; the figures in the README come from `apertura evaluate`, whose test scenes
+this program never sees.
 """
 import json
 import os
@@ -27,45 +32,28 @@ if __name__ == "__main__":
     ARGUMENTS = options.live()  # before PyTorch, which takes seconds to load
 
 import torch
-import torch.multiprocessing as mp
 
-import features as ft
+import apertura as ap
 import provenance
-import scenes as sc
 from common import export, figures, save, unit, validation_scenes
 from live import Live, normalise, widened
+from team import Log, Team, batches
 
 WARM_UP = 200
+#: Share of each kind of scene.
+MIXTURE = {"1": 4, "2": 12, "3": 14, "clusters": 9, "walls": 12, "spacings": 6, "corner": 10, "crowd": 15, "dynamic": 5, "near": 5}
 #: What the validation figures are given for: the kinds over the thesis' floor, and three sets over thermal noise.
-KINDS = tuple(k for k in sc.MIXTURE if k != "field")
-NOISY = {"2 at 40 dB": (2, 40), "2 at 20 dB": (2, 20), "3 at 40 dB": (3, 40)}
+NOISY = (("2", 40), ("2", 20), ("3", 40))
+INPUTS = ("fine", "coarse", "rows", "scalars")
 
 
-def make_entry(points, rng, with_mirror=False, snr=None):
-    y = sc.simulate(points, rng, snr_db=snr)
-    log = sc.log_map(y)
-    samples = sc.ends(y)
-    out = []
-    for flip in (False, True)[: 1 + with_mirror]:
-        fine, coarse, rows, scalars, gain = ft.features(ft.mirror(samples) if flip else samples)
-        target = (ft.mirror_map(log) if flip else log) - float(gain)
-        out.append((fine.half(), coarse.half(), rows.half(), scalars, target.half()))
-    return out
+def training_scenes(args):
+    mixture = ",".join(f"{kind}={share}" for kind, share in MIXTURE.items())
+    return ap.torch.Scenes(mixture, args.seed, length=1 << 32, thermal=(args.snr_share, 10, 60))
 
 
-def batch_of(entries):
-    fine, coarse, rows, scalars, target = (torch.stack(t).float() for t in zip(*entries))
-    return (fine, coarse, rows, scalars), target
-
-
-def validation_sets(seed, count):
-    sets = validation_scenes(seed, count, make_entry, KINDS)
-    for number, (name, (kind, snr)) in enumerate(NOISY.items(), len(KINDS) + 1):
-        sets[name] = []
-        for i in range(count):
-            rng = sc.rng_for("validation", seed, 10_000 * number + i)
-            sets[name] += make_entry(sc.GENERATORS[kind](rng), rng, snr=snr)
-    return sets
+def validation_sets(args):
+    return validation_scenes(args.seed, args.validation, tuple(MIXTURE), noisy=NOISY)
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -79,34 +67,29 @@ def loss_of(log, minimum, target, edge_weight):
     return loss
 
 
-def estimate_with(model):
+def estimate_with(model, device="cpu"):
     """For `common.figures`."""
-    def estimate(entries):
-        inputs, target = batch_of(entries)
-        output = normalise(*model(*inputs)).clamp(0, 1)
-        return output, unit(target), output
+    def estimate(batch):
+        batch = {name: t.to(device) for name, t in batch.items()}
+        output = normalise(*model(*(batch[name] for name in INPUTS))).clamp(0, 1)
+        return output, unit(batch["target"]), output
     return estimate
-
-
-def optimizer_of(model, args):
-    return torch.optim.AdamW(model.parameters(), lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
 
 
 class Run:
     """Weights, their average, optimizer and record, as a checkpoint holds them."""
 
-    def __init__(self, args):
+    def __init__(self, args, team):
         self.path = os.path.join(args.out, "checkpoint.pt")
-        self.model, self.average = Live().to(memory_format=torch.channels_last), Live()
-        self.optimizer = optimizer_of(self.model, args)
-        self.pick = torch.Generator().manual_seed(args.seed)
-        self.step, self.drawn, self.batch, self.parts, initial = 0, 0, args.batch, [], None
+        self.model, self.average = Live().to(team.device, memory_format=torch.channels_last), Live().to(team.device)
+        self.optimizer = torch.optim.AdamW(self.model.parameters(), lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
+        self.step, self.drawn, self.parts, initial = 0, 0, [], None
+        maps = None
         if os.path.exists(self.path):
-            state = torch.load(self.path, weights_only=True)
+            state = torch.load(self.path, weights_only=True, map_location=team.device)
             self.model.load_state_dict(state["model"])
             self.optimizer.load_state_dict(state["optimizer"])
-            self.pick.set_state(state["pick"])
-            self.step, self.drawn, self.parts = state["step"], state["drawn"], json.loads(state["parts"])
+            self.step, self.drawn, self.parts, maps = state["step"], state["drawn"], json.loads(state["parts"]), state.get("maps")
             self.average.load_state_dict(state["average"])
         else:
             if args.init:
@@ -115,116 +98,92 @@ class Run:
                 self.model.load_state_dict(widened(load_file(initial)))
                 self.drawn, self.parts = args.first_scene, provenance.parts_of(initial)
             self.average.load_state_dict(self.model.state_dict())
-        #: Maps that the weights saw before the steps of this run.
-        self.before = provenance.maps_of(self.parts) - self.step * self.batch
-        self.part = provenance.Part(initial, self.seen(), "AdamW")
-
-    def seen(self):
-        """Maps that the weights saw, in all parts."""
-        return self.before + self.step * self.batch
+        #: Maps that the weights saw, in all parts.
+        self.maps = provenance.maps_of(self.parts) if maps is None else maps
+        self.part = provenance.Part(initial, self.maps, "AdamW")
 
     def records(self):
-        return [*self.parts, self.part.now(self.seen())]
+        return [*self.parts, self.part.now(self.maps)]
 
-    @torch.no_grad()
-    def follow(self):
-        decay = min(0.998, (1 + self.step) / (10 + self.step))
-        for a, p in zip(self.average.parameters(), self.model.parameters()):
-            a.lerp_(p, 1 - decay)
+    def advance(self, rate):
+        """One step down the gradient that was computed."""
+        for group in self.optimizer.param_groups:
+            group["lr"] = rate
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
+        self.optimizer.step()
+        self.step += 1
+        decay = min(0.998, self.step / (9 + self.step))
+        with torch.no_grad():
+            for a, p in zip(self.average.parameters(), self.model.parameters()):
+                a.lerp_(p, 1 - decay)
 
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "average": self.average.state_dict(), "optimizer": self.optimizer.state_dict(),
-                         "pick": self.pick.get_state(), "step": self.step, "drawn": self.drawn, "parts": json.dumps(self.records())})
+                         "step": self.step, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
-def train(args, model, counter, worker, optimizer, pick, after):
-    """One worker: draws scenes, takes steps on the shared weights, without waiting for the others (as Hogwild)."""
-    torch.set_num_threads(args.threads)
-    buffer, at, running = [], 0, None
+def train(run, args, team):
+    sets = validation_sets(args) if team.is_first and args.validation else None
+    log = Log(args.out, run.step) if team.is_first else None
+    model = team.share(run.model)
+    scenes = batches(training_scenes(args), run.drawn, args.batch, team, args.loaders)
+    began = time.time()
+    saved, validated = began, 0.0
     while True:
-        for _ in range(args.new_scenes if len(buffer) >= args.batch * 8 else args.batch):
-            index = int(counter[1])
-            counter[1] += 1
-            # one stream a worker: the worker's number is part of the index
-            rng = sc.rng_for("train", args.seed, index * 16 + worker)
-            snr = rng.uniform(10, 60) if rng.random() < args.snr_share else None
-            for entry in make_entry(sc.mixture(rng), rng, True, snr):
-                if len(buffer) < args.buffer:
-                    buffer.append(entry)
-                else:
-                    buffer[at % args.buffer] = entry
-                at += 1
-        chosen = torch.randint(len(buffer), (args.batch,), generator=pick).tolist()
-        inputs, target = batch_of([buffer[i] for i in chosen])
-        step = int(counter[0])
-        for group in optimizer.param_groups:
-            group["lr"] = args.lr * min((step + 1) / WARM_UP, (1 + step / 2000) ** -0.5)
-        with torch.autocast("cpu", torch.bfloat16, enabled=args.bf16):
-            log, minimum = model(*inputs)
-        loss = loss_of(log, minimum, target, args.edge_weight)
-        if not torch.isfinite(loss):
-            raise SystemExit(f"loss is not finite at step {step}; the last good checkpoint is in {args.out}")
-        optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
-        optimizer.step()
-        counter[0] += 1
-        running = loss.item() if running is None else 0.98 * running + 0.02 * loss.item()
-        if after is not None and after(running):
+        done = run.step >= args.steps if args.steps is not None else time.time() - began > 60 * args.minutes
+        done = team.agreed(done)
+        if team.is_first:
+            if sets and (done or time.time() - validated > 60 * args.validate_every):
+                report = figures(estimate_with(run.average, team.device), sets)
+                line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
+                with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
+                    f.write(line + "\n")
+                team.say(line)
+                validated = time.time()
+            if done or time.time() - saved >= 60 * args.save_every:
+                run.save()
+                saved = time.time()
+        if done:
             return
-
-
-def helper(args, model, counter, worker):
-    pick = torch.Generator().manual_seed(args.seed + 1000 * worker + int(counter[0]))
-    train(args, model, counter, worker, optimizer_of(model, args), pick, None)
+        batch = {name: t.to(team.device) for name, t in next(scenes).items() if name != "ends"}
+        rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5)
+        with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16):
+            output, minimum = model(*(batch[name] for name in INPUTS))
+        loss = loss_of(output, minimum, batch["target"], args.edge_weight)
+        run.optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        mean = team.mean(loss.item())
+        if not mean < float("inf"):
+            raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
+        run.advance(rate)
+        run.drawn += args.batch * team.size
+        run.maps += args.batch * team.size
+        if log:
+            log.line(run.step, run.maps, time.time() - began, rate, mean)
 
 
 def main(args):
-    torch.set_num_threads(args.threads)
     torch.manual_seed(args.seed)
+    team = Team(args.threads)
     if args.judge:
         from safetensors.torch import load_file
         model = Live()
         model.load_state_dict(widened(load_file(args.judge)))
-        print(json.dumps(figures(estimate_with(model), validation_sets(args.seed, args.validation))))
+        print(json.dumps(figures(estimate_with(model), validation_sets(args))))
         return
     os.makedirs(args.out, exist_ok=True)
-    run = Run(args)
-    options.refuse_untrained(args, run.seen())
+    run = Run(args, team)
+    options.refuse_untrained(args, run.maps)
     if args.export:
-        report = figures(estimate_with(run.average), validation_sets(args.seed, args.validation))
+        report = figures(estimate_with(run.average, team.device), validation_sets(args))
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
                 "steps": str(run.step), "scenes_simulated": str(run.drawn), **provenance.metadata(run.parts)}
         export(run.average.state_dict(), args.export, meta, report, args.validation)
         return
-    run.model.share_memory()
-    counter = torch.tensor([run.step, run.drawn], dtype=torch.int64).share_memory_()
-    helpers = [mp.Process(target=helper, args=(args, run.model, counter, w), daemon=True) for w in range(1, args.workers)]
-    for h in helpers:
-        h.start()
-    sets = validation_sets(args.seed, args.validation)
-    log_path = os.path.join(args.out, "log.jsonl")
-    began = time.time()
-    clock = {"save": began, "validate": 0.0}
-
-    def after(running):
-        run.step, run.drawn = int(counter[0]), int(counter[1])
-        run.follow()
-        done = time.time() - began > args.minutes * 60
-        if time.time() - clock["validate"] > args.validate_every * 60 or done:
-            line = {"maps": run.seen(), "drawn": run.drawn, "loss": running, **figures(estimate_with(run.average), sets)}
-            with open(log_path, "a") as f:
-                f.write(json.dumps(line) + "\n")
-            print(json.dumps(line), flush=True)
-            clock["validate"] = time.time()
-        if time.time() - clock["save"] > 120 or done:
-            run.save()
-            clock["save"] = time.time()
-        return done
-
-    train(args, run.model, counter, 0, run.optimizer, run.pick, after)
-    for h in helpers:
-        h.terminate()
+    if team.restarts:
+        team.say(f"restart {team.restarts} of {team.size} processes: going on from step {run.step} of {run.path}")
+    train(run, args, team)
+    team.end()
 
 
 if __name__ == "__main__":

@@ -2,25 +2,28 @@
 `apertura train experiment-1-small` and `experiment-2-small`, several times as fast on a CPU.
 
     python3 train_thesis.py --experiment 1 --out DIR --minutes 60    # start, or go on from DIR/checkpoint.pt
+    torchrun --nproc-per-node 2 --max-restarts 3 \\
+        train_thesis.py --experiment 1 --out DIR --minutes 60        # the same in two processes, whose gradients are averaged
     python3 train_thesis.py --experiment 1 --out DIR --init FILE     # start from a weight file (.safetensors) with its record, or from another run's
                                                                      # checkpoint (.pt), its scenes included too, with a new optimizer
     python3 train_thesis.py --experiment 1 --out DIR --validation 24 \\
         --export ../assets/weights/thesis-1.safetensors              # write the averaged weights and their figures, and stop
 
-Scenes and loss are those of the experiments. What differs, so that hours on two cores are enough to learn something:
+Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes. Scenes and loss are those of the experiments. What differs, so that hours on two cores are enough to learn something:
 
 * AdamW in place of SGD: with it 12 minutes gave what SGD at the thesis' 0.1 gave after 42. With `--muon` the kernels follow Muon instead,
   whose loss is 5 % lower after 250 steps on the same maps. With `--bf16` a step takes half the time where the processor has bfloat16.
 * The learning rate rises over 100 steps and then falls with the square root of the steps of this run, so that a run needs no end; a moving
   average of the weights is what is validated and written.
-* Every scene is new, where the thesis goes over 800 or 8000 scenes a hundred times. One is simulated a step.
+* Every scene is new, where the thesis goes over 800 or 8000 scenes a hundred times. Each process simulates one a step.
 * Until `--whole-from` a batch holds 8 crops of 128 range rows from the newest 64 scenes, later 2 whole maps: crops see no wrap in range.
 * The last batch norm starts at 0.45 +- 0.15, about where the targets lie. From PyTorch's 0 +- 1 half of the cells start below zero,
   where the ReLU behind it lets no gradient through, and 240 steps did not bring them back.
 * The exported statistics of the batch norms are those of 32 whole training maps.
 
-A checkpoint holds weights, their average, optimizer, and the record of every part of the run. Training and validation scenes come from
-generators with different keys. `log.jsonl` has SE and P_D over maps seen (a crop is a quarter of a map).
+A checkpoint holds weights, their average, optimizer, and the record of every part of the run. When a process is killed, torchrun starts all of
+them again from it. Training and validation scenes come from streams that never meet. `log.csv` has the loss, as `apertura train` writes it;
+`validation.jsonl` has SE and P_D over maps seen (a crop is a quarter of a map).
 """
 import json
 import os
@@ -34,45 +37,36 @@ if __name__ == "__main__":
 import numpy as np
 import torch
 
+import apertura as ap
 import provenance
-import scenes as sc
-from common import export, figures, save, unit, validation_scenes
+from common import export, figures, save, stacked, unit, validation_scenes
 from muon import Muon
+from team import Log, Team
 from thesis import Thesis
 
 FILTERS = 16
 CROPS, WHOLE = 8, 2
-CROP = 128
+ROWS, CROP = 512, 128
 BUFFER = 64
 WARM_UP = 100
 
 
-def mag_phase(samples):
-    """The network's input [4, 512, 1024] from samples [2, 12, 512]: Lambda cos(arg Y) and Lambda sin(arg Y) of both ends."""
-    z = torch.fft.fft(samples * sc.hann(sc.N_R), norm="ortho").transpose(1, 2) * sc.hann(sc.N_E)
-    y = torch.fft.fft(z, n=sc.N_A).roll(sc.N_A // 2, 2) / sc.N_A**0.5
-    magnitude = y.abs() + 1e-20
-    parts = unit(torch.log10(magnitude)) / magnitude * y
-    return torch.stack([parts[0].real, parts[0].imag, parts[1].real, parts[1].imag]).float()
+#: Kinds of scenes of each experiment: one to four objects, each as often.
+MIXTURE = {1: "points", 2: "mixed"}
 
 
-def entry(points, rng):
-    y = sc.simulate(points, rng)
-    return [(mag_phase(sc.ends(y)), unit(sc.log_map(y)[None])[0])]
+def training_scenes(experiment):
+    mixture = ",".join(f"{MIXTURE[experiment]}-{objects}=1" for objects in range(1, 5))
+    return ap.torch.Scenes(mixture, experiment, length=1 << 32, network="thesis")
 
 
-def scene(experiment, index):
-    """Scene `index` of the experiment: one to four objects, each as often."""
-    rng = sc.rng_for("train", experiment, index)
-    objects = 1 + index % 4
-    if experiment == 1:
-        return np.concatenate([sc.random_point(rng) for _ in range(objects)]), rng
-    parts = [sc.random_point(rng) if rng.random() < 0.5 else sc.line(sc.line_start(rng)) for _ in range(objects)]
-    return np.concatenate(parts), rng
+def entry(example):
+    """Input [4, 512, 1024] and target [512, 1024]."""
+    return example["mag_phase"], unit(example["target"][None])[0]
 
 
 def crop(entry, rng):
-    top = int(rng.integers(sc.N_R - CROP + 1))
+    top = int(rng.integers(ROWS - CROP + 1))
     return tuple(t[..., top : top + CROP, :] for t in entry)
 
 
@@ -96,10 +90,10 @@ def loss_of(experiment, output, target):
 
 def estimate_with(model):
     """For `common.figures`. The output is Lambda as it stands; for a threshold the thesis stretches it to [0, 1]."""
-    def estimate(entries):
-        inputs, target = batch_of(entries)
+    def estimate(batch):
+        target = unit(batch["target"])
         model.eval()
-        output = model(inputs)[:, 0]
+        output = model(batch["mag_phase"].contiguous(memory_format=torch.channels_last))[:, 0]
         model.train()
         return output.clamp(0, 1), target, unit(output)
     return estimate
@@ -113,8 +107,9 @@ def settle(model, experiment):
         norm.reset_running_stats()
         norm.momentum = None
     model.train()
+    scenes = training_scenes(experiment)
     for first in range(0, 32, 4):
-        model(batch_of([e for i in range(first, first + 4) for e in entry(*scene(experiment, i))])[0])
+        model(stacked(scenes.__getitems__(range(first, first + 4)))["mag_phase"])
 
 
 def state_of(path):
@@ -137,12 +132,12 @@ def optimizers(model, lr, muon):
 class Run:
     """Weights, their average, optimizers and record, as a checkpoint holds them."""
 
-    def __init__(self, args):
+    def __init__(self, args, team):
         self.path = os.path.join(args.out, "checkpoint.pt")
-        self.model, self.average = fresh(), fresh()
+        self.model, self.average = fresh().to(team.device), fresh().to(team.device)
         self.step, self.maps, self.scenes, self.parts, initial, state = 0, 0.0, 0, [], None, None
         if os.path.exists(self.path):
-            state = torch.load(self.path, weights_only=True)
+            state = torch.load(self.path, weights_only=True, map_location=team.device)
             # A run goes on with the optimizers that it has.
             self.optimizers = optimizers(self.model, args.lr, muon=len(state["optimizers"]) > 1)
             self.average.load_state_dict(state["average"])
@@ -163,16 +158,17 @@ class Run:
     def records(self):
         return [*self.parts, self.part.now(self.maps)]
 
-    def advance(self, loss, lr):
-        """One step down the gradient of `loss`."""
-        rate = lr * min((self.step + 1) / WARM_UP, (1 + self.step / 1000) ** -0.5)
-        self.model.zero_grad(set_to_none=True)
-        loss.backward()
+    def rate(self, lr):
+        return lr * min((self.step + 1) / WARM_UP, (1 + self.step / 1000) ** -0.5)
+
+    def advance(self, rate):
+        """One step down the gradient that was computed."""
         for optimizer in self.optimizers:
             for group in optimizer.param_groups:
                 group["lr"] = rate
             optimizer.step()
         self.follow()
+        self.step += 1
 
     @torch.no_grad()
     def follow(self):
@@ -188,51 +184,73 @@ class Run:
                          "step": self.step, "maps": self.maps, "scenes": self.scenes, "parts": json.dumps(self.records())})
 
 
-def train(run, args, sets):
+class Buffer:
+    """This process' newest scenes, and batches of them."""
+
+    def __init__(self, run, args, team):
+        self.scenes, self.args, self.team, self.entries = training_scenes(args.experiment), args, team, []
+        self.next = run.scenes
+
+    def batch(self, run):
+        """Inputs, targets and how many maps they are."""
+        for _ in range(1 if self.entries else CROPS):
+            self.entries.append(entry(self.scenes[self.next + self.team.rank]))
+            self.next += self.team.size
+        self.entries = self.entries[-BUFFER:]
+        pick = np.random.default_rng([self.args.experiment, self.next, self.team.rank])
+        whole = run.step >= self.args.whole_from
+        chosen = [self.entries[pick.integers(len(self.entries))] for _ in range(WHOLE if whole else CROPS)]
+        inputs, target = batch_of(chosen if whole else [crop(e, pick) for e in chosen])
+        return inputs.to(self.team.device), target.to(self.team.device), WHOLE if whole else CROPS * CROP / ROWS
+
+
+def train(run, args, team):
     run.model.train()
-    log = os.path.join(args.out, "log.jsonl")
+    sets = validation_scenes(args.experiment, args.validation, network="thesis") if team.is_first and args.validation else None
+    log = Log(args.out, run.step) if team.is_first else None
+    model, buffer = team.share(run.model), Buffer(run, args, team)
     began = saved = time.time()
-    validated, running, buffer = 0.0, None, []
+    validated = 0.0
     while True:
-        done = time.time() - began > 60 * args.minutes
-        if done or time.time() - validated > 60 * args.validate_every:
-            report = figures(estimate_with(run.average), sets)
-            with open(log, "a") as f:
-                f.write(json.dumps({"maps": run.maps, "step": run.step, "loss": running, **report}) + "\n")
-            print(f"step {run.step} maps {run.maps:.0f} loss {running} validation {report}", flush=True)
+        done = team.agreed(run.step >= args.steps if args.steps is not None else time.time() - began > 60 * args.minutes)
+        if sets and (done or time.time() - validated > 60 * args.validate_every):
+            report = figures(estimate_with(run.average.cpu()), sets)
+            run.average.to(team.device)
+            line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
+            with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
+                f.write(line + "\n")
+            team.say(line)
             validated = time.time()
-        if done or time.time() - saved > 120:
+        if team.is_first and (done or time.time() - saved >= 60 * args.save_every):
             run.save()
             saved = time.time()
         if done:
             return
-        for _ in range(1 if buffer else CROPS):
-            buffer += entry(*scene(args.experiment, run.scenes))
-            run.scenes += 1
-        buffer = buffer[-BUFFER:]
-        pick = np.random.default_rng([args.experiment, run.scenes])
-        whole = run.step >= args.whole_from
-        chosen = [buffer[pick.integers(len(buffer))] for _ in range(WHOLE if whole else CROPS)]
-        inputs, target = batch_of(chosen if whole else [crop(e, pick) for e in chosen])
-        with torch.autocast("cpu", torch.bfloat16, enabled=args.bf16):
-            output = run.model(inputs)[:, 0]
+        inputs, target, maps = buffer.batch(run)
+        with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16):
+            output = model(inputs)[:, 0]
         loss = loss_of(args.experiment, output.float(), target)
-        if not torch.isfinite(loss):
-            raise SystemExit(f"loss is not finite at step {run.step}; the last good checkpoint is in {args.out}")
-        run.advance(loss, args.lr)
-        run.step += 1
-        run.maps += WHOLE if whole else CROPS * CROP / sc.N_R
-        running = loss.item() if running is None else 0.98 * running + 0.02 * loss.item()
+        run.model.zero_grad(set_to_none=True)
+        loss.backward()
+        mean = team.mean(loss.item())
+        if not mean < float("inf"):
+            raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
+        rate = run.rate(args.lr)
+        run.advance(rate)
+        run.scenes = buffer.next
+        run.maps += maps * team.size
+        if log:
+            log.line(run.step, run.maps, time.time() - began, rate, mean)
 
 
 def main(args):
-    torch.set_num_threads(args.threads)
     torch.manual_seed(args.experiment)
+    team = Team(args.threads)
     os.makedirs(args.out, exist_ok=True)
-    run = Run(args)
+    run = Run(args, team)
     options.refuse_untrained(args, run.maps)
-    sets = validation_scenes(args.experiment, args.validation, entry)
     if args.export:
+        sets = validation_scenes(args.experiment, args.validation, network="thesis")
         settle(run.average, args.experiment)
         report = figures(estimate_with(run.average), sets)
         meta = {"network": "thesis", "recipe": f"experiment-{args.experiment}-small", "trainer": "training/train_thesis.py (PyTorch)",
@@ -240,7 +258,10 @@ def main(args):
         export({k: v for k, v in run.average.state_dict().items() if not k.endswith("num_batches_tracked")},
                args.export, meta, report, args.validation)
         return
-    train(run, args, sets)
+    if team.restarts:
+        team.say(f"restart {team.restarts} of {team.size} processes: going on from step {run.step} of {run.path}")
+    train(run, args, team)
+    team.end()
 
 
 if __name__ == "__main__":

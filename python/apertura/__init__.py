@@ -10,7 +10,7 @@ Maps are `[range bins, columns]`: row k is range `radar.range_metres[k]`, column
 becomes ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
 """
 
-from . import torch
+from . import data, torch
 from ._apertura import (
     Examples,
     Maps,
@@ -22,7 +22,9 @@ from ._apertura import (
     __version__,
     ambiguity,
     cramer_rao,
+    dataset,
     evaluate,
+    live_input,
     maps,
     method,
     methods,
@@ -31,9 +33,12 @@ from ._apertura import (
     roc,
     set_threads,
     threads,
+    write_rows,
 )
 from .objects import Cluster, Elements, Interferer, Line, Metrics, Mirror, Point, PositionBound
+from .page import Shown, find_page, show
 from .program import find_program, open
+from .serve import Request, serve
 
 __all__ = [
     "Cluster",
@@ -50,12 +55,18 @@ __all__ = [
     "Radar",
     "Reconstruction",
     "Recording",
+    "Request",
     "Scene",
+    "Shown",
     "__version__",
     "ambiguity",
     "cramer_rao",
+    "data",
+    "dataset",
     "evaluate",
+    "find_page",
     "find_program",
+    "live_input",
     "maps",
     "method",
     "methods",
@@ -63,7 +74,10 @@ __all__ = [
     "open",
     "read_rows",
     "roc",
+    "serve",
     "set_threads",
+    "show",
     "threads",
     "torch",
+    "write_rows",
 ]

@@ -27,7 +27,9 @@ __all__ = [
     "ambiguity",
     "built_elements",
     "cramer_rao",
+    "dataset",
     "evaluate",
+    "live_input",
     "maps",
     "method",
     "methods",
@@ -36,6 +38,7 @@ __all__ = [
     "roc",
     "set_threads",
     "threads",
+    "write_rows",
 ]
 __version__: str
 
@@ -130,6 +133,7 @@ class Scene:
     @staticmethod
     def from_toml(text: str) -> Scene: ...
     def to_toml(self) -> str: ...
+    def to_text(self, *, floor: str = "thesis", normalisation: str = "min-max", method: str = "live") -> str: ...
     def replace(self, **fields: Any) -> Scene: ...
     @property
     def objects(self) -> list[Point | Line | Cluster]: ...
@@ -181,6 +185,8 @@ class Maps:
 
 @final
 class Method:
+    @staticmethod
+    def of_command(command: str, *, seconds: float = 120.0) -> Method: ...
     @property
     def name(self) -> str: ...
     @property
@@ -252,8 +258,24 @@ class Examples:
         floor: str = "thesis",
         thermal: tuple[float, float, float] | None = None,
     ) -> Examples: ...
-    def batch(self, indices: Sequence[SupportsIndex]) -> list[dict[str, Any]]: ...
+    def batch(self, indices: Sequence[SupportsIndex], *, mag_phase: bool = False) -> list[dict[str, Any]]: ...
 
+def dataset(
+    folder: _Path,
+    sets: Iterable[str | int],
+    *,
+    count: int,
+    validation: int | None = None,
+    test: int | None = None,
+    seed: int = 0,
+    floor: str = "thesis",
+    thermal: tuple[float, float, float] | None = None,
+    dtype: Literal["f16", "f32"] = "f16",
+    arrays: Sequence[Literal["ends", "features", "target"]] | None = None,
+    shard: int = 64,
+    progress: _Progress | None = None,
+) -> None: ...
+def live_input(ends: npt.ArrayLike, radar: Radar | None = None) -> dict[str, Any]: ...
 def maps(samples: npt.ArrayLike, radar: Radar | None = None, *, normalisation: str = "min-max") -> Maps: ...
 def method(name: str) -> Method: ...
 def methods() -> list[str]: ...
@@ -275,8 +297,10 @@ def evaluate(
     on_row: Callable[[dict[str, Any]], object] | None = None,
     progress: _Progress | None = None,
     path: _Path | None = None,
+    only: Sequence[tuple[str, int, str]] | None = None,
 ) -> list[dict[str, Any]]: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...
+def write_rows(path: _Path, rows: Sequence[dict[str, Any]]) -> None: ...
 def cramer_rao(
     reflectors: npt.ArrayLike,
     snr_db: float,

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import TYPE_CHECKING, Any, Literal, Sequence
 
 from ._apertura import Examples
 
 if TYPE_CHECKING:
     import torch as _torch
 
-_TENSORS = ("ends", "fine", "coarse", "rows", "scalars", "target")
+_TENSORS = {"live": ("ends", "fine", "coarse", "rows", "scalars", "target"), "thesis": ("ends", "mag_phase", "target")}
 
 
 class Scenes:
@@ -28,10 +28,12 @@ class Scenes:
         floor: What lies beneath all scenes: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
         thermal: (share, lowest dB, highest dB), in place of `floor`: this share of the scenes lies over thermal noise at a ratio drawn between
             the two, the others over the thesis' floor.
+        network: Whose input the examples have: "live" or "thesis".
 
     An example is a dict of tensors: `ends` complex64 `[2, 12, 512]`, the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32
     `[10, 512, 64]`, `rows` float32 `[6, 512]` and `scalars` float32 `[2]`, and `target` float32 `[512, 1024]`, decades of amplitude of the
-    whole array's map. Ends and target are relative to the samples' mean power.
+    whole array's map. With `network="thesis"` the input is `mag_phase` float32 `[4, 512, 1024]`. Ends and target are relative to the samples'
+    mean power; the rounding of complex64 covers the thesis' floor in `ends`, and in nothing else.
 
     Raises:
         ValueError: A name is unknown or a number can't be used.
@@ -46,7 +48,11 @@ class Scenes:
         purpose: str = "training",
         floor: str = "thesis",
         thermal: tuple[float, float, float] | None = None,
+        network: Literal["live", "thesis"] = "live",
     ) -> None:
+        if network not in _TENSORS:
+            raise ValueError(f'network is {network!r}; expected "live" or "thesis"')
+        self._network = network
         length = operator.index(length)
         if not 1 <= length <= 1 << 32:
             raise ValueError(f"length is {length}; expected 1 to {1 << 32}")
@@ -76,12 +82,15 @@ class Scenes:
         """Several examples, made in parallel: what a DataLoader asks for."""
         import torch
 
-        made = self._made().batch([self._number(index) for index in indices])
-        return [{name: torch.from_numpy(example[name]) for name in _TENSORS} for example in made]
+        return [{name: torch.from_numpy(example[name]) for name in _TENSORS[self._network]} for example in self._batch(indices)]
 
     def arrays(self, index: int) -> dict[str, Any]:
         """Example `index` as NumPy arrays, with its `gain`, `kind` and `floor`; this needs no PyTorch."""
-        return self._made().batch([self._number(index)])[0]
+        return self._batch([index])[0]
+
+    def _batch(self, indices: Sequence[int]) -> list[dict[str, Any]]:
+        numbers = [self._number(index) for index in indices]
+        return self._made().batch(numbers, mag_phase=self._network == "thesis")
 
     def _number(self, index: int) -> int:
         number = operator.index(index)
@@ -95,7 +104,7 @@ class Scenes:
         return self._examples
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"_length": self._length, "_arguments": self._arguments, "_examples": None}
+        return {"_length": self._length, "_network": self._network, "_arguments": self._arguments, "_examples": None}
 
     def __repr__(self) -> str:
         given = ", ".join(f"{name}={value!r}" for name, value in self._arguments.items())

@@ -6,10 +6,10 @@ use crate::radar::{Radar, or_default};
 use crate::scene::{named, purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError};
-use apertura::evaluate::rows::{Part, Row, read_rows as read, write_rows};
+use apertura::evaluate::rows::{self, Part, Row, read_rows as read, write_rows};
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::{Metrics, Roc};
-use apertura::files::write_bytes;
+use apertura::files::{write_atomically, write_bytes};
 use apertura::maps::RangeAngleMap;
 use apertura::reconstruct::Reconstructor;
 use apertura::scene::generate::Kind;
@@ -17,6 +17,7 @@ use ndarray::{Array1, Array2};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -116,6 +117,7 @@ pub fn roc<'py>(
 ///     on_row: Called with each row as it is found.
 ///     progress: Called with the part that is done, 0 to 1.
 ///     path: A CSV file that all rows are written to in one step, in the program's format.
+///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
 /// Returns:
 ///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row.
@@ -125,7 +127,7 @@ pub fn roc<'py>(
 ///     OSError: `path` can't be written.
 #[pyfunction]
 #[pyo3(signature = (methods, sets, *, count=100, seed=0, floor="thesis", normalisation="min-max", purpose="test", reading="program",
-                    radar=None, on_row=None, progress=None, path=None))]
+                    radar=None, on_row=None, progress=None, path=None, only=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn evaluate<'py>(
     py: Python<'py>,
@@ -141,6 +143,7 @@ pub fn evaluate<'py>(
     on_row: Option<&Bound<'py, PyAny>>,
     progress: Progress<'_, 'py>,
     path: Option<PathBuf>,
+    only: Option<Vec<(String, u32, String)>>,
 ) -> PyResult<Bound<'py, PyList>> {
     if count == 0 {
         return Err(value("count is 0; expected at least 1"));
@@ -162,12 +165,27 @@ pub fn evaluate<'py>(
     let known: Result<Vec<Arc<dyn Reconstructor>>, _> = methods.iter().map(|m| apertura::methods::by_name(m)).collect();
     let known = known.map_err(value)?;
     let methods: Vec<&dyn Reconstructor> = known.iter().map(AsRef::as_ref).collect();
-    let all = f64::from(count) * sets.len() as f64 * methods.len() as f64;
+    let only: Option<HashSet<_>> = only.map(|only| only.into_iter().collect());
+    let all =
+        only.as_ref().map_or(f64::from(count) * sets.len() as f64 * methods.len() as f64, |only| only.len() as f64);
+    let origins = campaign.origins(&sets, &methods).map_err(value)?;
+    check_only(only.as_ref(), &sets, &methods, count)?;
+    // Most scenes of a long run are left out by their number alone.
+    let numbers = only.iter().flatten().map(|(_, index, _)| *index);
+    let between = numbers.clone().min().unwrap_or(1)..=numbers.max().unwrap_or(0);
+    let is_left_out = |set: &str, index: u32, method: &str| {
+        only.as_ref().is_some_and(|only| {
+            !between.contains(&index) || !only.contains(&(set.to_owned(), index, method.to_owned()))
+        })
+    };
     let mut done = 0.0;
     let rows = work::run_watched(
         py,
         None,
-        |task, finder| campaign.run(&sets, &methods, task, |row| finder.found(row.clone())),
+        |task, finder| {
+            let on_row = |row: &Row, _: &_, _: &_| finder.found(row.clone());
+            campaign.run_rest(&sets, &methods, &origins, &is_left_out, task, on_row)
+        },
         |row| {
             done += 1.0;
             if let Some(on_row) = on_row {
@@ -186,6 +204,53 @@ pub fn evaluate<'py>(
         write_bytes(&path, &text).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
     }
     list_of(py, &rows)
+}
+
+/// Rows that are asked for and can't be.
+fn check_only(
+    only: Option<&HashSet<(String, u32, String)>>,
+    sets: &[SceneSet],
+    methods: &[&dyn Reconstructor],
+    count: u32,
+) -> PyResult<()> {
+    for (set, index, method) in only.into_iter().flatten() {
+        let known = sets.iter().any(|s| s.to_string() == *set) && methods.iter().any(|m| m.name() == method);
+        if !known || *index >= count {
+            return Err(value(format!("only: scene {index} of set {set} by {method} is no row of this run")));
+        }
+    }
+    Ok(())
+}
+
+/// Writes rows in the program's format, in one step.
+///
+/// Args:
+///     path: A CSV file.
+///     rows: Rows as `evaluate` and `read_rows` give them.
+///
+/// Raises:
+///     ValueError: Something is no row; the message names its line in the file and the column.
+///     OSError: The file can't be written.
+#[pyfunction]
+#[pyo3(name = "write_rows")]
+pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>) -> PyResult<()> {
+    let names: Vec<&str> =
+        rows::Column::ALL.map(rows::Column::name).into_iter().chain(Part::ALL.map(Part::name)).collect();
+    let mut text = names.join(",");
+    for row in &rows {
+        text.push('\n');
+        for (i, name) in names.iter().enumerate() {
+            let cell = row.get_item(name)?.filter(|cell| !cell.is_none());
+            let cell = cell.map_or_else(|| Ok(String::new()), |cell| cell.str().map(|s| s.to_string()))?;
+            if i > 0 {
+                text.push(',');
+            }
+            text.push_str(&format!("\"{}\"", cell.replace('"', "\"\"")));
+        }
+    }
+    text.push('\n');
+    let rows = work::run(py, None, |_| read(text.as_bytes()))?.map_err(value)?;
+    write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
 }
 
 /// Reads the rows of `apertura evaluate --rows`.

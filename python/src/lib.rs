@@ -27,6 +27,8 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<methods::Reconstruction>()?;
     module.add_class::<recording::Recording>()?;
     module.add_class::<examples::Examples>()?;
+    module.add_function(wrap_pyfunction!(examples::dataset, module)?)?;
+    module.add_function(wrap_pyfunction!(examples::live_input, module)?)?;
     module.add_function(wrap_pyfunction!(maps::maps, module)?)?;
     module.add_function(wrap_pyfunction!(methods::method, module)?)?;
     module.add_function(wrap_pyfunction!(methods::methods, module)?)?;
@@ -34,6 +36,7 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(evaluate::roc, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::read_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::write_rows_to, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::cramer_rao, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::ambiguity, module)?)?;
     module.add_function(wrap_pyfunction!(objects::built_elements, module)?)?;

@@ -5,12 +5,14 @@ use crate::errors::value;
 use crate::radar::{Radar, or_default};
 use crate::scene::named;
 use crate::work::{self, Progress};
+use apertura::external::{self, CommandLine};
 use apertura::maps::Normalisation;
 use apertura::reconstruct::{self, NoisePrior, Reconstructor, Request};
 use ndarray::{Array1, Array2};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// A reconstruction method: the two ends' samples in, an estimate of the whole array's map out.
 #[pyclass(module = "apertura", frozen)]
@@ -45,6 +47,28 @@ pub fn methods() -> Vec<&'static str> {
 
 #[pymethods]
 impl Method {
+    /// A program of one's own as a method: starts the command once, and knows it by the name that it says from then on
+    /// (docs/own-network.md).
+    ///
+    /// Args:
+    ///     command: Program and arguments, such as "python my_network.py".
+    ///     seconds: How long it may take to start, and for each answer.
+    ///
+    /// Raises:
+    ///     ValueError: The command can't be started or is no method; the message has the end of its standard error.
+    #[staticmethod]
+    #[pyo3(signature = (command, *, seconds=120.0))]
+    fn of_command(py: Python<'_>, command: &str, seconds: f64) -> PyResult<Self> {
+        if !(seconds > 0.0 && seconds <= 86_400.0) {
+            return Err(value(format!("seconds is {seconds}; expected above 0, to 86400")));
+        }
+        let line: CommandLine = command.parse().map_err(value)?;
+        let started = work::run(py, None, |task| external::start(line, Duration::from_secs_f64(seconds), task))?;
+        let method: Arc<dyn Reconstructor> = Arc::new(started.map_err(value)?);
+        apertura::methods::add(method.clone()).map_err(value)?;
+        Ok(Method(method))
+    }
+
     /// Short name.
     #[getter]
     fn name(&self) -> &'static str {

@@ -6,11 +6,14 @@ use crate::maps::Maps;
 use crate::objects;
 use crate::radar::Radar;
 use crate::work::{self, Progress};
+use apertura::evaluate::TARGET_ETA;
 use apertura::maps::Normalisation;
+use apertura::picture::ColourMap;
 use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::presets::{ALL, Preset};
 use apertura::scene::{self, Disturbances};
+use apertura::share::{Part, Shared, View};
 use apertura::signal::{Floor, Unfinished, simulate_for};
 use numpy::PyArray2;
 use pyo3::exceptions::PyTypeError;
@@ -201,6 +204,35 @@ impl Scene {
     ///     ValueError: It holds a number that TOML can't hold (an integer of 2^63 or more).
     fn to_toml(&self) -> PyResult<String> {
         to_toml(&self.0).map_err(value)
+    }
+
+    /// The scene as a line of text, as *Copy scene as text* in the window writes it: `apertura TEXT` opens it, and so does a page behind `#`.
+    ///
+    /// Args:
+    ///     floor: What lies beneath the reflectors.
+    ///     normalisation: How the maps are normalised.
+    ///     method: The method that is shown.
+    ///
+    /// Raises:
+    ///     ValueError: A name is unknown, or the scene is too large for a text.
+    #[pyo3(signature = (*, floor="thesis", normalisation="min-max", method="live"))]
+    fn to_text(&self, floor: &str, normalisation: &str, method: &str) -> PyResult<String> {
+        apertura::methods::by_name(method).map_err(value)?;
+        let view = View {
+            floor: named(floor)?,
+            normalisation: named(normalisation)?,
+            colours: ColourMap::default(),
+            cartesian: false,
+            range_angle_part: Part::default(),
+            cartesian_part: Part::default(),
+            target_eta: TARGET_ETA,
+            eta: None,
+            method: method.to_owned(),
+            marks: false,
+            theory: false,
+            lesson: None,
+        };
+        Shared { file: self.0.clone(), view }.to_text().map_err(value)
     }
 
     /// The same scene with other fields, named as in the constructor.

@@ -1,5 +1,7 @@
 """Whatever is wrong is an exception with the library's words, never an abort or a hang."""
 
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -158,3 +160,49 @@ def test_an_array_that_changes_meanwhile_was_copied():
         ends *= 1.0
     thread.join(60)
     assert len(done) == 1
+
+
+SMALL_DISK = """
+import os, resource, signal, sys
+import apertura as ap
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, 1 << 16))
+rows = ap.evaluate(["baseline"], ["1"], count=1)
+for write in (
+    lambda: ap.dataset("data", [1], count=1),
+    lambda: ap.write_rows("rows.csv", rows * 1 + [{**rows[0], "index": i} for i in range(1, 2000)]),
+    lambda: ap.Scene.of_points([[1.0, 2.0 + 0.001 * i] for i in range(5000)]).save("scene.toml"),
+):
+    try:
+        write()
+    except OSError as error:
+        print("told:", error)
+print(sorted(name for _, _, names in os.walk(".") for name in names))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such limits")
+def test_a_disk_without_room_is_told_and_leaves_no_part(tmp_path):
+    found = subprocess.run([sys.executable, "-c", SMALL_DISK], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    lines = found.stdout.splitlines()
+    assert found.returncode == 0 and [line[:5] for line in lines[:3]] == ["told:"] * 3, found
+    assert "rows.csv" in lines[1] and "scene.toml" not in lines[3] and "rows.csv" not in lines[3]
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [ENDS[:, :, :-1], ENDS[0], np.zeros((0, 0, 0)), np.full((2, 8, 32), None), np.full((2, 8, 32), np.nan), "text"],
+)
+def test_unusable_samples_have_no_input(ends):
+    with pytest.raises(ValueError):
+        ap.live_input(ends, SMALL)
+
+
+def test_the_live_network_s_input_is_for_its_radar():
+    with pytest.raises(ValueError, match="live"):
+        ap.live_input(ENDS, SMALL)
+    ends = ap.Scene.of_points([[0.0, 9.0]]).simulate().ends
+    strided = np.zeros((2, 24, 512), complex)
+    strided[:, ::2] = ends
+    one, other = ap.live_input(ends), ap.live_input(strided[:, ::2])
+    assert all(np.array_equal(one[name], other[name]) for name in one)

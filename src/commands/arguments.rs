@@ -16,6 +16,15 @@ pub struct FloorArgs {
     pub floor: Floor,
 }
 
+/// The methods that were named, or else those of one's own, or else `usual`.
+pub fn chosen(named: &[String], own: &[&'static str], usual: &str) -> Vec<String> {
+    match (named, own) {
+        ([], []) => vec![usual.to_owned()],
+        ([], own) => own.iter().map(|name| (*name).to_owned()).collect(),
+        (named, _) => named.to_vec(),
+    }
+}
+
 /// Parses `one-way` or `two-way`.
 pub fn carrier() -> impl TypedValueParser<Value = Carrier> {
     PossibleValuesParser::new(["one-way", "two-way"]).map(|name| match name.as_str() {

@@ -2,6 +2,7 @@
 
 use super::arguments::{self, FloorArgs};
 use super::input::Input;
+use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::maps::archive::{write_maps, write_recorded_maps};
@@ -54,6 +55,9 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
+    #[command(flatten)]
+    own: OwnMethodArgs,
+
     /// Picture: colours of the maps
     #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
     colours: ColourMap,
@@ -71,6 +75,7 @@ impl Args {
     /// Simulates the scene, or reads the recording, and writes its maps.
     pub fn run(self) -> Result<(), CommandError> {
         let output = Output::of_path(&self.output)?;
+        self.own.start()?;
         match Input::load(&self.input)? {
             Input::Scene(_) if self.explain.is_some() => {
                 return Err(CommandError::Usage(

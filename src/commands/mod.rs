@@ -6,6 +6,8 @@
 mod arguments;
 mod bench;
 mod bounds;
+#[cfg(feature = "live")]
+mod dataset;
 mod error;
 mod evaluate;
 mod figure;
@@ -19,6 +21,7 @@ mod maps;
 mod network_args;
 mod open;
 mod output;
+mod own_method;
 mod radar_arg;
 mod reconstruct;
 mod robustness;
@@ -59,6 +62,8 @@ const ENVIRONMENT: &str = "Environment:
 enum Command {
     Bench(bench::Args),
     Bounds(bounds::Args),
+    #[cfg(feature = "live")]
+    Dataset(dataset::Args),
     Evaluate(evaluate::Args),
     #[cfg(feature = "network")]
     Figures(figures::Args),
@@ -80,6 +85,8 @@ impl Command {
         match self {
             Command::Bench(args) => args.run(),
             Command::Bounds(args) => args.run(),
+            #[cfg(feature = "live")]
+            Command::Dataset(args) => args.run(),
             Command::Evaluate(args) => args.run(),
             #[cfg(feature = "network")]
             Command::Figures(args) => args.run(),

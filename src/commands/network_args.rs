@@ -1,6 +1,7 @@
 //! Arguments that choose a network's weights and what computes it.
 
 use super::CommandError;
+use super::own_method::OwnMethodArgs;
 use crate::methods;
 use crate::reconstruct::Reconstructor;
 use std::sync::Arc;
@@ -19,9 +20,20 @@ pub struct NetworkArgs {
     #[cfg(feature = "network")]
     #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", crate::network::backend::Backend::NAMES.join(", ")))]
     backend: crate::network::backend::Backend,
+
+    #[command(flatten)]
+    own: OwnMethodArgs,
 }
 
 impl NetworkArgs {
+    /// Starts the commands of --method-command, which are methods then; their names.
+    ///
+    /// # Errors
+    /// [`CommandError`] for a command that is no method.
+    pub fn start_own(&self) -> Result<Vec<&'static str>, CommandError> {
+        self.own.start()
+    }
+
     /// The methods called `names`, networks with the chosen weights and backend.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! No subcommand: the app, or a picture where there is no display.
 
 use super::input::Input;
+use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::methods;
@@ -21,6 +22,9 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
 
+    #[command(flatten)]
+    own: OwnMethodArgs,
+
     /// Write the app's time for every frame to this CSV file
     #[arg(long, value_name = "FILE")]
     pub frame_log: Option<PathBuf>,
@@ -31,8 +35,10 @@ const PICTURE: &str = "apertura.png";
 
 impl Args {
     /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
-    pub fn run(self) -> Result<(), CommandError> {
+    pub fn run(mut self) -> Result<(), CommandError> {
         let started = Instant::now();
+        let own = self.own.start()?;
+        self.method = self.method.or_else(|| own.first().map(|name| (*name).to_owned()));
         let input = match &self.scene {
             Some(path) => Input::load(path)?,
             None => Input::Scene(Box::new(presets::default_scene())),

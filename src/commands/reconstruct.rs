@@ -38,7 +38,7 @@ pub struct Args {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
-    /// Reconstruction method [default: live for table 3.1, iaa for any other radar]
+    /// Reconstruction method [default: that of --method-command, or else live for table 3.1, or else iaa]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
@@ -59,8 +59,9 @@ impl Args {
             let name = self.output.display();
             return Err(CommandError::Usage(format!("{name}: an archive is written; expected a name ending in .npz")));
         }
+        let own = self.network.start_own()?;
         // A name that is wrong is told before anything is read.
-        let asked = self.method.as_ref().map(|name| self.method(name)).transpose()?;
+        let asked = self.method.as_deref().or(own.first().copied()).map(|name| self.method(name)).transpose()?;
         let input = self.input()?;
         let radar = &input.radar;
         let method = asked.map_or_else(|| self.method(methods::preferred_for(radar).name()), Ok)?;

@@ -2,6 +2,7 @@
 
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::figure::{Drawn, Figure, save, save_numbers, tick};
+use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::evaluate::{Estimate, Robustness, RobustnessRow};
 use crate::files::write_bytes;
@@ -30,6 +31,9 @@ pub struct Args {
     /// Methods, separated by commas
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "matched-filter,capon,omp,iaa,sbl")]
     method: Vec<String>,
+
+    #[command(flatten)]
+    own: OwnMethodArgs,
 
     /// Standard deviation of the elements' gain at scale 1, decibels
     #[arg(long, value_name = "DB", default_value_t = 0.5, value_parser = real(0.0..=MOST))]
@@ -81,6 +85,7 @@ const MOST: f64 = 180.0;
 impl Args {
     /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
+        self.own.start()?;
         let methods: Vec<Arc<dyn Reconstructor>> = self
             .method
             .iter()

@@ -1,6 +1,6 @@
 //! `apertura worsen`: near a scene, one on which a method does worse; or the smallest move after which it is right.
 
-use super::arguments::{FloorArgs, real, seed, whole};
+use super::arguments::{FloorArgs, chosen, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::worsen::{Aim, Finding, Measure, Outcome, Search, summary};
@@ -22,9 +22,9 @@ pub struct Args {
     /// Scene to start from (.toml or .npz)
     scene: PathBuf,
 
-    /// Reconstruction method
-    #[arg(long, value_name = "NAME")]
-    method: String,
+    /// Reconstruction method [default: that of --method-command]
+    #[arg(long, value_name = "NAME", required_unless_present = "method_command")]
+    method: Option<String>,
 
     /// The figure that should get worse
     #[arg(long, value_name = "squared-error|missed|ghosts", default_value_t)]
@@ -74,7 +74,8 @@ impl Args {
         file::Format::of_path(&self.output).map_err(CommandError::failed)?;
         let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));
         let SceneFile { scene, radar } = file::load(&self.scene).map_err(CommandError::failed)?;
-        let methods = self.network.methods(std::slice::from_ref(&self.method))?;
+        let own = self.network.start_own()?;
+        let methods = self.network.methods(&chosen(self.method.as_slice(), &own, ""))?;
         let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
         let search = Search {
             radar: radar.clone(),

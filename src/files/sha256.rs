@@ -15,6 +15,11 @@ pub fn of_file(path: &Path) -> io::Result<String> {
     Ok(hexadecimal(digest))
 }
 
+/// SHA-256 of these bytes.
+pub fn of_bytes(bytes: &[u8]) -> String {
+    hexadecimal(Sha256::new_with_prefix(bytes))
+}
+
 /// SHA-256 of several pieces of bytes. The length of each piece counts too, so that pieces can't run into each other.
 pub fn of_pieces<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> String {
     let mut digest = Sha256::new();

@@ -4,6 +4,7 @@ use crate::radar::Decibels;
 use crate::signal::Floor;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::fmt;
 
 /// Which floor a training scene has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +20,15 @@ pub enum Floors {
         /// Highest ratio, above `from`; scenes are uniform in between.
         to: Decibels,
     },
+}
+
+impl fmt::Display for Floors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Floors::Fixed(floor) => floor.fmt(f),
+            Floors::Thermal { share, from, to } => write!(f, "thermal={share},{},{}", from.0, to.0),
+        }
+    }
 }
 
 impl Floors {

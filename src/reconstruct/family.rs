@@ -3,6 +3,8 @@
 /// A kind of method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
+    /// Programs of one's own.
+    Own,
     /// Learned from scenes.
     Network,
     /// Places reflectors one by one, off any grid.
@@ -15,11 +17,12 @@ pub enum Family {
 
 impl Family {
     /// All, in the order in which lists show them.
-    pub const ALL: [Family; 4] = [Family::Network, Family::Search, Family::Sparse, Family::Classical];
+    pub const ALL: [Family; 5] = [Family::Own, Family::Network, Family::Search, Family::Sparse, Family::Classical];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
+            Family::Own => "Your own",
             Family::Network => "Networks",
             Family::Search => "Search",
             Family::Sparse => "Sparse",
@@ -30,6 +33,7 @@ impl Family {
     /// What its methods have in common.
     pub fn describe(self) -> &'static str {
         match self {
+            Family::Own => "computed by programs of your own (--method-command)",
             Family::Network => "learned from simulated scenes",
             Family::Search => "place reflectors one by one, off the grid",
             Family::Sparse => "explain the samples with few cells or directions",

@@ -14,6 +14,7 @@ mod mouse;
 mod others;
 
 use super::arguments::whole;
+use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
 use crate::benchmark::one_thread::measure;
@@ -73,6 +74,9 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
     methods: bool,
 
+    #[command(flatten)]
+    own: OwnMethodArgs,
+
     /// Measure what the window computes most instead: three maps, and the live network; with RAYON_NUM_THREADS=1 on one thread, as a page
     /// does by ?measure. With --json a list of name and milliseconds (median)
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "every_simd", "output"])]
@@ -104,6 +108,7 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let repeats = self.repeats as usize;
         if self.methods {
+            self.own.start()?;
             return methods::run(self.count, self.json, self.output.as_deref());
         }
         #[cfg(feature = "network")]

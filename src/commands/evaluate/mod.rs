@@ -45,8 +45,8 @@ use std::time::Duration;
 /// median_milliseconds and near_best (null with one method). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Methods, separated by commas
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "baseline")]
+    /// Methods, separated by commas [default: those of --method-command, or else baseline]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     method: Vec<String>,
 
     /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, noise), separated by commas
@@ -141,7 +141,8 @@ impl Args {
     }
 
     fn measure(&self) -> Result<Vec<Row>, CommandError> {
-        let methods = self.network.methods(&self.method)?;
+        let own = self.network.start_own()?;
+        let methods = self.network.methods(&arguments::chosen(&self.method, &own, "baseline"))?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let (campaign, sets) = (self.campaign(), self.sets()?);
         let origins = campaign.origins(&sets, &methods).map_err(CommandError::failed)?;

@@ -14,6 +14,7 @@
 //! |---|---|
 //! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
 //! | [`examples`] | inputs and targets of random scenes |
+//! | [`dataset`] | the same as files |
 //! | `config` | how large the network is |
 //! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
 //! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
@@ -22,6 +23,7 @@
 mod capon;
 mod coarse;
 mod config;
+pub mod dataset;
 pub mod engine;
 pub mod examples;
 pub mod features;

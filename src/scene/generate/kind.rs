@@ -140,10 +140,11 @@ impl fmt::Display for Kind {
 impl FromStr for Kind {
     type Err = String;
 
-    /// Reads the name of one of [`Kind::all`].
+    /// Reads what [`Display`](fmt::Display) writes.
     fn from_str(s: &str) -> Result<Self, String> {
         let wanted = s.trim();
-        Kind::all().find(|k| k.to_string() == wanted).ok_or_else(|| {
+        let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
+        Kind::all().chain(counted).find(|k| k.to_string() == wanted).ok_or_else(|| {
             let names: Vec<String> = Kind::BEYOND.iter().chain(&[Kind::Noise]).map(Kind::to_string).collect();
             format!("there are no scenes called \"{s}\"; expected test set 1, 2 or 3, or {}", names.join(", "))
         })
@@ -162,9 +163,10 @@ mod tests {
 
     #[test]
     fn every_name_leads_back_to_its_kind() {
-        for kind in Kind::all() {
+        for kind in Kind::all().chain([Kind::Points(1), Kind::Mixed(4)]) {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
+        assert!("points-5".parse::<Kind>().is_err());
         let error = "wall".parse::<Kind>().unwrap_err();
         assert!(error.contains("\"wall\"") && error.contains("walls, spacings"), "{error}");
     }

@@ -1,0 +1,49 @@
+"""Samples a second of `apertura.torch.Scenes`, beside the bare simulator: `python samples_a_second.py [--count N] [--workers 0,2]`.
+
+The bare simulator makes the samples of all elements and nothing else. The dataset adds both ends' features and the map of the whole array. Needs PyTorch
+for workers; measure on a machine that does nothing else.
+"""
+import argparse
+import time
+
+import apertura as ap
+
+MIXTURE = "1=4,2=12,3=14,clusters=9,walls=12,crowd=15"
+
+
+def rate(count, work):
+    began = time.perf_counter()
+    work()
+    return count / (time.perf_counter() - began)
+
+
+def simulate(count, kinds):
+    for index in range(count):
+        ap.Scene.random(kinds[index % len(kinds)], 1, index // len(kinds), purpose="training").simulate()
+
+
+def loaded(data, count, workers):
+    import torch
+
+    loader = torch.utils.data.DataLoader(torch.utils.data.Subset(data, range(count)), batch_size=4, num_workers=workers)
+    for _ in loader:
+        pass
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--workers", default="0,2")
+    given = parser.parse_args()
+    data = ap.torch.Scenes(MIXTURE, 1)
+    # The scenes of the dataset, so that both do the same work.
+    kinds = [data.arrays(index)["kind"] for index in range(64)]
+    bare = rate(given.count, lambda: simulate(given.count, kinds))
+    print(f"bare simulator: {bare:.1f} samples a second")
+    for workers in map(int, given.workers.split(",")):
+        found = rate(given.count, lambda: loaded(data, given.count, workers))
+        print(f"dataset, {workers} workers: {found:.1f} samples a second, {found / bare:.2f} of the bare simulator")
+
+
+if __name__ == "__main__":
+    main()

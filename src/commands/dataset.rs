@@ -1,0 +1,111 @@
+//! `apertura dataset`: examples to train on as files.
+
+use super::arguments::{real, seed, whole};
+use super::{CommandError, print};
+use crate::network::floors::Floors;
+use crate::network::live::dataset::{DatasetError, DatasetRequest, Part, Precision, write};
+use crate::radar::{Bytes, Decibels};
+use crate::scene::generate::Kind;
+use crate::signal::Floor;
+use crate::task::Task;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Write examples for training as files: samples of both ends, the live network's input, and the map of the whole array
+///
+/// DIR gets train, validation and test with shards of NumPy arrays, and manifest.json with the SHA-256 of each file. The scenes of the three
+/// never meet. The same arguments write the same files. docs/data.md leads from here to a training loop.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Test sets 1 to 3 or other kinds of scenes, as `apertura evaluate` takes them, separated by commas
+    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', required = true)]
+    set: Vec<Kind>,
+
+    /// Scenes of each kind for training
+    #[arg(long, value_name = "N", value_parser = whole(1..=10_000_000u32))]
+    count: u32,
+
+    /// Scenes of each kind for validation [default: a tenth of --count]
+    #[arg(long, value_name = "N", value_parser = whole(0..=10_000_000u32))]
+    validation: Option<u32>,
+
+    /// Scenes of each kind for the test [default: a tenth of --count]
+    #[arg(long, value_name = "N", value_parser = whole(0..=10_000_000u32))]
+    test: Option<u32>,
+
+    /// Seed of the scenes
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
+    seed: u64,
+
+    /// Noise beneath all scenes: thesis, exact, snr=DB or dbm=LEVEL
+    #[arg(long, value_name = "FLOOR", default_value_t = Floor::Thesis)]
+    floor: Floor,
+
+    /// Fraction of the scenes over thermal noise of 10 to 60 dB; the others lie over the thesis' floor
+    #[arg(long, value_name = "PART", conflicts_with = "floor", value_parser = real(0.0..=1.0))]
+    thermal: Option<f64>,
+
+    /// Precision of features and target: f16 or f32. Ends are always complex128
+    #[arg(long, value_name = "f16|f32", default_value = "f16")]
+    dtype: Precision,
+
+    /// What to write
+    #[arg(long, value_name = "ends,features,target", value_delimiter = ',', default_value = "ends,features,target")]
+    arrays: Vec<Part>,
+
+    /// Examples of a shard; as many are in memory at once
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole(1..=4096u32))]
+    shard: u32,
+
+    /// Folder to write into: a new one, or an empty one
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+}
+
+/// Ratios of --thermal, those that the live network was trained at.
+const THERMAL: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
+
+/// How often the progress is drawn.
+const TICK: Duration = Duration::from_millis(100);
+
+impl Args {
+    /// Writes the dataset.
+    pub fn run(self) -> Result<(), CommandError> {
+        let tenth = self.count.div_ceil(10);
+        let [from, to] = THERMAL;
+        let request = DatasetRequest {
+            kinds: self.set,
+            counts: [self.count, self.validation.unwrap_or(tenth), self.test.unwrap_or(tenth)],
+            seed: self.seed,
+            floors: self.thermal.map_or(Floors::Fixed(self.floor), |share| Floors::Thermal { share, from, to }),
+            precision: self.dtype,
+            parts: self.arrays,
+            shard: self.shard,
+        };
+        let task = Task::default();
+        let bar = indicatif::ProgressBar::new(1000);
+        let written = std::thread::scope(|scope| {
+            let writing = scope.spawn(|| write(&self.output, &request, &task));
+            while !writing.is_finished() {
+                bar.set_position((1000.0 * task.progress()) as u64);
+                std::thread::sleep(TICK);
+            }
+            writing.join()
+        });
+        bar.finish_and_clear();
+        let manifest = written.unwrap_or_else(|panic| std::panic::resume_unwind(panic)).map_err(told)?;
+        let files = || manifest.splits.values().flatten().flat_map(|shard| shard.files.values());
+        let bytes: u64 = files().map(|file| file.bytes).sum();
+        let examples: u32 = manifest.splits.values().flatten().map(|shard| shard.examples).sum();
+        let (count, bytes) = (files().count(), Bytes(bytes));
+        print(&format!("wrote {}: {examples} examples in {count} files, {bytes}", self.output.display()))
+    }
+}
+
+fn told(error: DatasetError) -> CommandError {
+    match error {
+        DatasetError::File { path, source } => CommandError::File { path, source },
+        DatasetError::Request(message) => CommandError::Usage(message),
+        other => CommandError::failed(other),
+    }
+}

@@ -1,0 +1,381 @@
+//! A command as a reconstruction method.
+
+use super::command::CommandLine;
+use super::message::{self, Answer, Line, Map};
+use super::process::{Failure, Process};
+use crate::maps::{LogMap, RangeAngleMap};
+use crate::radar::Radar;
+use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use crate::signal::TwoEnds;
+use crate::task::Task;
+use std::io;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::time::Duration;
+
+/// Threshold where neither the process nor its answers have one: the thesis'.
+const USUAL_ETA: f32 = 0.9;
+
+/// Longest name, characters.
+const LONGEST_NAME: usize = 40;
+
+/// Longest of the other texts, characters.
+const LONGEST_TEXT: usize = 400;
+
+/// How often somebody looks whether the process is free.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// Why a command is no method.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The system can't start it.
+    #[error("{command}: it can't be started: {source}")]
+    System {
+        /// The command.
+        command: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// It is no method: it hangs, it ended, it answers something else.
+    #[error("{command}: {reason}")]
+    NoMethod {
+        /// The command.
+        command: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A method that a process of its own computes, one request at a time.
+pub struct ExternalMethod {
+    command: CommandLine,
+    about: About,
+    weights: Option<Weights>,
+    /// For each answer, and for the start.
+    limit: Duration,
+    process: Mutex<State>,
+}
+
+/// The process, and the number of the last question.
+struct State {
+    process: Option<Process>,
+    asked: u64,
+}
+
+/// Starts a command and asks it who it is. Starting and each answer may take `limit`. `task` stops the start.
+///
+/// # Errors
+/// [`StartError`] with the end of the process' standard error.
+pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<ExternalMethod, StartError> {
+    let fails = |reason: String| StartError::NoMethod { command: command.to_string(), reason };
+    let mut process =
+        Process::start(&command).map_err(|source| StartError::System { command: command.to_string(), source })?;
+    let line = greeted(&mut process, task, limit).map_err(|failure| match failure {
+        Failure::Cancelled => fails("cancelled".to_owned()),
+        Failure::Broken(reason) => fails(reason),
+    })?;
+    let (about, weights) = who(line).map_err(|why| fails(process.with_last_words(why, Duration::ZERO)))?;
+    let state = State { process: Some(process), asked: 0 };
+    Ok(ExternalMethod { command, about, weights, limit, process: Mutex::new(state) })
+}
+
+/// What a process that was just started says of itself.
+fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<Line, Failure> {
+    process.ask(message::hello(), 0);
+    let Answer { line, .. } = process.wait(task, limit)?;
+    match line.error {
+        Some(error) => Err(Failure::Broken(process.with_last_words(format!("it answers: {error}"), Duration::ZERO))),
+        None => Ok(line),
+    }
+}
+
+/// Who the process is, with texts that live as long as the program.
+fn who(line: Line) -> Result<(About, Option<Weights>), String> {
+    let Line { name, description, told, weights, eta, .. } = line;
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_plain) {
+        let shown = name.escape_debug();
+        return Err(format!(
+            "its name is \"{shown}\"; expected 1 to {LONGEST_NAME} letters, digits, \"-\", \"_\" or \".\""
+        ));
+    }
+    let eta = eta.unwrap_or(USUAL_ETA);
+    check_eta(eta)?;
+    if weights.len() > LONGEST_NAME || !weights.chars().all(|c| c.is_ascii_hexdigit()) {
+        return Err(format!("its weights are \"{}\"; expected hexadecimal digits", weights.escape_debug()));
+    }
+    let text = |text: String, otherwise: &'static str| match text.trim() {
+        "" => otherwise,
+        text => &*text.chars().take(LONGEST_TEXT).collect::<String>().leak(),
+    };
+    let about = About {
+        name: name.leak(),
+        description: text(description, "a program of your own"),
+        told: text(told, "its program doesn't say"),
+        eta,
+    };
+    let weights = (!weights.is_empty()).then(|| Weights { sha256: weights, optimiser: String::new() });
+    Ok((about, weights))
+}
+
+fn check_eta(eta: f32) -> Result<(), String> {
+    if (0.0..=1.0).contains(&eta) {
+        return Ok(());
+    }
+    Err(format!("its threshold \"eta\" is {eta}; expected 0 to 1"))
+}
+
+impl ExternalMethod {
+    /// The process, once nobody else asks it.
+    fn state(&self, task: &Task) -> Result<MutexGuard<'_, State>, Failure> {
+        loop {
+            task.check()?;
+            match self.process.try_lock() {
+                Ok(state) => return Ok(state),
+                Err(TryLockError::Poisoned(state)) => return Ok(state.into_inner()),
+                Err(TryLockError::WouldBlock) => std::thread::sleep(LOOK),
+            }
+        }
+    }
+
+    /// Starts the process anew; it must be the same method.
+    fn started(&self, task: &Task) -> Result<Process, Failure> {
+        let mut process = Process::start(&self.command)
+            .map_err(|error| Failure::Broken(format!("{} can't be started: {error}", self.command)))?;
+        let line = greeted(&mut process, task, self.limit)?;
+        if line.name != self.about.name {
+            let was = self.about.name;
+            return Err(Failure::Broken(format!("its name is \"{}\" now; it was \"{was}\" before", line.name)));
+        }
+        Ok(process)
+    }
+
+    fn asked(&self, state: &mut State, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Answer, Failure> {
+        let task = &request.task;
+        if state.process.as_ref().is_none_or(|process| !process.is_ours()) {
+            state.process = Some(self.started(task)?);
+        }
+        let Some(process) = &mut state.process else { return Err(Failure::Broken("it isn't there".to_owned())) };
+        // Answers that nobody waited for come first.
+        while process.pending > 0 {
+            process.wait(task, self.limit)?;
+        }
+        state.asked += 1;
+        let question = message::question(state.asked, radar, ends, request);
+        process.ask(question, message::most_array_bytes(radar));
+        let answer = process.wait(task, self.limit)?;
+        if answer.line.id != state.asked {
+            let (found, id) = (answer.line.id, state.asked);
+            let why = format!("it answers question {found}; expected an answer to question {id}");
+            return Err(Failure::Broken(process.with_last_words(why, Duration::ZERO)));
+        }
+        Ok(answer)
+    }
+
+    /// What the answer says; the process answered wrongly where this fails.
+    fn read(&self, answer: &Answer, radar: &Radar, request: &Request) -> Result<Reconstruction, String> {
+        let lambda = match answer.map(radar)? {
+            Map::Lambda(lambda) => RangeAngleMap { lambda },
+            Map::Decades(decades) => LogMap::new(decades).normalise(request.normalisation),
+        };
+        answer.line.eta.map_or(Ok(()), check_eta)?;
+        Ok(Reconstruction { lambda, eta: answer.line.eta, ..Reconstruction::silence(radar) })
+    }
+}
+
+impl Reconstructor for ExternalMethod {
+    fn about(&self) -> About {
+        self.about
+    }
+
+    fn family(&self) -> Family {
+        Family::Own
+    }
+
+    fn finds_reflectors(&self) -> bool {
+        false
+    }
+
+    fn weights(&self) -> Option<Weights> {
+        self.weights.clone()
+    }
+
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let broken = |reason: String| self.unusable(format!("{reason}\n(the next request starts it anew)"));
+        let mut state = match self.state(&request.task) {
+            Ok(state) => state,
+            Err(Failure::Cancelled) => return Err(ReconstructError::Cancelled),
+            Err(Failure::Broken(reason)) => return Err(broken(reason)),
+        };
+        let answer = match self.asked(&mut state, radar, ends, request) {
+            Ok(answer) => answer,
+            Err(Failure::Cancelled) => return Err(ReconstructError::Cancelled),
+            Err(Failure::Broken(reason)) => {
+                state.process = None;
+                return Err(broken(reason));
+            }
+        };
+        if let Some(error) = &answer.line.error {
+            return Err(self.unusable(error.chars().take(LONGEST_TEXT).collect()));
+        }
+        self.read(&answer, radar, request).map_err(|why| {
+            let words = state.process.as_ref().map(|p| p.with_last_words(why.clone(), Duration::ZERO));
+            state.process = None;
+            broken(words.unwrap_or(why))
+        })
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::super::message::tests::{answer_bytes, npy, small};
+    use super::*;
+    use ndarray::Array2;
+    use num_complex::Complex64;
+    use std::fs;
+    use std::path::Path;
+    use std::time::Instant;
+
+    const HELLO: &str = r#"{"apertura":1,"name":"mine","description":"for tests","eta":0.25,"weights":"0f"}"#;
+
+    /// A shell script that greets, then runs `rest`; `rest` may `cat` the answers 1.bin, 2.bin and so on.
+    fn script(folder: &Path, rest: &str) -> CommandLine {
+        for id in 1..=3 {
+            let line = format!(r#"{{"apertura":1,"id":{id},"arrays":[{{"name":"lambda","bytes":LENGTH}}]}}"#);
+            let map = Array2::from_elem((4, 8), 0.25 * id as f32);
+            fs::write(folder.join(format!("{id}.bin")), answer_bytes(&line, &npy(&map))).unwrap();
+        }
+        let path = folder.join("script.sh");
+        fs::write(&path, format!("cd {}\necho start >> starts\necho '{HELLO}'\n{rest}\n", folder.display())).unwrap();
+        format!("sh {}", path.display()).parse().unwrap()
+    }
+
+    fn of(folder: &Path, rest: &str) -> ExternalMethod {
+        start(script(folder, rest), Duration::from_secs(20), &Task::default()).unwrap()
+    }
+
+    fn ask(method: &ExternalMethod, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        let radar = small();
+        let samples = Array2::from_elem((2, 4), Complex64::new(1.0, 0.5));
+        let ends = TwoEnds { first: samples.clone(), last: samples };
+        method.estimate(&radar, &ends, request)
+    }
+
+    fn refused(method: &ExternalMethod) -> String {
+        ask(method, &Request::default()).unwrap_err().to_string()
+    }
+
+    fn starts(folder: &Path) -> usize {
+        fs::read_to_string(folder.join("starts")).unwrap().lines().count()
+    }
+
+    #[test]
+    fn one_process_answers_every_request() {
+        let folder = tempfile::tempdir().unwrap();
+        let method = of(folder.path(), "cat 1.bin 2.bin 3.bin; cat > /dev/null");
+        assert_eq!((method.name(), method.eta(), method.description()), ("mine", 0.25, "for tests"));
+        assert_eq!(method.weights().unwrap().sha256, "0f");
+        for id in 1..=3 {
+            assert_eq!(ask(&method, &Request::default()).unwrap().lambda.lambda[[3, 7]], 0.25 * id as f32);
+        }
+        assert_eq!(starts(folder.path()), 1);
+    }
+
+    #[test]
+    fn a_process_that_ends_is_told_with_its_last_words() {
+        let folder = tempfile::tempdir().unwrap();
+        let method = of(folder.path(), "echo out of memory >&2; exit 3");
+        let told = refused(&method);
+        assert!(told.starts_with("mine: it ended (exit status: 3)") && told.contains("out of memory"), "{told}");
+    }
+
+    #[test]
+    fn the_next_request_starts_it_anew() {
+        let folder = tempfile::tempdir().unwrap();
+        let method = of(folder.path(), "[ -e there ] || { touch there; exit 1; }\ncat 2.bin; cat > /dev/null");
+        refused(&method);
+        assert_eq!(ask(&method, &Request::default()).unwrap().lambda.lambda[[0, 0]], 0.5);
+        assert_eq!(starts(folder.path()), 2);
+    }
+
+    #[test]
+    fn a_process_that_hangs_is_ended() {
+        let folder = tempfile::tempdir().unwrap();
+        // What a shell started would hold the pipes open.
+        let command = script(folder.path(), "echo thinking >&2; sleep 600 & echo $! > pid; wait");
+        let method = start(command, Duration::from_millis(400), &Task::default()).unwrap();
+        let told = refused(&method);
+        assert!(told.contains("no answer within 0.4 s") && told.contains("thinking"), "{told}");
+        let pid = fs::read_to_string(folder.path().join("pid")).unwrap();
+        let began = Instant::now();
+        let is_there = || fs::read_to_string(format!("/proc/{}/comm", pid.trim())).is_ok_and(|name| name == "sleep\n");
+        while cfg!(target_os = "linux") && is_there() {
+            assert!(began.elapsed() < Duration::from_secs(10), "what the process started goes on");
+        }
+    }
+
+    #[test]
+    fn rubbish_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = refused(&of(folder.path(), "echo 'epoch 1'; cat > /dev/null"));
+        assert!(told.contains("wrote \"epoch 1\" on its standard output"), "{told}");
+    }
+
+    #[test]
+    fn an_answer_to_another_question_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = refused(&of(folder.path(), "cat 2.bin; cat > /dev/null"));
+        assert!(told.contains("answers question 2; expected an answer to question 1"), "{told}");
+    }
+
+    #[test]
+    fn what_the_process_refuses_keeps_it_alive() {
+        let folder = tempfile::tempdir().unwrap();
+        let method =
+            of(folder.path(), r#"echo '{"apertura":1,"id":1,"error":"only 3 GHz"}'; cat 2.bin; cat > /dev/null"#);
+        assert_eq!(refused(&method), "mine: only 3 GHz");
+        assert!(ask(&method, &Request::default()).is_ok());
+        assert_eq!(starts(folder.path()), 1);
+    }
+
+    #[test]
+    fn a_cancelled_request_leaves_the_process_alive() {
+        let folder = tempfile::tempdir().unwrap();
+        let method = of(folder.path(), "until [ -e go ]; do sleep 0.05; done; cat 1.bin 2.bin; cat > /dev/null");
+        let request = Request::default();
+        let task = request.task.clone();
+        let waiting = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(200));
+            task.cancel();
+        });
+        assert_eq!(ask(&method, &request), Err(ReconstructError::Cancelled));
+        waiting.join().unwrap();
+        fs::write(folder.path().join("go"), "").unwrap();
+        assert_eq!(ask(&method, &Request::default()).unwrap().lambda.lambda[[0, 0]], 0.5, "the first is passed over");
+        assert_eq!(starts(folder.path()), 1);
+    }
+
+    #[test]
+    fn commands_that_are_no_methods_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let hello = |text: &str| {
+            let file = tempfile::NamedTempFile::new_in(folder.path()).unwrap().into_temp_path().keep().unwrap();
+            fs::write(&file, text).unwrap();
+            format!("sh -c 'cat {}; echo words >&2; cat > /dev/null'", file.display())
+        };
+        let named = |name: &str| hello(&format!("{{\"apertura\":1,\"name\":\"{name}\"}}\n"));
+        for (command, part) in [
+            ("/nowhere/program x".to_owned(), "/nowhere/program x: it can't be started"),
+            ("sh -c 'echo no module >&2; exit 1'".to_owned(), "no module"),
+            (named("two words"), "its name is \"two words\"; expected 1 to 40 letters"),
+            (named(""), "its name is \"\""),
+            (hello("{\"apertura\":1,\"name\":\"a\",\"eta\":3}\n"), "\"eta\" is 3; expected 0 to 1"),
+            (hello("{\"apertura\":1,\"error\":\"no GPU\"}\n"), "it answers: no GPU"),
+            (hello("{\"apertura\":4}\n"), "version 4"),
+        ] {
+            let Err(error) = start(command.parse().unwrap(), Duration::from_secs(20), &Task::default()) else {
+                panic!("{command} is no method");
+            };
+            assert!(error.to_string().contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds nobody up.
+
+use super::command::CommandLine;
+use super::message::{Answer, read_answer};
+use super::tail::Tail;
+use crate::platform::{Instant, spawn};
+use crate::task::{Cancelled, Task};
+use std::io::{self, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// How often somebody who waits looks whether the work was cancelled.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// How long an ended process' last words are waited for.
+const LAST_WORDS: Duration = Duration::from_millis(500);
+
+/// How long a process that was told to end may take.
+const FAREWELL: Duration = Duration::from_millis(500);
+
+/// Longest array of an answer that comes before a question says how long it may be, bytes.
+const MOST_UNASKED: u64 = 1 << 20;
+
+/// A running process.
+pub struct Process {
+    child: Child,
+    questions: Option<Sender<Vec<u8>>>,
+    answers: Receiver<io::Result<Option<Answer>>>,
+    stderr: Tail,
+    /// Longest array that an answer may have.
+    most_bytes: Arc<AtomicU64>,
+    /// Questions without an answer yet.
+    pub pending: u32,
+    /// Who started it: it is nothing to a fork of this program.
+    owner: u32,
+    /// When it was last asked with nothing pending, or last answered.
+    since: Instant,
+}
+
+/// Why there is no answer.
+#[derive(Debug)]
+pub enum Failure {
+    /// Somebody asked the work to stop; the process goes on.
+    Cancelled,
+    /// The process is of no further use.
+    Broken(String),
+}
+
+impl From<Cancelled> for Failure {
+    fn from(_: Cancelled) -> Self {
+        Failure::Cancelled
+    }
+}
+
+impl Process {
+    /// Starts the command.
+    ///
+    /// # Errors
+    /// Where the system can't start it.
+    pub fn start(command: &CommandLine) -> io::Result<Process> {
+        let [program, arguments @ ..] = command.words.as_slice() else {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "the command is empty"));
+        };
+        let mut to_start = Command::new(program);
+        to_start.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // A group of its own: what it starts ends with it.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut to_start, 0);
+        let mut child = to_start.spawn()?;
+        let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+        let (questions, asked) = channel::<Vec<u8>>();
+        let (said, answers) = channel();
+        let (tail, most_bytes) = (Tail::default(), Arc::new(AtomicU64::new(MOST_UNASKED)));
+        let process = Process {
+            child,
+            questions: Some(questions),
+            answers,
+            stderr: tail.clone(),
+            most_bytes: most_bytes.clone(),
+            pending: 0,
+            owner: std::process::id(),
+            since: Instant::now(),
+        };
+        spawn("questions", move || {
+            let Some(mut stdin) = stdin else { return };
+            // Whoever waits for the answer learns from the other end of the process that it reads no more.
+            while let Ok(bytes) = asked.recv()
+                && stdin.write_all(&bytes).and_then(|()| stdin.flush()).is_ok()
+            {}
+        })?;
+        spawn("answers", move || {
+            let Some(mut stdout) = stdout.map(BufReader::new) else { return };
+            loop {
+                let answer = read_answer(&mut stdout, &|| most_bytes.load(Ordering::Relaxed));
+                let is_last = !matches!(answer, Ok(Some(_)));
+                if said.send(answer).is_err() || is_last {
+                    return;
+                }
+            }
+        })?;
+        spawn("last words", move || {
+            if let Some(stderr) = stderr {
+                tail.follow(stderr);
+            }
+        })?;
+        Ok(process)
+    }
+
+    /// Whether this program started it, and not one that this program was forked from.
+    pub fn is_ours(&self) -> bool {
+        self.owner == std::process::id()
+    }
+
+    /// Asks; the answer's arrays may have `most_bytes` each.
+    pub fn ask(&mut self, question: Vec<u8>, most_bytes: u64) {
+        self.most_bytes.fetch_max(most_bytes, Ordering::Relaxed);
+        if self.pending == 0 {
+            self.since = Instant::now();
+        }
+        self.pending += 1;
+        if let Some(questions) = &self.questions {
+            // A thread that ended heard the process end, which the next wait tells.
+            let _sent = questions.send(question);
+        }
+    }
+
+    /// The next answer, for which the process may take `limit`.
+    ///
+    /// # Errors
+    /// [`Failure`], also where the process hangs, ended or wrote something else.
+    pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<Answer, Failure> {
+        loop {
+            task.check()?;
+            match self.answers.recv_timeout(LOOK) {
+                Ok(Ok(Some(answer))) => {
+                    self.pending = self.pending.saturating_sub(1);
+                    self.since = Instant::now();
+                    return Ok(answer);
+                }
+                Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {
+                    let status = self.ended();
+                    return Err(Failure::Broken(self.with_last_words(status, LAST_WORDS)));
+                }
+                Ok(Err(error)) => return Err(Failure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5))),
+                Err(RecvTimeoutError::Timeout) if self.since.elapsed() > limit => {
+                    let hangs = format!("it gave no answer within {} s", limit.as_secs_f64());
+                    return Err(Failure::Broken(self.with_last_words(hangs, Duration::ZERO)));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// How the process ended.
+    fn ended(&mut self) -> String {
+        let began = Instant::now();
+        while began.elapsed() < LAST_WORDS {
+            match self.child.try_wait() {
+                Ok(Some(status)) => return format!("it ended ({status}) before it answered"),
+                Ok(None) => std::thread::sleep(LOOK / 4),
+                Err(_) => break,
+            }
+        }
+        "it closed its standard output before it answered".to_owned()
+    }
+
+    /// The reason with the end of the process' standard error, for which the wait is short where the process goes on.
+    pub fn with_last_words(&self, why: String, wait: Duration) -> String {
+        match self.stderr.text(wait) {
+            text if text.is_empty() => format!("{why}; it wrote nothing on its standard error"),
+            text => format!("{why}; the end of its standard error:\n{text}"),
+        }
+    }
+}
+
+impl Drop for Process {
+    /// Closes the process' standard input. One that is waiting for a question has a moment to end by itself.
+    fn drop(&mut self) {
+        if !self.is_ours() {
+            return;
+        }
+        self.questions = None;
+        let began = Instant::now();
+        while self.pending == 0 && began.elapsed() < FAREWELL {
+            match self.child.try_wait() {
+                Ok(None) => std::thread::sleep(LOOK / 4),
+                _ => break,
+            }
+        }
+        #[cfg(unix)]
+        {
+            use rustix::process::{Pid, Signal, kill_process_group};
+            // What it started may outlive it.
+            let _gone = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
+        }
+        let _gone = self.child.kill();
+        let _status = self.child.wait();
+    }
+}

@@ -1,0 +1,63 @@
+//! The end of what a process writes on its standard error.
+
+use std::collections::VecDeque;
+use std::io::Read;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Bytes that are kept: the last lines of a traceback.
+const KEPT_BYTES: usize = 2000;
+
+/// The last bytes that were read, and whether more can come.
+#[derive(Debug, Clone, Default)]
+pub struct Tail(Arc<(Mutex<(VecDeque<u8>, bool)>, Condvar)>);
+
+impl Tail {
+    /// Reads until the end.
+    pub fn follow(&self, mut from: impl Read) {
+        let (kept, ended) = &*self.0;
+        let mut bytes = [0; 1024];
+        while let Ok(count @ 1..) = from.read(&mut bytes) {
+            tracing::debug!("{}", String::from_utf8_lossy(&bytes[..count]).trim_end());
+            let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.0.extend(&bytes[..count]);
+            let surplus = kept.0.len().saturating_sub(KEPT_BYTES);
+            kept.0.drain(..surplus);
+        }
+        kept.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
+        ended.notify_all();
+    }
+
+    /// What is there, after waiting a little for the end: whole lines, where more than one is kept.
+    pub fn text(&self, wait: Duration) -> String {
+        let (kept, ended) = &*self.0;
+        let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let (kept, _) = ended.wait_timeout_while(kept, wait, |kept| !kept.1).unwrap_or_else(PoisonError::into_inner);
+        let bytes: Vec<u8> = kept.0.iter().copied().collect();
+        let text = String::from_utf8_lossy(&bytes);
+        let whole =
+            if bytes.len() == KEPT_BYTES { text.split_once('\n').map_or(&*text, |(_, rest)| rest) } else { &text };
+        whole.trim_end().to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_lines_are_kept_whole() {
+        let tail = Tail::default();
+        let lines: String = (0..1000).map(|n| format!("line {n}\n")).collect();
+        tail.follow(lines.as_bytes());
+        let text = tail.text(Duration::ZERO);
+        assert!(text.len() < KEPT_BYTES && text.starts_with("line ") && text.ends_with("\nline 999"), "{text}");
+    }
+
+    #[test]
+    fn a_short_text_is_kept_as_it_is() {
+        let tail = Tail::default();
+        tail.follow("no newline".as_bytes());
+        assert_eq!(tail.text(Duration::ZERO), "no newline");
+    }
+}

@@ -1,0 +1,281 @@
+//! Examples on disk, for programs that read files: shards of NumPy arrays in three splits, and a manifest with their hashes.
+//!
+//! ```text
+//! DIR/manifest.json                 format, what made it, the files of each split with their SHA-256
+//! DIR/train/00000.ends.npy          complex128 [examples, 2, 12, 512]
+//! DIR/train/00000.fine.npy ...      the live network's input, and the target
+//! DIR/validation/...  DIR/test/...
+//! ```
+//!
+//! The scenes of the splits come from streams that never meet ([`Purpose`]). Example `i` of a split is scene `i / kinds` of kind `i % kinds`: a longer
+//! dataset begins with the examples of a shorter one.
+
+mod half;
+mod manifest;
+mod shard;
+
+pub use manifest::{FILE_NAME, Manifest, VERSION};
+
+use super::examples::{Example, ExampleError, Examples};
+use crate::files::{sha256, write_bytes};
+use crate::network::floors::Floors;
+use crate::platform::fs;
+use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
+use crate::scene::generate::{Kind, Mixture, Purpose};
+use crate::task::{Cancelled, Task};
+use manifest::{ArrayEntry, FileEntry, ShardEntry};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Precision of features and target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// float16: 11 bits, half the space.
+    #[default]
+    Half,
+    /// float32.
+    Single,
+}
+
+impl FromStr for Precision {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "f16" | "float16" => Ok(Precision::Half),
+            "f32" | "float32" => Ok(Precision::Single),
+            _ => Err(format!("unknown precision \"{name}\"; expected f16 or f32")),
+        }
+    }
+}
+
+/// What of an example is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// Samples of both ends.
+    Ends,
+    /// The live network's input.
+    Features,
+    /// Decades of the whole array's map.
+    Target,
+}
+
+impl Part {
+    /// All of them.
+    pub const ALL: [Part; 3] = [Part::Ends, Part::Features, Part::Target];
+
+    fn arrays(self) -> &'static [ArrayKind] {
+        match self {
+            Part::Ends => &[ArrayKind::Ends],
+            Part::Features => &[ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars],
+            Part::Target => &[ArrayKind::Target],
+        }
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "ends" => Ok(Part::Ends),
+            "features" => Ok(Part::Features),
+            "target" => Ok(Part::Target),
+            _ => Err(format!("unknown array \"{name}\"; expected ends, features or target")),
+        }
+    }
+}
+
+/// An array of a shard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ArrayKind {
+    Ends,
+    Fine,
+    Coarse,
+    Rows,
+    Scalars,
+    Target,
+    /// Decades by which everything of an example is scaled down.
+    Gain,
+}
+
+/// The splits: a name, the streams of their scenes.
+const SPLITS: [(&str, Purpose); 3] =
+    [("train", Purpose::Training), ("validation", Purpose::Validation), ("test", Purpose::Test)];
+
+/// What to write.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DatasetRequest {
+    /// Kinds of scenes, each as often.
+    pub kinds: Vec<Kind>,
+    /// Scenes of each kind for training, validation and test.
+    pub counts: [u32; 3],
+    /// Seed of the scenes.
+    pub seed: u64,
+    /// What lies beneath them.
+    pub floors: Floors,
+    /// Of features and target.
+    pub precision: Precision,
+    /// What of an example is written.
+    pub parts: Vec<Part>,
+    /// Examples of a shard; as many are in memory at once, some 6 MB each.
+    pub shard: u32,
+}
+
+/// Why there is no dataset.
+#[derive(Debug, thiserror::Error)]
+pub enum DatasetError {
+    /// What is asked for can't be.
+    #[error("{0}")]
+    Request(String),
+    /// A file or folder can't be written.
+    #[error("{path}: {source}")]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A scene can't be made.
+    #[error(transparent)]
+    Example(#[from] ExampleError),
+    /// The live network knows another radar.
+    #[error(transparent)]
+    Network(#[from] ReconstructError),
+    /// Somebody asked to stop.
+    #[error("cancelled")]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Writes a dataset into `folder`, which is made where it is missing and must be empty, and last its manifest.
+///
+/// # Errors
+/// [`DatasetError`]; a folder without a manifest is no whole dataset.
+pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Manifest, DatasetError> {
+    let on = |path: &Path| {
+        let path = path.to_owned();
+        move |source| DatasetError::File { path, source }
+    };
+    check(request)?;
+    fs::create_dir_all(folder).map_err(on(folder))?;
+    if fs::read_dir(folder).map_err(on(folder))?.next().is_some() {
+        let message = format!("{} is not empty; expected an empty folder or a new one", folder.display());
+        return Err(DatasetError::Request(message));
+    }
+    let arrays: Vec<ArrayKind> =
+        request.parts.iter().flat_map(|part| part.arrays()).copied().chain([ArrayKind::Gain]).collect();
+    let radar = Radar::default();
+    let mut manifest = manifest_of(request, &arrays, &radar);
+    let mut done = 0;
+    for ((split, purpose), count) in SPLITS.into_iter().zip(request.counts) {
+        let makers = makers(request, purpose)?;
+        let of_split = folder.join(split);
+        fs::create_dir_all(&of_split).map_err(on(&of_split))?;
+        let total = count * makers.len() as u32;
+        let mut shards = Vec::new();
+        for first in (0..total).step_by(request.shard as usize) {
+            let last = total.min(first + request.shard);
+            let examples: Result<Vec<Example>, DatasetError> = (first..last)
+                .into_par_iter()
+                .map(|i| {
+                    task.check()?;
+                    let kinds = makers.len() as u32;
+                    Ok(makers[(i % kinds) as usize].example(i / kinds, task)?)
+                })
+                .collect();
+            let examples = examples?;
+            let files = write_shard(folder, split, shards.len(), &examples, &arrays, request.precision)?;
+            let kinds = examples.iter().map(|e| e.kind.to_string()).collect();
+            shards.push(ShardEntry { examples: last - first, kinds, files });
+            done += last - first;
+            task.set_progress(done as f32 / examples_of(request) as f32);
+        }
+        manifest.splits.insert(split.to_owned(), shards);
+    }
+    let path = folder.join(FILE_NAME);
+    let text = serde_json::to_string_pretty(&manifest).map_err(|e| DatasetError::Request(e.to_string()))?;
+    write_bytes(&path, text.as_bytes()).map_err(on(&path))?;
+    Ok(manifest)
+}
+
+/// Examples of all splits.
+fn examples_of(request: &DatasetRequest) -> u64 {
+    request.counts.iter().map(|count| u64::from(*count)).sum::<u64>() * request.kinds.len() as u64
+}
+
+fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
+    let told = |message: String| Err(DatasetError::Request(message));
+    if request.kinds.is_empty() || request.parts.is_empty() {
+        return told("there is nothing to write; expected at least one kind of scenes and one array".to_owned());
+    }
+    if let Some(kind) = request.kinds.iter().enumerate().find(|(i, kind)| request.kinds[..*i].contains(kind)) {
+        return told(format!("kind {} is given twice", kind.1));
+    }
+    if !(1..=4096).contains(&request.shard) {
+        return told(format!("a shard of {} examples is asked for; expected 1 to 4096", request.shard));
+    }
+    if request.counts[0] == 0 || examples_of(request) > 100_000_000 {
+        return told(format!(
+            "{} examples are asked for; expected 1 to 100000000, some for training",
+            examples_of(request)
+        ));
+    }
+    Ok(())
+}
+
+/// One maker of examples for each kind.
+fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
+    let of = |kind: &Kind| {
+        let mixture: Mixture = kind.to_string().parse().map_err(|e| DatasetError::Request(format!("{e}")))?;
+        Ok(Examples::new(mixture, purpose, request.seed, request.floors)?)
+    };
+    request.kinds.iter().map(of).collect()
+}
+
+fn write_shard(
+    folder: &Path,
+    split: &str,
+    number: usize,
+    examples: &[Example],
+    arrays: &[ArrayKind],
+    precision: Precision,
+) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
+    let radar = Radar::default();
+    let write = |array: &ArrayKind| {
+        let name = format!("{split}/{number:05}.{}.npy", array.name());
+        let bytes = array.file(examples, &radar, precision);
+        let path = folder.join(&name);
+        write_bytes(&path, &bytes).map_err(|source| DatasetError::File { path: path.clone(), source })?;
+        let entry = FileEntry { name, bytes: bytes.len() as u64, sha256: sha256::of_bytes(&bytes) };
+        Ok((array.name().to_owned(), entry))
+    };
+    arrays.par_iter().map(write).collect()
+}
+
+fn manifest_of(request: &DatasetRequest, arrays: &[ArrayKind], radar: &Radar) -> Manifest {
+    let entry = |array: &ArrayKind| {
+        let entry = ArrayEntry {
+            dtype: array.dtype(request.precision).to_owned(),
+            axes: array.axes().iter().map(|axis| (*axis).to_owned()).collect(),
+            shape: array.shape(radar),
+        };
+        (array.name().to_owned(), entry)
+    };
+    Manifest {
+        apertura_dataset: VERSION,
+        program: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: request.seed,
+        kinds: request.kinds.iter().map(Kind::to_string).collect(),
+        floor: request.floors.to_string(),
+        radar: radar.clone(),
+        arrays: arrays.iter().map(entry).collect(),
+        splits: BTreeMap::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

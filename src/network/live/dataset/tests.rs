@@ -1,0 +1,112 @@
+use super::*;
+use crate::signal::Floor;
+use ndarray::{Array1, Array3, Array4};
+use ndarray_npy::read_npy;
+use num_complex::Complex64;
+
+fn request() -> DatasetRequest {
+    DatasetRequest {
+        kinds: vec!["2".parse().unwrap(), "clusters".parse().unwrap()],
+        counts: [2, 1, 1],
+        seed: 5,
+        floors: Floors::Fixed(Floor::Thesis),
+        precision: Precision::Single,
+        parts: Part::ALL.to_vec(),
+        shard: 3,
+    }
+}
+
+#[test]
+fn an_example_on_disk_is_the_example() {
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = write(folder.path(), &request(), &Task::default()).unwrap();
+    let shards: Vec<u32> = manifest.splits["train"].iter().map(|shard| shard.examples).collect();
+    assert_eq!(shards, [3, 1]);
+    let maker = Examples::new("clusters".parse().unwrap(), Purpose::Training, 5, Floors::Fixed(Floor::Thesis)).unwrap();
+    let example = maker.example(0, &Task::default()).unwrap();
+    let path = |array: &str| folder.path().join(format!("train/00000.{array}.npy"));
+    let target: Array3<f32> = read_npy(path("target")).unwrap();
+    assert_eq!(target.index_axis(ndarray::Axis(0), 1), example.decades);
+    let fine: Array4<f32> = read_npy(path("fine")).unwrap();
+    assert_eq!(fine.index_axis(ndarray::Axis(0), 1).iter().copied().collect::<Vec<_>>(), example.input.fine);
+    let gain: Array1<f64> = read_npy(path("gain")).unwrap();
+    assert_eq!(gain[1], example.input.gain);
+    let ends: Array4<Complex64> = read_npy(path("ends")).unwrap();
+    let last = example.ends.last[[11, 500]] * 10f64.powf(-example.input.gain);
+    assert_eq!(ends[[1, 1, 11, 500]], last);
+    assert_eq!(manifest.splits["train"][0].kinds, ["2", "clusters", "2"]);
+}
+
+#[test]
+fn the_manifest_knows_every_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let request = DatasetRequest { parts: vec![Part::Ends], precision: Precision::Half, ..request() };
+    let manifest = write(folder.path(), &request, &Task::default()).unwrap();
+    let text = std::fs::read_to_string(folder.path().join(FILE_NAME)).unwrap();
+    let read: Manifest = serde_json::from_str(&text).unwrap();
+    assert_eq!(read.splits, manifest.splits);
+    let mut files = 0;
+    for file in read.splits.values().flatten().flat_map(|shard| shard.files.values()) {
+        let path = folder.path().join(&file.name);
+        assert_eq!(sha256::of_file(&path).unwrap(), file.sha256, "{}", file.name);
+        assert_eq!(std::fs::metadata(path).unwrap().len(), file.bytes);
+        files += 1;
+    }
+    assert_eq!(files, 4 * 2, "ends and gain of two shards for training, one each for validation and test");
+}
+
+#[test]
+fn a_longer_dataset_begins_with_a_shorter_one() {
+    let folders = [2, 3].map(|count| {
+        let folder = tempfile::tempdir().unwrap();
+        let request = DatasetRequest { counts: [count, 0, 0], parts: vec![Part::Ends], shard: 4, ..request() };
+        write(folder.path(), &request, &Task::default()).unwrap();
+        folder
+    });
+    let [short, long] = folders.map(|folder| std::fs::read(folder.path().join("train/00000.ends.npy")).unwrap());
+    assert_eq!(short, long);
+}
+
+#[test]
+fn halves_are_off_by_a_two_thousandth_at_most() {
+    let folder = tempfile::tempdir().unwrap();
+    let request = DatasetRequest {
+        counts: [1, 0, 0],
+        kinds: vec!["2".parse().unwrap()],
+        precision: Precision::Half,
+        parts: vec![Part::Target],
+        ..request()
+    };
+    write(folder.path(), &request, &Task::default()).unwrap();
+    let bytes = std::fs::read(folder.path().join("train/00000.target.npy")).unwrap();
+    assert_eq!(bytes.len() - 128, 2 * 512 * 1024);
+    let maker = Examples::new("2".parse().unwrap(), Purpose::Training, 5, Floors::Fixed(Floor::Thesis)).unwrap();
+    let example = maker.example(0, &Task::default()).unwrap();
+    for (half, exact) in bytes[128..].chunks(2).zip(&example.decades).step_by(101) {
+        let bits = u16::from_le_bytes([half[0], half[1]]);
+        let magnitude = f32::from(1024 + (bits & 1023)) * (f32::from(bits >> 10 & 31) - 25.0).exp2();
+        assert!((magnitude - exact.abs()).abs() <= exact.abs() / 2000.0, "{magnitude} and {exact}");
+    }
+}
+
+#[test]
+fn requests_that_cannot_be_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |request: DatasetRequest| write(folder.path(), &request, &Task::default()).unwrap_err().to_string();
+    assert!(told(DatasetRequest { kinds: Vec::new(), ..request() }).contains("nothing to write"));
+    assert!(told(DatasetRequest { counts: [0, 1, 1], ..request() }).contains("some for training"));
+    assert!(told(DatasetRequest { shard: 0, ..request() }).contains("1 to 4096"));
+    let twice = vec!["2".parse().unwrap(), "2".parse().unwrap()];
+    assert!(told(DatasetRequest { kinds: twice, ..request() }).contains("2 is given twice"));
+    std::fs::write(folder.path().join("old"), "").unwrap();
+    assert!(told(request()).contains("is not empty"));
+}
+
+#[test]
+fn a_cancelled_dataset_has_no_manifest() {
+    let folder = tempfile::tempdir().unwrap();
+    let task = Task::default();
+    task.cancel();
+    assert!(write(folder.path(), &request(), &task).is_err());
+    assert!(!folder.path().join(FILE_NAME).exists());
+}

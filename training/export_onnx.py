@@ -1,0 +1,31 @@
+"""Writes the live network as a file of ONNX: `python3 export_onnx.py live.onnx [WEIGHTS.safetensors]`. Needs torch, safetensors and onnx.
+
+Inputs: fine [1, 4, 512, 256], coarse [1, 10, 512, 64], rows [1, 6, 512] and scalars [1, 2]. Outputs: decades [1, 512, 1024] and minimum [1].
+"""
+import sys
+from pathlib import Path
+
+import torch
+from safetensors.torch import load_file
+
+from live import COARSE_CHANNELS, FINE, GRID, ROWS, Live, widened
+
+SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.safetensors"
+
+
+def main(path, weights=SHIPPED):
+    model = Live()
+    model.load_state_dict(widened(load_file(weights)))
+    inputs = {
+        "fine": torch.zeros(1, 4, ROWS, FINE),
+        "coarse": torch.zeros(1, COARSE_CHANNELS, ROWS, GRID),
+        "rows": torch.zeros(1, 6, ROWS),
+        "scalars": torch.zeros(1, 2),
+    }
+    torch.onnx.export(
+        model.eval(), tuple(inputs.values()), path, input_names=list(inputs), output_names=["decades", "minimum"], opset_version=17, dynamo=False
+    )
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
