@@ -23,6 +23,10 @@ PARTS = (
 VERSION = 1
 
 
+#: Bytes; rows have some 500.
+_LONGEST_LINE = 1 << 20
+
+
 class Journal:
     """Beside the table: one line of JSON a row, whole as soon as it is found. The first line says which run it is.
 
@@ -36,6 +40,8 @@ class Journal:
         self.rows: dict[Key, dict[str, Any]] = {}
         self._origins: dict[str, dict[str, Any]] = {}
         head = {"apertura_campaign": VERSION, **run}
+        if path.exists() and not path.is_file():
+            raise ValueError(f"{path} is no file; expected the name of a file")
         whole = self._read(head) if path.exists() else 0
         self._file = path.open("r+b" if path.exists() else "x+b")
         self._file.truncate(whole)
@@ -48,7 +54,9 @@ class Journal:
         """Reads what is there; how many bytes its whole lines have."""
         whole = 0
         with self.path.open("rb") as file:
-            for number, line in enumerate(file, 1):
+            for number, line in enumerate(iter(lambda: file.readline(_LONGEST_LINE), b""), 1):
+                if len(line) == _LONGEST_LINE:
+                    raise ValueError(f"{self.path}: line {number} is no row of a campaign; remove the file to begin anew")
                 if not line.endswith(b"\n"):
                     # It was stopped within a line.
                     break

@@ -173,7 +173,30 @@ def test_unusable_campaigns_are_told(tmp_path):
     assert (tmp_path / "there.csv").read_text() == "mine" and sorted(os.listdir(tmp_path)) == ["there.csv"]
 
 
-def test_a_full_disk_is_told(tmp_path):
-    with pytest.raises(OSError):
-        journal = _journal.Journal(Path("/dev/full"), campaign.Run(METHODS, SETS, 1).told())
-        journal.add(ap.evaluate(METHODS, SETS, count=1))
+FULL = """
+import resource, signal, sys
+from pathlib import Path
+import apertura as ap
+from apertura import _journal, campaign
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+rows = ap.evaluate(["baseline"], ["1"], count=1)
+resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+journal = _journal.Journal(Path("rows.csv.journal"), campaign.Run(("baseline",), ("1",), 1000).told())
+try:
+    for index in range(1000):
+        journal.add([{**rows[0], "index": index}])
+except OSError as error:
+    print("told:", error)
+"""
+
+
+def test_a_full_disk_is_told_and_the_journal_goes_on(tmp_path):
+    found = subprocess.run([sys.executable, "-c", FULL], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert found.stdout.startswith("told:"), found
+    journal = _journal.Journal(tmp_path / "rows.csv.journal", campaign.Run(("baseline",), ("1",), 1000).told())
+    assert 1 < len(journal.rows) < 20
+
+
+def test_a_device_is_no_journal():
+    with pytest.raises(ValueError, match="is no file"):
+        _journal.Journal(Path("/dev/full"), campaign.Run(METHODS, SETS, 1).told())
