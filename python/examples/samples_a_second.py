@@ -1,10 +1,12 @@
 """Samples a second of `apertura.torch.Scenes`, beside the bare simulator: `python samples_a_second.py [--count N] [--workers 0,2]`.
 
-The bare simulator makes the samples of all elements and nothing else. The dataset adds both ends' features and the map of the whole array. Needs PyTorch
-for workers; measure on a machine that does nothing else.
+The bare simulator makes the samples of all elements and nothing else. The dataset adds both ends' features and the map of the whole array. Needs PyTorch;
+measure on a machine that does nothing else.
 """
 import argparse
 import time
+
+import torch
 
 import apertura as ap
 
@@ -23,8 +25,6 @@ def simulate(count, kinds):
 
 
 def loaded(data, count, workers):
-    import torch
-
     loader = torch.utils.data.DataLoader(torch.utils.data.Subset(data, range(count)), batch_size=4, num_workers=workers)
     for _ in loader:
         pass
