@@ -64,11 +64,7 @@ fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
         detections: Vec::new(),
     };
     if args.without.is_empty() {
-        return Ok(args
-            .method
-            .iter()
-            .map(|name| Ok(column(name.clone(), methods::by_name(name)?)))
-            .collect::<Result<_, Box<dyn Error>>>()?);
+        return args.method.iter().map(|name| Ok(column(name.clone(), methods::by_name(name)?))).collect();
     }
     let names = if args.without.iter().any(|name| name == "all") { parts() } else { args.without.clone() };
     let mut found = vec![column("whole".into(), Arc::new(Nomp::default()) as Arc<dyn Reconstructor>)];

@@ -8,32 +8,46 @@ use std::time::Duration;
 /// Bytes that are kept: the last lines of a traceback.
 const KEPT_BYTES: usize = 2000;
 
-/// The last bytes that were read, and whether more can come.
+/// The last bytes that were read, shared by who reads and who asks.
 #[derive(Debug, Clone, Default)]
-pub struct Tail(Arc<(Mutex<(VecDeque<u8>, bool)>, Condvar)>);
+pub struct Tail(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    kept: Mutex<Kept>,
+    ended: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Kept {
+    bytes: VecDeque<u8>,
+    /// Whether nothing more can come.
+    is_whole: bool,
+}
 
 impl Tail {
     /// Reads until the end.
     pub fn follow(&self, mut from: impl Read) {
-        let (kept, ended) = &*self.0;
+        let Shared { kept, ended } = &*self.0;
         let mut bytes = [0; 1024];
         while let Ok(count @ 1..) = from.read(&mut bytes) {
             tracing::debug!("{}", String::from_utf8_lossy(&bytes[..count]).trim_end());
             let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-            kept.0.extend(&bytes[..count]);
-            let surplus = kept.0.len().saturating_sub(KEPT_BYTES);
-            kept.0.drain(..surplus);
+            kept.bytes.extend(&bytes[..count]);
+            let surplus = kept.bytes.len().saturating_sub(KEPT_BYTES);
+            kept.bytes.drain(..surplus);
         }
-        kept.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
+        kept.lock().unwrap_or_else(PoisonError::into_inner).is_whole = true;
         ended.notify_all();
     }
 
     /// What is there, after waiting a little for the end: whole lines, where more than one is kept.
     pub fn text(&self, wait: Duration) -> String {
-        let (kept, ended) = &*self.0;
+        let Shared { kept, ended } = &*self.0;
         let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let (kept, _) = ended.wait_timeout_while(kept, wait, |kept| !kept.1).unwrap_or_else(PoisonError::into_inner);
-        let bytes: Vec<u8> = kept.0.iter().copied().collect();
+        let (kept, _) =
+            ended.wait_timeout_while(kept, wait, |kept| !kept.is_whole).unwrap_or_else(PoisonError::into_inner);
+        let bytes: Vec<u8> = kept.bytes.iter().copied().collect();
         let text = String::from_utf8_lossy(&bytes);
         let whole =
             if bytes.len() == KEPT_BYTES { text.split_once('\n').map_or(&*text, |(_, rest)| rest) } else { &text };

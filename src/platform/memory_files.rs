@@ -107,7 +107,7 @@ impl Metadata {
     }
 
     /// Length of a file, in bytes.
-    #[expect(clippy::len_without_is_empty, reason = "as std::fs has it")]
+    #[allow(clippy::len_without_is_empty, reason = "as std::fs has it")]
     pub fn len(&self) -> u64 {
         self.bytes.unwrap_or(0)
     }

@@ -26,7 +26,7 @@ fn has_to_be_named(role: Role) -> bool {
 
 /// Controls and pictures without a name, as the window is.
 fn nameless(s: &Session, what: &str) -> Vec<String> {
-    let nodes = s.app.root().children_recursive().map(|node| node.accesskit_node().clone()).collect::<Vec<_>>();
+    let nodes = s.app.root().children_recursive().map(|node| node.accesskit_node()).collect::<Vec<_>>();
     let named = nodes.iter().filter(|n| has_to_be_named(n.role()));
     assert!(named.clone().count() > 5, "{what}");
     let silent = named.filter(|n| n.label().is_none_or(|label| label.trim().is_empty()));

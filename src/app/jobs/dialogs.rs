@@ -181,7 +181,7 @@ impl Dialogs {
     pub fn of_the_system() -> Self {
         let [bus, runtime, path] = ["DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR", "PATH"].map(std::env::var_os);
         match cfg!(not(target_os = "linux")) || may_have_dialogs(bus, runtime, path) {
-            true => Dialogs::by(Some(Arc::new(|question, reply| platform::choose_file(question, reply)))),
+            true => Dialogs::by(Some(Arc::new(platform::choose_file))),
             false => Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) },
         }
     }

@@ -97,7 +97,7 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             _ => &[],
         },
         Command::Edit(command) => edit_menus(command),
-        Command::Export(command) => match command {
+        Command::Export(
             ExportCommand::Picture
             | ExportCommand::Maps
             | ExportCommand::Metrics
@@ -105,9 +105,8 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             | ExportCommand::DrawLesson
             | ExportCommand::StopRecording
             | ExportCommand::CopyShared
-            | ExportCommand::CopyLink => &["File"],
-            _ => &[],
-        },
+            | ExportCommand::CopyLink,
+        ) => &["File"],
         Command::View(command) => view_menus(command),
         Command::Window(command) => window_menus(command),
         _ => &[],

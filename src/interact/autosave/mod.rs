@@ -27,12 +27,15 @@ const EVERY: Duration = Duration::from_millis(250);
 /// Most windows that keep copies at once.
 const SLOTS: u32 = 64;
 
+/// Whether a copy was written, or why not.
+type Answer = Result<(), String>;
+
 /// The copies of one window.
 pub struct Autosave {
     store: Store,
     /// Where files are written on a thread of their own.
     jobs: Option<Sender<Plan>>,
-    answers: (Sender<Result<(), String>>, Receiver<Result<(), String>>),
+    answers: (Sender<Answer>, Receiver<Answer>),
     /// Jobs whose answers are out.
     pending: usize,
     thread: Option<JoinHandle<()>>,

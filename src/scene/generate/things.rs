@@ -22,7 +22,7 @@ pub(super) fn objects(kind: Kind, max_range_metres: f64, rng: &mut ChaCha8Rng) -
     match kind {
         Kind::Bodies => {
             for _ in 0..rng.random_range(1..=3) {
-                things.add(rng, |at, rng| any_body(at, rng));
+                things.add(rng, any_body);
             }
             for _ in 0..rng.random_range(0..=1) {
                 things.add(rng, |[x, y], _| Object::Point(Point::new(x, y)));

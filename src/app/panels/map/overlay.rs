@@ -292,8 +292,8 @@ mod tests {
                 selected(ui.painter(), frame, &scene, &Selection::of([0]));
             });
             let shapes = &panel.output().shapes;
-            let paths = shapes.iter().filter_map(|s| if let Shape::Path(p) = &s.shape { Some(p) } else { None });
-            let path = paths.last().expect("a curve").points.clone();
+            let mut paths = shapes.iter().filter_map(|s| if let Shape::Path(p) = &s.shape { Some(p) } else { None });
+            let path = paths.next_back().expect("a curve").points.clone();
             for r in scene.objects[0].reflectors() {
                 let off = path.iter().map(|p| p.distance(frame.blob(&r))).fold(f32::INFINITY, f32::min);
                 assert!(off < 3.0, "{projection:?}: a blob is {off} points from the curve");
