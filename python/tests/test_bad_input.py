@@ -89,7 +89,7 @@ def test_unusable_values_are_told(make, words):
 
 
 def test_what_is_no_object_is_told():
-    with pytest.raises(TypeError, match="object 1 is a int; expected Point, Line or Cluster"):
+    with pytest.raises(TypeError, match="object 1 is a int; expected Point, Line, Cluster, Wall, Box, Post or Polygon"):
         ap.Scene([3])
     with pytest.raises(TypeError, match="x_metres is 'far'; expected a number"):
         ap.Scene([ap.Point("far", 1.0)])
