@@ -1,9 +1,9 @@
 //! What no unbiased estimator can beat.
 
 use crate::arrays::{numbers, owned, reflectors};
+use crate::errors::named;
 use crate::errors::value;
 use crate::radar::{Radar, or_default};
-use crate::scene::named;
 use crate::work;
 use apertura::bounds::{self, Gains, cramer_rao_of, noise_variance};
 use apertura::radar::{Decibels, Layout, LayoutKind};

@@ -3,14 +3,20 @@
 use apertura::files::npz::NpzError;
 use apertura::recording::{Fault, RecordingError};
 use apertura::scene::file::SceneFileError;
-use pyo3::PyErr;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyPermissionError, PyRuntimeError, PyValueError};
+use pyo3::{PyErr, PyResult};
 use std::fmt::Display;
 use std::io;
+use std::str::FromStr;
 
 /// What was given can't be used.
 pub fn value(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// What a name says, read with `FromStr`.
+pub fn named<T: FromStr<Err: Display>>(name: &str) -> PyResult<T> {
+    name.parse().map_err(value)
 }
 
 /// Something that should not happen.

@@ -1,9 +1,10 @@
 //! Figures of merit, and methods over many scenes.
 
 use crate::arrays::{numbers, owned};
+use crate::errors::named;
 use crate::errors::{runtime, system, value};
 use crate::radar::{Radar, or_default};
-use crate::scene::{named, purpose_of, reading_of, set_name};
+use crate::scene::{purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError};
 use apertura::evaluate::rows::{self, Part, Row, read_rows as read, write_rows};

@@ -1,9 +1,10 @@
 //! Examples to train on.
 
 use crate::arrays::{self, both_ends, owned};
+use crate::errors::named;
 use crate::errors::{system, value};
 use crate::radar::{Radar, or_default};
-use crate::scene::{named, purpose_of, set_name};
+use crate::scene::{purpose_of, set_name};
 use crate::work::{self, Progress};
 use apertura::maps::channels_map;
 use apertura::maps::network_input::mag_phase;

@@ -1,9 +1,9 @@
 //! Samples and the maps made of them.
 
 use crate::arrays::{both_ends, numbers, owned, view};
+use crate::errors::named;
 use crate::errors::value;
 use crate::radar::{Radar, or_default};
-use crate::scene::named;
 use crate::work;
 use apertura::maps::{Aperture, LogMap, Normalisation, RangeAngleMap, angle_transform, channels_map, range_transform};
 use apertura::radar::{self, End};

@@ -1,9 +1,9 @@
 //! Reconstruction methods.
 
 use crate::arrays::{ends, owned, rows_of, view};
+use crate::errors::named;
 use crate::errors::value;
 use crate::radar::{Radar, or_default};
-use crate::scene::named;
 use crate::work::{self, Progress};
 use apertura::external::{self, CommandLine};
 use apertura::maps::Normalisation;

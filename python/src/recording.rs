@@ -2,9 +2,9 @@
 
 use crate::arrays::{both_ends, owned, view};
 use crate::errors;
+use crate::errors::named;
 use crate::maps::Maps;
 use crate::radar::Radar;
-use crate::scene::named;
 use apertura::reconstruct::NoisePrior;
 use apertura::recording::presets::{ALL, Preset};
 use apertura::recording::{self, file::load};

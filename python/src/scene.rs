@@ -1,7 +1,7 @@
 //! Scenes.
 
 use crate::arrays::{owned, reflectors, rows_of};
-use crate::errors::{scene_file, value};
+use crate::errors::{named, scene_file, value};
 use crate::maps::Maps;
 use crate::objects;
 use crate::radar::Radar;
@@ -20,7 +20,6 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyType};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 /// Objects before a radar, and the radar that looks at them.
 ///
@@ -41,11 +40,6 @@ use std::str::FromStr;
 #[pyclass(module = "apertura", frozen)]
 #[derive(Clone, PartialEq)]
 pub struct Scene(pub SceneFile);
-
-/// Reads a name with `FromStr`.
-pub fn named<T: FromStr<Err: std::fmt::Display>>(name: &str) -> PyResult<T> {
-    name.parse().map_err(value)
-}
 
 pub fn purpose_of(name: &str) -> PyResult<Purpose> {
     match name {

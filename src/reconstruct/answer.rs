@@ -1,7 +1,7 @@
 //! What a reconstruction is asked for, and what it answers.
 
+use super::attempt::Attempt;
 use super::prior::NoisePrior;
-use super::search::Attempt;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;

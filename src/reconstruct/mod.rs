@@ -12,6 +12,7 @@
 //! `fit` is the least-squares kernel of `search` and `coherent`.
 
 mod answer;
+mod attempt;
 mod baseline;
 mod coherent;
 mod confidence;
@@ -35,6 +36,7 @@ mod seen;
 mod trained;
 
 pub use answer::{Detection, Reconstruction, Request};
+pub use attempt::{Attempt, Refusal, Tried, Verdict};
 pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;

@@ -2,9 +2,9 @@
 
 use super::settings::Settings;
 use super::state::Answer;
-use super::trace::Attempt;
 use super::without::Part;
 use crate::radar::Radar;
+use crate::reconstruct::attempt::Attempt;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use num_complex::Complex64;

@@ -4,10 +4,11 @@ use super::propose::end_beams::beam_noise_power;
 use super::propose::peaks::{Candidate, Detector};
 use super::propose::source::{Propose, Unexplained};
 use super::settings::Settings;
-use super::trace::{Refusal, Trace, Tried, Verdict, decades};
+use super::trace::{Trace, decades};
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{
     Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, Workbench, groups, rows_of, union_of,
 };

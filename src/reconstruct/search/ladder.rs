@@ -8,9 +8,9 @@
 
 use super::rungs::{MOST_AGAIN, WORTH_ANOTHER_LOOK};
 use super::state::{Answer, Search, State};
-use super::trace::{Refusal, Tried};
 use super::without::Without;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::attempt::{Refusal, Tried};
 
 /// What a rung does to the state of a search.
 type Climb = fn(&Search, &mut State) -> Result<(), ReconstructError>;

@@ -64,7 +64,7 @@ pub(super) use grow::Grower;
 pub use ladder::{LADDER, Rung, parts, without};
 pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
-pub use trace::{Attempt, FOLLOWING, MOST_ATTEMPTS, Refusal, Tried, Verdict};
+pub use trace::{FOLLOWING, MOST_ATTEMPTS};
 pub use without::Without;
 
 use super::answer::{Reconstruction, Request};

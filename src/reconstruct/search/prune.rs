@@ -1,9 +1,10 @@
 //! Atoms that the rest can do without.
 
 use super::grow::{Grower, tried};
-use super::trace::{Refusal, decades};
+use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
 
 /// An atom must explain this many times the energy that noise gives to one more gain at each end.

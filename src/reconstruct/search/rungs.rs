@@ -6,9 +6,10 @@ use super::propose::lines::LongLines;
 use super::propose::pairs::Pairs;
 use super::propose::source::Propose;
 use super::state::{Answer, Search, State};
-use super::trace::{Refusal, Tried, decades};
+use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::attempt::{Refusal, Tried};
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Tie};
 
 /// Tones that are told apart in no time.

@@ -4,9 +4,10 @@ use super::grow::{Grower, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
-use super::trace::{Refusal, Trace, Tried, Verdict, decades};
+use super::trace::{Trace, decades};
 use super::without::Part;
 use crate::radar::Radar;
+use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
 use crate::reconstruct::{ReconstructError, Request};
 

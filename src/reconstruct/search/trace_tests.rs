@@ -1,6 +1,7 @@
 //! What traces of whole searches say.
 
 use super::*;
+use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
 use crate::scene::{Line, Object, Scene};
 use crate::signal::{Floor, simulate};
 

@@ -4,9 +4,10 @@ use super::begin::{Seeds, is_long};
 use super::grow::{Grower, tried};
 use super::on_wall::stands_on;
 use super::propose::chains::Chains;
-use super::trace::{Refusal, decades};
+use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
+use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, rows_of};
 
 /// A wall must leave less than this part of what was left without it.

@@ -3,7 +3,8 @@
 use crate::app::state::{Command, EditCommand};
 use crate::app::widgets::numbers::{plain, signed};
 use crate::interact::SelectionMode;
-use crate::reconstruct::search::{Attempt, LADDER, MOST_ATTEMPTS};
+use crate::reconstruct::Attempt;
+use crate::reconstruct::search::{LADDER, MOST_ATTEMPTS};
 use crate::scene::Object;
 use eframe::egui::{CollapsingHeader, Grid, Ui};
 
@@ -74,8 +75,9 @@ fn nearest(objects: &[Object], [x, y]: [f64; 2]) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::radar::Radar;
-    use crate::reconstruct::search::{Nomp, Refusal, Tried, Verdict};
+    use crate::reconstruct::search::Nomp;
     use crate::reconstruct::{Reconstructor, Request};
+    use crate::reconstruct::{Refusal, Tried, Verdict};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use egui_kittest::Harness;

@@ -1,0 +1,126 @@
+//! One attempt of a search to explain the samples: the step that made it, what it gained, and whether it was kept.
+
+use std::fmt;
+
+/// One attempt to explain the samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attempt {
+    /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, or [`FOLLOWING`](super::search::FOLLOWING) where it began with the last answer.
+    pub rung: &'static str,
+    /// What was tried.
+    pub tried: Tried,
+    /// Decades by which the energy that is left falls where it is kept, or would have fallen.
+    pub gain_decades: f64,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Work since the attempt before: about ten microseconds a unit.
+    pub work: usize,
+}
+
+/// What an attempt would explain samples by. Places are (x, y), metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tried {
+    /// Nothing was proposed.
+    Nothing,
+    /// One reflector.
+    Point {
+        /// Where it stands.
+        at_metres: [f64; 2],
+    },
+    /// Reflectors at equal steps.
+    Line {
+        /// Where the first stands.
+        from_metres: [f64; 2],
+        /// Where the last stands.
+        to_metres: [f64; 2],
+        /// How many they are.
+        count: usize,
+    },
+    /// Several objects that are kept or refused together.
+    Together {
+        /// How many they are.
+        count: usize,
+    },
+}
+
+impl Tried {
+    /// Where it stands, a line by its first reflector; metres.
+    pub fn place_metres(&self) -> Option<[f64; 2]> {
+        match *self {
+            Tried::Point { at_metres } => Some(at_metres),
+            Tried::Line { from_metres, .. } => Some(from_metres),
+            Tried::Nothing | Tried::Together { .. } => None,
+        }
+    }
+}
+
+/// What became of an attempt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// Part of the answer when its rung was done.
+    Kept,
+    /// Not part of it, and why.
+    Refused(Refusal),
+}
+
+/// Why an attempt was refused.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refusal {
+    /// No candidate was found, or none that was worth an attempt.
+    NothingFound,
+    /// The rung was skipped.
+    Skipped(&'static str),
+    /// An end hears more tones than can be paired in the time.
+    TooManyTones,
+    /// Something else is left, so that other explanations are tried first.
+    LeavesSomething,
+    /// It explains this part, 0 to 1, of the energy in its range bins, which is too little.
+    ExplainsTooLittle(f64),
+    /// The two ends hear it with different strength: one reflector has one reflectivity.
+    EndsDisagree,
+    /// What is left falls too little.
+    GainsTooLittle,
+    /// The other objects explain the samples as well without it.
+    RestDoesWithout,
+    /// It was exchanged for another explanation, or moved far away.
+    Exchanged,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Verdict::Kept => write!(f, "kept"),
+            Verdict::Refused(reason) => reason.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refusal::NothingFound => write!(f, "found nothing"),
+            Refusal::Skipped(why) => write!(f, "skipped: {why}"),
+            Refusal::TooManyTones => write!(f, "refused: an end hears too many tones"),
+            Refusal::LeavesSomething => write!(f, "refused: something else is left"),
+            Refusal::ExplainsTooLittle(part) => {
+                write!(f, "refused: explains {:.0} % of the energy in its range bins", 100.0 * part)
+            }
+            Refusal::EndsDisagree => write!(f, "refused: the ends disagree on its strength"),
+            Refusal::GainsTooLittle => write!(f, "refused: gains too little"),
+            Refusal::RestDoesWithout => write!(f, "refused: the others do without it"),
+            Refusal::Exchanged => write!(f, "exchanged for another explanation"),
+        }
+    }
+}
+
+impl fmt::Display for Tried {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Tried::Nothing => write!(f, "nothing"),
+            Tried::Point { .. } => write!(f, "point"),
+            Tried::Line { count, .. } => write!(f, "line of {count}"),
+            Tried::Together { count: 1 } => write!(f, "1 object"),
+            Tried::Together { count } => write!(f, "{count} objects"),
+        }
+    }
+}
