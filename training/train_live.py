@@ -41,7 +41,8 @@ from team import Log, Team, batches
 
 WARM_UP = 200
 #: Share of each kind of scene.
-MIXTURE = {"1": 4, "2": 12, "3": 14, "clusters": 9, "walls": 12, "spacings": 6, "corner": 10, "crowd": 15, "dynamic": 5, "near": 5}
+MIXTURE = {"1": 4, "2": 12, "3": 14, "clusters": 9, "walls": 12, "spacings": 6, "corner": 10, "crowd": 15, "dynamic": 5, "near": 5,
+           "bodies": 10, "street": 8, "rails": 10, "occlusion": 6, "rough": 6}
 #: What the validation figures are given for: the kinds over the thesis' floor, and three sets over thermal noise.
 NOISY = (("2", 40), ("2", 20), ("3", 40))
 INPUTS = ("fine", "coarse", "rows", "scalars")
