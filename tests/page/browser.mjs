@@ -77,10 +77,12 @@ export async function exported(page, name) {
   return (await download).path();
 }
 
-// A link's text: a scene file of the program, looked at over a floor by a method.
+// A link's text: a scene file of the program, looked at over a floor (as the command line names it) by a method.
 export function shared(scene, { floor = "thesis", method = "live", eta = 0.9 } = {}) {
+  const [level, decibels] = floor.split("=");
+  const written = decibels ? `{ ${level} = ${Number(decibels).toFixed(1)} }` : JSON.stringify(level);
   const view = [
-    "", "[shared]", `floor = ${JSON.stringify(floor)}`, 'normalisation = "min-max"', 'colours = "inferno"', "cartesian = false",
+    "", "[shared]", `floor = ${written}`, 'normalisation = "min-max"', 'colours = "inferno"', "cartesian = false",
     `target_eta = ${eta}`, `method = ${JSON.stringify(method)}`, "marks = false", "theory = false",
     "[shared.range_angle_part]", "left = 0.0", "bottom = 0.0", "right = 1.0", "top = 1.0",
     "[shared.cartesian_part]", "left = 0.0", "bottom = 0.0", "right = 1.0", "top = 1.0", "",
