@@ -1,5 +1,6 @@
 //! All that echoes in a scene: points by themselves, and scatterers.
 
+use super::sight::{Array, Screen};
 use super::{Antennas, PathEcho, Scatterer};
 use crate::radar::{Pair, Radar};
 use crate::scene::{Object, Reflector, Scene};
@@ -20,63 +21,27 @@ impl From<Object> for Seen {
     }
 }
 
-/// Bodies with the circles around them.
+/// Bodies that may hide something, each with the index of its object.
 struct Bodies<'a> {
-    bodies: Vec<(usize, &'a Object, [f64; 2], f64)>,
-    /// The ends of the array, metres.
-    array: [f64; 2],
-    /// How far beside a way something stands that has no effect on it, metres, for each square root of a metre of the way and beyond.
-    ripple: [f64; 2],
+    array: Array,
+    screens: Vec<(usize, &'a Object, Screen)>,
 }
 
 impl<'a> Bodies<'a> {
     fn of(radar: &Radar, scene: &'a Scene) -> Self {
-        let bodies = scene.objects.iter().enumerate().filter_map(|(index, object)| {
-            let (centre, radius) = object.body()?.shape().around();
-            Some((index, object, centre, radius))
-        });
-        let bodies = if scene.shadows { bodies.collect() } else { Vec::new() };
-        // Elements may stand a few millimetres off their places.
-        let half = radar.aperture_metres() / 2.0 + 0.05;
-        let per_radian = 36.0 / super::Wave::of(radar).radians_per_metre;
-        Bodies { bodies, array: [-half, half], ripple: [per_radian, per_radian] }
+        let array = Array::of(radar);
+        let screen =
+            |(index, object): (usize, &'a Object)| Some((index, object, array.screen(&object.body()?.shape())));
+        let bodies = scene.objects.iter().enumerate().filter_map(screen);
+        Bodies { array, screens: if scene.shadows { bodies.collect() } else { Vec::new() } }
     }
 
-    /// Those that may hide a part of object `index`, which lies within a circle. With a mirror, all.
-    fn hiding(&self, index: usize, centre: [f64; 2], radius: f64, all: bool) -> Vec<Object> {
-        let [left, right] = self.array;
-        let farthest = centre[0].hypot(centre[1]) + right + radius;
-        // A glint's way goes on behind the face, as long as it came.
-        let margin = (self.ripple[0] * (2.0 * farthest + self.ripple[1])).sqrt();
-        let between =
-            |c: &[f64; 2], r: f64| from_triangle(*c, [[left, 0.0], [right, 0.0], centre]) <= r + radius + margin;
-        self.bodies
-            .iter()
-            .filter(|(other, _, c, r)| *other != index && (all || between(c, *r)))
-            .map(|(_, object, ..)| (*object).clone())
-            .collect()
+    /// Those that may hide a part of object `index`. With a mirror, all.
+    fn hiding(&self, index: usize, object: &Object, all: bool) -> Vec<Object> {
+        let ways = self.array.ways_to(object);
+        let others = self.screens.iter().filter(|(other, ..)| *other != index);
+        others.filter(|(.., screen)| all || ways.may_pass(screen)).map(|(_, object, _)| (*object).clone()).collect()
     }
-}
-
-/// Distance of a place from a triangle, metres; 0 inside.
-fn from_triangle(place: [f64; 2], corners: [[f64; 2]; 3]) -> f64 {
-    let edges = [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]]);
-    let side = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]) * (place[1] - a[1]) - (b[1] - a[1]) * (place[0] - a[0]);
-    let sides = edges.map(side);
-    if sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0) {
-        return 0.0;
-    }
-    edges.into_iter().map(|edge| crate::scene::shape::from_stretch(place, edge)).fold(f64::INFINITY, f64::min)
-}
-
-/// The smallest circle's worth around an object: a middle, and how far it reaches from there, metres.
-fn around(object: &Object) -> ([f64; 2], f64) {
-    if let Some(body) = object.body() {
-        return body.shape().around();
-    }
-    let centre = object.centre_metres();
-    let far = |r: &Reflector| (r.x_metres - centre[0]).hypot(r.y_metres - centre[1]);
-    (centre, object.reflectors().iter().map(far).fold(0.0, f64::max))
 }
 
 impl Seen {
@@ -85,12 +50,11 @@ impl Seen {
         let bodies = Bodies::of(radar, scene);
         let is_mirrored = scene.disturbances.mirror.is_some();
         let seen = |(index, object): (usize, &Object)| {
-            if bodies.bodies.is_empty() {
+            if bodies.screens.is_empty() {
                 return Seen::from(object.clone());
             }
-            let (centre, radius) = around(object);
             let all = is_mirrored && object.body().is_some();
-            Seen { object: object.clone(), hidden_by: bodies.hiding(index, centre, radius, all) }
+            Seen { object: object.clone(), hidden_by: bodies.hiding(index, object, all) }
         };
         scene.objects.iter().enumerate().map(seen).collect()
     }

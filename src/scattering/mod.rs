@@ -8,6 +8,7 @@
 //! | [`corner`] | an inner corner: the double reflection |
 //! | [`roughness`] | what a rough surface takes from these echoes, and scatters instead |
 //! | [`shadow`] | what passes an obstacle on the way from an antenna to where an echo comes from |
+//! | `sight` | which bodies may have an effect on an object at all |
 //! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
 //! | [`parts`] | a polygon as convex parts, for shadows |
 //!
@@ -29,6 +30,7 @@ pub mod post;
 pub mod roughness;
 mod scatterer;
 pub mod shadow;
+mod sight;
 pub mod transition;
 
 pub use echoing::{Echoing, Seen, Sources, heard_in_the_middle};

@@ -10,7 +10,10 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Past an obstacle, its ripple fades out between these distances in Fresnel's measure: farther out it belongs at another range.
-const FADE: [f64; 2] = [3.0, 6.0];
+const FADE: [f64; 2] = [3.0, FADED];
+
+/// Fresnel's measure from which on an edge has no effect at all.
+pub(super) const FADED: f64 = 6.0;
 
 /// Most corners of an obstacle that need no memory of their own.
 const FEW: usize = 16;

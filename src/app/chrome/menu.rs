@@ -77,7 +77,8 @@ impl Default for Memory {
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
-        let is_narrow = ui.available_width() < NARROW;
+        let width = ui.available_width();
+        let is_narrow = width < NARROW;
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file(ui, &input, &mut asked));
             ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
@@ -87,7 +88,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
             ui.menu_button("Help", |ui| help(ui, &input, &mut asked));
             // In a narrow window they would stand past its edge; all of them are in the menus.
             if !is_narrow {
-                buttons(ui, &input, &mut asked);
+                buttons(ui, &input, width, &mut asked);
             }
             if input.presents {
                 button(ui, "End presentation", WindowCommand::Present, true, &mut asked);
@@ -99,11 +100,34 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
     asked
 }
 
-fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+/// Width of a window from which on every kind of body has a button of its own, points.
+const WIDE: f32 = 1150.0;
+/// Width from which on they have a menu, points.
+const MEDIUM: f32 = 950.0;
+
+fn buttons(ui: &mut Ui, input: &Input<'_>, width: f32, asked: &mut Vec<Command>) {
+    const HEAPS: [(NewObject, &str); 3] =
+        [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")];
+    const BODIES: [(NewObject, &str); 4] = [
+        (NewObject::Wall, "+ Wall"),
+        (NewObject::Box, "+ Box"),
+        (NewObject::Post, "+ Post"),
+        (NewObject::Polygon, "+ Polygon"),
+    ];
+    let mut add = |ui: &mut Ui, kinds: &[(NewObject, &str)]| {
+        for (kind, label) in kinds {
+            button(ui, label, EditCommand::Add(*kind, None), true, asked);
+        }
+    };
     ui.separator();
-    for (kind, label) in [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")]
-    {
-        button(ui, label, EditCommand::Add(kind, None), true, asked);
+    add(ui, &HEAPS);
+    if width >= WIDE {
+        add(ui, &BODIES);
+    } else if width >= MEDIUM {
+        let of_bodies = BODIES.map(|(kind, _)| Command::Edit(EditCommand::Add(kind, None)));
+        ui.menu_button("+ Body", |ui| entries(ui, of_bodies, asked))
+            .response
+            .on_hover_text("Add a wall, a box, a post or a polygon");
     }
     ui.separator();
     button(ui, "Undo", EditCommand::Undo, input.can_undo, asked);

@@ -2,6 +2,7 @@
 
 use crate::app::state::Cursor;
 use crate::app::widgets::direction::angle_degrees;
+use crate::radar::counted;
 use eframe::egui;
 use eframe::egui::{Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
@@ -16,6 +17,10 @@ pub struct Input {
     pub objects: usize,
     /// Their reflectors.
     pub reflectors: usize,
+    /// How many of the objects are bodies.
+    pub bodies: usize,
+    /// Most echoes that one element gets of the bodies.
+    pub echoes: usize,
     /// Time of the last update of maps and pictures.
     pub took: Option<Duration>,
     /// Whether everything is computed on the thread that draws.
@@ -41,8 +46,8 @@ pub fn show(ui: &mut Ui, input: Input) {
             } else {
                 ui.weak(left);
             }
-            let Input { objects, reflectors, took, alone, .. } = input;
-            let count = format!("{objects} object{} · {reflectors} reflector{}", plural(objects), plural(reflectors));
+            let count = count_of(&input);
+            let Input { took, alone, .. } = input;
             let took = took.map(|took| format!("maps {:.1} ms", took.as_secs_f64() * 1e3));
             // The monospaced width is the larger one.
             let mut fits = |text: &String| {
@@ -64,7 +69,7 @@ pub fn show(ui: &mut Ui, input: Input) {
                     ui.weak(took).on_hover_text(tip);
                 }
                 if let Some(count) = count {
-                    ui.weak(count);
+                    ui.weak(count).on_hover_text("A body has no reflectors: each element gets a few echoes of it");
                 }
             });
         });
@@ -91,8 +96,19 @@ fn texts_of(cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
     }
 }
 
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
+/// What the scene holds: objects with their reflectors, and bodies with their echoes.
+fn count_of(input: &Input) -> String {
+    let Input { objects, reflectors, bodies, echoes, .. } = *input;
+    let mut parts = Vec::new();
+    if objects > bodies || bodies == 0 {
+        parts.push(counted(objects, "object", "objects"));
+        parts.push(counted(reflectors, "reflector", "reflectors"));
+    }
+    if bodies > 0 {
+        parts.push(counted(bodies, "body", "bodies"));
+        parts.push(format!("up to {}", counted(echoes, "echo", "echoes")));
+    }
+    parts.join(" · ")
 }
 
 #[cfg(test)]
@@ -101,6 +117,18 @@ mod tests {
     use crate::app::widgets::seen;
     use crate::radar::Radar;
     use egui_kittest::Harness;
+
+    fn of(objects: usize, reflectors: usize, bodies: usize) -> Input {
+        let echoes = 4 * bodies;
+        Input { cursor: None, echo: None, objects, reflectors, bodies, echoes, took: None, alone: false }
+    }
+
+    #[test]
+    fn bodies_are_counted_by_their_echoes() {
+        assert_eq!(count_of(&of(2, 40, 0)), "2 objects · 40 reflectors");
+        assert_eq!(count_of(&of(9, 0, 9)), "9 bodies · up to 36 echoes");
+        assert_eq!(count_of(&of(2, 1, 1)), "2 objects · 1 reflector · 1 body · up to 4 echoes");
+    }
 
     #[test]
     fn the_cursor_is_told_in_degrees_from_straight_ahead() {
@@ -122,7 +150,8 @@ mod tests {
             for cursor in [Some(Cursor::at_cell(&Radar::default(), 258.7, 448.7)), None] {
                 let bar = Harness::builder().with_size([width, 60.0]).build_ui(move |ui| {
                     let took = Some(Duration::from_secs_f64(12.3456));
-                    show(ui, Input { cursor, echo: None, objects: 5, reflectors: 12_345, took, alone: false });
+                    let input = Input { reflectors: 12_345, took, ..of(5, 0, 2) };
+                    show(ui, Input { cursor, ..input });
                 });
                 seen::assert_readable(bar.output());
                 let texts = seen::texts(bar.output());

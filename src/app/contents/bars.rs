@@ -35,11 +35,14 @@ pub fn menu_input<'a>(
 /// What the status bar says.
 pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
     let scene = state.editor.scene();
+    let bodies = || scene.objects.iter().filter_map(|o| o.body());
     status_bar::Input {
         cursor: state.shown_cursor(),
         echo: state.shown_cursor().and_then(|cursor| echo_at(state, &cursor)),
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
+        bodies: bodies().count(),
+        echoes: bodies().map(|body| body.echo_count()).sum(),
         took: jobs.pipeline.took(),
         alone: !platform::has_threads(),
     }

@@ -1,5 +1,7 @@
 //! Numbers of what is selected, with units: of one object, or those that several have in common.
 
+mod slider;
+
 use crate::app::state::{Command, EditCommand, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
@@ -250,8 +252,16 @@ fn number(ui: &mut Ui, shared: &Shared, metres_per_point: f64) -> Option<Change>
     if let Some(shown) = &shown {
         drag = drag.standing_for(shown);
     }
-    let response = ui.add(drag).labelled_by(label.id).on_hover_text(tooltip);
+    let (response, slid) = ui
+        .horizontal(|ui| {
+            let response = ui.add(drag).labelled_by(label.id).on_hover_text(tooltip);
+            (response, slider::show(ui, shared))
+        })
+        .inner;
     ui.end_row();
+    if slid.is_some() {
+        return slid;
+    }
     let asked = asked?;
     if !shared.is_same && response.dragged() {
         return Some(Change::By(asked - base));

@@ -440,3 +440,24 @@ fn a_body_that_moves_has_only_itself_computed_again_with_what_it_hides() {
     let off = engine.update(&Scene { shadows: false, ..scene(0.2, 15.1) }, &wanted).unwrap();
     assert!(off.report.ran(Stage::Signal), "without shadows the wall is another");
 }
+
+#[test]
+fn a_car_dragged_along_a_street_of_things_has_half_of_the_echoes_computed_again() {
+    let street = crate::scene::presets::Preset::by_id("street-of-things").unwrap().load().unwrap().scene;
+    let wanted =
+        Wanted { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..Wanted::default() };
+    let mut engine = Engine::new(Radar { samples: 64, bandwidth_hz: 2.5e8, ..Radar::default() });
+    engine.update(&street, &wanted).unwrap();
+    let mut evaluated = Vec::new();
+    for step in 1..=6 {
+        let mut scene = street.clone();
+        let Object::Box(car) = &mut scene.objects[0] else { panic!() };
+        car.x_metres += 0.05 * f64::from(step);
+        let frame = engine.update(&scene, &wanted).unwrap();
+        let signal = frame.report.stages.into_iter().find(|s| s.stage == Stage::Signal).unwrap();
+        let Outcome::Computed(what) = signal.outcome else { panic!() };
+        evaluated.push(what);
+    }
+    // The first move takes the car out of the sum at rest. The car has 8 echoes, the two walls behind it 3 each, the post there one.
+    assert!(evaluated[1..].iter().all(|what| what.starts_with("15 of 29 echoes")), "{evaluated:#?}");
+}

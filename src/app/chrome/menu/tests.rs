@@ -167,7 +167,7 @@ fn menus_ask_for_what_they_list() {
 
 #[test]
 fn no_button_stands_over_another_at_any_width() {
-    for width in (360..1000).step_by(20) {
+    for width in (360..1400).step_by(20) {
         let menu = bar(width as f32);
         let right = |label| menu.query_by_label(label).map(|node| node.rect().right());
         // In a narrow window the buttons are left to the menus.
@@ -178,4 +178,21 @@ fn no_button_stands_over_another_at_any_width() {
             assert!(node.rect().left() >= lessons, "{label} at {width}");
         }
     }
+}
+
+#[test]
+fn every_kind_of_body_has_a_button_where_there_is_room() {
+    let labels = ["+ Wall", "+ Box", "+ Post", "+ Polygon"];
+    let mut wide = bar(1440.0);
+    for label in labels {
+        wide.get_by_label(label).click();
+        wide.step();
+    }
+    let kinds = [NewObject::Wall, NewObject::Box, NewObject::Post, NewObject::Polygon];
+    let wanted: Vec<Command> = kinds.map(|kind| Command::Edit(EditCommand::Add(kind, None))).to_vec();
+    assert_eq!(wide.state().1, wanted);
+    let mut medium = bar(1000.0);
+    assert!(labels.iter().all(|label| medium.query_by_label(label).is_none()));
+    open(&mut medium, &["+ Body", "Add post"]);
+    assert_eq!(medium.state().1, wanted[2..3]);
 }

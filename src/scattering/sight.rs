@@ -1,0 +1,230 @@
+//! Which bodies stand so near to the ways from the array to an object that they have an effect on its echoes.
+//!
+//! All ways together are the convex hull of the array and of the object. A body has no effect on a way, to the last bit, where the detour over
+//! each of its corners is so long that its ripple has faded ([`FADED`]). A detour of a given length is an ellipse around the ends of the way, so
+//! the body has to keep farther from the hull than that ellipse is wide.
+
+use super::Wave;
+use super::geometry::V;
+use super::shadow::FADED;
+use crate::radar::Radar;
+use crate::scene::{Object, Shape};
+
+/// Elements of a built array may stand that far off their places, metres.
+const OFF_PLACE_METRES: f64 = 0.05;
+
+/// The array, as what bodies stand before.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Array {
+    /// The outermost antennas, x in metres.
+    ends: [f64; 2],
+    /// Half a detour over which everything has faded, metres.
+    faded: f64,
+}
+
+/// What may hide something: a convex hull, or a circle.
+#[derive(Debug, Clone)]
+pub(super) struct Screen {
+    corners: Vec<V>,
+    /// How far it reaches beyond its corners, metres.
+    radius: f64,
+    /// Greatest distance of any of it from an antenna, metres.
+    farthest: f64,
+}
+
+/// All ways from the array to an object.
+#[derive(Debug, Clone)]
+pub(super) struct Ways {
+    hull: Vec<V>,
+    /// How far the object reaches beyond its corner, metres; 0 for all but posts.
+    radius: f64,
+    /// The longest way, and on in the mirror of a face, metres.
+    longest: f64,
+    faded: f64,
+}
+
+impl Array {
+    pub fn of(radar: &Radar) -> Self {
+        let pairs = (0..radar.elements).map(|n| radar.pair(n));
+        let antennas = pairs.flat_map(|p| [p.transmitter_x_metres, p.receiver_x_metres]);
+        let (low, high) = antennas.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        let faded = FADED * FADED / Wave::of(radar).radians_per_metre;
+        Array { ends: [low - OFF_PLACE_METRES, high + OFF_PLACE_METRES], faded }
+    }
+
+    fn ends(&self) -> [V; 2] {
+        self.ends.map(|x| V(x, 0.0))
+    }
+
+    /// Greatest distance of any of `places` from an antenna, metres.
+    fn farthest(&self, places: &[V]) -> f64 {
+        let far = |end: V| places.iter().map(move |p| (*p - end).norm());
+        self.ends().into_iter().flat_map(far).fold(0.0, f64::max)
+    }
+
+    /// A body, as what may hide something.
+    pub fn screen(&self, shape: &Shape) -> Screen {
+        let (corners, radius) = corners_of(shape);
+        let corners = hull(corners);
+        let farthest = self.farthest(&corners) + radius;
+        Screen { corners, radius, farthest }
+    }
+
+    /// All ways to an object.
+    pub fn ways_to(&self, object: &Object) -> Ways {
+        let (places, radius, legs) = match object.body().map(|body| body.shape()) {
+            // Faces are mirrors: their ways go on behind them, as long as they came.
+            Some(shape @ (Shape::Wall(_) | Shape::Outline(_))) => (corners_of(&shape).0, 0.0, 2.0),
+            Some(circle) => {
+                let (centre, radius) = corners_of(&circle);
+                (centre, radius, 1.0)
+            }
+            None => (object.reflectors().iter().map(|r| V(r.x_metres, r.y_metres)).collect(), 0.0, 1.0),
+        };
+        let longest = legs * (self.farthest(&places) + radius);
+        let hull = hull(places.into_iter().chain(self.ends()).collect());
+        Ways { hull, radius, longest, faded: self.faded }
+    }
+}
+
+fn corners_of(shape: &Shape) -> (Vec<V>, f64) {
+    match shape {
+        Shape::Wall(ends) => (ends.map(V::from).to_vec(), 0.0),
+        Shape::Outline(corners) => (corners.iter().map(|c| V::from(*c)).collect(), 0.0),
+        Shape::Circle { centre_metres, radius_metres } => (vec![V::from(*centre_metres)], *radius_metres),
+    }
+}
+
+impl Ways {
+    /// Whether `screen` may have an effect on any of the ways.
+    pub fn may_pass(&self, screen: &Screen) -> bool {
+        let margin = self.margin(screen.farthest) + screen.radius + self.radius;
+        let apart =
+            |of: &[V]| of.iter().zip(of.iter().cycle().skip(1)).any(|(a, b)| self.are_apart(screen, *b - *a, margin));
+        !(apart(&self.hull) || apart(&screen.corners))
+    }
+
+    /// How far beside a way nothing has an effect any more that stands at most so far along it, metres.
+    fn margin(&self, along: f64) -> f64 {
+        // The ellipse of all places over which a detour is twice `faded`, widest in the middle of the way.
+        let (half, faded) = (self.longest / 2.0, self.faded);
+        let beside = (half - along.min(half)) / (half + faded);
+        (faded * (self.longest + faded) * (1.0 - beside * beside)).sqrt()
+    }
+
+    /// Whether a strip of this width along `edge` parts `screen` from the ways.
+    fn are_apart(&self, screen: &Screen, edge: V, margin: f64) -> bool {
+        let length = edge.norm();
+        if length == 0.0 {
+            return false;
+        }
+        let across = edge.right() * length.recip();
+        let span = |of: &[V]| {
+            of.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+                let at = p.dot(across);
+                (low.min(at), high.max(at))
+            })
+        };
+        let ((low, high), (a, b)) = (span(&self.hull), span(&screen.corners));
+        a - high >= margin || low - b >= margin
+    }
+}
+
+/// The convex hull of `places`, counter-clockwise (Andrew's monotone chain).
+fn hull(mut places: Vec<V>) -> Vec<V> {
+    places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    places.dedup();
+    if places.len() < 3 {
+        return places;
+    }
+    let half = |places: &mut dyn Iterator<Item = V>| {
+        let mut chain: Vec<V> = Vec::new();
+        for place in places {
+            while let [.., a, b] = chain[..]
+                && (b - a).cross(place - b) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(place);
+        }
+        chain.pop();
+        chain
+    };
+    let mut low = half(&mut places.iter().copied());
+    low.extend(half(&mut places.iter().rev().copied()));
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scattering::{Antennas, Scatterer};
+    use crate::scene::{Block, Point, Polygon, Post, Wall};
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_hull_has_the_outermost_places_alone() {
+        let places = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 0.5], [2.0, 2.0], [0.0, 2.0], [2.0, 0.0]];
+        let expected = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(V::from);
+        assert_eq!(hull(places.map(V::from).to_vec()), expected);
+        assert_eq!(hull(vec![V(1.0, 2.0); 5]), [V(1.0, 2.0)]);
+    }
+
+    fn body(kind: u8, x: f64, y: f64, angle: f64, size: f64) -> Object {
+        match kind {
+            0 => Object::Wall(Wall::new(x, y, 3.0 * size, angle)),
+            1 => Object::Box(Block::new([x, y], [2.0 * size, size], angle)),
+            2 => Object::Post(Post::new(x, y, 0.3 * size)),
+            3 => Object::Polygon(Polygon::new(vec![
+                [x, y],
+                [x + size, y],
+                [x + 0.4 * size, y + 0.3 * size],
+                [x, y + size],
+            ])),
+            _ => Object::Point(Point::new(x, y)),
+        }
+    }
+
+    fn echoes(
+        radar: &Radar,
+        object: &Object,
+        hidden_by: &[Object],
+        antennas: &Antennas,
+    ) -> Vec<crate::scattering::PathEcho> {
+        let mut out = Vec::new();
+        Scatterer::new(radar, object, hidden_by).echoes(antennas, &mut out);
+        out
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_left_out_changes_no_bit(
+            (kind, x, y, angle, size) in (0u8..5, -15.0..15.0f64, 2.0..30.0f64, 0.0..180.0f64, 0.2..3.0f64),
+            (other, u, v, turn, width) in (0u8..4, -15.0..15.0f64, 1.0..30.0f64, 0.0..180.0f64, 0.2..3.0f64),
+        ) {
+            let radar = Radar::default();
+            let (object, screen) = (body(kind, x, y, angle, size), body(other, u, v, turn, width));
+            let array = Array::of(&radar);
+            let shape = screen.body().unwrap().shape();
+            if !array.ways_to(&object).may_pass(&array.screen(&shape)) {
+                for n in [0, 100, 511, 800, 1023] {
+                    let antennas = Antennas::from(radar.pair(n));
+                    let (free, behind) = (echoes(&radar, &object, &[], &antennas), echoes(&radar, &object, std::slice::from_ref(&screen), &antennas));
+                    prop_assert_eq!(free, behind);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_body_beside_the_ways_is_left_out_though_circles_around_both_meet() {
+        let array = Array::of(&Radar::default());
+        let wall = Object::Wall(Wall::new(-8.0, 20.0, 16.0, 75.0));
+        let may = |x: f64| {
+            let car = Object::Box(Block::new([x, 9.0], [4.5, 1.8], 90.0));
+            array.ways_to(&wall).may_pass(&array.screen(&car.body().unwrap().shape()))
+        };
+        assert!(may(-4.0) && may(-1.8));
+        assert!(!may(2.8), "the circle around the wall reaches to x = 0");
+    }
+}

@@ -1,0 +1,130 @@
+//! Walls, boxes, posts and polygons in the window: added, changed while the maps follow, and told.
+
+use crate::session::{Session, step_until};
+use apertura::app::{DocumentCommand, EditCommand, NewObject};
+use apertura::interact::{Place, SelectionMode};
+use apertura::scene::Object;
+use eframe::egui::{Event, Key, Modifiers, accesskit::Role, vec2};
+use egui_kittest::kittest::Queryable;
+
+/// A session with nothing in its scene.
+fn empty() -> Session {
+    let mut s = Session::start();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.press(Modifiers::NONE, Key::Delete);
+    s
+}
+
+fn last(s: &Session) -> Object {
+    s.state().editor().scene().objects.last().cloned().unwrap()
+}
+
+#[test]
+fn every_kind_of_body_is_added_by_a_button() {
+    let mut s = empty();
+    for (label, noun) in [("+ Wall", "wall"), ("+ Box", "box"), ("+ Post", "post"), ("+ Polygon", "polygon")] {
+        let (_, painted) = s.state().work_done();
+        s.app.get_by_label(label).click();
+        s.settle();
+        assert_eq!(last(&s).noun(), noun);
+        assert!(s.state().work_done().1 > painted, "the maps show the {noun}");
+    }
+    assert_eq!(s.state().editor().scene().objects.len(), 4);
+}
+
+#[test]
+fn the_palette_adds_a_body_by_name() {
+    let mut s = empty();
+    s.press(Modifiers::COMMAND, Key::K);
+    s.app.event(Event::Text("add polygon".to_owned()));
+    s.settle();
+    s.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(last(&s).noun(), "polygon");
+}
+
+#[test]
+fn the_maps_follow_the_sliders_of_radius_and_roughness() {
+    let mut s = empty();
+    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(0.0, 12.0))));
+    s.ask(EditCommand::Select(vec![0], SelectionMode::Replace));
+    let depth = s.state().editor().history().depth();
+    for (name, value) in [
+        ("radius slider", (|o| if let Object::Post(p) = o { p.radius_metres } else { f64::NAN }) as fn(&Object) -> f64),
+        ("roughness slider", |o| if let Object::Post(p) = o { p.roughness_millimetres } else { f64::NAN }),
+    ] {
+        let before = value(&last(&s));
+        let (_, painted) = s.state().work_done();
+        let slider = s.app.get_by_role_and_label(Role::Slider, name).rect();
+        let middle = slider.center();
+        s.app.hover_at(middle);
+        s.app.step();
+        s.app.drag_at(middle);
+        s.app.step();
+        let mut during = Vec::new();
+        for step in 1..=10 {
+            s.app.hover_at(middle + vec2(2.0 * step as f32, 0.0));
+            s.app.step();
+            during.push(value(&last(&s)));
+        }
+        step_until(&mut s, "the maps follow before the slider is let go", |s| s.state().work_done().1 > painted);
+        s.app.drop_at(middle + vec2(20.0, 0.0));
+        s.settle();
+        assert!(during.windows(2).all(|w| w[0] <= w[1]) && during[0] < during[9], "{name}: {during:?}");
+        assert!(value(&last(&s)) > before, "{name}");
+    }
+    assert_eq!(s.state().editor().history().depth(), depth + 2, "each slide is one step");
+}
+
+#[test]
+fn the_status_bar_counts_bodies_by_their_echoes() {
+    let mut s = empty();
+    s.ask(EditCommand::Add(NewObject::Wall, Some(Place::new(0.0, 12.0))));
+    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(4.0, 9.0))));
+    let _told = s.app.get_by_label("2 bodies · up to 4 echoes");
+    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(-4.0, 9.0))));
+    let _told = s.app.get_by_label("3 objects · 1 reflector · 2 bodies · up to 4 echoes");
+}
+
+#[test]
+fn the_status_bar_names_the_echo_under_the_pointer() {
+    let mut s = empty();
+    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(6.0, 20.0))));
+    s.ask(EditCommand::Add(NewObject::Wall, Some(Place::new(0.0, 12.0))));
+    let over = |s: &mut Session, handle: &str, by| {
+        let at = s.handle(handle) + by;
+        s.app.hover_at(at);
+        s.app.run_steps(3);
+    };
+    over(&mut s, "wall 2: move", vec2(0.0, 0.0));
+    let _told = s.app.get_by_label_contains("glint of wall 2");
+    over(&mut s, "post 1: move", vec2(0.0, 0.0));
+    let _told = s.app.get_by_label_contains("post of post 1");
+    over(&mut s, "wall 2: move", vec2(0.0, 80.0));
+    assert!(s.app.query_by_label_contains("glint of wall 2").is_none(), "nothing echoes there");
+}
+
+#[test]
+fn a_street_of_things_says_what_a_move_left_as_it_was() {
+    use apertura::engine::{Outcome, Stage};
+    let mut s = Session::start();
+    let street = apertura::scene::presets::ALL.iter().position(|p| p.id == "street-of-things").unwrap();
+    s.ask(DocumentCommand::Preset(street));
+    s.ask(apertura::app::ViewCommand::SetFloor(apertura::signal::Floor::Exact));
+    let car = s.handle("box 1: move");
+    s.app.hover_at(car);
+    s.app.step();
+    s.app.drag_at(car);
+    s.app.step();
+    let mut told = Vec::new();
+    for step in 1..=12 {
+        s.app.hover_at(car + vec2(step as f32, 0.0));
+        s.app.step();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        let stages = s.state().report().map(|r| r.stages.clone()).unwrap_or_default();
+        told.extend(stages.into_iter().filter(|t| t.stage == Stage::Signal).map(|t| t.outcome));
+    }
+    s.app.drop_at(car + vec2(12.0, 0.0));
+    s.settle();
+    let is_partial = |o: &Outcome| matches!(o, Outcome::Computed(what) if what.contains("of 29 echoes") && what.contains("the others as before"));
+    assert!(told.iter().any(is_partial), "{told:?}");
+}
