@@ -8,6 +8,7 @@ mod disturbances;
 mod failures;
 mod house;
 mod lessons;
+mod lessons_of_bodies;
 #[cfg(feature = "network")]
 mod live_network;
 mod memory;
