@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Draw the thesis' figures and tables from this program's own data
 ///
 /// Writes figures/NUMBER.png and .svg into DIR, and figures.md, the page that shows them all with what differs from the printed
-/// ones. Figure 6-1 is another program's (a ray-tracing solver) and not among them.
+/// ones.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Draw these figures alone, as 4-7 or 2-1,2-2; leaves figures.md as it is
@@ -64,8 +64,7 @@ impl Args {
         let methods: Vec<Arc<dyn Reconstructor>> = named.collect::<Result<_, _>>().map_err(CommandError::failed)?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let mut page = String::from(
-            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG. Figure 6-1, made by a \
-             ray-tracing solver in 40 minutes a scene, is not among them.\n\n",
+            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG.\n\n",
         );
         page.push_str(&pages::tables(&methods, self.scenes).map_err(CommandError::failed)?);
         page.push_str("## Figures\n\n");
