@@ -21,12 +21,13 @@ def unit(maps):
     return (maps - lo) / (hi - lo)
 
 
-def validation_scenes(seed, count, kinds=tuple(P_FA), network="live", noisy=()):
-    """Examples of `count` validation scenes of each of the kinds, in f16, and of (kind, dB of thermal noise) of `noisy`."""
-    floors = [(kind, kind, "thesis") for kind in kinds] + [(f"{kind} at {snr} dB", kind, f"snr={snr}") for kind, snr in noisy]
-    made = lambda kind, floor: ap.torch.Scenes(kind, seed, length=count, purpose="validation", floor=floor, network=network)
+def validation_scenes(seed, count, kinds=tuple(P_FA), network="live", noisy=(), off=()):
+    """Examples of `count` validation scenes of each of the kinds, in f16, of (kind, dB of thermal noise) of `noisy`, and of (kind, tolerances) of `off`."""
+    floors = [(kind, kind, "thesis", None) for kind in kinds] + [(f"{kind} at {snr} dB", kind, f"snr={snr}", None) for kind, snr in noisy]
+    floors += [(f"{kind} elements off", kind, "thesis", (1.0, *tolerances)) for kind, tolerances in off]
+    made = lambda kind, floor, off: ap.torch.Scenes(kind, seed, length=count, purpose="validation", floor=floor, network=network, elements=off)
     half = lambda example: {name: t.half() if t.ndim > 1 and t.dtype == torch.float32 else t for name, t in example.items() if name != "ends"}
-    return {name: [half(made(kind, floor)[i]) for i in range(count)] for name, kind, floor in floors}
+    return {name: [half(made(kind, floor, off)[i]) for i in range(count)] for name, kind, floor, off in floors}
 
 
 def stacked(entries):

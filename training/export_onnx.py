@@ -8,14 +8,14 @@ from pathlib import Path
 import torch
 from safetensors.torch import load_file
 
-from live import COARSE_CHANNELS, FINE, GRID, ROWS, Live, widened
+from live import COARSE_CHANNELS, FINE, GRID, ROWS, Live, parted, widened
 
 SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.safetensors"
 
 
 def main(path, weights=SHIPPED):
     model = Live()
-    model.load_state_dict(widened(load_file(weights)))
+    model.load_state_dict(widened(parted(load_file(weights))[0]))
     inputs = {
         "fine": torch.zeros(1, 4, ROWS, FINE),
         "coarse": torch.zeros(1, COARSE_CHANNELS, ROWS, GRID),

@@ -128,6 +128,10 @@ class Live(nn.Module):
 
     def forward(self, fine, coarse, rows, scalars):
         """log10 |Y_full| [B, 512, 1024] in decades above the gain, and its minimum [B]."""
+        return self.with_picture(fine, coarse, rows, scalars)[:2]
+
+    def with_picture(self, fine, coarse, rows, scalars):
+        """The same, and the coarse half's last picture [B, c0, 512, 64], which the heads read."""
         b = fine.shape[0]
         fine_n = ((fine + 3) / 3).clamp(-4, 2)
         coarse_n = torch.cat([((coarse[:, :4] + 3) / 3).clamp(-4, 2), coarse[:, 4:]], 1)
@@ -146,7 +150,7 @@ class Live(nn.Module):
         f = torch.cat([shuffle_cols(self.widen(y0), 4), fine_n], 1)
         f = self.fine2(F.relu(self.fine1(f)))
         with torch.autocast("cpu", enabled=False):
-            return self.sources(scalars, scalars_n, x3.float(), y0.float(), f.float())
+            return *self.sources(scalars, scalars_n, x3.float(), y0.float(), f.float()), y0
 
     def sources(self, scalars, scalars_n, x3, y0, f):
         """What the features make of every cell, in f32 whatever the convolutions were in: sums over many decades follow."""
@@ -166,6 +170,45 @@ class Live(nn.Module):
         log = torch.log(total) / LN10
         minimum = floor - 2.5 + s[:, 1]
         return log, minimum
+
+
+class Doubt(nn.Module):
+    """How far off the live network expects to be: a head on its picture, which learns from the errors and teaches the network nothing."""
+
+    def __init__(self, c=16, hidden=16):
+        super().__init__()
+        self.conv1 = Conv(c, hidden)
+        self.conv2 = nn.Conv2d(hidden, FINE // GRID, 1)
+        with torch.no_grad():
+            self.conv2.weight.mul_(0.1)
+            self.conv2.bias.fill_(-1.5)
+
+    def forward(self, picture):
+        """log10 of the error in Lambda that nine of ten cells stay below, [B, 512, 256]: one number for four columns."""
+        return shuffle_cols(self.conv2(F.relu(self.conv1(picture))), FINE // GRID)[:, 0].float()
+
+
+class Doubting(nn.Module):
+    """The network with its doubt."""
+
+    def __init__(self, live, doubt):
+        super().__init__()
+        self.live, self.doubt = live, doubt
+
+    def forward(self, fine, coarse, rows, scalars):
+        """Decades, their minimum, and the logarithm of the expected error."""
+        log, minimum, picture = self.live.with_picture(fine, coarse, rows, scalars)
+        return log, minimum, self.doubt(picture.detach())
+
+
+#: What the tensors of `Doubt` begin with in weight files.
+DOUBT = "doubt."
+
+
+def parted(weights):
+    """Tensors of a weight file: the network's, and those of its doubt under their own names."""
+    network = {name: t for name, t in weights.items() if not name.startswith(DOUBT)}
+    return network, {name.removeprefix(DOUBT): t for name, t in weights.items() if name.startswith(DOUBT)}
 
 
 def widened(weights):

@@ -31,30 +31,35 @@ import options
 if __name__ == "__main__":
     ARGUMENTS = options.live()  # before PyTorch, which takes seconds to load
 
+import numpy as np
 import torch
 
 import apertura as ap
 import provenance
 from common import export, figures, save, unit, validation_scenes
-from live import Live, normalise, widened
+from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, normalise, parted, widened
 from team import Log, Team, batches
 
 WARM_UP = 200
 #: Share of each kind of scene.
 MIXTURE = {"1": 4, "2": 12, "3": 14, "clusters": 9, "walls": 12, "spacings": 6, "corner": 10, "crowd": 15, "dynamic": 5, "near": 5,
-           "bodies": 10, "street": 8, "rails": 10, "occlusion": 6, "rough": 6}
+           "bodies": 8, "street": 9, "rails": 10, "occlusion": 6, "rough": 4, "fences": 12, "rain": 8}
+#: Share of the scenes whose elements are off, and the largest tolerances: gain in decibels, phase in degrees, place in millimetres.
+ELEMENTS = (0.2, 1.0, 20.0, 0.1)
 #: What the validation figures are given for: the kinds over the thesis' floor, and three sets over thermal noise.
 NOISY = (("2", 40), ("2", 20), ("3", 40))
+#: And two sets heard by elements that are off: kind, and tolerances of gain, phase and place.
+OFF = (("2", (0.6, 6.0, 0.0)), ("3", (0.6, 6.0, 0.0)))
 INPUTS = ("fine", "coarse", "rows", "scalars")
 
 
 def training_scenes(args):
     mixture = ",".join(f"{kind}={share}" for kind, share in MIXTURE.items())
-    return ap.torch.Scenes(mixture, args.seed, length=1 << 32, thermal=(args.snr_share, 10, 60))
+    return ap.torch.Scenes(mixture, args.seed, length=1 << 32, thermal=(args.snr_share, 10, 60), elements=ELEMENTS)
 
 
 def validation_sets(args):
-    return validation_scenes(args.seed, args.validation, tuple(MIXTURE), noisy=NOISY)
+    return validation_scenes(args.seed, args.validation, tuple(MIXTURE), noisy=NOISY, off=OFF)
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -66,6 +71,48 @@ def loss_of(log, minimum, target, edge_weight):
         mask = (truth > 0.9).float()
         loss = loss + edge_weight * torch.nn.functional.binary_cross_entropy_with_logits((out - 0.9) / 0.02, mask)
     return loss
+
+
+#: Part of the cells whose error stays below what `Doubt` says.
+COVERED = 0.9
+#: Errors of Lambda below this are the same to it.
+LEAST_ERROR = 1e-4
+
+
+def error_of(output, target):
+    """Distance of Lambda from the truth, cell by cell."""
+    return (output.clamp(0, 1) - unit(target)).abs()
+
+
+def doubt_loss_of(doubt, error):
+    """Pinball loss of the logarithm: least where a part `COVERED` of the errors lies below."""
+    gap = torch.log10(error + LEAST_ERROR) - doubt.repeat_interleave(COLS // FINE, 2)
+    return torch.maximum(COVERED * gap, (COVERED - 1) * gap).mean()
+
+
+@torch.no_grad()
+def errors_and_limits(model, doubt, entries):
+    """For each entry the errors of Lambda and what the network says nine of ten of them stay below, [512, 1024] each."""
+    for entry in entries:
+        log, minimum, expected = Doubting(model, doubt)(*(entry[name][None].float() for name in INPUTS))
+        error = error_of(normalise(log, minimum), entry["target"][None].float())
+        yield error[0], 10 ** expected[0].repeat_interleave(COLS // FINE, 1)
+
+
+def coverage(model, doubt, sets):
+    """Percent of the cells whose error stays below what the network says, by kind."""
+    report = {}
+    for kind, entries in sets.items():
+        covered = [float((error <= limit).float().mean()) for error, limit in errors_and_limits(model, doubt, entries)]
+        report[kind] = round(100 * sum(covered) / len(covered), 2)
+    return report
+
+
+def doubt_factor(model, doubt, sets):
+    """What the said errors must be multiplied with so that a part `COVERED` of all cells of the validation scenes stays below: split conformal
+    prediction with the ratio of error and said error as the score (Papadopoulos et al., 2002)."""
+    ratios = [(error / limit).flatten()[::17] for entries in sets.values() for error, limit in errors_and_limits(model, doubt, entries)]
+    return float(np.quantile(torch.cat(ratios).numpy(), COVERED))
 
 
 def estimate_with(model, device="cpu"):
@@ -83,12 +130,14 @@ class Run:
     def __init__(self, args, team):
         self.path = os.path.join(args.out, "checkpoint.pt")
         self.model, self.average = Live().to(team.device, memory_format=torch.channels_last), Live().to(team.device)
-        self.optimizer = torch.optim.AdamW(self.model.parameters(), lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
+        self.doubt = Doubt().to(team.device)
+        self.optimizer = torch.optim.AdamW([*self.model.parameters(), *self.doubt.parameters()], lr=args.lr, weight_decay=1e-4, betas=(0.9, 0.99))
         self.step, self.drawn, self.parts, initial = 0, 0, [], None
         maps = None
         if os.path.exists(self.path):
             state = torch.load(self.path, weights_only=True, map_location=team.device)
             self.model.load_state_dict(state["model"])
+            self.doubt.load_state_dict(state["doubt"])
             self.optimizer.load_state_dict(state["optimizer"])
             self.step, self.drawn, self.parts, maps = state["step"], state["drawn"], json.loads(state["parts"]), state.get("maps")
             self.average.load_state_dict(state["average"])
@@ -96,7 +145,10 @@ class Run:
             if args.init:
                 from safetensors.torch import load_file
                 initial = args.init
-                self.model.load_state_dict(widened(load_file(initial)))
+                network, doubt = parted(load_file(initial))
+                self.model.load_state_dict(widened(network))
+                if doubt:
+                    self.doubt.load_state_dict(doubt)
                 self.drawn, self.parts = args.first_scene, provenance.parts_of(initial)
             self.average.load_state_dict(self.model.state_dict())
         #: Maps that the weights saw, in all parts.
@@ -111,6 +163,7 @@ class Run:
         for group in self.optimizer.param_groups:
             group["lr"] = rate
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
+        torch.nn.utils.clip_grad_norm_(self.doubt.parameters(), 1.0)
         self.optimizer.step()
         self.step += 1
         decay = min(0.998, self.step / (9 + self.step))
@@ -119,14 +172,14 @@ class Run:
                 a.lerp_(p, 1 - decay)
 
     def save(self):
-        save(self.path, {"model": self.model.state_dict(), "average": self.average.state_dict(), "optimizer": self.optimizer.state_dict(),
+        save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(), "optimizer": self.optimizer.state_dict(),
                          "step": self.step, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
 def train(run, args, team):
     sets = validation_sets(args) if team.is_first and args.validation else None
     log = Log(args.out, run.step) if team.is_first else None
-    model = team.share(run.model)
+    model = team.share(Doubting(run.model, run.doubt))
     scenes = batches(training_scenes(args), run.drawn, args.batch, team, args.loaders)
     began = time.time()
     saved, validated = began, 0.0
@@ -136,6 +189,7 @@ def train(run, args, team):
         if team.is_first:
             if sets and (done or time.time() - validated > 60 * args.validate_every):
                 report = figures(estimate_with(run.average, team.device), sets)
+                report["covered"] = coverage(run.average, run.doubt, sets)
                 line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
                 with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
                     f.write(line + "\n")
@@ -149,10 +203,11 @@ def train(run, args, team):
         batch = {name: t.to(team.device) for name, t in next(scenes).items() if name != "ends"}
         rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5)
         with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16):
-            output, minimum = model(*(batch[name] for name in INPUTS))
+            output, minimum, doubt = model(*(batch[name] for name in INPUTS))
         loss = loss_of(output, minimum, batch["target"], args.edge_weight)
+        of_doubt = doubt_loss_of(doubt, error_of(normalise(output, minimum), batch["target"]).detach())
         run.optimizer.zero_grad(set_to_none=True)
-        loss.backward()
+        (loss + of_doubt).backward()
         mean = team.mean(loss.item())
         if not mean < float("inf"):
             raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
@@ -169,17 +224,27 @@ def main(args):
     if args.judge:
         from safetensors.torch import load_file
         model = Live()
-        model.load_state_dict(widened(load_file(args.judge)))
-        print(json.dumps(figures(estimate_with(model), validation_sets(args))))
+        network, of_doubt = parted(load_file(args.judge))
+        model.load_state_dict(widened(network))
+        sets = validation_sets(args)
+        report = figures(estimate_with(model), sets)
+        if of_doubt:
+            doubt = Doubt()
+            doubt.load_state_dict(of_doubt)
+            report["doubt"] = coverage(model, doubt, sets)
+        print(json.dumps(report))
         return
     os.makedirs(args.out, exist_ok=True)
     run = Run(args, team)
     options.refuse_untrained(args, run.maps)
     if args.export:
-        report = figures(estimate_with(run.average, team.device), validation_sets(args))
+        sets = validation_sets(args)
+        report = figures(estimate_with(run.average, team.device), sets)
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
-                "steps": str(run.step), "scenes_simulated": str(run.drawn), **provenance.metadata(run.parts)}
-        export(run.average.state_dict(), args.export, meta, report, args.validation)
+                "steps": str(run.step), "scenes_simulated": str(run.drawn),
+                "doubt_factor": f"{doubt_factor(run.average, run.doubt, sets):.4f}", **provenance.metadata(run.parts)}
+        doubt = {f"{DOUBT}{name}": weights for name, weights in run.doubt.state_dict().items()}
+        export({**run.average.state_dict(), **doubt}, args.export, meta, report, args.validation)
         return
     if team.restarts:
         team.say(f"restart {team.restarts} of {team.size} processes: going on from step {run.step} of {run.path}")

@@ -273,6 +273,7 @@ class Examples:
         purpose: _Purpose = "training",
         floor: str = "thesis",
         thermal: tuple[float, float, float] | None = None,
+        elements: tuple[float, float, float, float] | None = None,
     ) -> Examples: ...
     def batch(self, indices: Sequence[SupportsIndex], *, mag_phase: bool = False) -> list[dict[str, Any]]: ...
 

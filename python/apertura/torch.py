@@ -29,6 +29,9 @@ class Scenes:
         thermal: (share, lowest dB, highest dB), in place of `floor`: this share of the scenes lies over thermal noise at a ratio drawn between
             the two, the others over the thesis' floor.
         network: Whose input the examples have: "live" or "thesis".
+        elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
+            Each such scene has its own part of these standard deviations, uniform from none to all. `target` stays that of the array as it
+            should be.
 
     An example is a dict of tensors: `ends` complex64 `[2, 12, 512]`, the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32
     `[10, 512, 64]`, `rows` float32 `[6, 512]` and `scalars` float32 `[2]`, and `target` float32 `[512, 1024]`, decades of amplitude of the
@@ -49,6 +52,7 @@ class Scenes:
         floor: str = "thesis",
         thermal: tuple[float, float, float] | None = None,
         network: Literal["live", "thesis"] = "live",
+        elements: tuple[float, float, float, float] | None = None,
     ) -> None:
         if network not in _TENSORS:
             raise ValueError(f'network is {network!r}; expected "live" or "thesis"')
@@ -63,6 +67,7 @@ class Scenes:
             "purpose": purpose,
             "floor": floor,
             "thermal": thermal,
+            "elements": elements,
         }
         self._examples: Examples | None = Examples(**self._arguments)
 

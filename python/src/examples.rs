@@ -9,11 +9,12 @@ use crate::work::{self, Progress};
 use apertura::maps::channels_map;
 use apertura::maps::network_input::mag_phase;
 use apertura::network::floors::Floors;
+use apertura::network::live::arrays::Arrays;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, Part};
 use apertura::network::live::examples::{self, Example};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
 use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS};
-use apertura::radar::Decibels;
+use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::check_ends;
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
@@ -35,6 +36,8 @@ use std::sync::OnceLock;
 ///     floor: What lies beneath all scenes: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB): this share of the scenes lies over thermal noise at a ratio drawn between the two, the
 ///         others over the thesis' floor. In place of `floor`.
+///     elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
+///         Each such scene has its own part of these standard deviations, uniform from none to all. `target` stays that of the array as it should be.
 ///
 /// Raises:
 ///     ValueError: A name is unknown or a number can't be used.
@@ -44,16 +47,28 @@ pub struct Examples(examples::Examples);
 /// Tables of the radar of table 3.1.
 static EXTRACTOR: OnceLock<FeatureExtractor> = OnceLock::new();
 
+/// Largest tolerance of elements, in decibels, degrees or millimetres.
+const MOST_TOLERANCE: f64 = 360.0;
+
 /// Most examples that one call may ask for.
 const MOST: usize = 4096;
 
 #[pymethods]
 impl Examples {
     #[new]
-    #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None))]
-    fn new(mixture: &str, seed: u64, purpose: &str, floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Self> {
-        let floors = floors_of(floor, thermal)?;
-        examples::Examples::new(named(mixture)?, purpose_of(purpose)?, seed, floors).map(Examples).map_err(value)
+    #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None, elements=None))]
+    fn new(
+        mixture: &str,
+        seed: u64,
+        purpose: &str,
+        floor: &str,
+        thermal: Option<(f64, f64, f64)>,
+        elements: Option<(f64, f64, f64, f64)>,
+    ) -> PyResult<Self> {
+        let (floors, arrays) = (floors_of(floor, thermal)?, arrays_of(elements)?);
+        examples::Examples::new(named(mixture)?, purpose_of(purpose)?, seed, floors, arrays)
+            .map(Examples)
+            .map_err(value)
     }
 
     /// Examples of these numbers, made in parallel.
@@ -98,6 +113,19 @@ fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> 
         )));
     }
     Ok(Floors::Thermal { share, from: Decibels(from), to: Decibels(to) })
+}
+
+fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
+    let Some((share, gain, phase_degrees, position_millimetres)) = elements else { return Ok(Arrays::IDEAL) };
+    let tolerances = Tolerances { gain: Decibels(gain), phase_degrees, position_millimetres };
+    let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MOST_TOLERANCE).contains(v));
+    if !usable || !(0.0..=1.0).contains(&share) {
+        let found = format!("elements is ({share}, {gain}, {phase_degrees}, {position_millimetres})");
+        return Err(value(format!(
+            "{found}; expected a share of 0 to 1 and three tolerances of 0 to {MOST_TOLERANCE}"
+        )));
+    }
+    Ok(Arrays { share, tolerances })
 }
 
 /// Writes examples as files: `apertura dataset`. `docs/data.md` says what is in them; `apertura.data.Files` reads them.

@@ -156,6 +156,13 @@ impl Reconstruction {
         self.eta
     }
 
+    /// How far off the method expects its map to be, float32 `[samples, elements]`: nine of ten cells are no farther than this from the true
+    /// Lambda, on scenes like those it was made for. `None` where the method does not say; a copy.
+    #[getter]
+    fn doubt<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f32>>> {
+        self.answer.doubt.as_ref().map(|map| owned(py, map.lambda.clone()))
+    }
+
     /// The reflectors it believes in, float64 `[reflectors, 3]`: x and y in metres, reflectivity. Empty where the method draws maps only.
     #[getter]
     fn reflectors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {

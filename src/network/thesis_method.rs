@@ -75,6 +75,7 @@ impl ThesisMethod {
             confidences: Vec::new(),
             eta: Some(eta),
             least_eta: None,
+            doubt: None,
             trace: Vec::new(),
         })
     }
@@ -198,6 +199,7 @@ impl Reconstructor for UnetMethod {
             confidences: Vec::new(),
             eta: None,
             least_eta: None,
+            doubt: None,
             trace: Vec::new(),
         })
     }

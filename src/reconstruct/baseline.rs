@@ -37,6 +37,7 @@ impl Reconstructor for Baseline {
             confidences: Vec::new(),
             eta: None,
             least_eta: None,
+            doubt: None,
             trace: Vec::new(),
         })
     }

@@ -51,7 +51,15 @@ pub(super) fn of_echoes(
         found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
     let confidences = confidences(radar, ends, &reflectors, noise_variance);
     let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
-    Reconstruction { lambda, reflectors, confidences, eta: None, least_eta: Some(least), trace: Vec::new() }
+    Reconstruction {
+        lambda,
+        reflectors,
+        confidences,
+        eta: None,
+        least_eta: Some(least),
+        doubt: None,
+        trace: Vec::new(),
+    }
 }
 
 /// Echoes added up at neighbouring elements.

@@ -57,6 +57,7 @@ pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, r
         confidences: Vec::new(),
         eta: None,
         least_eta: Some(least),
+        doubt: None,
         trace: Vec::new(),
     }
 }

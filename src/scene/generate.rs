@@ -101,9 +101,15 @@ impl Generator {
             Kind::Noise => Vec::new(),
             Kind::Points(count) => (0..count).map(|_| self.point(rng)).collect(),
             Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
-            Kind::Clusters | Kind::Walls | Kind::Spacings | Kind::Corner | Kind::Crowd | Kind::Dynamic | Kind::Near => {
-                Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
-            }
+            Kind::Clusters
+            | Kind::Walls
+            | Kind::Spacings
+            | Kind::Corner
+            | Kind::Crowd
+            | Kind::Dynamic
+            | Kind::Near
+            | Kind::Fences
+            | Kind::Rain => Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng),
             Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
                 things::objects(kind, self.max_range, rng)
             }
@@ -246,7 +252,7 @@ mod tests {
     #[test]
     fn named_kinds_keep_to_the_field() {
         let radar = Radar::default();
-        for kind in Kind::BEYOND {
+        for kind in Kind::BEYOND.into_iter().chain(Kind::IRREGULAR) {
             for (number, objects) in scenes(kind).into_iter().enumerate() {
                 let scene = Scene { objects, ..Scene::default() };
                 scene.validate(&radar).unwrap();
@@ -302,6 +308,28 @@ mod tests {
             let ([ax, ay], [bx, by]) = (a.step_metres(), b.step_metres());
             assert!((ax * bx + ay * by).abs() < 1e-12);
             assert!(matches!(objects[2..], [Object::Gaussian(_), Object::Point(_)]));
+        }
+    }
+
+    #[test]
+    fn fences_are_two_rows_at_irregular_steps() {
+        for objects in scenes(Kind::Fences) {
+            let places: Vec<[f64; 2]> =
+                objects.iter().flat_map(Object::reflectors).map(|r| [r.x_metres, r.y_metres]).collect();
+            assert!((40..=900).contains(&places.len()), "{}", places.len());
+            let steps: Vec<f64> =
+                places.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).take(15).collect();
+            let (least, most) = steps.iter().fold((f64::MAX, 0.0f64), |(a, b), s| (a.min(*s), b.max(*s)));
+            assert!(most > 1.1 * least, "{steps:?}");
+        }
+    }
+
+    #[test]
+    fn rain_is_weak_points_before_a_few_strong_ones() {
+        for objects in scenes(Kind::Rain) {
+            let strong = objects.iter().flat_map(Object::reflectors).filter(|r| r.reflectivity == 1.0).count();
+            let weak = objects.iter().flat_map(Object::reflectors).filter(|r| (0.01..0.32).contains(&r.reflectivity));
+            assert!((1..=4).contains(&strong) && (60..=240).contains(&weak.count()));
         }
     }
 

@@ -25,6 +25,7 @@ fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
         MapKind::TargetAbove => "Target > η': what a detector finds in the target".to_owned(),
         MapKind::OutputAbove | MapKind::SecondAbove => "Output > η: what it finds in the output".to_owned(),
         MapKind::Difference | MapKind::SecondDifference => "Difference: output minus target".to_owned(),
+        MapKind::Doubt => format!("Doubt: how far off {method} expects to be"),
         MapKind::Unexplained => "What reflectors leave unexplained of the recording".to_owned(),
     }
 }

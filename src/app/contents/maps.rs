@@ -181,6 +181,7 @@ pub(super) fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
         MapKind::Difference | MapKind::SecondDifference => {
             pair.and_then(|p| Some(map::Cells { map: &p.output, minus: Some(p.target.as_deref()?), scale }))
         }
+        MapKind::Doubt => pair.and_then(|p| Some(map::Cells { map: p.doubt.as_deref()?, minus: None, scale: None })),
         MapKind::Unexplained => jobs.pipeline.unexplained().map(|u| cells_of(&u.map)),
     }
 }
@@ -257,6 +258,10 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
         return Some(map::Problem { reason, instead: None });
     }
     let slot = kind.slot()?;
+    if kind == MapKind::Doubt && jobs.pipeline.method(slot).output().is_some_and(|output| output.pair.doubt.is_none()) {
+        let reason = "This method does not say how far off it is. The method live does.";
+        return Some(map::Problem { reason, instead: None });
+    }
     let refusal = jobs.pipeline.method(slot).refusal()?;
     let instead = || state.methods.instead_of(refusal.method, state.radar());
     // The second is chosen beside the maps.

@@ -228,13 +228,17 @@ impl MethodJob {
         if at_rest || method.following().is_none() {
             self.time = Some((basis.radar.clone(), method.name(), took));
         }
-        let Reconstruction { lambda, mut reflectors, eta, trace: attempts, .. } = answer;
+        let Reconstruction { lambda, mut reflectors, eta, doubt, trace: attempts, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }
         let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
         let document = latest.map_or(document, |r| r.request.document);
-        let pair = Pair { target: latest.and_then(MapsResult::target).or(target), output: Arc::new(lambda) };
+        let pair = Pair {
+            target: latest.and_then(MapsResult::target).or(target),
+            output: Arc::new(lambda),
+            doubt: doubt.map(Arc::new),
+        };
         self.refusal = None;
         let method = method.name();
         self.output = Some(MethodResult { method, document, pair, eta, found, reflectors, attempts, took, basis });

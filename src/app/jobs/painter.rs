@@ -86,14 +86,20 @@ impl Painter {
 /// Where the scale of a picture ends: that of a difference at the next of 1, 2, 5, 10 ... that holds all of it, so that its labels are
 /// round and it rests while a reflector is dragged.
 fn end_of(subject: &Subject) -> f32 {
+    let round = |most: f32| ENDS.into_iter().find(|end| *end >= most).unwrap_or(1.0);
+    if let Paint::Doubt(_) = subject.paint {
+        return round(subject.map.lambda.iter().copied().fold(0.0, f32::max));
+    }
     let (Paint::Difference { view, .. }, Some(minus)) = (subject.paint, &subject.minus) else { return 1.0 };
     if view.whole || minus.lambda.dim() != subject.map.lambda.dim() {
         return 1.0;
     }
     let most = subject.map.lambda.iter().zip(&minus.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    let ends = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
-    ends.into_iter().find(|end| *end >= most).unwrap_or(1.0)
+    round(most)
 }
+
+/// Where scales end, but for those that end at 1.
+const ENDS: [f32; 9] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
 /// The colour of every cell.
 fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>, end: f32) -> Vec<Color32> {
@@ -104,6 +110,10 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>,
         (Paint::Lambda(colours), _) => {
             let table = colour_table(colours);
             cells.map(|&v| shown(v, table[(v * 255.0 + 0.5) as u8 as usize])).collect()
+        }
+        (Paint::Doubt(colours), _) => {
+            let table = colour_table(colours);
+            cells.map(|&v| shown(v, table[(v / end * 255.0 + 0.5) as u8 as usize])).collect()
         }
         (Paint::Above { eta, dark }, _) => {
             let mask = theme::mask(dark);

@@ -24,6 +24,8 @@ pub struct Pair {
     pub target: Option<Arc<RangeAngleMap>>,
     /// What the method made of the ends of the same scene.
     pub output: Arc<RangeAngleMap>,
+    /// How far off the method expects that to be, where it says.
+    pub doubt: Option<Arc<RangeAngleMap>>,
 }
 
 impl Pair {
@@ -284,6 +286,7 @@ fn subject(
         MapKind::Input1 => (lambda(&frame.last), None, colours),
         MapKind::Target => (lambda(&frame.full), None, colours),
         MapKind::Output | MapKind::Second => (output, None, colours),
+        MapKind::Doubt => (pair?.doubt.clone(), None, Paint::Doubt(request.colours)),
         MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above { eta: request.target_eta, dark }),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let eta = request.etas[slot?];

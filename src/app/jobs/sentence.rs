@@ -23,6 +23,7 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
     let (map, minus) = (&subject.map.lambda, subject.minus.as_deref().map(|m| &m.lambda));
     match (subject.paint, minus) {
         (Paint::Lambda(_), _) => peaks(radar, map),
+        (Paint::Doubt(_), _) => doubt(radar, map),
         (Paint::Above { eta, .. }, _) => match map.iter().filter(|v| **v > eta).count() {
             0 => "No cell exceeds the threshold.".to_owned(),
             count => format!("{} above the threshold; {}", cells(count), lowered(&peaks(radar, map))),
@@ -36,6 +37,12 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
         (Paint::Difference { .. }, Some(target)) => largest_difference(radar, map, target),
         (Paint::Detections { .. } | Paint::Difference { .. }, None) => "There is no target to compare with.".to_owned(),
     }
+}
+
+/// How large the expected errors are, and where the largest.
+fn doubt(radar: &Radar, map: &Array2<f32>) -> String {
+    let mean = map.mean().unwrap_or_default();
+    format!("Expected errors of {mean:.3} on average; {}", lowered(&peaks(radar, map)))
 }
 
 fn cells(count: usize) -> String {

@@ -24,6 +24,8 @@ pub enum Paint {
         /// Whether the window is dark.
         dark: bool,
     },
+    /// Expected errors, from none to the next round number.
+    Doubt(ColourMap),
     /// Differences from another map.
     Difference {
         /// On which scale, with a sign or without.

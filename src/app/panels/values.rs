@@ -8,13 +8,14 @@ use eframe::egui;
 use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
-pub const LISTED: [MapKind; 8] = [
+pub const LISTED: [MapKind; 9] = [
     MapKind::Input0,
     MapKind::Input1,
     MapKind::Target,
     MapKind::Output,
     MapKind::Second,
     MapKind::Difference,
+    MapKind::Doubt,
     MapKind::SecondDifference,
     MapKind::Unexplained,
 ];

@@ -293,8 +293,8 @@ mod tests {
     fn every_panel_is_there_and_the_tools_are_closed() {
         let mut arrangement = Arrangement::default();
         for panel in Panel::all() {
-            let closed =
-                [Panel::Timing, Panel::Map(MapKind::Unexplained)].contains(&panel) || Panel::TOOLS.contains(&panel);
+            let closed = [Panel::Timing, Panel::Map(MapKind::Doubt), Panel::Map(MapKind::Unexplained)].contains(&panel)
+                || Panel::TOOLS.contains(&panel);
             assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
         }
         let lesson = Arrangement::of_a_lesson();

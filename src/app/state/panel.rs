@@ -168,6 +168,8 @@ pub enum MapKind {
     Difference,
     /// A recording minus the reflectors laid over it.
     Unexplained,
+    /// How far off the method expects its output to be.
+    Doubt,
     /// What the second method of the panel "Compare" makes of the two ends.
     Second,
     /// Second output > its eta.
@@ -192,7 +194,7 @@ impl MethodSlot {
 
 impl MapKind {
     /// All that have a panel of their own, in reading order.
-    pub const ALL: [MapKind; 8] = [
+    pub const ALL: [MapKind; 9] = [
         MapKind::Input0,
         MapKind::Input1,
         MapKind::Target,
@@ -200,6 +202,7 @@ impl MapKind {
         MapKind::TargetAbove,
         MapKind::OutputAbove,
         MapKind::Difference,
+        MapKind::Doubt,
         MapKind::Unexplained,
     ];
 
@@ -214,6 +217,7 @@ impl MapKind {
             MapKind::OutputAbove => "Output > η",
             MapKind::Difference => "Difference",
             MapKind::Unexplained => "Unexplained",
+            MapKind::Doubt => "Doubt",
             MapKind::Second => "Second output",
             MapKind::SecondAbove => "Second output > η",
             MapKind::SecondDifference => "Second difference",
@@ -235,6 +239,9 @@ impl MapKind {
             MapKind::Unexplained => {
                 "What reflectors laid over a recording leave of it: their echoes are fitted and taken off"
             }
+            MapKind::Doubt => {
+                "How far off the method expects its output to be: nine of ten cells are nearer to the target than this"
+            }
             MapKind::Second => "What the second method makes of the two ends",
             MapKind::SecondAbove => "Cells where the second output exceeds its η",
             MapKind::SecondDifference => "Second output minus target",
@@ -244,7 +251,7 @@ impl MapKind {
     /// The method of whose output it is made, if it is made of one.
     pub fn slot(self) -> Option<MethodSlot> {
         match self {
-            MapKind::Output | MapKind::OutputAbove | MapKind::Difference => Some(MethodSlot::First),
+            MapKind::Output | MapKind::OutputAbove | MapKind::Difference | MapKind::Doubt => Some(MethodSlot::First),
             MapKind::Second | MapKind::SecondAbove | MapKind::SecondDifference => Some(MethodSlot::Second),
             _ => None,
         }

@@ -72,7 +72,7 @@ fn explore() -> Tree<Panel> {
     let mut pane = |panel| tiles.insert_pane(panel);
     let [scene, controls, inspector, objects] =
         [Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects].map(&mut pane);
-    let [in0, in1, target, output, target_above, output_above, difference, unexplained] =
+    let [in0, in1, target, output, target_above, output_above, difference, doubt, unexplained] =
         MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
     let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
     let [guide, lesson, radar, elements, disturbances] =
@@ -88,7 +88,7 @@ fn explore() -> Tree<Panel> {
         Panel::Values,
     ];
     let tools = of_results.map(pane);
-    for closed in [timing, guide, lesson, radar, elements, disturbances, unexplained].iter().chain(&tools) {
+    for closed in [timing, guide, lesson, radar, elements, disturbances, doubt, unexplained].iter().chain(&tools) {
         tiles.set_visible(*closed, false);
     }
     let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
@@ -103,7 +103,7 @@ fn explore() -> Tree<Panel> {
     let third = tabs(&mut tiles, vec![target_above, cuts]);
     let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
     let first = tabs(&mut tiles, vec![in1]);
-    let second = tabs(&mut tiles, vec![output, difference, unexplained]);
+    let second = tabs(&mut tiles, vec![output, difference, doubt, unexplained]);
     let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
     let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
     let root = row(&mut tiles, vec![left, beside, left_maps, right_maps], &[1.1, 0.9, 1.0, 1.0]);

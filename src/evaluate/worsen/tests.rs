@@ -31,6 +31,7 @@ impl Reconstructor for ShortSighted {
             confidences: Vec::new(),
             eta: None,
             least_eta: None,
+            doubt: None,
             trace: Vec::new(),
         })
     }

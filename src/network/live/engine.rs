@@ -3,6 +3,7 @@
 //! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
 use super::config::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
+use super::doubt::DoubtHead;
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::kernel::{PRODUCT_COLUMNS, Packed, convolve, product};
@@ -10,6 +11,7 @@ use super::planes::{Block, Plane, rectified};
 use super::range_lobes::{RangeLobes, UNSEEN};
 use super::reading::{CELLS, Layers, circulant};
 use super::winograd::{Conv3x3, Results};
+use crate::maps::RangeAngleMap;
 use crate::network::weights::{WeightFile, WeightsError};
 use crate::signal::simd::Simd;
 use crate::signal::simd::powers::{each, logarithm, power_of_ten};
@@ -50,6 +52,7 @@ pub struct LiveEngine {
     rows: Vec<f32>,
     scalar1: Packed,
     scalar2: Packed,
+    doubt: Option<DoubtHead>,
     channels: [usize; 4],
 }
 
@@ -102,6 +105,7 @@ impl LiveEngine {
             rows: in_blocks(&circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE), WIDE),
             scalar1: layers.linear("scalar1", 2 * c3 + SCALARS, 64)?,
             scalar2: layers.linear("scalar2", 64, 2)?,
+            doubt: DoubtHead::new(file, c0)?,
             channels: config.channels,
         })
     }
@@ -114,6 +118,12 @@ impl LiveEngine {
     /// The same with nothing left out, to measure what that costs.
     pub fn forward_whole(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
         self.forward_over(input, 0.0, s)
+    }
+
+    /// The error of Lambda, `[512, 1024]`, that the network expects nine of ten cells to stay below, after a pass that left its picture in `s`.
+    /// `None` where the weights say nothing of it.
+    pub fn doubt(&self, s: &Scratch) -> Option<RangeAngleMap> {
+        Some(self.doubt.as_ref()?.read(&s.level[0]))
     }
 
     fn forward_over(&self, input: &LiveInput, unseen: f32, s: &mut Scratch) -> Decades {

@@ -1,11 +1,13 @@
 //! Examples to train on: example `i` is a function of (mixture, seed, i) alone, whoever asks, in whatever order.
 
+use super::arrays::Arrays;
 use super::features::{FeatureExtractor, LiveInput};
 use crate::evaluate::sets::SceneSet;
 use crate::maps::{Aperture, angle_transform, range_transform};
 use crate::network::floors::Floors;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
+use crate::scene::Scene;
 use crate::scene::generate::{Generator, Kind, Mixture, Purpose, Reading};
 use crate::signal::{Floor, TwoEnds, Unfinished, simulate_for};
 use crate::task::Task;
@@ -17,6 +19,7 @@ pub struct Examples {
     mixture: Mixture,
     seed: u64,
     floors: Floors,
+    arrays: Arrays,
     generator: Generator,
     extractor: FeatureExtractor,
     radar: Radar,
@@ -29,11 +32,11 @@ pub struct Example {
     pub kind: Kind,
     /// Its floor.
     pub floor: Floor,
-    /// The samples of both ends.
+    /// The samples of both ends, heard by elements that may be off.
     pub ends: TwoEnds,
     /// The live network's input.
     pub input: LiveInput,
-    /// The whole array's map, `[512, 1024]`: decades of amplitude relative to [`LiveInput::gain`].
+    /// The map of the whole array as it should be, `[512, 1024]`: decades of amplitude relative to [`LiveInput::gain`].
     pub decades: Array2<f32>,
 }
 
@@ -64,10 +67,16 @@ impl Examples {
     ///
     /// # Errors
     /// [`ReconstructError`] where the network knows another radar.
-    pub fn new(mixture: Mixture, purpose: Purpose, seed: u64, floors: Floors) -> Result<Self, ReconstructError> {
+    pub fn new(
+        mixture: Mixture,
+        purpose: Purpose,
+        seed: u64,
+        floors: Floors,
+        arrays: Arrays,
+    ) -> Result<Self, ReconstructError> {
         let radar = Radar::default();
         let generator = Generator::new(&radar, Reading::Program, purpose, seed);
-        Ok(Examples { mixture, seed, floors, generator, extractor: FeatureExtractor::new(&radar)?, radar })
+        Ok(Examples { mixture, seed, floors, arrays, generator, extractor: FeatureExtractor::new(&radar)?, radar })
     }
 
     /// Example `index`.
@@ -76,11 +85,20 @@ impl Examples {
     /// [`ExampleError`], also soon after `task` was cancelled.
     pub fn example(&self, index: u32, task: &Task) -> Result<Example, ExampleError> {
         let kind = self.mixture.kind(self.seed, index);
-        let scene = self.generator.scene(kind, index);
+        let mut scene = self.generator.scene(kind, index);
         let floor = SceneSet::Generated(kind).floor(self.floors.of(scene.noise_seed));
-        let signal = simulate_for(task, &self.radar, &scene, floor, scene.noise_seed)
-            .map_err(|source| ExampleError::Scene { index, source })?;
-        let ends = signal.two_ends(&self.radar);
+        let simulated = |scene: &Scene| {
+            simulate_for(task, &self.radar, scene, floor, scene.noise_seed)
+                .map_err(|source| ExampleError::Scene { index, source })
+        };
+        let signal = simulated(&scene)?;
+        let array = self.arrays.of(scene.noise_seed, &self.radar);
+        let ends = if array.is_ideal() {
+            signal.two_ends(&self.radar)
+        } else {
+            scene.disturbances.elements = array;
+            simulated(&scene)?.two_ends(&self.radar)
+        };
         let input = self.extractor.extract(&ends).map_err(|source| ExampleError::Input { index, source })?;
         let profiles = range_transform(&self.radar, &signal);
         let map = angle_transform(&self.radar, &profiles, Aperture::Full).log_magnitude();
@@ -92,11 +110,11 @@ impl Examples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::radar::Decibels;
+    use crate::radar::{Decibels, Tolerances};
     use crate::signal::simulate;
 
     fn examples(seed: u64, floors: Floors) -> Examples {
-        Examples::new("2=1,3=1".parse().unwrap(), Purpose::Training, seed, floors).unwrap()
+        Examples::new("2=1,3=1".parse().unwrap(), Purpose::Training, seed, floors, Arrays::IDEAL).unwrap()
     }
 
     #[test]
@@ -129,9 +147,23 @@ mod tests {
     }
 
     #[test]
+    fn elements_that_are_off_change_the_input_alone() {
+        let floors = Floors::Fixed(Floor::Thesis);
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
+        let mixture = || "2".parse().unwrap();
+        let off = Examples::new(mixture(), Purpose::Training, 1, floors, Arrays { share: 1.0, tolerances }).unwrap();
+        let ideal = Examples::new(mixture(), Purpose::Training, 1, floors, Arrays::IDEAL).unwrap();
+        let [off, ideal] = [off, ideal].map(|examples| examples.example(5, &Task::default()).unwrap());
+        assert_ne!(off.ends, ideal.ends);
+        let both = [&off, &ideal].map(|e| e.decades.iter().map(|v| f64::from(*v) + e.input.gain).collect::<Vec<_>>());
+        assert!(both[0].iter().zip(&both[1]).all(|(a, b)| (a - b).abs() < 1e-5));
+    }
+
+    #[test]
     fn an_example_of_noise_lies_over_a_level_of_its_own() {
         let noise =
-            Examples::new("noise".parse().unwrap(), Purpose::Training, 1, Floors::Fixed(Floor::Thesis)).unwrap();
+            Examples::new("noise".parse().unwrap(), Purpose::Training, 1, Floors::Fixed(Floor::Thesis), Arrays::IDEAL)
+                .unwrap();
         assert!(matches!(noise.example(0, &Task::default()).unwrap().floor, Floor::Level(_)));
     }
 }

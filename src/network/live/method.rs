@@ -64,7 +64,7 @@ impl LiveMethod {
     /// # Errors
     /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
     pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.decades_by(LiveEngine::forward, radar, ends)
+        self.decades_by(LiveEngine::forward, radar, ends).map(|(decades, _)| decades)
     }
 
     /// The same with nothing left out.
@@ -72,15 +72,16 @@ impl LiveMethod {
     /// # Errors
     /// As [`LiveMethod::decades`].
     pub fn decades_whole(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.decades_by(LiveEngine::forward_whole, radar, ends)
+        self.decades_by(LiveEngine::forward_whole, radar, ends).map(|(decades, _)| decades)
     }
 
+    /// The map in decades, and how far off the network expects Lambda to be.
     fn decades_by(
         &self,
         forward: fn(&LiveEngine, &LiveInput, &mut Scratch) -> Decades,
         radar: &Radar,
         ends: &TwoEnds,
-    ) -> Result<Decades, ReconstructError> {
+    ) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let made;
         let extractor = match self.extractor.get() {
             Some(extractor) if is_alike(&self.trained, radar) => extractor,
@@ -96,6 +97,7 @@ impl LiveMethod {
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
         let mut decades = forward(&self.engine, &input, &mut scratch);
+        let doubt = self.engine.doubt(&scratch);
         let mut idle = idle();
         if idle.len() < MOST_IDLE {
             idle.push(scratch);
@@ -104,7 +106,7 @@ impl LiveMethod {
         let gain = input.gain as f32;
         decades.map.par_iter_mut().for_each(|v| *v += gain);
         decades.minimum += gain;
-        Ok(decades)
+        Ok((decades, doubt))
     }
 }
 
@@ -166,7 +168,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let Decades { mut map, minimum, .. } = self.decades(radar, ends)?;
+        let (Decades { mut map, minimum, .. }, doubt) = self.decades_by(LiveEngine::forward, radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
@@ -176,11 +178,10 @@ impl Reconstructor for LiveMethod {
         let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
         Ok(Reconstruction {
             lambda: RangeAngleMap { lambda },
-            reflectors: Vec::new(),
-            confidences: Vec::new(),
             eta: Some(eta),
             least_eta: Some(least_eta),
-            trace: Vec::new(),
+            doubt,
+            ..Reconstruction::silence(radar)
         })
     }
 }

@@ -13,17 +13,20 @@
 //! | file | what |
 //! |---|---|
 //! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
-//! | [`examples`] | inputs and targets of random scenes |
+//! | [`examples`], [`arrays`] | inputs and targets of random scenes |
 //! | [`dataset`] | the same as files |
 //! | `config` | how large the network is |
 //! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
 //! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
+//! | [`doubt`] | how far off the network expects to be |
 //! | [`method`] | the network as a reconstruction method |
 
+pub mod arrays;
 mod capon;
 mod coarse;
 mod config;
 pub mod dataset;
+pub mod doubt;
 pub mod engine;
 pub mod examples;
 pub mod features;

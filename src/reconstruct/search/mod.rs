@@ -138,7 +138,15 @@ impl Found {
     /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
-        Reconstruction { lambda, reflectors, confidences: Vec::new(), eta: None, least_eta, trace: self.trace.clone() }
+        Reconstruction {
+            lambda,
+            reflectors,
+            confidences: Vec::new(),
+            eta: None,
+            least_eta,
+            doubt: None,
+            trace: self.trace.clone(),
+        }
     }
 
     /// The expected map of what was found, and its scale.

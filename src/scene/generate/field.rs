@@ -13,6 +13,8 @@ const NEAREST_METRES: f64 = 2.0;
 const FARTHEST: f64 = 0.95;
 /// Angle from the array's axis that places keep.
 const AXIS_MARGIN_DEGREES: f64 = 5.0;
+/// Points that two rows have at least.
+const LEAST_OF_FENCES: usize = 40;
 
 /// The radar's field, in which objects are placed.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +24,7 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// The objects of a scene of `kind`, one of [`Kind::BEYOND`]; none for the others.
+    /// The objects of a scene of `kind`, one of [`Kind::BEYOND`] or [`Kind::IRREGULAR`]; none for the others.
     pub fn objects(&self, kind: Kind, rng: &mut ChaCha8Rng) -> Vec<Object> {
         match kind {
             Kind::Clusters => {
@@ -61,6 +63,16 @@ impl Field {
                 })
                 .collect(),
             Kind::Near => (0..rng.random_range(1..=3)).map(|_| near_point(rng)).collect(),
+            Kind::Fences => {
+                let mut objects = self.fences(rng);
+                objects.extend((0..rng.random_range(0..=3)).map(|_| self.point(1.0, rng)));
+                objects
+            }
+            Kind::Rain => {
+                let mut objects: Vec<_> = (0..rng.random_range(1..=4)).map(|_| self.point(1.0, rng)).collect();
+                objects.extend((0..rng.random_range(60..=240)).map(|_| self.weak_point(rng)));
+                objects
+            }
             _ => Vec::new(),
         }
     }
@@ -72,6 +84,36 @@ impl Field {
     fn point(&self, reflectivity: f64, rng: &mut ChaCha8Rng) -> Object {
         let [x_metres, y_metres] = self.place(rng);
         Object::Point(Point { x_metres, y_metres, reflectivity })
+    }
+
+    fn weak_point(&self, rng: &mut ChaCha8Rng) -> Object {
+        self.point(10f64.powf(rng.random_range(-40.0..-10.0) / 20.0), rng)
+    }
+
+    /// Two parallel rows of points, one at either side of a way that leads ahead or up to 20 degrees to the side. Points outside the field are
+    /// left out.
+    fn fences(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
+        loop {
+            let direction = (90.0 + rng.random_range(-20.0..20.0f64)).to_radians();
+            let [along, across] = [[direction.cos(), direction.sin()], [direction.sin(), -direction.cos()]];
+            let (left, width) = (-rng.random_range(1.5..12.0), rng.random_range(3.0..16.0));
+            let (start, end) = (rng.random_range(2.0..12.0), rng.random_range(18.0..FARTHEST * self.max_range_metres));
+            let step = rng.random_range(0.1..0.6);
+            let row = |side: f64, rng: &mut ChaCha8Rng| {
+                let (mut at, mut places) = (start, Vec::new());
+                while at < end {
+                    places.push([0, 1].map(|axis| side * across[axis] + at * along[axis]));
+                    at += step * (1.0 + rng.random_range(-0.45..0.45));
+                }
+                places
+            };
+            let mut places = row(left, rng);
+            places.extend(row(left + width, rng));
+            places.retain(|place| self.holds(*place));
+            if places.len() >= LEAST_OF_FENCES {
+                return places.into_iter().map(|[x, y]| Object::Point(Point::new(x, y))).collect();
+            }
+        }
     }
 
     fn some_points(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {

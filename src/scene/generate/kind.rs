@@ -32,6 +32,10 @@ pub enum Kind {
     Dynamic,
     /// 1 to 3 points near the array: ranges from 0.3 to 8 m, uniform in their logarithm, 15 degrees or more off the array's axis.
     Near,
+    /// Two long parallel rows of points at irregular steps, along the road or nearly so: mean steps of 0.1 to 0.6 m, each off by up to 45 %; and up to 3 points.
+    Fences,
+    /// 60 to 240 weak points, uniform in decibels from -40 to -10 dB, and 1 to 4 points at 0 dB.
+    Rain,
     /// 1 to 3 bodies (walls of 1 to 10 m, cars, posts, inner corners) turned anyhow, and at most one point.
     Bodies,
     /// Two cars along the road, two or three walls, two to four posts.
@@ -58,12 +62,15 @@ impl Kind {
     pub const BEYOND: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 
+    /// Points in numbers or at steps that no other kind has.
+    pub const IRREGULAR: [Kind; 2] = [Kind::Fences, Kind::Rain];
+
     /// The kinds of bodies: they shine where they face the array, and hide what stands behind them.
     pub const THINGS: [Kind; 5] = [Kind::Bodies, Kind::Street, Kind::Rails, Kind::Occlusion, Kind::Rough];
 
-    /// Every kind that has a name of its own: the test sets, what lies beyond them, bodies, and noise alone.
+    /// Every kind that has a name of its own: the test sets, what lies beyond them, irregular points, bodies, and noise alone.
     pub fn all() -> impl Iterator<Item = Kind> {
-        Kind::with_echoes().chain(Kind::THINGS).chain([Kind::Noise])
+        Kind::with_echoes().chain(Kind::IRREGULAR).chain(Kind::THINGS).chain([Kind::Noise])
     }
 
     /// The test sets and what lies beyond them: scenes of points with something to detect.
@@ -89,6 +96,8 @@ impl Kind {
             Kind::Crowd => "12 to 40 points",
             Kind::Dynamic => "5 points up to 40 dB apart",
             Kind::Near => "points from 0.3 m",
+            Kind::Fences => "two long rows of points at irregular steps",
+            Kind::Rain => "60 to 240 weak points and a few strong ones",
             Kind::Bodies => "walls, cars, posts and corners",
             Kind::Street => "a street of cars, walls and posts",
             Kind::Rails => "guard rails, a car and posts",
@@ -132,6 +141,8 @@ impl Kind {
             Kind::Rails => 14,
             Kind::Occlusion => 15,
             Kind::Rough => 16,
+            Kind::Fences => 17,
+            Kind::Rain => 18,
             Kind::Points(n) => 0x100 + u64::from(n),
             Kind::Mixed(n) => 0x200 + u64::from(n),
         }
@@ -152,6 +163,8 @@ impl fmt::Display for Kind {
             Kind::Crowd => "crowd",
             Kind::Dynamic => "dynamic",
             Kind::Near => "near",
+            Kind::Fences => "fences",
+            Kind::Rain => "rain",
             Kind::Bodies => "bodies",
             Kind::Street => "street",
             Kind::Rails => "rails",
@@ -173,8 +186,7 @@ impl FromStr for Kind {
         let wanted = s.trim();
         let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
         Kind::all().chain(counted).find(|k| k.to_string() == wanted).ok_or_else(|| {
-            let names: Vec<String> =
-                Kind::BEYOND.iter().chain(&Kind::THINGS).chain(&[Kind::Noise]).map(Kind::to_string).collect();
+            let names: Vec<String> = Kind::all().skip(Kind::TEST_SETS.len()).map(|kind| kind.to_string()).collect();
             format!("there are no scenes called \"{s}\"; expected test set 1, 2 or 3, or {}", names.join(", "))
         })
     }

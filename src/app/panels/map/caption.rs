@@ -45,7 +45,9 @@ pub fn caption(input: Caption) -> Option<String> {
             });
             format!("{figures}η = {} {updating}", threshold(&input, input.output_eta))
         }
-        MapKind::Output | MapKind::Second => format!("{} {updating}", input.method.unwrap_or_default()),
+        MapKind::Output | MapKind::Second | MapKind::Doubt => {
+            format!("{} {updating}", input.method.unwrap_or_default())
+        }
         MapKind::Difference | MapKind::SecondDifference => {
             let figures = input.metrics.map_or_else(String::new, |m| format!("SE {:.0} ", m.squared_error));
             format!("{figures}{updating}")

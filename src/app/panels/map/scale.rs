@@ -19,7 +19,7 @@ pub struct Scale {
     pub lambda: Option<LambdaScale>,
     /// How a difference is drawn.
     pub difference: DifferenceView,
-    /// Where the scale of a difference ends, Lambda.
+    /// Where the scale of a difference or of doubt ends, Lambda.
     pub end: f32,
 }
 
@@ -28,6 +28,10 @@ impl Scale {
     pub fn bar(&self) -> Bar {
         let range_db = self.lambda.map(|s| 20.0 * (s.peak - s.floor)).filter(|range| *range > 0.0);
         let range_db = range_db.filter(|_| self.units == Units::Decibels);
+        if self.kind == MapKind::Doubt {
+            let high = f64::from(self.end) * range_db.unwrap_or(1.0);
+            return Bar::new(colour_table(self.colours), 0.0, high, if range_db.is_some() { "± dB" } else { "± Λ" });
+        }
         if !self.kind.is_difference() {
             let table = colour_table(self.colours);
             return match range_db {
@@ -62,6 +66,7 @@ mod tests {
         let end = f64::from(0.2f32);
         assert_eq!(ends(scale(MapKind::Target, Units::Lambda, false)), (0.0, 1.0, "Λ, normalised"));
         assert_eq!(ends(scale(MapKind::Target, Units::Decibels, false)), (-60.0, 0.0, "dB"));
+        assert_eq!(ends(scale(MapKind::Doubt, Units::Lambda, false)), (0.0, end, "± Λ"));
         assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, false)), (-end, end, "ΔΛ"));
         assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, true)), (0.0, end, "|ΔΛ|"));
         assert_eq!(ends(scale(MapKind::Difference, Units::Decibels, false)), (-60.0 * end, 60.0 * end, "Δ dB"));

@@ -16,6 +16,7 @@ mod shard;
 
 pub use manifest::{FILE_NAME, Manifest, VERSION};
 
+use super::arrays::Arrays;
 use super::examples::{Example, ExampleError, Examples};
 use crate::files::{sha256, write_bytes};
 use crate::network::floors::Floors;
@@ -231,7 +232,7 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
     let of = |kind: &Kind| {
         let mixture: Mixture = kind.to_string().parse().map_err(|e| DatasetError::Request(format!("{e}")))?;
-        Ok(Examples::new(mixture, purpose, request.seed, request.floors)?)
+        Ok(Examples::new(mixture, purpose, request.seed, request.floors, Arrays::IDEAL)?)
     };
     request.kinds.iter().map(of).collect()
 }

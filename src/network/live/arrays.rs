@@ -1,0 +1,65 @@
+//! Arrays that measure training scenes: as they should be, or with elements that are off.
+
+use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Which arrays hear the training scenes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrays {
+    /// Part of the scenes whose elements are off, 0 to 1.
+    pub share: f64,
+    /// Largest tolerances: each scene has its own part of each, uniform from none to all.
+    pub tolerances: Tolerances,
+}
+
+/// Keeps the draw of an array apart from that of a floor, which begins from the same seed.
+const STREAM: u64 = 1;
+
+impl Arrays {
+    /// Arrays as they should be.
+    pub const IDEAL: Arrays = Arrays {
+        share: 0.0,
+        tolerances: Tolerances { gain: Decibels(0.0), phase_degrees: 0.0, position_millimetres: 0.0 },
+    };
+
+    /// The array that hears the scene whose noise has this seed: only elements of the two ends are off.
+    pub fn of(&self, noise_seed: u64, radar: &Radar) -> BuiltArray {
+        let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
+        rng.set_stream(STREAM);
+        if rng.random::<f64>() >= self.share {
+            return BuiltArray::default();
+        }
+        let Tolerances { gain, phase_degrees, position_millimetres } = self.tolerances;
+        let [of_gain, of_phase, of_position]: [f64; 3] = rng.random();
+        let tolerances = Tolerances {
+            gain: Decibels(of_gain * gain.0),
+            phase_degrees: of_phase * phase_degrees,
+            position_millimetres: of_position * position_millimetres,
+        };
+        let mut array = tolerances.build(radar, rng.random());
+        array.elements[radar.end_elements..radar.elements - radar.end_elements].fill(ElementError::default());
+        array
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_of_the_scenes_has_elements_that_are_off_within_the_tolerances() {
+        let radar = Radar::default();
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
+        let arrays = Arrays { share: 0.3, tolerances };
+        let drawn: Vec<BuiltArray> = (0..400).map(|seed| arrays.of(seed, &radar)).filter(|a| !a.is_ideal()).collect();
+        assert!((90..150).contains(&drawn.len()), "{}", drawn.len());
+        for array in &drawn {
+            let off = |n: usize| array.element(n) != ElementError::default();
+            assert!(off(0) && off(11) && off(1012) && off(1023) && !(12..1012).any(off));
+        }
+        let degrees = drawn.iter().map(|a| a.element(3).phase_degrees.abs()).fold(0.0, f64::max);
+        assert!((20.0..80.0).contains(&degrees), "{degrees}");
+        assert!((0..50).all(|seed| Arrays::IDEAL.of(seed, &radar).is_ideal()));
+    }
+}

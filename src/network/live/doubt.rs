@@ -1,0 +1,127 @@
+//! How far off the live network expects its map to be: a small head on its picture that learned from its errors.
+
+use super::grid::{COARSE, COLUMNS, FINE, ROWS};
+use super::kernel::{Packed, padded};
+use super::planes::{Plane, rectified};
+use super::reading::Layers;
+use super::winograd::{Conv3x3, Results};
+use crate::maps::RangeAngleMap;
+use crate::network::weights::{WeightFile, WeightsError};
+use crate::signal::simd::Simd;
+use crate::signal::simd::powers::{each, power_of_ten};
+use ndarray::Array2;
+use rayon::prelude::*;
+
+/// What the head's tensors begin with.
+const PREFIX: &str = "doubt.";
+/// Numbers that the head says of a coarse cell.
+const SAID: usize = FINE / COARSE;
+/// Columns of the map that one of them is for.
+const EACH: usize = COLUMNS / FINE;
+
+/// The head's weights.
+#[derive(Debug)]
+pub struct DoubtHead {
+    conv1: Conv3x3,
+    conv2: Packed,
+    /// What the errors it says are multiplied with, so that nine of ten cells of validation scenes stay below.
+    factor: f32,
+}
+
+impl DoubtHead {
+    /// The head of `file` on a picture of `channels` channels; `None` where the file has none.
+    ///
+    /// # Errors
+    /// [`WeightsError`] names the tensor that is missing or of another shape.
+    pub fn new(file: &WeightFile, channels: usize) -> Result<Option<Self>, WeightsError> {
+        let name = format!("{PREFIX}conv1.conv");
+        let Some([hidden, ..]) = file.shape(&format!("{name}.weight")) else { return Ok(None) };
+        let (hidden, layers) = (*hidden, Layers { file });
+        let factor = file.provenance.get("doubt_factor").parse().ok().filter(|f: &f32| f.is_finite() && *f > 0.0);
+        Ok(Some(DoubtHead {
+            conv1: layers.conv(&name, [channels, padded(channels)], hidden)?,
+            conv2: layers.small(&format!("{PREFIX}conv2"), hidden, SAID, 1)?,
+            factor: factor.unwrap_or(1.0),
+        }))
+    }
+
+    /// The error of Lambda, `[512, 1024]`, that nine of ten cells stay below, from the picture that the network's heads read.
+    pub(super) fn read(&self, picture: &Plane) -> RangeAngleMap {
+        let mut said = vec![0.0; ROWS * COARSE * self.conv2.output()];
+        let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&picture.data[row * line.len()..][..line.len()]);
+        let simd = Simd::chosen();
+        let heads = |results: Results, out: &mut [f32]| {
+            let sums = results.sums();
+            sums.iter_mut().for_each(|v| *v = rectified(*v));
+            self.conv2.line(simd, sums, COARSE, COARSE, out);
+        };
+        self.conv1.run([ROWS, COARSE], read, &mut said, heads);
+        let mut error = Array2::zeros((ROWS, COLUMNS));
+        let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(COLUMNS);
+        lines.zip(said.par_chunks(COARSE * self.conv2.output())).for_each(|(line, said)| {
+            let mut fine = [0.0; FINE];
+            for (to, cell) in fine.chunks_exact_mut(SAID).zip(said.chunks_exact(self.conv2.output())) {
+                to.copy_from_slice(&cell[..SAID]);
+            }
+            each(&mut fine, |v| (self.factor * power_of_ten(v.clamp(-4.0, 0.0))).min(1.0));
+            for (to, v) in line.chunks_exact_mut(EACH).zip(fine) {
+                to.fill(v);
+            }
+        });
+        RangeAngleMap { lambda: error }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::live::LiveConfig;
+    use crate::network::live::engine::{LiveEngine, Scratch};
+    use crate::network::live::features::FeatureExtractor;
+    use crate::radar::Radar;
+    use crate::scene::Reflector;
+    use crate::signal::exact;
+
+    /// Written by `training/reference.py`: a tiny network with its head, and what PyTorch makes of three reflectors.
+    const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
+    const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
+    const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
+    /// `doubt_factor` of the reference weights.
+    const FACTOR: f32 = 0.5;
+
+    fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
+        let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
+        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config).unwrap();
+        let radar = Radar::default();
+        let points = reference.tensor("points", &[3, 2]).unwrap();
+        let reflectors: Vec<Reflector> = points
+            .chunks(2)
+            .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: 1.0 })
+            .collect();
+        let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
+        let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
+        let mut scratch = Scratch::default();
+        engine.forward(&input, &mut scratch);
+        engine.doubt(&scratch)
+    }
+
+    #[test]
+    fn the_head_agrees_with_its_twin() {
+        let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+        let found = doubt_of(WEIGHTS, &reference).unwrap().lambda;
+        let expected = reference.tensor("doubt", &[ROWS / 16, FINE / 4]).unwrap();
+        for (i, expected) in expected.iter().enumerate() {
+            let [row, column] = [i / (FINE / 4) * 16, i % (FINE / 4) * 4 * EACH];
+            let gap = (found[[row, column]] - FACTOR * expected).abs();
+            assert!(gap < 1e-4 && found[[row, column]] == found[[row, column + EACH - 1]], "{row}, {column}: {gap}");
+        }
+        let spread = expected.iter().fold(0.0f32, |a, v| a.max(*v)) - expected.iter().fold(1.0f32, |a, v| a.min(*v));
+        assert!(spread > 0.01, "the reference says the same everywhere");
+    }
+
+    #[test]
+    fn weights_without_the_head_say_nothing_of_errors() {
+        let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+        assert_eq!(doubt_of(WITHOUT, &reference), None);
+    }
+}
