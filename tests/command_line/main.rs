@@ -3,6 +3,8 @@
 mod bounds;
 mod cli;
 mod messages;
+#[cfg(unix)]
+mod own_method;
 #[cfg(feature = "network")]
 mod reconstruct;
 mod recordings;
