@@ -275,7 +275,7 @@ pub const ALL: &[Figure] = &[
         true,
         outputs::hidden,
         "A point hidden behind a line for one end.",
-        "Above, points cast no shadows: what hides the point are the line's side lobes, through which the whole array sees it. Below, a wall in the line's place hides a point from the last end, and not from the first.",
+        "Points cast no shadows: what hides the point here are the line's side lobes, through which the whole array sees it.",
     ),
     figure(
         "6-1",

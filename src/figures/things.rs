@@ -1,8 +1,8 @@
-//! Figure 6-1, a cylinder and a cube, and section 5.4's hidden point behind a wall that hides.
+//! Figure 6-1, a cylinder and a cube.
 
 use super::sheet::{Axis, Panel, Series, Sheet, Stroke};
 use super::source::{FigureError, Seen, Source};
-use crate::scene::{Object, Point, Scene, Shape, Wall};
+use crate::scene::{Object, Scene, Shape};
 use std::f64::consts::TAU;
 
 const PANEL: (u32, u32) = (520, 400);
@@ -14,17 +14,6 @@ const ROUND: usize = 48;
 pub fn cylinder_and_cube(source: &Source) -> Result<Sheet, FigureError> {
     let seen = source.preset("cylinder-and-cube")?;
     Ok(Sheet::of(2, PANEL, with_maps(source, &seen, "A cylinder and a cube")))
-}
-
-/// A wall that hides a point from the last end and not from the first.
-pub fn behind_a_wall(source: &Source) -> Result<Vec<Panel>, FigureError> {
-    let seen = source.see(hidden_from_one_end())?;
-    Ok(with_maps(source, &seen, "A wall, and a point that it hides from the last end"))
-}
-
-fn hidden_from_one_end() -> Scene {
-    let objects = vec![Object::Wall(Wall::new(3.0, 14.165, 8.33, 90.0)), Object::Point(Point::new(4.6, 28.0))];
-    Scene { objects, ..Scene::default() }
 }
 
 fn with_maps(source: &Source, seen: &Seen, title: &str) -> Vec<Panel> {
@@ -58,29 +47,6 @@ fn outlines(source: &Source, title: &str, scene: &Scene) -> Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::ColourMap;
-    use crate::radar::End;
-
-    #[test]
-    fn the_wall_hides_the_point_from_the_last_end_alone() {
-        let source = Source::new();
-        let seen = source.see(hidden_from_one_end()).unwrap();
-        let bright = |end: End| {
-            let map = &seen.lambda[if end == End::First { 0 } else { 1 }];
-            let blob = source.radar.blob_of(source.radar.end_centre_metres(end), 4.6, 28.0);
-            let bin = source.radar.bin_of_range(blob.range_metres).round() as usize;
-            let column = source.radar.column_of_cos(blob.cos_theta) as usize;
-            let cells = (bin - 2..=bin + 2).flat_map(|b| (column - 20..column + 20).map(move |c| (b, c)));
-            cells.map(|(b, c)| map.lambda[[b, c]]).fold(0.0f32, f32::max)
-        };
-        let [first, last] = End::BOTH.map(bright);
-        assert!(first > last + 0.1, "{first} {last}");
-        let panels = behind_a_wall(&source).unwrap();
-        assert_eq!(panels.len(), 4);
-        assert!(
-            matches!(&panels[3].content, super::super::sheet::Content::Cells(c) if c.colours == ColourMap::default())
-        );
-    }
 
     #[test]
     fn bodies_are_drawn_by_their_outlines() {
