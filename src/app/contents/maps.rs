@@ -259,7 +259,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
     }
     let slot = kind.slot()?;
     if kind == MapKind::Doubt && jobs.pipeline.method(slot).output().is_some_and(|output| output.pair.doubt.is_none()) {
-        let reason = "This method does not say how far off it is. The method live does.";
+        let reason = "This method does not say how far off it expects its output to be.";
         return Some(map::Problem { reason, instead: None });
     }
     let refusal = jobs.pipeline.method(slot).refusal()?;
