@@ -99,11 +99,11 @@ def errors_and_limits(model, doubt, entries):
         yield error[0], 10 ** expected[0].repeat_interleave(COLS // FINE, 1)
 
 
-def coverage(model, doubt, sets):
-    """Percent of the cells whose error stays below what the network says, by kind."""
+def coverage(model, doubt, sets, factor=1.0):
+    """Percent of the cells whose error stays below `factor` times what the network says, by kind."""
     report = {}
     for kind, entries in sets.items():
-        covered = [float((error <= limit).float().mean()) for error, limit in errors_and_limits(model, doubt, entries)]
+        covered = [float((error <= factor * limit).float().mean()) for error, limit in errors_and_limits(model, doubt, entries)]
         report[kind] = round(100 * sum(covered) / len(covered), 2)
     return report
 
@@ -222,6 +222,7 @@ def main(args):
     torch.manual_seed(args.seed)
     team = Team(args.threads)
     if args.judge:
+        from safetensors import safe_open
         from safetensors.torch import load_file
         model = Live()
         network, of_doubt = parted(load_file(args.judge))
@@ -231,7 +232,9 @@ def main(args):
         if of_doubt:
             doubt = Doubt()
             doubt.load_state_dict(of_doubt)
-            report["doubt"] = coverage(model, doubt, sets)
+            with safe_open(args.judge, "pt") as file:
+                factor = float(file.metadata().get("doubt_factor", 1))
+            report["covered"] = coverage(model, doubt, sets, factor)
         print(json.dumps(report))
         return
     os.makedirs(args.out, exist_ok=True)
