@@ -36,7 +36,8 @@ def main(folder):
     save_file(weights, f"{folder}/doubt_reference_weights.safetensors", metadata={"network": "live", "doubt_factor": "0.5"})
     tensors = {
         "fine": fine[:, ::32, ::8].contiguous(), "coarse": coarse[:, ::32, ::4].contiguous(), "rows": rows[:, ::8].contiguous(),
-        "scalars": scalars, "gain": torch.tensor([given["gain"]]), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum, "doubt": 10 ** expected[0, ::16, ::4].contiguous(),
+        "scalars": scalars, "gain": torch.tensor([given["gain"]]), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum,
+        "doubt": 10 ** expected[0, ::16, ::4].contiguous(),
         "points": torch.from_numpy(POINTS).float(),
     }
     save_file(tensors, f"{folder}/live_reference.safetensors", metadata={"network": "live-reference"})

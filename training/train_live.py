@@ -172,7 +172,8 @@ class Run:
                 a.lerp_(p, 1 - decay)
 
     def save(self):
-        save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(), "optimizer": self.optimizer.state_dict(),
+        save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
+                         "optimizer": self.optimizer.state_dict(),
                          "step": self.step, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 

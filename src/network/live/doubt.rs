@@ -82,9 +82,12 @@ mod tests {
     use crate::scene::Reflector;
     use crate::signal::exact;
 
-    /// Written by `training/reference.py`: a tiny network with its head, and what PyTorch makes of three reflectors.
+    // `training/reference.py` writes these files.
+    /// Weights of a tiny network that has the head.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
+    /// The same network without it.
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
+    /// Three reflectors, and what PyTorch makes of them.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
     /// `doubt_factor` of the reference weights.
     const FACTOR: f32 = 0.5;
