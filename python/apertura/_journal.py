@@ -139,7 +139,7 @@ def _write_parquet(path: Path, rows: list[dict[str, Any]]) -> None:
 
     names = list(dict.fromkeys(name for row in rows for name in row))
     whole = {"index", "objects", "reflectors", "missed", "ghosts", "found", "merged", "wrong_tooth"}
-    text = {"set", "method", "error", *PARTS}
+    text = {"set", "method", "error", "echoes", "echoes_found", *PARTS}
 
     def type_of(name: str) -> pa.DataType:
         if name == "seed":

@@ -121,7 +121,8 @@ pub fn roc<'py>(
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
 /// Returns:
-///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row.
+///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row. `echoes` and `echoes_found`
+///     are texts of six numbers, one for every 10 dB below the strongest echo; None for scenes without bodies.
 ///
 /// Raises:
 ///     ValueError: A name is unknown or given twice, `count` is 0, or a method can't work on a scene.
@@ -297,6 +298,12 @@ fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
     dict.set_item("found", row.found)?;
     dict.set_item("merged", row.merged)?;
     dict.set_item("wrong_tooth", row.wrong_tooth)?;
+    let [echoes, echoes_found] = match row.echoes {
+        Some(echoes) => echoes.texts().map(Some),
+        None => [None, None],
+    };
+    dict.set_item("echoes", echoes)?;
+    dict.set_item("echoes_found", echoes_found)?;
     for part in Part::ALL {
         dict.set_item(part.name(), row.origin.as_ref().map(|origin| origin.text(part)))?;
     }

@@ -15,6 +15,8 @@ pub const CLASSES: usize = 6;
 const STANDS_OUT_DB: f64 = 10.0;
 /// An output shows it if it stands out there by this much, in dB.
 const SHOWN_DB: f64 = 3.0;
+/// No scene has more echoes of a class; a table that says so is damaged.
+const MOST_ECHOES: usize = 1 << 40;
 /// Half a resolution cell, in range bins.
 const HALF_BINS: f64 = 1.0;
 /// The same in columns, for an echo that no near field smears.
@@ -38,6 +40,22 @@ impl EchoTally {
             self.there[class] += other.there[class];
             self.found[class] += other.found[class];
         }
+    }
+
+    /// Both counts as tables of rows have them: a number a class, with spaces between.
+    pub fn texts(&self) -> [String; 2] {
+        [self.there, self.found].map(|counts| counts.map(|count| count.to_string()).join(" "))
+    }
+
+    /// Reads what [`EchoTally::texts`] wrote; `None` where it is anything else, and where more is found than there is.
+    pub fn read([there, found]: [&str; 2]) -> Option<EchoTally> {
+        let counts = |text: &str| -> Option<[usize; CLASSES]> {
+            let counts: Result<Vec<usize>, _> = text.split_whitespace().map(str::parse).collect();
+            let counts: [usize; CLASSES] = counts.ok()?.try_into().ok()?;
+            counts.iter().all(|count| *count <= MOST_ECHOES).then_some(counts)
+        };
+        let tally = EchoTally { there: counts(there)?, found: counts(found)? };
+        tally.found.iter().zip(&tally.there).all(|(found, there)| found <= there).then_some(tally)
     }
 
     /// Part of all echoes that were found; `None` where there are none.
@@ -145,6 +163,17 @@ mod tests {
     use crate::maps::{LogMaps, Normalisation};
     use crate::scene::{Object, Wall};
     use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn counts_are_read_as_they_were_written() {
+        let tally = EchoTally { there: [2, 0, 3, 0, 1, 12], found: [2, 0, 1, 0, 0, 12] };
+        let [there, found] = tally.texts();
+        assert_eq!((there.as_str(), found.as_str()), ("2 0 3 0 1 12", "2 0 1 0 0 12"));
+        assert_eq!(EchoTally::read([&there, &found]), Some(tally));
+        for wrong in [["1 2 3", "1 2 3"], ["1 0 0 0 0 0", "2 0 0 0 0 0"], ["-1 0 0 0 0 0", "0 0 0 0 0 0"], ["", ""]] {
+            assert_eq!(EchoTally::read(wrong), None, "{wrong:?}");
+        }
+    }
 
     #[test]
     fn a_method_that_finds_glints_alone_scores_below_one_that_finds_their_walls_ends() {

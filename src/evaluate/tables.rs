@@ -2,6 +2,7 @@
 
 pub use super::estimate::Estimate;
 
+use super::echoes::EchoTally;
 use super::rows::{Column, Row, estimate};
 
 /// What the thesis prints for one test set (tables 4.1 to 4.3); rates as fractions.
@@ -136,6 +137,15 @@ impl Tally {
         self.estimate(Column::Ghosts)
     }
 
+    /// Echoes of all scenes with bodies, and those that the method shows; `None` where no row has counted them.
+    pub fn echoes(&self) -> Option<EchoTally> {
+        let add = |mut all: EchoTally, one: EchoTally| {
+            all.add(&one);
+            all
+        };
+        self.rows.iter().filter_map(|row| row.echoes).reduce(add)
+    }
+
     /// Median time of one reconstruction, milliseconds; NaN without scenes.
     pub fn median_milliseconds(&self) -> f64 {
         let mut t: Vec<f64> = self.rows.iter().map(|row| row.milliseconds).collect();
@@ -163,6 +173,14 @@ mod tests {
         let rows: Vec<&Row> = rows.iter().collect();
         assert_eq!(["a", "b", "c", "d"].map(|m| part_near_best(&rows, m)), [Some(0.5), Some(1.0), Some(0.0), None]);
         assert_eq!(part_near_best(&rows[5..], "a"), None);
+    }
+
+    #[test]
+    fn echoes_of_all_scenes_are_added_class_by_class() {
+        let rows = [row("bodies", 0, "a"), Row { echoes: None, ..row("bodies", 1, "a") }, row("bodies", 2, "a")];
+        let twice = EchoTally { there: [2, 0, 0, 4, 0, 8], found: [2, 0, 0, 2, 0, 0] };
+        assert_eq!(Tally::of(&rows).echoes(), Some(twice));
+        assert_eq!(Tally::of(&rows[1..2]).echoes(), None);
     }
 
     #[test]

@@ -125,6 +125,7 @@ impl Trial {
             found: Some(failures.count(|fate| fate == Fate::Found)),
             merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
             wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
+            echoes: self.scene.objects.iter().any(|object| object.body().is_some()).then(|| self.echoes(answer)),
             origin: place.origin.cloned(),
         }
     }

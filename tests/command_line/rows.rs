@@ -90,6 +90,28 @@ fn the_printed_means_are_those_of_the_rows() {
     assert_eq!(figures(rows(&folder, "merged.csv")), figures(all));
 }
 
+#[test]
+fn echoes_of_bodies_stand_in_rows_tables_and_json() {
+    let folder = folder();
+    let evaluate = "evaluate --method baseline --set 1,bodies --count 2 --seed 4 --rows rows.csv";
+    let report = json(&folder, &format!("{evaluate} --json"));
+    let all = rows(&folder, "rows.csv");
+    assert!(all.iter().all(|row| row.echoes.is_some() == (row.set == "bodies")), "points have no such figure");
+    let mut sum = apertura::evaluate::echoes::EchoTally::default();
+    all.iter().filter_map(|row| row.echoes).for_each(|echoes| sum.add(&echoes));
+    let of = |set: usize| &report["sets"][set]["methods"][0]["echoes"];
+    assert!(of(0).is_null());
+    assert_eq!((&of(1)["there"], &of(1)["found"]), (&serde_json::json!(sum.there), &serde_json::json!(sum.found)));
+    assert_eq!(of(1)["below_db"], serde_json::json!([0, 10, 20, 30, 40, 50]));
+    assert!(sum.there.iter().skip(1).sum::<usize>() > 0, "weak echoes count: {sum:?}");
+    assert!(same(&of(1)["detection"], sum.part().unwrap()));
+    let weakest = format!("{} of {}", sum.found[5], sum.there[5]);
+    apertura(&folder, "evaluate --merge rows.csv")
+        .assert()
+        .success()
+        .stdout(contains("echoes found").and(contains(weakest)));
+}
+
 /// The SE of what `reconstruct` wrote against what `maps` wrote.
 fn error_by_hand(folder: &Path) -> f64 {
     let open = |name: &str| Npz::open(&folder.join(name)).unwrap();

@@ -1,5 +1,6 @@
 //! The tables of an evaluation, from its rows.
 
+use super::by_echo::{self, EchoReport};
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
 use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
@@ -57,6 +58,8 @@ struct MethodReport {
     detection_at_printed_false_alarm: AtPrinted,
     missed: Estimate,
     ghosts: Estimate,
+    /// `None` where no scene has a body, and in older rows.
+    echoes: Option<EchoReport>,
     median_milliseconds: f64,
     /// Part of the scenes on which no other method is much better; `None` beside no other.
     near_best: Option<f64>,
@@ -206,6 +209,8 @@ impl SetReport {
                 method.write_deviation(width, &printed.baseline, text);
             }
         }
+        let counted = self.methods.iter().filter_map(|m| Some((m.name.as_str(), m.echoes.as_ref()?)));
+        by_echo::write(&counted.collect::<Vec<_>>(), width, text);
     }
 }
 
@@ -246,6 +251,7 @@ impl MethodReport {
             },
             missed: tally.missed(),
             ghosts: tally.ghosts(),
+            echoes: tally.echoes().as_ref().map(EchoReport::of),
             median_milliseconds: tally.median_milliseconds(),
             near_best: part_near_best(rows, name),
         }

@@ -1,5 +1,6 @@
 //! Rows as CSV.
 
+use super::super::echoes::EchoTally;
 use super::lines::{LongLine, MAX_LINE_BYTES, ShortLines};
 use super::origin::{Origin, Part};
 use super::{Column, MAX_ROWS, Row};
@@ -8,10 +9,11 @@ use std::sync::Arc;
 
 impl Row {
     /// The cells as they are written: every figure with all its digits, so that it is read back as it was.
-    fn cells(&self) -> [String; 21] {
+    fn cells(&self) -> [String; Column::ALL.len()] {
         fn maybe<V: std::fmt::Debug>(v: Option<V>) -> String {
             v.map(|v| format!("{v:?}")).unwrap_or_default()
         }
+        let [echoes, echoes_found] = self.echoes.map(|echoes| echoes.texts()).unwrap_or_default();
         [
             self.set.clone(),
             self.index.to_string(),
@@ -34,6 +36,8 @@ impl Row {
             maybe(self.found),
             maybe(self.merged),
             maybe(self.wrong_tooth),
+            echoes,
+            echoes_found,
         ]
     }
 }
@@ -232,6 +236,15 @@ impl Cells<'_> {
         if self.text(column).is_empty() { Ok(None) } else { self.count(column).map(Some) }
     }
 
+    fn echoes(&self) -> Result<Option<EchoTally>, RowError> {
+        const EXPECTED: &str = "six whole numbers from 0, none larger in echoes_found than in echoes";
+        let texts = [Column::Echoes, Column::EchoesFound].map(|column| self.text(column));
+        if texts == ["", ""] {
+            return Ok(None);
+        }
+        EchoTally::read(texts).map(Some).ok_or_else(|| self.unexpected(Column::EchoesFound, EXPECTED))
+    }
+
     fn name(&self, column: Column) -> Result<String, RowError> {
         match self.text(column) {
             "" => Err(self.unexpected(column, "a name")),
@@ -279,6 +292,7 @@ impl Cells<'_> {
             found: self.maybe_count(Column::Found)?,
             merged: self.maybe_count(Column::Merged)?,
             wrong_tooth: self.maybe_count(Column::WrongTooth)?,
+            echoes: self.echoes()?,
             origin: None,
         })
     }
@@ -329,7 +343,7 @@ mod tests {
         assert!(text(&rows).starts_with(
             "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,\
              reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,\
-             found,merged,wrong_tooth,version,program,floor,normalisation,purpose,reading,carrier,radar,scenes,weights,optimiser,\
+             found,merged,wrong_tooth,echoes,echoes_found,version,program,floor,normalisation,purpose,reading,carrier,radar,scenes,weights,optimiser,\
              shard,whole,methods\n"
         ));
     }
@@ -345,12 +359,25 @@ mod tests {
     }
 
     #[test]
+    fn tables_from_before_echoes_were_counted_are_read() {
+        let table = text(&[Row { origin: Some(Arc::new(origin())), ..row("1", 0, "live") }]);
+        let old = table.replace("echoes,echoes_found,", "").replace("1 0 0 2 0 4,1 0 0 1 0 0,", "");
+        assert_eq!(old.len(), table.len() - 44, "both columns are cut out");
+        let read = read_rows(old.as_bytes()).unwrap();
+        assert_eq!(read[0].echoes, None);
+        assert_eq!(
+            Row { echoes: row("1", 0, "live").echoes, ..read[0].clone() },
+            read_rows(table.as_bytes()).unwrap()[0]
+        );
+    }
+
+    #[test]
     fn tables_from_before_the_kinds_were_counted_are_read() {
-        let old = |line: &str| line.rsplitn(4 + Part::ALL.len(), ',').last().unwrap().to_owned();
+        let old = |line: &str| line.rsplitn(6 + Part::ALL.len(), ',').last().unwrap().to_owned();
         let table = text(&[row("1", 0, "live")]);
         let table: String = table.lines().map(|line| old(line) + "\n").collect();
         assert!(table.lines().next().unwrap().ends_with("strongest_over_weakest_db"));
-        let without = Row { found: None, merged: None, ..row("1", 0, "live") };
+        let without = Row { found: None, merged: None, echoes: None, ..row("1", 0, "live") };
         assert_eq!(read_rows(table.as_bytes()).unwrap(), [without]);
     }
 
@@ -391,7 +418,8 @@ mod tests {
         );
         assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\""));
         assert!(error(&good.replace("ghosts", "spirits")).contains("no column \"ghosts\""));
-        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 35"));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 37"));
+        assert!(error(&good.replacen("1 0 0 1 0 0", "1 0 0 3 0 0", 1)).starts_with("line 2, column echoes_found: "));
         assert!(error("").contains("no column \"set\""));
         let long = format!("{good}{}", "x".repeat(1 << 20));
         assert_eq!(error(&long), "line 4: is longer than 65536 bytes; expected a row");

@@ -11,6 +11,7 @@ pub use lacks::{Lack, lacks};
 pub use order::{Histogram, MergeError, estimate, merge, sorted_by};
 pub use origin::{FORMAT, GivenTwice, Origin, Part, Scenes, Whole, radar_text};
 
+use super::echoes::EchoTally;
 use crate::scene::generate::Kind;
 use std::sync::Arc;
 
@@ -62,6 +63,9 @@ pub struct Row {
     pub merged: Option<usize>,
     /// Objects on the wrong tooth of the comb.
     pub wrong_tooth: Option<usize>,
+    /// Echoes that stand out in the target by their strength, and how many of them the method shows; `None` for scenes without bodies, and
+    /// in tables that were written before echoes were counted.
+    pub echoes: Option<EchoTally>,
     /// What made the row; `None` in tables that were written before this was kept.
     pub origin: Option<Arc<Origin>>,
 }
@@ -106,6 +110,8 @@ pub enum Column {
     Found,
     Merged,
     WrongTooth,
+    Echoes,
+    EchoesFound,
 }
 
 /// What stands in a cell of the table.
@@ -121,7 +127,7 @@ pub enum Value<'a> {
 
 impl Column {
     /// Every column, in the file's order.
-    pub const ALL: [Column; 21] = [
+    pub const ALL: [Column; 23] = [
         Column::Set,
         Column::Index,
         Column::Seed,
@@ -143,6 +149,8 @@ impl Column {
         Column::Found,
         Column::Merged,
         Column::WrongTooth,
+        Column::Echoes,
+        Column::EchoesFound,
     ];
 
     /// Name in the file's first line and in filters.
@@ -169,12 +177,15 @@ impl Column {
             Column::Found => "found",
             Column::Merged => "merged",
             Column::WrongTooth => "wrong_tooth",
+            Column::Echoes => "echoes",
+            Column::EchoesFound => "echoes_found",
         }
     }
 
     /// Whether a table may lack it: older ones do.
     pub fn is_optional(self) -> bool {
-        matches!(self, Column::Found | Column::Merged | Column::WrongTooth)
+        use Column::{Echoes, EchoesFound, Found, Merged, WrongTooth};
+        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound)
     }
 
     /// The column called `name`.
@@ -182,7 +193,7 @@ impl Column {
         Column::ALL.into_iter().find(|c| c.name() == name)
     }
 
-    /// What stands in this column of `row`. A set that is a number is one.
+    /// What stands in this column of `row`. A set that is a number is one. Echoes of all classes are added up.
     pub fn of(self, row: &Row) -> Value<'_> {
         let maybe = |v: Option<f64>| v.map_or(Value::Missing, Value::Number);
         let count = |v: Option<usize>| maybe(v.map(|v| v as f64));
@@ -208,6 +219,8 @@ impl Column {
             Column::Found => count(row.found),
             Column::Merged => count(row.merged),
             Column::WrongTooth => count(row.wrong_tooth),
+            Column::Echoes => count(row.echoes.map(|echoes| echoes.there.iter().sum())),
+            Column::EchoesFound => count(row.echoes.map(|echoes| echoes.found.iter().sum())),
         }
     }
 }
@@ -240,6 +253,7 @@ pub(super) mod tests {
             found: Some(1),
             merged: Some(0),
             wrong_tooth: None,
+            echoes: Some(EchoTally { there: [1, 0, 0, 2, 0, 4], found: [1, 0, 0, 1, 0, 0] }),
             origin: None,
         }
     }

@@ -266,6 +266,7 @@ fn tables_of_rows() -> Reader {
         found: figure.map(|_| 2),
         merged: None,
         wrong_tooth: figure.map(|_| 1),
+        echoes: None,
         origin: None,
     };
     let campaign = Campaign::default();

@@ -118,6 +118,7 @@ pub fn some_row(index: u32, method: &str) -> Row {
         found: Some(1),
         merged: Some(0),
         wrong_tooth: Some(0),
+        echoes: None,
         origin: None,
     }
 }

@@ -54,6 +54,8 @@ pub fn title(column: Column) -> [&'static str; 2] {
         Column::Found => ["Found", ""],
         Column::Merged => ["Merged", ""],
         Column::WrongTooth => ["Wrong", "tooth"],
+        Column::Echoes => ["Echoes of", "bodies"],
+        Column::EchoesFound => ["Echoes", "found"],
     }
 }
 
