@@ -24,6 +24,7 @@ from .objects import (
 _Path = str | os.PathLike[str]
 _Progress = Callable[[float], object]
 _Carrier = Literal["one-way", "two-way"]
+_Convention = Literal["thesis", "physical"]
 _Window = Literal["hann", "hamming", "blackman", "rectangular"]
 _Purpose = Literal["training", "validation", "test"]
 _Reading = Literal["program", "text"]
@@ -69,6 +70,7 @@ class Radar:
         samples: int | None = None,
         carrier: _Carrier | None = None,
         window: _Window | None = None,
+        convention: _Convention | None = None,
     ) -> Radar: ...
     @staticmethod
     def preset(name: str) -> Radar: ...
@@ -91,6 +93,8 @@ class Radar:
     def samples(self) -> int: ...
     @property
     def carrier(self) -> _Carrier: ...
+    @property
+    def convention(self) -> _Convention: ...
     @property
     def window(self) -> _Window: ...
     @property

@@ -3,7 +3,7 @@
 use crate::arrays::owned;
 use crate::errors::value;
 use apertura::radar::presets::{ALL, RadarPreset};
-use apertura::radar::{self, Carrier, WindowFunction};
+use apertura::radar::{self, Carrier, Convention, WindowFunction};
 use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -19,7 +19,8 @@ use pyo3::types::{PyDict, PyType};
 ///     elements: Elements of the whole array, also the columns of every map.
 ///     end_elements: Elements of each of the two ends.
 ///     samples: Samples of a chirp, also the range bins of every map.
-///     carrier: "one-way" (the thesis' convention) or "two-way".
+///     carrier: "one-way" (the thesis' convention) or "two-way" (the physical convention).
+///     convention: "thesis" or "physical" in place of carrier. Without element_spacing_metres the elements are filled for it.
 ///     window: "hann", "hamming", "blackman" or "rectangular".
 ///
 /// Raises:
@@ -43,6 +44,11 @@ fn carrier_name(carrier: Carrier) -> &'static str {
     }
 }
 
+fn convention_of(name: &str) -> PyResult<Convention> {
+    Convention::by_name(name)
+        .ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
+}
+
 fn window_of(name: &str) -> PyResult<WindowFunction> {
     let expected = || {
         let names: Vec<_> = WindowFunction::ALL.iter().map(|w| w.name()).collect();
@@ -60,7 +66,7 @@ pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
 impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
-                        end_elements=None, samples=None, carrier=None, window=None))]
+                        end_elements=None, samples=None, carrier=None, window=None, convention=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,
@@ -72,8 +78,22 @@ impl Radar {
         samples: Option<usize>,
         carrier: Option<&str>,
         window: Option<&str>,
+        convention: Option<&str>,
     ) -> PyResult<Self> {
-        let usual = radar::Radar::default();
+        let usual = match convention.map(convention_of).transpose()? {
+            None => radar::Radar::default(),
+            Some(convention) => {
+                if carrier.map(carrier_of).transpose()?.is_some_and(|c| c != convention.carrier()) {
+                    let expected = carrier_name(convention.carrier());
+                    let said = convention.name();
+                    return Err(value(format!("carrier is another than that of the {said} convention, {expected}")));
+                }
+                let usual = radar::Radar::default();
+                let carrier_hz = carrier_hz.unwrap_or(usual.carrier_hz);
+                let bandwidth_hz = bandwidth_hz.unwrap_or(usual.bandwidth_hz);
+                radar::Radar { carrier_hz, bandwidth_hz, ..usual }.in_convention(convention)
+            }
+        };
         let radar = radar::Radar {
             transmit_power_watts: transmit_power_watts.unwrap_or(usual.transmit_power_watts),
             bandwidth_hz: bandwidth_hz.unwrap_or(usual.bandwidth_hz),
@@ -162,6 +182,12 @@ impl Radar {
     #[getter]
     fn carrier(&self) -> &'static str {
         carrier_name(self.0.carrier)
+    }
+
+    /// "thesis" or "physical": which way the phases of echoes follow their ranges.
+    #[getter]
+    fn convention(&self) -> &'static str {
+        self.0.convention().name()
     }
 
     /// Name of the window.

@@ -21,7 +21,10 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         carrier,
         window,
     } = radar;
-    let carrier_name = |c: &Carrier| if *c == Carrier::OneWay { "the one-way carrier" } else { "the two-way carrier" };
+    let convention = |carrier: &Carrier| match carrier {
+        Carrier::OneWay => "the thesis' convention (one-way carrier)",
+        Carrier::TwoWay => "the physical convention (two-way carrier)",
+    };
     let count = |a: usize, b: usize, what: &str| (a != b).then(|| [a, b].map(|n| format!("{n} {what}")));
     let quantity = |a: f64, b: f64, scale: f64, what: &str| {
         ((a - b).abs() > SAME_QUANTITY * a.abs()).then(|| [a, b].map(|v| format!("{:.4} {what}", v / scale)))
@@ -34,7 +37,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         quantity(trained.bandwidth_hz, *bandwidth_hz, 1e9, "GHz of bandwidth"),
         quantity(trained.carrier_hz, *carrier_hz, 1e9, "GHz of carrier"),
         quantity(trained.element_spacing_metres, *element_spacing_metres, 1e-3, "mm between elements"),
-        named(carrier_name(&trained.carrier), carrier_name(carrier)),
+        named(convention(&trained.carrier), convention(carrier)),
         named(&format!("the {} window", trained.window.name()), &format!("the {} window", window.name())),
     ]
     .into_iter()
@@ -78,8 +81,8 @@ mod tests {
     #[test]
     fn what_differs_is_named() {
         let told = refused(&Radar { elements: 512, carrier: Carrier::TwoWay, ..Radar::default() }).unwrap();
-        let expected =
-            "trained with 1024 elements, the one-way carrier; this radar has 512 elements, the two-way carrier";
+        let expected = "trained with 1024 elements, the thesis' convention (one-way carrier); this radar has 512 elements, \
+                        the physical convention (two-way carrier)";
         assert!(told.contains(expected), "{told}");
         let told = refused(&Radar { carrier_hz: 76e9, ..Radar::default() }).unwrap();
         assert!(told.contains("77.0000 GHz of carrier; this radar has 76.0000 GHz"), "{told}");

@@ -2,17 +2,20 @@
 //!
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
+mod convention;
 mod elements;
 mod layout;
 mod layout_kind;
 mod memory;
 mod pair;
 pub mod presets;
+mod said;
 mod squint;
 mod units;
 mod wave;
 mod window;
 
+pub use convention::Convention;
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};
@@ -69,7 +72,7 @@ impl End {
 ///
 /// The fields are public and unchecked; call [`Radar::validate`] on a value that came from outside.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(try_from = "said::Said", into = "said::Said")]
 pub struct Radar {
     /// Transmit power P_out in watts; a reflector's amplitude is `power * reflectivity / R^2`.
     pub transmit_power_watts: f64,

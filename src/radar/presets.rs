@@ -43,6 +43,18 @@ pub const ALL: &[RadarPreset] = &[
         radar: TABLE_3_1,
     },
     RadarPreset {
+        id: "table-3.1-physical",
+        name: "Table 3.1 in the physical convention",
+        about: "The constants of table 3.1 in the convention of radars that are built: carrier and beat count the way there and back with one \
+                sign. Elements stand a quarter of a wavelength apart, so the array is 1 m long. Blobs stand 1.3 % farther from broadside \
+                than their reflectors, not 2.6 % nearer.",
+        radar: Radar {
+            element_spacing_metres: SPEED_OF_LIGHT / (77e9 + 2e9 / 2.0) / 4.0,
+            carrier: Carrier::TwoWay,
+            ..TABLE_3_1
+        },
+    },
+    RadarPreset {
         id: "cascade-86",
         name: "77 GHz cascade, 86 elements",
         about: "Four radar chips side by side, whose virtual elements form a line of 86: 16 cm wide, a beam of a degree and a half. Its far \
@@ -95,6 +107,7 @@ impl RadarPreset {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::Convention;
     use std::collections::HashSet;
 
     #[test]
@@ -115,6 +128,7 @@ mod tests {
         assert!((radar("24-ghz").range_resolution_metres() - 0.6).abs() < 1e-3);
         assert!((13.0..15.0).contains(&radar("cascade-86").far_field_metres()));
         assert!((radar("chip-8").max_range_metres() - 6.25).abs() < 0.01);
+        assert_eq!(*radar("table-3.1-physical"), Radar::default().in_convention(Convention::Physical));
         let twice = radar("one-wavelength");
         assert!((twice.column_of_cos(0.3) - twice.column_of_cos(-0.7)).abs() < 1e-6, "two directions share a column");
     }

@@ -39,6 +39,10 @@ fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)
 /// What differs first: edits of one field merge into one step, those of another begin another.
 fn changed_field(before: &Radar, after: &Radar) -> &'static str {
     let changes = [
+        (
+            "convention",
+            before.carrier != after.carrier && after.element_spacing_metres == after.filled_spacing_metres(),
+        ),
         ("carrier frequency", before.carrier_hz != after.carrier_hz),
         ("bandwidth", before.bandwidth_hz != after.bandwidth_hz),
         ("samples", before.samples != after.samples),

@@ -2,7 +2,7 @@
 
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
-use crate::radar::{Carrier, Radar, WindowFunction, presets};
+use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 use eframe::egui;
 use eframe::egui::{Align, Color32, ComboBox, Grid, Id, Label, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
@@ -266,7 +266,7 @@ const POWER: Number = Number {
 };
 
 /// Names of the constants, as they stand in the first column.
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
     CARRIER.name,
     BANDWIDTH.name,
     SAMPLES.name,
@@ -275,6 +275,7 @@ const NAMES: [&str; 11] = [
     SPACING_MILLIMETRES.name,
     SPACING_WAVELENGTHS.name,
     POWER.name,
+    "convention",
     "phase",
     "windows",
     "range migration",
@@ -344,7 +345,38 @@ fn grating(follows: &Consequences) -> String {
     }
 }
 
+/// Which convention the samples follow. Choosing one fills the elements for it.
+fn convention(ui: &mut Ui, table: Table, radar: &mut Radar, is_free: bool) {
+    let tooltip = "How the phases of echoes follow their ranges. Choosing a convention sets the phase and the spacing that belong to it";
+    let own = radar.convention();
+    let is_filled = radar.element_spacing_metres == radar.filled_spacing_metres();
+    let squint = 100.0 * (radar.squint() - 1.0);
+    let text = match is_filled {
+        true => format!(
+            "blobs stand {:.1} % {} broadside",
+            squint.abs(),
+            if squint < 0.0 { "nearer to" } else { "farther from" }
+        ),
+        false => format!("the spacing is another than its own, {:.3} mm", 1e3 * radar.filled_spacing_metres()),
+    };
+    table.row(ui, ("convention", tooltip), &text, |ui, label| {
+        ui.add_enabled_ui(is_free, |ui| {
+            ui.horizontal(|ui| {
+                for convention in Convention::ALL {
+                    let is_chosen = convention == own && is_filled;
+                    let choice = ui.selectable_label(is_chosen, convention.name());
+                    let choice = if convention == Convention::ALL[0] { choice.labelled_by(label) } else { choice };
+                    if choice.clicked() && !is_chosen {
+                        *radar = radar.clone().in_convention(convention);
+                    }
+                }
+            });
+        });
+    });
+}
+
 fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, is_free: bool) {
+    convention(ui, table, radar, is_free);
     let text = match radar.carrier {
         Carrier::OneWay => "one phase cycle per wavelength of range (the thesis' convention)".to_owned(),
         Carrier::TwoWay => {

@@ -1,7 +1,7 @@
 //! Scenes as TOML: written for people, read with errors that name the line.
 
 use super::content::{SceneFile, SceneTextError};
-use crate::radar::Radar;
+use crate::radar::{Convention, Radar};
 use crate::scene::{
     Block, Disturbances, GaussianCluster, Line, Object, Point, Polygon, Post, Scene, SceneError, Wall, yes,
 };
@@ -38,10 +38,22 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     let Scene { name, notes, noise_seed, shadows, disturbances, objects } = &file.scene;
     let shadows = Some(*shadows).filter(|shadows| !shadows);
     let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
-    let usual = toml::Table::try_from(Radar::default())?;
-    let mut radar = toml::Table::try_from(&file.radar)?;
-    radar.retain(|key, value| usual.get(key) != Some(value));
+    let radar = radar_table(&file.radar)?;
     toml::to_string_pretty(&Document { name, notes, noise_seed, shadows, radar, disturbances, object: objects })
+}
+
+/// What differs from table 3.1. The physical convention is said by its name where the spacing is its own.
+fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
+    let usual = toml::Table::try_from(Radar::default())?;
+    let mut table = toml::Table::try_from(radar)?;
+    table.retain(|key, value| usual.get(key) != Some(value));
+    let convention = radar.convention();
+    if convention == Convention::Physical && radar.element_spacing_metres == radar.filled_spacing_metres() {
+        table.remove("carrier");
+        table.remove("element_spacing_metres");
+        table.insert("convention".to_owned(), convention.name().into());
+    }
+    Ok(table)
 }
 
 /// [`to_toml`] with a further table, called `key`, after it.
@@ -303,6 +315,15 @@ mod tests {
         let text = to_toml(&scene()).unwrap();
         assert!(text.contains("carrier = \"two-way\"") && !text.contains("bandwidth"), "{text}");
         assert_eq!(from_toml(&text).unwrap(), scene());
+    }
+
+    #[test]
+    fn the_physical_convention_is_written_by_its_name() {
+        let radar = Radar { elements: 64, ..Radar::default() }.in_convention(Convention::Physical);
+        let file = SceneFile { radar, ..scene() };
+        let text = to_toml(&file).unwrap();
+        assert!(text.contains("convention = \"physical\"") && !text.contains("spacing_metres = 0.000"), "{text}");
+        assert_eq!(from_toml(&text).unwrap(), file);
     }
 
     #[test]
