@@ -126,11 +126,15 @@ impl Radar {
         ALL.iter().map(|p| p.id).collect()
     }
 
-    /// The same radar with other fields, named as in the constructor.
+    /// The same radar with other fields, named as in the constructor. A convention brings its carrier and its spacing with it.
     #[pyo3(signature = (**fields))]
     fn replace<'py>(&self, py: Python<'py>, fields: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
         let all = self.fields(py)?;
         if let Some(fields) = fields {
+            if fields.get_item("convention")?.is_some_and(|name| !name.is_none()) {
+                all.del_item("carrier")?;
+                all.del_item("element_spacing_metres")?;
+            }
             all.update(fields.as_mapping())?;
         }
         PyType::new::<Radar>(py).call((), Some(&all))

@@ -54,6 +54,8 @@ def test_any_layout_of_memory_gives_the_same_answer():
         (lambda: ap.Radar(carrier_hz=float("nan")), "carrier_hz"),
         (lambda: ap.Radar(elements=65536, samples=65536), "too much memory"),
         (lambda: ap.Radar(carrier="sideways"), "one-way or two-way"),
+        (lambda: ap.Radar(convention="sideways"), "expected thesis or physical"),
+        (lambda: ap.Radar(convention="physical", carrier="one-way"), "two-way"),
         (lambda: ap.Scene([ap.Point(float("nan"), 1.0)]), "object 1 (point): x_metres is NaN"),
         (lambda: ap.Scene([ap.Line(0.0, 1.0, 0.1, 10**9)]), "at most 200000"),
         (lambda: ap.Scene.of_points(np.zeros((3, 5))), "expected [reflectors, 2] or [reflectors, 3]"),

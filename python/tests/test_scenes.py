@@ -53,6 +53,18 @@ def test_replace_changes_what_it_is_told():
     assert ap.Radar().replace(samples=256) == ap.Radar(samples=256) != ap.Radar()
 
 
+def test_a_convention_brings_its_carrier_with_its_spacing():
+    light = 299_792_458.0
+    physical = ap.Radar(convention="physical", bandwidth_hz=1e9)
+    assert (physical.convention, physical.carrier) == ("physical", "two-way")
+    assert physical.element_spacing_metres == pytest.approx(light / 77.5e9 / 4)
+    assert ap.Radar(bandwidth_hz=1e9).replace(convention="physical") == physical
+    assert physical.replace(convention="thesis") == ap.Radar(bandwidth_hz=1e9)
+    wide = physical.replace(convention="physical", element_spacing_metres=0.002)
+    assert (wide.carrier, wide.element_spacing_metres) == ("two-way", 0.002)
+    assert ap.Radar.preset("table-3.1-physical") == ap.Radar(convention="physical")
+
+
 def test_random_scenes_repeat():
     scene = ap.Scene.random(3, seed=7, index=2)
     assert scene == ap.Scene.random("3", 7, 2) != ap.Scene.random("3", 7, 3)

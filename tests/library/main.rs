@@ -16,6 +16,7 @@ mod methods;
 #[cfg(feature = "network")]
 mod noise_alone;
 mod physical_captures;
+mod physical_convention;
 mod radars;
 mod snapshot;
 mod stress;

@@ -111,7 +111,8 @@ fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
     free.run();
     free.get_by_label("24 GHz, 256 elements").click();
     free.run();
-    assert_eq!(free.state().1, [Command::Radar(RadarCommand::Preset(3))]);
+    let number = presets::ALL.iter().position(|p| p.id == "24-ghz").unwrap();
+    assert_eq!(free.state().1, [Command::Radar(RadarCommand::Preset(number))]);
     let _told = free.get_by_label_contains("range bins of 60 cm");
     let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
     measured.run();
@@ -124,6 +125,20 @@ fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
     measured.get_by_label("hamming").click();
     measured.run();
     assert_eq!(measured.state().0.window, WindowFunction::Hamming, "windows are no part of a measurement");
+}
+
+#[test]
+fn a_convention_brings_its_spacing_with_it() {
+    let mut panel = panel(Radar { bandwidth_hz: 1e9, ..Radar::default() }, None);
+    let _told = panel.get_by_label_contains("% nearer to broadside");
+    panel.get_by_label("physical").click();
+    panel.run();
+    let usual = Radar { bandwidth_hz: 1e9, ..Radar::default() };
+    assert_eq!(panel.state().0, usual.clone().in_convention(Convention::Physical));
+    let _told = panel.get_by_label_contains("% farther from broadside");
+    panel.get_by_label("thesis").click();
+    panel.run();
+    assert_eq!(panel.state().0, usual);
 }
 
 #[test]
