@@ -22,6 +22,9 @@ use pyo3::types::{PyDict, PyType};
 ///     carrier: "one-way" (the thesis' convention) or "two-way" (the physical convention).
 ///     convention: "thesis" or "physical" in place of carrier. Without element_spacing_metres the elements are filled for it.
 ///     window: "hann", "hamming", "blackman" or "rectangular".
+///     transmitter_x_metres: Places of transmitters that stand apart from receivers. Each pair is an element halfway between both, and the
+///         pairs must make one line without gaps: they say elements and element_spacing_metres.
+///     receiver_x_metres: Places of the receivers.
 ///
 /// Raises:
 ///     ValueError: A field is out of range, or the radar asks for too much memory.
@@ -66,7 +69,8 @@ pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
 impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
-                        end_elements=None, samples=None, carrier=None, window=None, convention=None))]
+                        end_elements=None, samples=None, carrier=None, window=None, convention=None, transmitter_x_metres=None,
+                        receiver_x_metres=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,
@@ -79,6 +83,8 @@ impl Radar {
         carrier: Option<&str>,
         window: Option<&str>,
         convention: Option<&str>,
+        transmitter_x_metres: Option<Vec<f64>>,
+        receiver_x_metres: Option<Vec<f64>>,
     ) -> PyResult<Self> {
         let usual = match convention.map(convention_of).transpose()? {
             None => radar::Radar::default(),
@@ -104,6 +110,19 @@ impl Radar {
             samples: samples.unwrap_or(usual.samples),
             carrier: carrier.map_or(Ok(usual.carrier), carrier_of)?,
             window: window.map_or(Ok(usual.window), window_of)?,
+            antennas: None,
+        };
+        let radar = match (transmitter_x_metres, receiver_x_metres) {
+            (None, None) => radar,
+            (Some(transmitters), Some(receivers)) => {
+                if elements.is_some() || element_spacing_metres.is_some() {
+                    return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
+                }
+                let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
+                let radar = radar.with_antennas(antennas);
+                radar::Radar { end_elements: end_elements.unwrap_or(radar.end_elements), ..radar }
+            }
+            _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
         };
         radar.validate().map_err(value)?;
         Ok(Radar(radar))
@@ -131,9 +150,19 @@ impl Radar {
     fn replace<'py>(&self, py: Python<'py>, fields: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
         let all = self.fields(py)?;
         if let Some(fields) = fields {
-            if fields.get_item("convention")?.is_some_and(|name| !name.is_none()) {
+            let is_said = |key: &str| Ok::<_, PyErr>(fields.get_item(key)?.is_some_and(|v| !v.is_none()));
+            if is_said("convention")? {
                 all.del_item("carrier")?;
-                all.del_item("element_spacing_metres")?;
+                if self.0.is_monostatic() {
+                    all.del_item("element_spacing_metres")?;
+                }
+            }
+            if is_said("transmitter_x_metres")? || is_said("receiver_x_metres")? {
+                for key in ["elements", "element_spacing_metres"] {
+                    if all.contains(key)? {
+                        all.del_item(key)?;
+                    }
+                }
             }
             all.update(fields.as_mapping())?;
         }
@@ -192,6 +221,18 @@ impl Radar {
     #[getter]
     fn convention(&self) -> &'static str {
         self.0.convention().name()
+    }
+
+    /// Places of the transmitters in metres, float64 `[transmitters]`; None where every element sends and hears by itself.
+    #[getter]
+    fn transmitter_x_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.transmitter_x_metres().to_vec())))
+    }
+
+    /// Places of the receivers in metres, float64 `[receivers]`; None where every element sends and hears by itself.
+    #[getter]
+    fn receiver_x_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.receiver_x_metres().to_vec())))
     }
 
     /// Name of the window.
@@ -275,8 +316,16 @@ impl Radar {
         fields.set_item("transmit_power_watts", self.0.transmit_power_watts)?;
         fields.set_item("bandwidth_hz", self.0.bandwidth_hz)?;
         fields.set_item("carrier_hz", self.0.carrier_hz)?;
-        fields.set_item("element_spacing_metres", self.0.element_spacing_metres)?;
-        fields.set_item("elements", self.0.elements)?;
+        match &self.0.antennas {
+            Some(antennas) => {
+                fields.set_item("transmitter_x_metres", antennas.transmitter_x_metres().to_vec())?;
+                fields.set_item("receiver_x_metres", antennas.receiver_x_metres().to_vec())?;
+            }
+            None => {
+                fields.set_item("element_spacing_metres", self.0.element_spacing_metres)?;
+                fields.set_item("elements", self.0.elements)?;
+            }
+        }
         fields.set_item("end_elements", self.0.end_elements)?;
         fields.set_item("samples", self.0.samples)?;
         fields.set_item("carrier", carrier_name(self.0.carrier))?;

@@ -65,6 +65,20 @@ def test_a_convention_brings_its_carrier_with_its_spacing():
     assert ap.Radar.preset("table-3.1-physical") == ap.Radar(convention="physical")
 
 
+def test_antennas_say_elements_with_spacing():
+    radar = ap.Radar(transmitter_x_metres=[-0.008, 0, 0.008], receiver_x_metres=[0, 0.002, 0.004, 0.006], convention="physical")
+    assert (radar.elements, radar.end_elements) == (12, 6)
+    assert radar.element_spacing_metres == pytest.approx(0.001)
+    assert radar.receiver_x_metres.shape == (4,)
+    assert ap.Radar().transmitter_x_metres is None
+    assert eval(repr(radar).replace("Radar", "ap.Radar")) == radar == pickle.loads(pickle.dumps(radar))
+    assert radar.replace(samples=64).receiver_x_metres.shape == (4,)
+    signal = ap.Scene.of_points([[0.1, 1.2]], radar).simulate(floor="exact").samples
+    swapped = radar.replace(transmitter_x_metres=radar.receiver_x_metres, receiver_x_metres=radar.transmitter_x_metres)
+    heard = ap.Scene.of_points([[0.1, 1.2]], swapped).simulate(floor="exact").samples
+    assert np.abs(signal - heard).max() < 1e-11 * np.abs(signal).max()
+
+
 def test_random_scenes_repeat():
     scene = ap.Scene.random(3, seed=7, index=2)
     assert scene == ap.Scene.random("3", 7, 2) != ap.Scene.random("3", 7, 3)

@@ -89,7 +89,7 @@ mod tests {
         let far = [20.0, 20.0 + radar.range_resolution_metres()];
         let a = ambiguity(&radar, &Layout::one_end(&radar, End::First), centre, &far, &[0.0]);
         assert!(a.likeness[[1, 0]] < 0.05, "one bin off is a null of the range response: {}", a.likeness[[1, 0]]);
-        let none = ambiguity(&radar, &Layout { x_metres: Vec::new() }, centre, &far, &[0.0]);
+        let none = ambiguity(&radar, &Layout::at(Vec::new()), centre, &far, &[0.0]);
         assert!(none.likeness.iter().all(|v| *v == 0.0));
     }
 }

@@ -191,6 +191,11 @@ impl Reconstructor for ExternalMethod {
         Family::Own
     }
 
+    fn knows_pairs(&self) -> bool {
+        // The question says where its radar's antennas stand.
+        true
+    }
+
     fn finds_reflectors(&self) -> bool {
         false
     }

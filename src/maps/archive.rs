@@ -2,14 +2,20 @@
 
 use super::{Aperture, LogMap, RangeAngleMap, angle_transform, channels_map, network_input, range_transform};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
-use crate::radar::{Carrier, End, Radar, WindowFunction};
+use crate::radar::{Antennas, AntennasError, Carrier, End, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, arr0};
 use std::path::Path;
 
-/// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants.
-pub const FORMAT_VERSION: i64 = 2;
+/// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants; version 2 knew no transmitters
+/// apart from receivers, and is what is written where there are none.
+pub const FORMAT_VERSION: i64 = 3;
+/// Version of archives of radars whose elements send and hear by themselves.
+const MONOSTATIC_VERSION: i64 = 2;
+
+/// Keys of the antennas, in the order of [`Antennas::new`].
+const ANTENNA_KEYS: [&str; 2] = ["transmitter_x_metres", "receiver_x_metres"];
 
 /// Key of [`FORMAT_VERSION`].
 const VERSION_KEY: &str = "format_version";
@@ -24,7 +30,8 @@ const VERSION_KEY: &str = "format_version";
 /// last). Each constant of the radar is a number of its own: `carrier_hz`, `bandwidth_hz`, `element_spacing_metres`,
 /// `transmit_power_watts` (f64), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
 /// and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the weights of the
-/// two transforms. `format_version` is [`FORMAT_VERSION`].
+/// two transforms. Where transmitters stand apart from receivers, `transmitter_x_metres` and `receiver_x_metres` (f64) are their places;
+/// an element stands halfway between its two antennas. `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
 ///
 /// # Errors
 /// [`NpzError`] where the file can't be written; nothing is left half-written.
@@ -89,6 +96,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         samples,
         carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
         window: WindowFunction::default(),
+        antennas: read_antennas(archive)?,
     };
     radar.validate().map_err(|e| NpzError::Damaged { key: e.field().to_owned(), reason: e.to_string() })?;
     let weights = archive.reals::<ndarray::Ix1>("element_window")?;
@@ -98,6 +106,17 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         reason: "its weights are those of no window that this program knows".to_owned(),
     })?;
     Ok(Some(Radar { window, ..radar }))
+}
+
+/// The antennas of a version that knows them.
+fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
+    if !archive.has(ANTENNA_KEYS[0]) {
+        return Ok(None);
+    }
+    let mut places = |key: &str| Ok::<_, NpzError>(archive.reals::<ndarray::Ix1>(key)?.to_vec());
+    let (transmitters, receivers) = (places(ANTENNA_KEYS[0])?, places(ANTENNA_KEYS[1])?);
+    let damaged = |e: AntennasError| NpzError::Damaged { key: ANTENNA_KEYS[0].to_owned(), reason: e.to_string() };
+    Antennas::new(&transmitters, &receivers).map(Some).map_err(damaged)
 }
 
 fn number(archive: &mut Npz, key: &str) -> Result<f64, NpzError> {
@@ -111,7 +130,15 @@ fn expected(key: &str, found: f64, expected: String) -> NpzError {
 /// Axes and constants, one array each.
 fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     let axis = |count: usize, at: &dyn Fn(usize) -> f64| (0..count).map(at).collect::<Array1<f64>>();
-    out.add(VERSION_KEY, &arr0(FORMAT_VERSION))?;
+    let version = if radar.is_monostatic() { MONOSTATIC_VERSION } else { FORMAT_VERSION };
+    out.add(VERSION_KEY, &arr0(version))?;
+    if let Some(antennas) = &radar.antennas {
+        for (key, places) in
+            ANTENNA_KEYS.into_iter().zip([antennas.transmitter_x_metres(), antennas.receiver_x_metres()])
+        {
+            out.add(key, &Array1::from(places.to_vec()))?;
+        }
+    }
     out.add("range_metres", &axis(radar.samples, &|bin| radar.range_of_bin_metres(bin as f64)))?;
     out.add("cos_theta", &axis(radar.elements, &|column| radar.cos_of_column(column as f64)))?;
     out.add("element_x_metres", &axis(radar.elements, &|n| radar.element_x_metres(n)))?;
@@ -213,6 +240,6 @@ mod tests {
         let path = folder.path().join("later.npz");
         write_npz(&path, |out| out.add(VERSION_KEY, &arr0(FORMAT_VERSION + 1))).unwrap();
         let error = read_radar(&mut Npz::open(&path).unwrap()).unwrap_err().to_string();
-        assert!(error.contains("format_version") && error.contains("it is 3; expected at most 2"), "{error}");
+        assert!(error.contains("format_version") && error.contains("it is 4; expected at most 3"), "{error}");
     }
 }

@@ -1,6 +1,6 @@
 //! The radar that a network was trained for.
 
-use crate::radar::{Carrier, Radar};
+use crate::radar::{Antennas, Carrier, Radar};
 use crate::reconstruct::ReconstructError;
 
 /// Quantities that differ by less than this part of themselves are the same.
@@ -20,10 +20,15 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         samples,
         carrier,
         window,
+        antennas,
     } = radar;
     let convention = |carrier: &Carrier| match carrier {
         Carrier::OneWay => "the thesis' convention (one-way carrier)",
         Carrier::TwoWay => "the physical convention (two-way carrier)",
+    };
+    let antennas_of = |antennas: Option<&Antennas>| match antennas {
+        None => "one antenna an element",
+        Some(_) => "transmitters apart from receivers",
     };
     let count = |a: usize, b: usize, what: &str| (a != b).then(|| [a, b].map(|n| format!("{n} {what}")));
     let quantity = |a: f64, b: f64, scale: f64, what: &str| {
@@ -38,6 +43,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         quantity(trained.carrier_hz, *carrier_hz, 1e9, "GHz of carrier"),
         quantity(trained.element_spacing_metres, *element_spacing_metres, 1e-3, "mm between elements"),
         named(convention(&trained.carrier), convention(carrier)),
+        named(antennas_of(trained.antennas.as_ref()), antennas_of(antennas.as_ref())),
         named(&format!("the {} window", trained.window.name()), &format!("the {} window", window.name())),
     ]
     .into_iter()

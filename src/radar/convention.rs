@@ -79,7 +79,7 @@ impl Radar {
     /// The same radar in another convention, its elements filled for it.
     pub fn in_convention(self, convention: Convention) -> Self {
         let element_spacing_metres = convention.filled_spacing_metres(self.carrier_hz, self.bandwidth_hz);
-        Radar { carrier: convention.carrier(), element_spacing_metres, ..self }
+        Radar { carrier: convention.carrier(), ..self }.with_spacing(element_spacing_metres)
     }
 }
 

@@ -11,6 +11,8 @@ use rand_chacha::ChaCha8Rng;
 pub struct Layout {
     /// Position of each element, metres, in rising order.
     pub x_metres: Vec<f64>,
+    /// Antennas of each element, where transmitters stand apart from receivers.
+    pairs: Option<Vec<Pair>>,
 }
 
 /// A count of elements that a layout can't have.
@@ -61,7 +63,14 @@ impl Layout {
     }
 
     fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
-        Layout { x_metres: elements.into_iter().map(|n| radar.element_x_metres(n)).collect() }
+        let elements: Vec<usize> = elements.into_iter().collect();
+        let pairs = (!radar.is_monostatic()).then(|| elements.iter().map(|n| radar.pair(*n)).collect());
+        Layout { x_metres: elements.iter().map(|n| radar.element_x_metres(*n)).collect(), pairs }
+    }
+
+    /// Elements that send and hear by themselves, at these places in rising order, metres.
+    pub fn at(x_metres: Vec<f64>) -> Self {
+        Layout { x_metres, pairs: None }
     }
 
     /// The rows of `samples`, `[elements of radar, samples]`, that this layout receives; `None` where one of its elements stands
@@ -79,7 +88,7 @@ impl Layout {
 
     /// Each element as a pair of antennas.
     pub fn pairs(&self) -> Vec<Pair> {
-        self.x_metres.iter().map(|x| Pair::at(*x)).collect()
+        self.pairs.clone().unwrap_or_else(|| self.x_metres.iter().map(|x| Pair::at(*x)).collect())
     }
 
     /// Number of elements.
@@ -150,7 +159,7 @@ impl Mimo {
 
     /// The virtual elements as a layout.
     pub fn layout(&self) -> Layout {
-        Layout { x_metres: self.virtual_elements().into_iter().map(|v| v.x_metres).collect() }
+        Layout::at(self.virtual_elements().into_iter().map(|v| v.x_metres).collect())
     }
 }
 
@@ -190,12 +199,8 @@ mod tests {
         let numbered = Array2::from_shape_fn((1024, 2), |(n, _)| n);
         let heard = Layout::two_ends(&radar).samples_of(&radar, &numbered).unwrap();
         assert_eq!((heard.dim(), heard[[11, 0]], heard[[12, 1]]), ((24, 2), 11, 1012));
-        assert_eq!(
-            Layout { x_metres: vec![0.0] }.samples_of(&radar, &numbered),
-            None,
-            "the centre lies between elements"
-        );
-        assert_eq!(Layout { x_metres: vec![2.0] }.samples_of(&radar, &numbered), None, "beyond the last");
+        assert_eq!(Layout::at(vec![0.0]).samples_of(&radar, &numbered), None, "the centre lies between elements");
+        assert_eq!(Layout::at(vec![2.0]).samples_of(&radar, &numbered), None, "beyond the last");
     }
 
     #[test]

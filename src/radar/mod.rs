@@ -2,6 +2,7 @@
 //!
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
+mod antennas;
 mod convention;
 mod elements;
 mod layout;
@@ -15,6 +16,7 @@ mod units;
 mod wave;
 mod window;
 
+pub use antennas::{Antennas, AntennasError};
 pub use convention::Convention;
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
@@ -92,6 +94,9 @@ pub struct Radar {
     pub carrier: Carrier,
     /// Weights of the samples and of the elements in the two transforms that make a map.
     pub window: WindowFunction,
+    /// Transmitters apart from receivers; `None` where every element sends and hears by itself. Set by [`Radar::with_antennas`], which
+    /// keeps elements and spacing those of the pairs.
+    pub antennas: Option<Antennas>,
 }
 
 impl Default for Radar {
@@ -107,6 +112,7 @@ impl Default for Radar {
             samples: 512,
             carrier: Carrier::OneWay,
             window: WindowFunction::Hann,
+            antennas: None,
         }
     }
 }
@@ -153,6 +159,20 @@ pub enum RadarError {
         /// [`MAX_MEMORY_BYTES`].
         most: Bytes,
     },
+    /// Elements or spacing are not those that the pairs of antennas make.
+    #[error("radar.{field} is {value}; its {transmitters} transmitters and {receivers} receivers make {expected}")]
+    Pairs {
+        /// Name of the field.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// What the pairs make.
+        expected: f64,
+        /// How many transmitters there are.
+        transmitters: usize,
+        /// How many receivers there are.
+        receivers: usize,
+    },
 }
 
 impl RadarError {
@@ -161,7 +181,8 @@ impl RadarError {
         match self {
             RadarError::NotPositive { field, .. }
             | RadarError::Count { field, .. }
-            | RadarError::Memory { field, .. } => field,
+            | RadarError::Memory { field, .. }
+            | RadarError::Pairs { field, .. } => field,
         }
     }
 }
@@ -171,8 +192,8 @@ impl Radar {
     ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
-    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array), or counts that together ask for
-    /// more than [`MAX_MEMORY_BYTES`].
+    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array), elements or a spacing other than those
+    /// that the pairs of antennas make, or counts that together ask for more than [`MAX_MEMORY_BYTES`].
     pub fn validate(&self) -> Result<(), RadarError> {
         for (field, value) in [
             ("transmit_power_watts", self.transmit_power_watts),
@@ -193,7 +214,23 @@ impl Radar {
                 return Err(RadarError::Count { field, value, min, max });
             }
         }
+        self.check_pairs()?;
         self.check_memory()
+    }
+
+    fn check_pairs(&self) -> Result<(), RadarError> {
+        let Some(antennas) = &self.antennas else { return Ok(()) };
+        let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
+        let (spacing, pairs) = (antennas.spacing_metres(), antennas.pairs().len() as f64);
+        for (field, value, expected) in [
+            ("elements", self.elements as f64, pairs),
+            ("element_spacing_metres", self.element_spacing_metres, spacing),
+        ] {
+            if (value / expected - 1.0).abs() > 1e-9 {
+                return Err(RadarError::Pairs { field, value, expected, transmitters, receivers });
+            }
+        }
+        Ok(())
     }
 
     /// Carrier wavelength lambda = c / f in metres.

@@ -25,15 +25,21 @@ impl Pair {
 }
 
 impl Radar {
-    /// The pair that channel `n` of the array is: element `n` hears what it sent.
+    /// The antennas of element `n`: one that hears what it sent, or a transmitter and a receiver. Beyond the last element it is as if the
+    /// line went on.
     pub fn pair(&self, n: usize) -> Pair {
-        Pair::at(self.element_x_metres(n))
+        let of_antennas = self.antennas.as_ref().and_then(|antennas| antennas.pair(n));
+        of_antennas.unwrap_or_else(|| Pair::at(self.element_x_metres(n)))
     }
 }
 
 impl BuiltArray {
-    /// [`Radar::pair`], where the element really stands.
+    /// [`Radar::pair`], where the element really stands: both antennas are off by as much.
     pub fn pair(&self, radar: &Radar, n: usize) -> Pair {
-        Pair::at(self.element_x_metres(radar, n))
+        if radar.is_monostatic() {
+            return Pair::at(self.element_x_metres(radar, n));
+        }
+        let (pair, off) = (radar.pair(n), self.element(n).position_millimetres * 1e-3);
+        Pair { transmitter_x_metres: pair.transmitter_x_metres + off, receiver_x_metres: pair.receiver_x_metres + off }
     }
 }

@@ -1,6 +1,7 @@
 //! Radars that exist, and radars that show the effect of one constant.
 
-use super::{Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
+use super::{AntennasError, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
+use std::sync::LazyLock;
 
 /// A radar ready to look with.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,7 @@ const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
 
 /// Table 3.1 of the thesis.
 const TABLE_3_1: Radar = Radar {
+    antennas: None,
     transmit_power_watts: 100.0,
     bandwidth_hz: 2e9,
     carrier_hz: 77e9,
@@ -34,7 +36,37 @@ const TABLE_3_1: Radar = Radar {
 };
 
 /// Every preset, table 3.1 first.
-pub const ALL: &[RadarPreset] = &[
+pub static ALL: LazyLock<Vec<RadarPreset>> =
+    LazyLock::new(|| MONOSTATIC.iter().cloned().chain(of_pairs().into_iter().flatten()).collect());
+
+/// Radars whose transmitters stand apart from their receivers.
+fn of_pairs() -> [Option<RadarPreset>; 2] {
+    let preset = |id, name, about, radar: Result<Radar, AntennasError>| {
+        Some(RadarPreset { id, name, about, radar: radar.ok()? })
+    };
+    let cascade = Radar { bandwidth_hz: 1e9, end_elements: 16, samples: 256, ..TABLE_3_1 }.of_pairs(12, 16);
+    let chip = Radar { bandwidth_hz: 3.072e9, end_elements: 4, samples: 128, ..TABLE_3_1 }.of_pairs(3, 4);
+    [
+        preset(
+            "cascade-12x16",
+            "77 GHz cascade, 12 x 16 pairs",
+            "Four radar chips side by side: 12 transmitters, 16 receivers, and a filled line of the 192 elements halfway between them, in the \
+             physical convention. An end is one transmitter with all receivers. Near by the ways of pairs are longer than those of their \
+             midpoints; the map shows it up to some 10 m.",
+            cascade,
+        ),
+        preset(
+            "chip-3x4",
+            "77 GHz single chip, 3 x 4 pairs",
+            "Three transmitters and four receivers on one chip, in the physical convention: 12 elements, a beam of some 10 degrees, and range \
+             bins of 5 cm up to 6 m.",
+            chip,
+        ),
+    ]
+}
+
+/// Radars whose elements send and hear by themselves.
+const MONOSTATIC: &[RadarPreset] = &[
     RadarPreset {
         id: "table-3.1",
         name: "The thesis' radar (table 3.1)",
@@ -113,12 +145,13 @@ mod tests {
     #[test]
     fn presets_are_valid() {
         let mut seen = HashSet::new();
-        for preset in ALL {
+        for preset in ALL.iter() {
             preset.radar.validate().unwrap_or_else(|e| panic!("{}: {e}", preset.id));
             assert!(seen.insert(preset.id) && seen.insert(preset.name) && preset.about.len() > 80, "{}", preset.id);
             assert_eq!(RadarPreset::by_id(preset.id), Some(preset));
         }
         assert_eq!(ALL[0].radar, Radar::default());
+        assert_eq!(ALL.len(), MONOSTATIC.len() + of_pairs().len(), "every radar of pairs is an array");
     }
 
     #[test]

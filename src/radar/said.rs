@@ -1,10 +1,11 @@
 //! A radar as files have it: every constant by its name, and short words for what belongs together.
 
-use super::{Carrier, Convention, Radar, WindowFunction};
+use super::{Antennas, Carrier, Convention, Radar, WindowFunction};
 use serde::{Deserialize, Serialize};
 
 /// The table `[radar]`: what is left out is that of table 3.1. `convention` says `carrier` and, where that is left out,
-/// `element_spacing_metres`.
+/// `element_spacing_metres`. `transmitter_x_metres` with `receiver_x_metres` says `elements` and `element_spacing_metres`, and that ends are
+/// at most half of the elements.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Said {
@@ -21,7 +22,14 @@ pub(super) struct Said {
     #[serde(skip_serializing_if = "Option::is_none")]
     convention: Option<Convention>,
     window: Option<WindowFunction>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transmitter_x_metres: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    receiver_x_metres: Option<Vec<f64>>,
 }
+
+/// How far a spacing may lie from that of the pairs beside which it is said, as a part of it.
+const SAME_SPACING: f64 = 1e-3;
 
 impl From<Radar> for Said {
     fn from(radar: Radar) -> Self {
@@ -36,6 +44,8 @@ impl From<Radar> for Said {
             carrier: Some(radar.carrier),
             convention: None,
             window: Some(radar.window),
+            transmitter_x_metres: radar.antennas.as_ref().map(|a| a.transmitter_x_metres().to_vec()),
+            receiver_x_metres: radar.antennas.as_ref().map(|a| a.receiver_x_metres().to_vec()),
         }
     }
 }
@@ -59,7 +69,8 @@ impl TryFrom<Said> for Radar {
             (None, carrier) => carrier.unwrap_or(usual.carrier),
         };
         let filled = said.convention.map(|c| c.filled_spacing_metres(carrier_hz, bandwidth_hz));
-        Ok(Radar {
+        let antennas = said.antennas()?;
+        let radar = Radar {
             transmit_power_watts: said.transmit_power_watts.unwrap_or(usual.transmit_power_watts),
             bandwidth_hz,
             carrier_hz,
@@ -69,7 +80,41 @@ impl TryFrom<Said> for Radar {
             samples: said.samples.unwrap_or(usual.samples),
             carrier,
             window: said.window.unwrap_or(usual.window),
-        })
+            antennas: None,
+        };
+        let Some(antennas) = antennas else { return Ok(radar) };
+        let end_elements = said.end_elements;
+        let radar = radar.with_antennas(antennas);
+        Ok(Radar { end_elements: end_elements.unwrap_or(radar.end_elements), ..radar })
+    }
+}
+
+impl Said {
+    /// The antennas, and whether what is said beside them agrees.
+    fn antennas(&self) -> Result<Option<Antennas>, String> {
+        let (transmitters, receivers) = match (&self.transmitter_x_metres, &self.receiver_x_metres) {
+            (None, None) => return Ok(None),
+            (Some(transmitters), Some(receivers)) => (transmitters, receivers),
+            (Some(_), None) => {
+                return Err("radar.receiver_x_metres is missing; expected it beside transmitter_x_metres".into());
+            }
+            (None, Some(_)) => {
+                return Err("radar.transmitter_x_metres is missing; expected it beside receiver_x_metres".into());
+            }
+        };
+        let antennas = Antennas::new(transmitters, receivers).map_err(|e| format!("radar: {e}"))?;
+        let (pairs, spacing) = (antennas.pairs().len(), antennas.spacing_metres());
+        if let Some(elements) = self.elements.filter(|n| *n != pairs) {
+            return Err(format!(
+                "radar.elements is {elements}; the antennas make {pairs} pairs: expected that, or no such key"
+            ));
+        }
+        if let Some(said) = self.element_spacing_metres.filter(|said| !((said / spacing - 1.0).abs() < SAME_SPACING)) {
+            return Err(format!(
+                "radar.element_spacing_metres is {said}; the midpoints of the antennas' pairs stand {spacing} m apart: expected that, or no such key"
+            ));
+        }
+        Ok(Some(antennas))
     }
 }
 
@@ -109,6 +154,27 @@ mod tests {
         let told = read("convention = \"physical\"\ncarrier = \"one-way\"").unwrap_err();
         assert!(told.contains("radar.carrier is \"one-way\"") && told.contains("expected \"two-way\""), "{told}");
         assert!(read("convention = \"physical\"\ncarrier = \"two-way\"").is_ok());
+    }
+
+    #[test]
+    fn antennas_say_elements_with_spacing() {
+        let antennas = "transmitter_x_metres = [-0.008, 0, 0.008]\nreceiver_x_metres = [0.0, 0.002, 0.004, 0.006]\n";
+        let radar = read(&format!("{antennas}convention = \"physical\"")).unwrap();
+        radar.validate().unwrap();
+        assert_eq!((radar.elements, radar.end_elements, radar.carrier), (12, 6, Carrier::TwoWay));
+        assert!((radar.element_spacing_metres - 0.001).abs() < 1e-12);
+        assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
+        for (beside, told) in [
+            ("elements = 13", "elements is 13; the antennas make 12 pairs"),
+            ("element_spacing_metres = 0.002", "stand 0.00"),
+        ] {
+            let error = read(&format!("{antennas}{beside}")).unwrap_err();
+            assert!(error.contains(told), "{error}");
+        }
+        let alone = read("transmitter_x_metres = [0.0]").unwrap_err();
+        assert!(alone.contains("receiver_x_metres is missing"), "{alone}");
+        let gap = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.1, 0.2]").unwrap_err();
+        assert!(gap.contains("without gaps"), "{gap}");
     }
 
     #[test]

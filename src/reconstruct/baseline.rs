@@ -21,6 +21,10 @@ impl Reconstructor for Baseline {
         }
     }
 
+    fn knows_pairs(&self) -> bool {
+        true
+    }
+
     fn finds_reflectors(&self) -> bool {
         false
     }

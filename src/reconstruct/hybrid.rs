@@ -39,7 +39,7 @@ impl Hybrid {
     ) -> Result<Reconstruction, ReconstructError> {
         let expected = found.expected(radar, request);
         // Nothing fills in on a radar that the fallback doesn't know.
-        if found.complete || self.fallback.check_radar(radar).is_err() {
+        if found.complete || self.fallback.check_array(radar).is_err() {
             return Ok(found.as_drawn(expected.map, Some(expected.least_eta)));
         }
         let filled = self.fallback.reconstruct(radar, ends, request)?;

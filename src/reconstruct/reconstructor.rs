@@ -58,6 +58,25 @@ pub trait Reconstructor: Send + Sync {
         Ok(())
     }
 
+    /// Whether the method knows transmitters that stand apart from receivers: it takes ranges and amplitudes from each element's two
+    /// antennas, or asks for neither.
+    fn knows_pairs(&self) -> bool {
+        false
+    }
+
+    /// Says at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], and whether it knows such antennas.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] says what is in the way.
+    fn check_array(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        if radar.is_monostatic() || self.knows_pairs() {
+            return self.check_radar(radar);
+        }
+        let reason = "it takes every element for one antenna that sends and hears, but this radar's transmitters stand apart from its \
+                      receivers: near by, ranges would be wrong";
+        Err(self.unusable(reason.to_owned()))
+    }
+
     /// Estimates the whole array's map from `ends`, which have the radar's shape, are finite, and whose largest real or imaginary
     /// part lies between 1 and 2. Reflectivities are relative to those samples.
     ///
@@ -80,7 +99,7 @@ pub trait Reconstructor: Send + Sync {
     ) -> Result<Reconstruction, ReconstructError> {
         request.task.check()?;
         check_ends(radar, ends)?;
-        self.check_radar(radar)?;
+        self.check_array(radar)?;
         self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
         let request = &Request { noise: request.noise.scaled(gain), ..request.clone() };

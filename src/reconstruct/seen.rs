@@ -2,7 +2,7 @@
 //!
 //! The ends of table 3.1 stand a metre to the left and right of the centre: they see one reflector at ranges up to 27 bins apart.
 
-use crate::radar::Radar;
+use crate::radar::{Pair, Radar};
 
 /// Far fields away at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
 pub(super) const FAR_AWAY: f64 = 1e4;
@@ -22,6 +22,20 @@ pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -
     let square = range_metres * range_metres - 2.0 * x * from_x_metres + from_x_metres * from_x_metres;
     let range = square.max(1e-12).sqrt();
     Seen { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
+}
+
+/// How a pair of antennas sees the reflector at (`range_metres`, `cos_theta`) of the centre: half the way there and back, and the mean of both
+/// cosines, by which the range changes where both antennas move.
+pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> Seen {
+    let there = seen_from(pair.transmitter_x_metres, range_metres, cos_theta);
+    if pair.transmitter_x_metres == pair.receiver_x_metres {
+        return there;
+    }
+    let back = seen_from(pair.receiver_x_metres, range_metres, cos_theta);
+    Seen {
+        range_metres: (there.range_metres + back.range_metres) / 2.0,
+        cos_theta: (there.cos_theta + back.cos_theta) / 2.0,
+    }
 }
 
 /// Range of every row of `radar`'s map, metres. A single sample has no ranges: its echoes count as plane waves from far away.

@@ -13,6 +13,7 @@
 //! elements = 8
 //! end_elements = 3
 //! samples = 128
+//! # transmitter_x_metres and receiver_x_metres, lists in the file's order, in place of spacing and elements: pairs of antennas
 //!
 //! [recording]
 //! file = "post.npz"                   # .npz, .npy, .mat or .bin, beside this file
@@ -201,6 +202,7 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
         fault => fault.of(&data),
     };
     let rows = table.read(open, profile.as_ref(), signs).map_err(place)?;
+    let rows = table.in_element_order(&radar, rows).map_err(place)?;
     let samples = table.sorted(&radar, rows).map_err(place)?;
     let Table { mut missing, range_metres, .. } = table;
     missing.sort_unstable();
@@ -225,6 +227,11 @@ impl Table {
                 let why = "it only where radar.samples is 1: several samples tell ranges";
                 return Err(Fault::key("recording.range_metres", "is there", why));
             }
+        }
+        if self.reverse_elements && !radar.is_monostatic() {
+            let why =
+                "it only without radar.transmitter_x_metres: the places of antennas say which element is the leftmost";
+            return Err(Fault::key("recording.reverse_elements", "is there", why));
         }
         let mut may_miss = vec![false; radar.elements];
         self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);
@@ -283,6 +290,23 @@ impl Table {
             rows.invert_axis(Axis(0));
         }
         Ok(rows)
+    }
+
+    /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand.
+    fn in_element_order(&self, radar: &Radar, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
+        let counts_pairs = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
+        let Some(antennas) = &radar.antennas else { return Ok(rows) };
+        if !(self.capture.is_some() || self.axes.as_ref().is_some_and(counts_pairs)) {
+            return Ok(rows);
+        }
+        let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
+        if rows.nrows() != transmitters * receivers {
+            let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
+            let (found, shape) = (rows.nrows(), rows.dim());
+            return Err(Fault::Count { what: "pairs of antennas", found, expected, shape });
+        }
+        let order: Vec<usize> = antennas.pairs().iter().map(|[t, r]| t * receivers + r).collect();
+        Ok(rows.select(Axis(0), &order))
     }
 
     fn read_capture(

@@ -28,7 +28,13 @@ pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>)
     }
     let snapshot = table.get("samples").and_then(toml::Value::as_integer) == Some(1);
     let needed = ["carrier_hz", "bandwidth_hz", "element_spacing_metres", "elements", "end_elements", "samples"];
-    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || snapshot && **key == "bandwidth_hz")) {
+    let of_pairs = table.contains_key("transmitter_x_metres") || table.contains_key("receiver_x_metres");
+    let is_known = |key: &str| match key {
+        "bandwidth_hz" => snapshot,
+        "element_spacing_metres" | "elements" => of_pairs,
+        _ => false,
+    };
+    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || is_known(**key))) {
         return Err(Fault::key(&format!("radar.{key}"), "is missing", "it: a recording says which radar measured it"));
     }
     let radar: Radar = table.try_into().map_err(|e: toml::de::Error| {

@@ -314,8 +314,10 @@ impl Body<'_> {
             return None;
         }
         (0..radar.elements).find(|n| {
-            let x = radar.element_x_metres(*n);
-            x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, 0.0]) < near
+            let pair = radar.pair(*n);
+            [pair.transmitter_x_metres, pair.receiver_x_metres]
+                .into_iter()
+                .any(|x| x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, 0.0]) < near)
         })
     }
 }

@@ -275,6 +275,14 @@ fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
     if r.y_metres.abs() >= MIN_ELEMENT_DISTANCE_METRES {
         return None;
     }
+    if !radar.is_monostatic() {
+        let touches = |antenna: f64| (r.x_metres - antenna).hypot(r.y_metres) < MIN_ELEMENT_DISTANCE_METRES;
+        let of_pair = |n: &usize| {
+            let pair = radar.pair(*n);
+            touches(pair.transmitter_x_metres) || touches(pair.receiver_x_metres)
+        };
+        return (0..radar.elements).find(of_pair);
+    }
     let middle = (radar.elements as f64 - 1.0) / 2.0;
     let nearest = (r.x_metres / radar.element_spacing_metres + middle).round();
     let nearest = nearest.clamp(0.0, radar.elements as f64 - 1.0) as usize;

@@ -131,9 +131,14 @@ pub(super) fn thesis_path(radar: &Radar, pair: Pair, r: &Reflector) -> (f64, f64
     ((there + back) / 2.0, radar.transmit_power_watts * r.reflectivity / (there * back))
 }
 
-/// The smallest and the largest range of `r` from elements of `radar` up to `elements`, metres.
+/// Bounds of the ranges of `r` from elements of `radar` up to `elements`, metres; for single antennas they are reached.
 pub(super) fn range_span_metres(radar: &Radar, elements: usize, r: &Reflector) -> (f64, f64) {
-    let (left, right) = (radar.element_x_metres(0), radar.element_x_metres(elements));
+    let (mut left, mut right) = (radar.element_x_metres(0), radar.element_x_metres(elements));
+    if !radar.is_monostatic() {
+        // Half the way there and back lies between the distances of both antennas.
+        let [low, high] = radar.antenna_span_metres();
+        (left, right) = (left.min(low), right.max(high));
+    }
     let nearest = (r.x_metres.clamp(left, right) - r.x_metres).hypot(r.y_metres);
     let farthest = (left - r.x_metres).abs().max((right - r.x_metres).abs()).hypot(r.y_metres);
     (nearest, farthest)
@@ -141,7 +146,10 @@ pub(super) fn range_span_metres(radar: &Radar, elements: usize, r: &Reflector) -
 
 /// The largest amplitude that `r` can have at the array.
 pub(super) fn largest_amplitude(radar: &Radar, r: &Reflector) -> f64 {
-    let half = radar.aperture_metres() / 2.0;
+    let half = match radar.is_monostatic() {
+        true => radar.aperture_metres() / 2.0,
+        false => radar.antenna_span_metres().into_iter().fold(0.0, |m: f64, x| m.max(x.abs())),
+    };
     let beside = (r.x_metres.abs() - half).max(0.0);
     let square = (beside * beside + r.y_metres * r.y_metres).max(MIN_ELEMENT_DISTANCE_METRES.powi(2));
     radar.transmit_power_watts * r.reflectivity.abs() / square

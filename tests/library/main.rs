@@ -15,6 +15,7 @@ mod memory;
 mod methods;
 #[cfg(feature = "network")]
 mod noise_alone;
+mod pairs;
 mod physical_captures;
 mod physical_convention;
 mod radars;

@@ -37,7 +37,7 @@ impl MeasuredMethods {
     /// Where there are no samples of the two ends yet.
     pub fn begin(&mut self, state: &State, basis: Option<Basis>) -> Result<String, String> {
         let basis = basis.ok_or("Show an output panel first: methods are timed on the samples on screen.")?;
-        let works = |method: &&Arc<dyn Reconstructor>| method.check_radar(basis.radar()).is_ok();
+        let works = |method: &&Arc<dyn Reconstructor>| method.check_array(basis.radar()).is_ok();
         let methods: Vec<_> = state.methods.all.iter().filter(works).cloned().collect();
         let said = format!("Timing {} methods on the scene on screen.", methods.len());
         self.radar = Some(basis.radar().clone());

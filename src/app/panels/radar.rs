@@ -310,7 +310,8 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     }
     let beam = follows.full_beam;
     let text = format!("beam {:.2}°, {:.2} columns", beam.radians.to_degrees(), beam.columns);
-    if let Some(elements) = number(ui, table, &ELEMENTS, radar.elements as f64, &text, is_free) {
+    if let Some(elements) = number(ui, table, &ELEMENTS, radar.elements as f64, &text, is_free && radar.is_monostatic())
+    {
         radar.elements = elements as usize;
     }
     let beam = follows.end_beam;
@@ -321,11 +322,11 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     let far = metres(follows.full_far_field_metres);
     let text = format!("far field beyond {far}; of an end, {}", metres(follows.end_far_field_metres));
     if let Some(mm) = number(ui, table, &SPACING_MILLIMETRES, radar.element_spacing_metres * 1e3, &text, is_free) {
-        radar.element_spacing_metres = mm * 1e-3;
+        *radar = radar.clone().with_spacing(mm * 1e-3);
     }
     let spacing = radar.element_spacing_metres / wavelength;
     if let Some(wavelengths) = number(ui, table, &SPACING_WAVELENGTHS, spacing, &grating(follows), is_free) {
-        radar.element_spacing_metres = wavelengths * wavelength;
+        *radar = radar.clone().with_spacing(wavelengths * wavelength);
     }
     let text = format!("an echo from 10 m has amplitude {:.3}", radar.transmit_power_watts / 100.0);
     if let Some(watts) = number(ui, table, &POWER, radar.transmit_power_watts, &text, is_free) {

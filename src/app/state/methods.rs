@@ -32,7 +32,7 @@ impl Methods {
         let preferred = crate::methods::preferred_for(radar).name();
         let works = |other: &&str| {
             let method = self.all.iter().find(|m| m.name() == *other);
-            *other != name && method.is_some_and(|m| m.check_radar(radar).is_ok())
+            *other != name && method.is_some_and(|m| m.check_array(radar).is_ok())
         };
         [preferred].into_iter().chain(ROBUST).find(|other| works(other))
     }

@@ -193,7 +193,10 @@ impl Parameter {
         match self {
             Parameter::Bandwidth => radar.bandwidth_hz = value * 1e9,
             Parameter::EndElements if value >= 1.0 => radar.end_elements = value.round() as usize,
-            Parameter::Spacing => radar.element_spacing_metres = value * radar.wavelength_metres(),
+            Parameter::Spacing => {
+                let metres = value * radar.wavelength_metres();
+                radar = radar.with_spacing(metres);
+            }
             Parameter::Snr => return Some((radar, Floor::Snr(Decibels(value.clamp(-100.0, 300.0))))),
             _ => return None,
         }

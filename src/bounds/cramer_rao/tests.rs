@@ -178,8 +178,8 @@ fn what_can_not_be_told_apart_is_an_error() {
     let r = at(20.0, 0.1);
     for (layout, reflectors) in [
         (&layout, vec![r, r]),
-        (&Layout { x_metres: vec![0.0] }, vec![r]),
-        (&Layout { x_metres: Vec::new() }, vec![r]),
+        (&Layout::at(vec![0.0]), vec![r]),
+        (&Layout::at(Vec::new()), vec![r]),
         (&layout, vec![Reflector { reflectivity: 0.0, ..r }]),
     ] {
         let error = cramer_rao(&radar, layout, &reflectors, 1.0).unwrap_err();

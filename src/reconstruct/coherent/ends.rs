@@ -1,6 +1,6 @@
 //! The elements of both ends that heard something.
 
-use crate::radar::{End, Radar};
+use crate::radar::{End, Pair, Radar};
 use crate::reconstruct::profiles::Profiles;
 use crate::signal::TwoEnds;
 use crate::signal::simd::{LANES_F64, Lanes};
@@ -20,14 +20,37 @@ pub(super) struct Ends {
     pub first_count: usize,
     /// Range profiles, one an element.
     pub profiles: Profiles,
-    /// The positions once more, the last one repeated.
-    x_lanes: Vec<Lanes<f64, W>>,
+    /// Antennas of each element.
+    pub pairs: Vec<Pair>,
+    /// The antennas once more, the last ones repeated.
+    lanes: Vec<PairLanes<W>>,
+}
+
+/// Pairs of antennas, one a lane.
+#[derive(Clone, Copy)]
+pub(super) struct PairLanes<const W: usize> {
+    transmitter_x_metres: Lanes<f64, W>,
+    /// `None` where every pair is one antenna.
+    receiver_x_metres: Option<Lanes<f64, W>>,
+}
+
+impl<const W: usize> PairLanes<W> {
+    /// The pairs that `pair` tells for lanes 0, 1 and so on.
+    #[inline(always)]
+    pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
+        let pairs: [Pair; W] = std::array::from_fn(pair);
+        let is_apart = pairs.iter().any(|p| p.transmitter_x_metres != p.receiver_x_metres);
+        PairLanes {
+            transmitter_x_metres: Lanes(pairs.map(|p| p.transmitter_x_metres)),
+            receiver_x_metres: is_apart.then(|| Lanes(pairs.map(|p| p.receiver_x_metres))),
+        }
+    }
 }
 
 impl Ends {
     /// The elements of `radar` whose samples in `ends` are not all zero.
     pub fn new(radar: &Radar, ends: &TwoEnds) -> Self {
-        let mut x_metres = Vec::new();
+        let (mut x_metres, mut pairs) = (Vec::new(), Vec::new());
         let mut channels = Vec::new();
         let mut first_count = 0;
         let mut hears = ends.hears().into_iter();
@@ -35,14 +58,15 @@ impl Ends {
             for (element, channel) in radar.end_range(end).zip(ends.end(end).outer_iter()) {
                 if hears.next() == Some(true) {
                     x_metres.push(radar.element_x_metres(element));
+                    pairs.push(radar.pair(element));
                     channels.push(channel);
                     first_count += usize::from(end == End::First);
                 }
             }
         }
-        let lanes = |x: &[f64]| Lanes(std::array::from_fn(|i| x[i.min(x.len() - 1)]));
-        let x_lanes = x_metres.chunks(W).map(lanes).collect();
-        Ends { profiles: Profiles::new(radar, &channels, PROFILE_ROWS_PER_BIN), x_metres, first_count, x_lanes }
+        let of_chunk = |pairs: &[Pair]| PairLanes::new(|i| pairs[i.min(pairs.len() - 1)]);
+        let lanes = pairs.chunks(W).map(of_chunk).collect();
+        Ends { profiles: Profiles::new(radar, &channels, PROFILE_ROWS_PER_BIN), x_metres, first_count, pairs, lanes }
     }
 
     /// Number of elements.
@@ -54,16 +78,30 @@ impl Ends {
     /// for the distance for a reflector there. `heard` has an entry an element.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, heard: &mut [Complex64]) {
-        for (i, (x, heard)) in self.x_lanes.iter().zip(heard.chunks_mut(W)).enumerate() {
-            let distances = distances_metres::<W, FMA>(*x, range_metres, Lanes::splat(cos_theta));
+        for (i, (pairs, heard)) in self.lanes.iter().zip(heard.chunks_mut(W)).enumerate() {
+            let distances = distances_metres::<W, FMA>(*pairs, range_metres, Lanes::splat(cos_theta));
             self.profiles.lanes_at::<W, FMA>(i * W, distances, heard);
         }
     }
 }
 
-/// Distances between points of the array's axis and places in the centre's polar grid, metres.
+/// Ranges of places in the centre's polar grid, as pairs of antennas measure them, metres.
 #[inline(always)]
 pub(super) fn distances_metres<const W: usize, const FMA: bool>(
+    pairs: PairLanes<W>,
+    range_metres: f64,
+    cos_theta: Lanes<f64, W>,
+) -> Lanes<f64, W> {
+    let there = legs_metres::<W, FMA>(pairs.transmitter_x_metres, range_metres, cos_theta);
+    match pairs.receiver_x_metres {
+        None => there,
+        Some(receivers) => (there + legs_metres::<W, FMA>(receivers, range_metres, cos_theta)) * Lanes::splat(0.5),
+    }
+}
+
+/// Distances between points of the array's axis and places in the centre's polar grid, metres.
+#[inline(always)]
+fn legs_metres<const W: usize, const FMA: bool>(
     x_metres: Lanes<f64, W>,
     range_metres: f64,
     cos_theta: Lanes<f64, W>,

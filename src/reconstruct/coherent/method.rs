@@ -48,6 +48,10 @@ impl Reconstructor for CoherentMethod {
         self.about
     }
 
+    fn knows_pairs(&self) -> bool {
+        true
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         if radar.end_elements > MOST_END_ELEMENTS {
             return Err(self.unusable(format!(

@@ -1,10 +1,10 @@
 //! The linear model of one place: steering vectors of both ends together, and the powers that explain what was heard.
 
-use super::ends::{Ends, distances_metres};
+use super::ends::{Ends, PairLanes, distances_metres};
 use super::linear::{Lane, Steering, W, explained};
 use super::places::Place;
 use super::sectors::Sectors;
-use crate::radar::Radar;
+use crate::radar::{Pair, Radar};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::profiles::range_response_near;
 use crate::signal::simd::{Kernel, Lanes, Simd};
@@ -118,8 +118,8 @@ impl Kernel for Make<'_> {
         let Make { ends, place, .. } = self;
         let range = place.range_metres;
         let middle = Lanes([place.sector.middle_cos]);
-        let own = |x: &f64| distances_metres::<1, FMA>(Lanes([*x]), range, middle).0[0];
-        let own: Vec<f64> = ends.x_metres.iter().map(own).collect();
+        let own = |pair: &Pair| distances_metres::<1, FMA>(PairLanes::new(|_| *pair), range, middle).0[0];
+        let own: Vec<f64> = ends.pairs.iter().map(own).collect();
         let mut heard = vec![Complex64::default(); ends.len()];
         ends.listen::<FMA>(range, place.sector.middle_cos, &mut heard);
         let mut noise = 0.0;
@@ -158,8 +158,8 @@ impl Make<'_> {
         let exists = |i: usize| i < steps.len() && cosines.0[i].abs() <= 1.0;
         let inside = cosines.map(|cos| cos.clamp(-1.0, 1.0));
         let per_bin = if radar.samples == 1 { 0.0 } else { 1.0 / radar.range_resolution_metres() };
-        for (n, (x, own)) in ends.x_metres.iter().zip(own).enumerate() {
-            let distances = distances_metres::<W, FMA>(Lanes::splat(*x), place.range_metres, inside);
+        for (n, (pair, own)) in ends.pairs.iter().zip(own).enumerate() {
+            let distances = distances_metres::<W, FMA>(PairLanes::new(|_| *pair), place.range_metres, inside);
             let further = distances - Lanes::splat(*own);
             let response = range_response_near::<W, FMA>(further * Lanes::splat(per_bin)).round_to();
             let wave = ends.profiles.phases::<f32, W, FMA>(further).scaled(response);

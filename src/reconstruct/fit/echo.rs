@@ -2,6 +2,7 @@
 
 use super::sensor::{Sensor, W, kept_apart};
 use crate::scene::Reflector;
+use crate::signal::path::Pairs;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
 
 /// A reflector as some neighbouring channels of one end hear it, a lane a channel. Lanes beyond the end are silent.
@@ -71,16 +72,48 @@ fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usiz
     let samples = sensor.samples as f64;
     let channel = |lane: usize| end * sensor.end_elements + (first + lane).min(sensor.end_elements - 1);
     let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.hears[channel(lane)];
-    let x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
     let heard = Lanes(std::array::from_fn(|lane| f64::from(u8::from(is_heard(lane)))));
-    let echo = sensor.model.echo_lanes::<W, FMA>(x, r);
+    let pairs = Pairs::new(|lane| sensor.pairs[channel(lane)]);
+    let echo = sensor.model.echo_lanes::<W, FMA>(pairs, r);
     let turns = echo.carrier_turns + echo.beat_turns_at::<FMA>((samples - 1.0) / 2.0);
-    let by_distance = echo.distance_metres.map(f64::recip);
+    let Slopes { by_x, by_half_square, decay } = if sensor.is_monostatic {
+        let x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
+        let by_distance = echo.distance_metres.map(f64::recip);
+        Slopes { by_x: (of(r.x_metres) - x) * by_distance, by_half_square: by_distance, decay: by_distance * of(2.0) }
+    } else {
+        let transmitters = Lanes(std::array::from_fn(|lane| sensor.pairs[channel(lane)].transmitter_x_metres));
+        let receivers = Lanes(std::array::from_fn(|lane| sensor.pairs[channel(lane)].receiver_x_metres));
+        Slopes::of_pairs(transmitters, receivers, r)
+    };
     Part {
         bins: echo.beat_turns * of(samples),
         middle: phasor::<f64, W, FMA>(turns).scaled(echo.amplitude * heard),
-        by_x: (of(r.x_metres) - x) * by_distance,
-        by_half_square: by_distance,
-        decay: by_distance * of(2.0),
+        by_x,
+        by_half_square,
+        decay,
+    }
+}
+
+/// How distances and amplitudes change, as in [`Part`].
+struct Slopes {
+    by_x: Lanes<f64, W>,
+    by_half_square: Lanes<f64, W>,
+    decay: Lanes<f64, W>,
+}
+
+impl Slopes {
+    /// Those of pairs. The loss of amplitude is that of both legs on average: legs of very different lengths lose otherwise, by little beside
+    /// what the phase turns.
+    #[inline(always)]
+    fn of_pairs(transmitters: Lanes<f64, W>, receivers: Lanes<f64, W>, r: &Reflector) -> Self {
+        let of = Lanes::<f64, W>::splat;
+        let leg = |antennas: Lanes<f64, W>| {
+            let dx = of(r.x_metres) - antennas;
+            let by_distance = (dx * dx + of(r.y_metres * r.y_metres)).sqrt().map(f64::recip);
+            (dx * by_distance, by_distance)
+        };
+        let ((there_x, there), (back_x, back)) = (leg(transmitters), leg(receivers));
+        let half = of(0.5);
+        Slopes { by_x: (there_x + back_x) * half, by_half_square: (there + back) * half, decay: there + back }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::sensor::{Sensor, W, kept_apart};
 use crate::scene::Reflector;
+use crate::signal::path::Pairs;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
 use crate::signal::split::{Product, STRIDE, add_products, fill_factors, rows_of};
 use num_complex::Complex64;
@@ -198,7 +199,7 @@ impl Kernel for Sum<'_> {
         let Sum { sensor, reflectors, keep, .. } = self;
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
-        let element_x = Lanes(std::array::from_fn(|lane| sensor.element_x[channel(lane)]));
+        let pairs = Pairs::new(|lane| sensor.pairs[channel(lane)]);
         let many = rows_of(sensor.samples);
         let mut echoes = Phasors::room(if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) }, many);
         let mut scaled = vec![ComplexLanes::zero(); TOGETHER * many];
@@ -214,7 +215,7 @@ impl Kernel for Sum<'_> {
             let columns = &mut echoes.columns[first..first + reflectors.len()];
             let each = rows.chunks_exact_mut(many).zip(columns.iter_mut()).zip(scaled.chunks_exact_mut(many));
             for (((rows, columns), scaled), (reflector, gains)) in each.zip(reflectors) {
-                fill_factors::<f64, W, FMA>(&sensor.model, element_x, &kept_apart(sensor, reflector), rows, columns);
+                fill_factors::<f64, W, FMA>(&sensor.model, pairs, &kept_apart(sensor, reflector), rows, columns);
                 let gain = |lane: usize| match sensor.hears[channel(lane)] {
                     true => -gains[channel(lane) / sensor.end_elements],
                     false => Complex64::default(),

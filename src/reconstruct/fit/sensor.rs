@@ -1,6 +1,6 @@
 //! The two ends as a measuring device: where their channels stand, and what phases they give to an echo.
 
-use crate::radar::{End, Radar};
+use crate::radar::{End, Pair, Radar};
 use crate::scene::Reflector;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::LANES_F64;
@@ -20,6 +20,10 @@ pub struct Sensor {
     pub model: EchoModel,
     /// x of every channel's element, metres, first end first.
     pub element_x: Vec<f64>,
+    /// Antennas of every channel's element, first end first.
+    pub pairs: Vec<Pair>,
+    /// Whether every element hears what it sent.
+    pub is_monostatic: bool,
     /// Samples a channel.
     pub samples: usize,
     /// Channels an end.
@@ -33,10 +37,12 @@ pub struct Sensor {
 impl Sensor {
     /// The two ends of `radar`.
     pub fn new(radar: &Radar) -> Self {
-        let element_x = End::BOTH.iter().flat_map(|&e| radar.end_range(e)).map(|n| radar.element_x_metres(n));
+        let elements = || End::BOTH.iter().flat_map(|&e| radar.end_range(e));
         Sensor {
             model: EchoModel::new(radar),
-            element_x: element_x.collect(),
+            element_x: elements().map(|n| radar.element_x_metres(n)).collect(),
+            pairs: elements().map(|n| radar.pair(n)).collect(),
+            is_monostatic: radar.is_monostatic(),
             samples: radar.samples,
             end_elements: radar.end_elements,
             hears: vec![true; 2 * radar.end_elements],
@@ -83,7 +89,14 @@ impl Sensor {
 
 /// `r` moved to where its distance from every element is a number that can be divided by.
 pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
-    let nearest = sensor.element_x.iter().fold(f64::INFINITY, |m, x| m.min((x - r.x_metres).abs()));
+    let apart = |m: f64, x: f64| m.min((x - r.x_metres).abs());
+    let nearest = match sensor.is_monostatic {
+        true => sensor.element_x.iter().fold(f64::INFINITY, |m, x| apart(m, *x)),
+        false => sensor
+            .pairs
+            .iter()
+            .fold(f64::INFINITY, |m, pair| apart(apart(m, pair.transmitter_x_metres), pair.receiver_x_metres)),
+    };
     let y_metres = if nearest.hypot(r.y_metres) < NEAREST_METRES { NEAREST_METRES } else { r.y_metres };
     Reflector { y_metres, ..*r }
 }

@@ -8,7 +8,7 @@
 use super::cells::Cells;
 use crate::maps::centred_spectrum;
 use crate::radar::{End, Radar, hann};
-use crate::reconstruct::seen::seen_from;
+use crate::reconstruct::seen::seen_by;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis, Zip, s};
 use num_complex::Complex64;
@@ -71,6 +71,10 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
     let far_metres = |elements: usize| {
         2.0 * ((elements - 1) as f64 * radar.element_spacing_metres).powi(2) / radar.wavelength_metres()
     };
+    if !radar.is_monostatic() {
+        // Neighbours may belong to different antennas, which see no common wave.
+        return (0..radar.end_elements).map(|n| n..n + 1).collect();
+    }
     let plane = |elements: &usize| radar.samples == 1 || far_metres(*elements) <= radar.max_range_metres() * NEAR_PART;
     let longest = (1..=BLOCK).rev().find(plane).unwrap_or(1);
     let count = radar.end_elements.div_ceil(longest);
@@ -143,11 +147,11 @@ fn places(radar: &Radar, cells: &Cells<'_>, origin: usize, rows: usize, columns:
     let turns_per_metre = radar.turns_per_metre((radar.samples / 2) as f64);
     // Turns from one element to the next for cos(theta) = 1.
     let per_element = -radar.carrier_turns_per_metre() * radar.element_spacing_metres;
-    let origin_metres = radar.element_x_metres(origin);
+    let pair = radar.pair(origin);
     let mut places = Array2::from_elem(cells.dim(), Place::default());
     places.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).for_each(|(mut row, range_metres)| {
         for (place, direction) in row.iter_mut().zip(&cells.directions) {
-            let seen = seen_from(origin_metres, *range_metres, direction.cos_theta);
+            let seen = seen_by(pair, *range_metres, direction.cos_theta);
             let bins = radar.bin_of_range(seen.range_metres);
             let turns = ((per_element * seen.cos_theta + 0.5).rem_euclid(1.0)) * columns as f64;
             *place = Place {

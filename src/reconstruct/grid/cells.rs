@@ -54,6 +54,14 @@ impl<'a> Cells<'a> {
         let place =
             Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 };
         let radar = self.radar;
+        if !radar.is_monostatic() {
+            let is_clear = |x: f64| (place.x_metres - x).hypot(place.y_metres) > MIN_ELEMENT_DISTANCE_METRES;
+            let pairs = (0..radar.elements).map(|n| radar.pair(n));
+            let is_near_the_axis = place.y_metres <= MIN_ELEMENT_DISTANCE_METRES;
+            let clear = !is_near_the_axis
+                || pairs.into_iter().all(|p| is_clear(p.transmitter_x_metres) && is_clear(p.receiver_x_metres));
+            return (range > 0.0 && clear).then_some(place);
+        }
         let nearest = (place.x_metres - radar.element_x_metres(0)) / radar.element_spacing_metres;
         let nearest = radar.element_x_metres(nearest.round().clamp(0.0, radar.elements as f64 - 1.0) as usize);
         let clear = (place.x_metres - nearest).hypot(place.y_metres) > MIN_ELEMENT_DISTANCE_METRES;

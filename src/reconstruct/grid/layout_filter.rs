@@ -2,13 +2,13 @@
 
 use super::cells::Cells;
 use crate::maps::RangeAngleMap;
-use crate::radar::{Layout, Radar};
+use crate::radar::{Layout, Pair, Radar};
 use crate::reconstruct::answer::Request;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::power::{focused_gain, lambda_of_power};
 use crate::reconstruct::profiles::Profiles;
-use crate::reconstruct::seen::seen_from;
+use crate::reconstruct::seen::seen_by;
 use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -48,13 +48,13 @@ pub fn layout_matched_filter(
     let profiles = Profiles::new(radar, &channels, LAYOUT_ROWS_PER_BIN);
     request.task.check()?;
     let scale = focused_gain(radar) / layout.len() as f64;
-    let cells = Cells::new(radar);
+    let (cells, pairs) = (Cells::new(radar), layout.pairs());
     let mut power = Array2::zeros(cells.dim());
     power.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).try_for_each(|(mut row, range_metres)| {
         request.task.check()?;
         for (cell, direction) in row.iter_mut().zip(&cells.directions) {
-            let distance = |x: &f64| seen_from(*x, *range_metres, direction.cos_theta).range_metres;
-            let heard = layout.x_metres.iter().enumerate().map(|(channel, x)| profiles.at(channel, distance(x)));
+            let distance = |pair: &Pair| seen_by(*pair, *range_metres, direction.cos_theta).range_metres;
+            let heard = pairs.iter().enumerate().map(|(channel, pair)| profiles.at(channel, distance(pair)));
             let sum: Complex64 = heard.sum();
             *cell = (sum * scale).norm_sqr();
         }

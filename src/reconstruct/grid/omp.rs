@@ -351,6 +351,10 @@ impl Reconstructor for Omp {
         }
     }
 
+    fn knows_pairs(&self) -> bool {
+        true
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))

@@ -53,6 +53,11 @@ fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
         table.remove("element_spacing_metres");
         table.insert("convention".to_owned(), convention.name().into());
     }
+    if !radar.is_monostatic() {
+        // The antennas say these.
+        table.remove("elements");
+        table.remove("element_spacing_metres");
+    }
     Ok(table)
 }
 
@@ -323,6 +328,14 @@ mod tests {
         let file = SceneFile { radar, ..scene() };
         let text = to_toml(&file).unwrap();
         assert!(text.contains("convention = \"physical\"") && !text.contains("spacing_metres = 0.000"), "{text}");
+        assert_eq!(from_toml(&text).unwrap(), file);
+    }
+
+    #[test]
+    fn antennas_are_written_in_place_of_the_elements_they_make() {
+        let file = SceneFile { radar: Radar::default().of_pairs(3, 4).unwrap(), ..scene() };
+        let text = to_toml(&file).unwrap();
+        assert!(text.contains("receiver_x_metres") && !text.contains("elements = 12"), "{text}");
         assert_eq!(from_toml(&text).unwrap(), file);
     }
 

@@ -65,7 +65,7 @@ fn the_table_stays_where_it_is_when_the_preset_goes() {
             panel.get_by_role_and_label(egui::accesskit::Role::SpinButton, "bandwidth").rect().top()
         };
         let own = place(Radar { bandwidth_hz: 123e6, ..Radar::default() });
-        for preset in presets::ALL {
+        for preset in presets::ALL.iter() {
             assert_eq!(place(preset.radar.clone()), own, "{} at {width}", preset.name);
         }
     }

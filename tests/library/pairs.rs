@@ -1,0 +1,252 @@
+//! Transmitters apart from receivers, held to sums of their own: samples, maps, bounds, recordings, methods.
+
+use apertura::bounds::cramer_rao;
+use apertura::files::npz::write_npz;
+use apertura::maps::{LogMaps, Normalisation};
+use apertura::methods;
+use apertura::radar::{Antennas, Decibels, Layout, Radar, presets::RadarPreset};
+use apertura::reconstruct::found::reconstruct_and_find;
+use apertura::reconstruct::{Detection, NoisePrior, ReconstructError, Request};
+use apertura::recording::{Recording, file};
+use apertura::scene::{Block, Object, Point, Reflector, Scene, Wall};
+use apertura::signal::{BeatSignal, Floor, judge, simulate};
+use ndarray::Array3;
+use num_complex::Complex64;
+use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+use std::f64::consts::TAU;
+
+const C: f64 = 299_792_458.0;
+
+fn small(transmitters: usize, receivers: usize) -> Radar {
+    let usual = Radar { bandwidth_hz: 1e9, samples: 96, ..Radar::default() };
+    usual.of_pairs(transmitters, receivers).unwrap()
+}
+
+/// The same elements, each sending and hearing by itself.
+fn monostatic(radar: &Radar) -> Radar {
+    Radar { antennas: None, ..radar.clone() }
+}
+
+/// The sum of the physical formula, one antenna pair after the other, for each watt.
+fn sample(radar: &Radar, transmitter: f64, receiver: f64, points: &[(f64, f64)], n: usize) -> Complex64 {
+    let hz = radar.carrier_hz + radar.bandwidth_hz * n as f64 / radar.samples as f64;
+    let echo = |(x, y): &(f64, f64)| {
+        let (there, back) = ((x - transmitter).hypot(*y), (x - receiver).hypot(*y));
+        Complex64::from_polar(1.0 / (there * back), TAU * (hz * (there + back) / C).fract())
+    };
+    points.iter().map(echo).sum()
+}
+
+fn largest_difference(a: &BeatSignal, b: &BeatSignal) -> f64 {
+    let off = a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    off / a.peak()
+}
+
+#[test]
+fn samples_of_pairs_are_a_direct_sum() {
+    let points = [(0.6, 1.4), (-2.0, 5.0), (1.0, 9.0), (0.1, 3.0), (-4.0, 7.0)];
+    for radar in [small(3, 4), small(12, 16), small(2, 31)] {
+        let antennas = radar.antennas.clone().unwrap();
+        let signal = simulate(&radar, &Scene::of_points(points), Floor::Exact, 0).unwrap();
+        for (n, [t, r]) in antennas.pairs().iter().enumerate() {
+            let (transmitter, receiver) = (antennas.transmitter_x_metres()[*t], antennas.receiver_x_metres()[*r]);
+            for sample_number in [0, 1, 50, 95] {
+                let direct = sample(&radar, transmitter, receiver, &points, sample_number) * radar.transmit_power_watts;
+                let off = (signal.samples[[n, sample_number]] - direct).norm() / signal.peak();
+                assert!(off < 1e-10, "element {n}, sample {sample_number}: {off:e}");
+            }
+        }
+    }
+}
+
+fn bodies() -> Scene {
+    let objects = vec![
+        Object::Wall(Wall::new(-1.0, 3.0, 2.0, 10.0)),
+        Object::Box(Block::new([0.8, 2.0], [0.5, 0.4], 80.0)),
+        Object::Point(Point::new(0.2, 4.0)),
+    ];
+    Scene { objects, ..Scene::default() }
+}
+
+#[test]
+fn points_with_bodies_are_what_double_double_arithmetic_gives() {
+    for radar in [small(3, 4), small(4, 5)] {
+        for scene in [bodies(), Scene::of_points((0..9).map(|i| (f64::from(i) - 4.0, 1.5 + 0.7 * f64::from(i))))] {
+            let echoing = apertura::scattering::Echoing::of(&radar, &scene);
+            let judged = judge::beat_signal(&radar, &echoing);
+            for floor in [Floor::Exact, Floor::Thesis] {
+                let off = largest_difference(&judged, &simulate(&radar, &scene, floor, 0).unwrap());
+                assert!(off < 1e-10, "over {floor}: {off:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn transmitters_in_the_place_of_receivers_hear_the_same() {
+    let radar = small(3, 5);
+    let antennas = radar.antennas.clone().unwrap();
+    let swapped = Antennas::new(antennas.receiver_x_metres(), antennas.transmitter_x_metres()).unwrap();
+    let swapped = radar.clone().with_antennas(swapped);
+    for scene in [bodies(), Scene::of_points([(0.6, 1.4), (-2.0, 5.0)])] {
+        let [a, b] = [&radar, &swapped].map(|radar| simulate(radar, &scene, Floor::Exact, 0).unwrap());
+        let off = largest_difference(&a, &b);
+        assert!(off < 1e-11, "{off:e}");
+    }
+}
+
+#[test]
+fn a_pair_is_farther_than_its_midpoint_by_less_than_the_bound() {
+    let radar = small(12, 16);
+    let mut largest = 0.0f64;
+    for n in 0..radar.elements {
+        let pair = radar.pair(n);
+        let apart = (pair.transmitter_x_metres - pair.receiver_x_metres).abs();
+        let midpoint = radar.element_x_metres(n);
+        for (range, cos) in [(2.0f64, 0.0f64), (2.0, 0.7), (5.0, -0.4), (20.0, 0.2)] {
+            let (x, y) = (midpoint + range * cos, range * (1.0 - cos * cos).sqrt());
+            let longer = pair.range_metres(x, y) - range;
+            let bound = apart * apart / (8.0 * range);
+            assert!((-1e-15..=bound).contains(&longer), "element {n}: {longer:e}, bound {bound:e}");
+            assert!(longer >= 0.9 * bound * (1.0 - cos * cos) - 1e-15, "element {n}: the bound is met ahead");
+            largest = largest.max(longer);
+        }
+    }
+    // At 2 m the approximation costs more than a whole wavelength of the way there and back.
+    assert!(2.0 * largest > radar.wavelength_metres(), "{largest}");
+}
+
+#[test]
+fn far_away_pairs_are_the_elements_halfway_between_them() {
+    let radar = small(12, 16);
+    let apart =
+        (0..radar.elements).map(|n| radar.pair(n)).map(|p| (p.transmitter_x_metres - p.receiver_x_metres).abs());
+    let apart = apart.fold(0.0, f64::max);
+    for range in [1e4, 1e5, 1e6] {
+        let scene = Scene::of_points([(0.6 * range, 0.8 * range)]);
+        let signal = |radar: &Radar| simulate(radar, &scene, Floor::Exact, 0).unwrap();
+        let off = largest_difference(&signal(&radar), &signal(&monostatic(&radar)));
+        // What the ranges differ by turns the phase; amplitudes differ by the square of apart over range.
+        let bound = TAU * radar.turns_per_metre(radar.samples as f64) * apart * apart / (8.0 * range);
+        assert!(off < 1.01 * bound && off > 1e-2 * bound, "{range} m: {off:e}, bound {bound:e}");
+    }
+}
+
+#[test]
+fn the_map_of_a_near_point_is_that_of_its_pairs() {
+    let radar = RadarPreset::by_id("cascade-12x16").unwrap().radar.clone();
+    let scene = Scene::of_points([(0.4, 2.0)]);
+    let map = |radar: &Radar| {
+        let maps = LogMaps::of_signal(radar, &simulate(radar, &scene, Floor::Exact, 0).unwrap());
+        maps.full.normalise(Normalisation::DynamicRange(Decibels(30.0))).lambda
+    };
+    let (pairs, alone) = (map(&radar), map(&monostatic(&radar)));
+    let most = pairs.iter().zip(&alone).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(most > 0.1, "at 2 m the approximation by midpoints can be seen: {most}");
+}
+
+#[test]
+fn bounds_of_far_points_are_those_of_the_midpoints() {
+    let radar = small(12, 16);
+    let bound = |radar: &Radar, range: f64| {
+        let reflector = Reflector { x_metres: 0.6 * range, y_metres: 0.8 * range, reflectivity: range * range };
+        cramer_rao(radar, &Layout::two_ends(radar), &[reflector], 1.0).unwrap()[0]
+    };
+    let ratio = |range: f64| bound(&radar, range).cos_theta / bound(&monostatic(&radar), range).cos_theta;
+    assert!((ratio(1e5) - 1.0).abs() < 1e-3, "{}", ratio(1e5));
+    assert!((ratio(0.5) - 1.0).abs() > 1e-3, "near by the pairs' own ranges count: {}", ratio(0.5));
+}
+
+/// A capture of `points` of amplitude 1 by a physical formula of its own, its antennas in any order and anywhere along x.
+fn captured(radar: &Radar, points: &[(f64, f64)], sigma: f64, rng: &mut ChaCha8Rng) -> Recording {
+    let antennas = radar.antennas.clone().unwrap();
+    let mut transmitters = antennas.transmitter_x_metres().to_vec();
+    let mut receivers = antennas.receiver_x_metres().to_vec();
+    transmitters.shuffle(rng);
+    receivers.shuffle(rng);
+    let noise = |rng: &mut ChaCha8Rng| rng.sample::<f64, _>(StandardNormal) * sigma / 2f64.sqrt();
+    let shape = (transmitters.len(), receivers.len(), radar.samples);
+    let cube = Array3::from_shape_fn(shape, |(t, r, n)| {
+        let echoes =
+            points.iter().map(|p| sample(radar, transmitters[t], receivers[r], &[*p], n) * (p.0 * p.0 + p.1 * p.1));
+        echoes.sum::<Complex64>() + Complex64::new(noise(rng), noise(rng))
+    });
+    let folder = tempfile::tempdir().unwrap();
+    write_npz(&folder.path().join("c.npz"), |out| out.add("cube", &cube)).unwrap();
+    // Whoever wrote the file counted x from its own zero.
+    let from_zero = |places: &[f64]| format!("{:?}", places.iter().map(|x| x + 0.25).collect::<Vec<_>>());
+    let text = format!(
+        "format = 2\n[radar]\nconvention = \"physical\"\ncarrier_hz = {:?}\nbandwidth_hz = {:?}\nend_elements = {}\n\
+         samples = {}\ntransmit_power_watts = 1.0\ntransmitter_x_metres = {}\nreceiver_x_metres = {}\n\
+         [recording]\nfile = \"c.npz\"\narray = \"cube\"\naxes = [\"transmitter\", \"receiver\", \"sample\"]\n\
+         carrier_at = \"first-sample\"\nbeat_sign = \"+\"\n",
+        radar.carrier_hz,
+        radar.bandwidth_hz,
+        radar.end_elements,
+        radar.samples,
+        from_zero(&transmitters),
+        from_zero(&receivers),
+    );
+    std::fs::write(folder.path().join("c.toml"), text).unwrap();
+    file::load(&folder.path().join("c.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn a_capture_of_pairs_has_its_rows_in_the_order_of_elements() {
+    let radar = Radar { transmit_power_watts: 1.0, ..small(3, 4) };
+    let points = [(0.5, 2.0), (-1.0, 6.0)];
+    let recording = captured(&radar, &points, 0.0, &mut ChaCha8Rng::seed_from_u64(1));
+    let objects = points.map(|(x, y)| Object::Point(Point { reflectivity: x * x + y * y, ..Point::new(x, y) }));
+    let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
+    let expected = simulate(&recording.radar, &scene, Floor::Exact, 0).unwrap();
+    let off = largest_difference(&expected, recording.signal().unwrap());
+    assert!(off < 1e-9, "{off:e}");
+    assert!((recording.radar.element_spacing_metres / radar.element_spacing_metres - 1.0).abs() < 1e-9);
+}
+
+/// Methods that take ranges from both antennas of an element.
+const KNOW_PAIRS: [&str; 7] = ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl"];
+
+/// What `method` finds.
+fn found(method: &str, recording: &Recording) -> Vec<Detection> {
+    let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
+    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
+    reconstruct_and_find(method.as_ref(), &recording.radar, &recording.two_ends(), &request).unwrap().1
+}
+
+/// A radar whose pairs are far apart at the ranges of its points.
+fn near_radar() -> Radar {
+    Radar { end_elements: 16, ..small(6, 16) }
+}
+
+#[test]
+fn methods_that_know_pairs_place_a_near_point() {
+    let radar = near_radar();
+    let (x, y) = (0.5f64, 1.9f64);
+    let recording = captured(&radar, &[(x, y)], 0.1, &mut ChaCha8Rng::seed_from_u64(3));
+    let (range, cos) = (x.hypot(y), x / x.hypot(y));
+    for name in KNOW_PAIRS.into_iter().filter(|name| *name != "baseline") {
+        let found = found(name, &recording);
+        let first = found.first().unwrap_or_else(|| panic!("{name} found nothing"));
+        println!("{name}: {} m, {} of {}", first.range_metres - range, first.cos_theta - cos, found.len());
+        assert!((first.range_metres - range).abs() < 0.05, "{name}: {first:?}, expected {range} m");
+        assert!((first.cos_theta - cos).abs() < 0.02, "{name}: {first:?}, expected {cos}");
+    }
+}
+
+#[test]
+fn methods_that_know_no_pairs_say_so() {
+    let radar = near_radar();
+    let ends =
+        simulate(&radar, &Scene::of_points([(0.5, 1.9)]), Floor::Snr(Decibels(30.0)), 0).unwrap().two_ends(&radar);
+    for method in methods::all().iter().filter(|m| !KNOW_PAIRS.contains(&m.name())) {
+        assert!(!method.knows_pairs(), "{}", method.name());
+        let error = method.reconstruct(&radar, &ends, &Request::default()).unwrap_err();
+        assert!(matches!(error, ReconstructError::Unusable { .. }), "{}: {error}", method.name());
+        let told = error.to_string();
+        assert!(told.contains(method.name()) && told.contains("transmitters stand apart from"), "{told}");
+    }
+}
