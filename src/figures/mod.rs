@@ -275,7 +275,7 @@ pub const ALL: &[Figure] = &[
         true,
         outputs::hidden,
         "A point hidden behind a line for one end.",
-        "Points cast no shadows: what hides the point here are the line's side lobes, through which the whole array sees it.",
+        "Above, points cast no shadows: what hides the point are the line's side lobes, through which the whole array sees it. Below, a wall hides a point from the last end, to which its echo is 40 dB weaker, and not from the first. Every map is normalised by itself, over some 200 dB, so that 40 dB are a fifth of Λ.",
     ),
     figure(
         "6-1",

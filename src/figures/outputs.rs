@@ -135,15 +135,16 @@ pub fn clusters(source: &Source) -> Result<Sheet, FigureError> {
     beside(source, &source.preset("gaussian-clusters")?, EXPERIMENT_2)
 }
 
-/// A point hidden behind a line for one end.
+/// A point hidden behind a line for one end; below, behind a wall that casts a shadow.
 pub fn hidden(source: &Source) -> Result<Sheet, FigureError> {
     let seen = source.preset("point-behind-a-line")?;
     let [first, last, full] = &seen.lambda;
-    let panels = vec![
-        source.scene_panel("The scene", &seen.scene),
+    let mut panels = vec![
+        source.scene_panel("A line, and a point behind it", &seen.scene),
         source.lambda_panel("Input 0", first),
         source.lambda_panel("Input 1", last),
         source.lambda_panel("Target", full),
     ];
+    panels.extend(super::things::behind_a_wall(source)?);
     Ok(Sheet::of(2, (520, 400), panels))
 }

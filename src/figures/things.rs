@@ -1,8 +1,8 @@
-//! Figure 6-1, a cylinder and a cube.
+//! Figure 6-1, a cylinder and a cube, and section 5.4's hidden point behind a wall that casts a shadow.
 
 use super::sheet::{Axis, Panel, Series, Sheet, Stroke};
 use super::source::{FigureError, Seen, Source};
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Object, Point, Scene, Shape, Wall};
 use std::f64::consts::TAU;
 
 const PANEL: (u32, u32) = (520, 400);
@@ -14,6 +14,22 @@ const ROUND: usize = 48;
 pub fn cylinder_and_cube(source: &Source) -> Result<Sheet, FigureError> {
     let seen = source.preset("cylinder-and-cube")?;
     Ok(Sheet::of(2, PANEL, with_maps(source, &seen, "A cylinder and a cube")))
+}
+
+/// A wall that hides a point from the last end and not from the first.
+///
+/// # Errors
+/// [`FigureError::Scene`].
+pub fn behind_a_wall(source: &Source) -> Result<Vec<Panel>, FigureError> {
+    let seen = source.see(hidden_from_one_end())?;
+    Ok(with_maps(source, &seen, "A wall, and a point that it hides from the last end"))
+}
+
+/// The ways to the point pass the wall's near end 0.6 m to the left from the first end of the array, and 0.6 m to the right from the last.
+/// No foot of a perpendicular lies on the wall, so that no glint outshines the point.
+fn hidden_from_one_end() -> Scene {
+    let objects = vec![Object::Wall(Wall::new(4.0, 4.8, 4.0, 0.0)), Object::Point(Point::new(5.0, 12.0))];
+    Scene { objects, ..Scene::default() }
 }
 
 fn with_maps(source: &Source, seen: &Seen, title: &str) -> Vec<Panel> {
@@ -47,6 +63,47 @@ fn outlines(source: &Source, title: &str, scene: &Scene) -> Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::{End, Radar};
+    use crate::scattering::{EchoKind, Echoing, Sources};
+
+    #[test]
+    fn every_element_of_the_last_end_hears_the_hidden_point_40_db_weaker() {
+        let radar = Radar::default();
+        let echoing = Echoing::of(&radar, &hidden_from_one_end());
+        let decibels = |element: usize| {
+            let mut heard = Vec::new();
+            Sources::from(&echoing).scattered(radar.pair(element), &mut heard);
+            let point = heard.iter().find(|e| e.kind == EchoKind::Point).unwrap();
+            let free = radar.transmit_power_watts
+                / ((5.0 - radar.pair(element).transmitter_x_metres).powi(2) + 144.0);
+            20.0 * (point.amplitude.norm() / free).log10()
+        };
+        let elements = |end: End| match end {
+            End::First => 0..radar.end_elements,
+            End::Last => radar.elements - radar.end_elements..radar.elements,
+        };
+        let [first, last] = End::BOTH.map(|end| elements(end).map(decibels).collect::<Vec<_>>());
+        assert!(first.iter().all(|d| d.abs() < 0.1), "{first:?}");
+        assert!(last.iter().all(|d| *d < -40.0), "{last:?}");
+    }
+
+    #[test]
+    fn the_hidden_point_is_dim_in_the_last_ends_map_alone() {
+        let source = Source::new();
+        let seen = source.see(hidden_from_one_end()).unwrap();
+        let bright = |end: End| {
+            let map = &seen.lambda[if end == End::First { 0 } else { 1 }];
+            let blob = source.radar.blob_of(source.radar.end_centre_metres(end), 5.0, 12.0);
+            let bin = source.radar.bin_of_range(blob.range_metres).round() as usize;
+            let column = source.radar.column_of_cos(blob.cos_theta) as usize;
+            let cells = (bin - 1..=bin + 1).flat_map(|b| (column - 20..column + 20).map(move |c| (b, c)));
+            cells.map(|(b, c)| map.lambda[[b, c]]).fold(0.0f32, f32::max)
+        };
+        let [first, last] = End::BOTH.map(bright);
+        // Each map is normalised by itself, over some 200 dB: a shadow of 40 dB is a fifth of Lambda.
+        assert!(first > 0.99 && last < 0.85, "{first} {last}");
+        assert_eq!(behind_a_wall(&source).unwrap().len(), 4);
+    }
 
     #[test]
     fn bodies_are_drawn_by_their_outlines() {

@@ -1,6 +1,6 @@
 //! Measuring a front, row by row.
 
-use super::super::BareTransform;
+use super::super::times::{bare_ms, quantile};
 use super::reference::{Reference, SEED, maps_of, profile};
 use super::{Convention, Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError};
 use crate::engine::{Engine, Forced, Wanted};
@@ -46,7 +46,7 @@ pub fn measure(
 ) -> Result<Front, SceneError> {
     let repeats = request.repeats.max(1);
     let mut front = Front {
-        bare_fft_ms: bare_fft_ms(repeats.max(9)),
+        bare_fft_ms: bare_ms(repeats.max(9)),
         threads: rayon::current_num_threads(),
         simd: Simd::chosen(),
         rows: Vec::new(),
@@ -242,17 +242,6 @@ fn row(
     }
 }
 
-fn bare_fft_ms(repeats: usize) -> f64 {
-    let mut transform = BareTransform::default();
-    let mut times: Vec<f64> = (0..repeats + 2).map(|_| 1e3 * transform.run().as_secs_f64()).collect();
-    quantile(&mut times[2..], 0.5)
-}
-
-fn quantile(times: &mut [f64], part: f64) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times.get((times.len().saturating_sub(1) as f64 * part).round() as usize).copied().unwrap_or_default()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -291,13 +280,6 @@ mod tests {
         let key = |r: &FrontRow| (r.task, r.algorithm, r.chosen, r.precision, r.repeats);
         assert!(read.rows.iter().map(key).eq(front.rows.iter().map(key)));
         assert_eq!(read.rows[0].convention, front.rows[0].convention);
-    }
-
-    #[test]
-    fn the_quantiles_of_known_times_are_theirs() {
-        let mut times = [4.0, 1.0, 3.0, 2.0, 50.0];
-        assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0].map(|part| quantile(&mut times, part)), [1.0, 2.0, 3.0, 4.0, 50.0]);
-        assert_eq!(quantile(&mut [], 0.5), 0.0);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
+mod bodies;
 mod chart;
 mod following;
 mod growth;
@@ -69,6 +70,11 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd"])]
     growth: bool,
 
+    /// Measure scenes of walls, boxes, posts and polygons instead: a street, and crowds of up to 1000, from scratch and while one is dragged;
+    /// draws bodies.svg and bodies.png
+    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd", "growth"])]
+    bodies: bool,
+
     /// Measure every reconstruction method instead, run time against squared error, and hybrid, iaa and sbl on 10 and on 300 reflectors;
     /// -o draws methods.svg and methods.png and writes methods.json
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
@@ -76,7 +82,7 @@ pub struct Args {
 
     /// Measure what the window computes most instead: three maps, and the live network; with RAYON_NUM_THREADS=1 on one thread, as a page
     /// does by ?measure. With --json a list of name and milliseconds (median)
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
     one_thread: bool,
     #[command(flatten)]
     own: OwnMethodArgs,
@@ -84,7 +90,7 @@ pub struct Args {
     /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
     /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
     #[cfg(feature = "network")]
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
     live: bool,
 
     /// Test scenes of each set, with --methods
@@ -122,6 +128,9 @@ impl Args {
         }
         if self.growth {
             return growth::run(repeats, self.json, self.output.as_deref());
+        }
+        if self.bodies {
+            return bodies::run(repeats, self.json, self.output.as_deref());
         }
         let mut request = FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), repeats);
         if !self.algorithms.is_empty() {

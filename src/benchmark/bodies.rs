@@ -1,0 +1,203 @@
+//! Run times of scenes of bodies: three maps from scratch, and while one body is dragged, in bare transforms of the same run.
+//!
+//! The scenes are the preset "Street of things" and growing crowds of walls, boxes, posts and triangles. A dragged body moves by a centimetre
+//! before every update, as under the mouse, so that what it hides changes.
+
+use super::front::Convention;
+use super::times::{bare_ms, quantile};
+use crate::engine::{Engine, Frame, Outcome, Stage, Wanted};
+use crate::platform::Instant;
+use crate::radar::Radar;
+use crate::scene::presets::Preset;
+use crate::scene::{Block, Object, Point, Polygon, Post, Scene, SceneError, Wall};
+use crate::signal::simd::Simd;
+use serde::Serialize;
+
+/// Updates before the timed ones: the first moves of a drag take the body out of the sum at rest.
+const WARM_UP: usize = 3;
+/// How far a dragged body moves from one update to the next, metres.
+const STEP_METRES: f64 = 0.01;
+
+/// A scene to be measured; its first object is the one that is dragged.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// What it is called.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+}
+
+impl Case {
+    /// The preset "Street of things": two cars, three walls and four posts. `None` if the program came without it.
+    pub fn street() -> Option<Case> {
+        let scene = Preset::by_id("street-of-things")?.load().ok()?.scene;
+        Some(Case { name: "street".to_owned(), scene })
+    }
+
+    /// `count` bodies of all kinds, at most 2013, a metre apart before the array, each half a metre wide.
+    pub fn crowd(count: usize) -> Case {
+        let place = |i: usize| [(i * 37 % 61) as f64 - 30.0, (i * 53 % 33) as f64 + 2.4];
+        let body = |i: usize| {
+            let ([x, y], angle) = (place(i), (i * 29 % 180) as f64);
+            match i % 4 {
+                0 => Object::Box(Block::new([x, y], [0.5, 0.25], angle)),
+                1 => Object::Wall(Wall::new(x, y, 0.5, angle)),
+                2 => Object::Post(Post::new(x, y, 0.1)),
+                _ => Object::Polygon(Polygon::new(vec![[x, y], [x + 0.4, y + 0.1], [x + 0.1, y + 0.4]])),
+            }
+        };
+        Case { name: "crowd".to_owned(), scene: Scene { objects: (0..count).map(body).collect(), ..Scene::default() } }
+    }
+
+    /// The same number of points at the same places as [`Case::crowd`], to hold bodies against.
+    pub fn points(count: usize) -> Case {
+        let as_point = |object: Object| {
+            let [x, y] = object.centre_metres();
+            Object::Point(Point::new(x, y))
+        };
+        let objects = Case::crowd(count).scene.objects.into_iter().map(as_point).collect();
+        Case { name: "points".to_owned(), scene: Scene { objects, ..Scene::default() } }
+    }
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Times {
+    /// Median time of the bare transform on one thread over the whole run, milliseconds.
+    pub bare_fft_ms: f64,
+    /// Threads that made the maps.
+    pub threads: usize,
+    /// Their instructions.
+    pub simd: Simd,
+    /// One a scene and convention.
+    pub rows: Vec<Row>,
+}
+
+/// The times of one scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the [`Case`].
+    pub scene: String,
+    /// Its objects.
+    pub objects: usize,
+    /// Echoes that they give an element at most.
+    pub echoes: usize,
+    /// Floor and normalisation; they say which precision the maps need.
+    #[serde(flatten)]
+    pub convention: Convention,
+    /// Median time of three maps when nothing of the scene is known, milliseconds.
+    pub scratch_ms: f64,
+    /// Median time of three maps after the first object moved by a centimetre, milliseconds.
+    pub drag_ms: f64,
+    /// What the engine says it computed for the last of those moves.
+    pub computed: String,
+}
+
+/// Measures three maps of every case, each `repeats` times and over both conventions. `on_row` is called with each row.
+///
+/// # Errors
+/// [`SceneError`] when the radar can't see a scene.
+pub fn measure(
+    radar: &Radar,
+    cases: &[Case],
+    repeats: usize,
+    mut on_row: impl FnMut(&Row),
+) -> Result<Times, SceneError> {
+    let repeats = repeats.max(1);
+    let (mut bare, mut rows) = (vec![bare_ms(repeats.max(9))], Vec::new());
+    for case in cases {
+        for convention in Convention::BOTH {
+            let row = measured(radar, case, convention, repeats)?;
+            on_row(&row);
+            rows.push(row);
+            // Whatever else the machine does slows the transform as it slows the maps.
+            bare.push(bare_ms(3));
+        }
+    }
+    let (threads, simd) = (rayon::current_num_threads(), Simd::chosen());
+    Ok(Times { bare_fft_ms: quantile(&mut bare, 0.5), threads, simd, rows })
+}
+
+fn measured(radar: &Radar, case: &Case, convention: Convention, repeats: usize) -> Result<Row, SceneError> {
+    let Convention { floor, normalisation } = convention;
+    let wanted = Wanted { floor, normalisation, ends: false, ..Wanted::default() };
+    let mut engine = Engine::new(radar.clone());
+    let mut scene = case.scene.clone();
+    let timed = |engine: &mut Engine, scene: &Scene| -> Result<(f64, Frame), SceneError> {
+        let start = Instant::now();
+        let frame = engine.update(scene, &wanted)?;
+        Ok((1e3 * start.elapsed().as_secs_f64(), frame))
+    };
+    // The first update makes what is kept from scene to scene, as the floor's noise.
+    timed(&mut engine, &scene)?;
+    let mut scratch = Vec::new();
+    for _ in 0..repeats {
+        engine.forget();
+        scratch.push(timed(&mut engine, &scene)?.0);
+    }
+    let (mut drag, mut computed) = (Vec::new(), String::new());
+    for step in 0..WARM_UP + repeats {
+        if let Some(object) = scene.objects.first_mut() {
+            object.translate(STEP_METRES, 0.0);
+        }
+        let (took, frame) = timed(&mut engine, &scene)?;
+        if step >= WARM_UP {
+            drag.push(took);
+        }
+        computed = said(&frame);
+    }
+    Ok(Row {
+        scene: case.name.clone(),
+        objects: case.scene.objects.len(),
+        echoes: case.scene.echo_count(),
+        convention,
+        scratch_ms: quantile(&mut scratch, 0.5),
+        drag_ms: quantile(&mut drag, 0.5),
+        computed,
+    })
+}
+
+/// What the engine says of the signal of a frame.
+fn said(frame: &Frame) -> String {
+    let signal = frame.report.stages.iter().find(|stage| stage.stage == Stage::Signal);
+    match signal.map(|stage| &stage.outcome) {
+        Some(Outcome::Computed(what)) => what.clone(),
+        Some(Outcome::Skipped(why)) => (*why).to_owned(),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_is_timed_over_both_conventions() {
+        let radar = Radar { elements: 64, samples: 64, end_elements: 4, bandwidth_hz: 2.5e8, ..Radar::default() };
+        let cases = [Case::street().unwrap(), Case::crowd(8), Case::points(8)];
+        let mut seen = 0;
+        let times = measure(&radar, &cases, 2, |_| seen += 1).unwrap();
+        assert_eq!((times.rows.len(), seen), (6, 6));
+        assert!(times.bare_fft_ms > 0.0);
+        for row in &times.rows {
+            assert!(row.scratch_ms > 0.0 && row.drag_ms > 0.0, "{row:?}");
+            assert!(row.computed.contains(" of "), "a drag leaves something as it was: {row:?}");
+        }
+        assert_eq!(
+            [&times.rows[0], &times.rows[2], &times.rows[4]].map(|r| (r.objects, r.echoes))[..2],
+            [(9, 29), (8, 36)]
+        );
+    }
+
+    #[test]
+    fn no_two_bodies_of_a_crowd_stand_at_one_place() {
+        let radar = Radar::default();
+        let crowd = Case::crowd(1000);
+        crowd.scene.validate(&radar).unwrap();
+        let mut places: Vec<_> =
+            crowd.scene.objects.iter().map(|o| o.centre_metres().map(|v| (v * 10.0).round() as i64)).collect();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 1000);
+    }
+}
