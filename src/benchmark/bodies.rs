@@ -15,6 +15,8 @@ use serde::Serialize;
 
 /// Updates before the timed ones: the first moves of a drag take the body out of the sum at rest.
 const WARM_UP: usize = 3;
+/// A measurement is not repeated any more after this time, milliseconds: crowds take seconds a map.
+const ENOUGH_MS: f64 = 4000.0;
 /// How far a dragged body moves from one update to the next, metres.
 const STEP_METRES: f64 = 0.01;
 
@@ -93,7 +95,7 @@ pub struct Row {
     pub computed: String,
 }
 
-/// Measures three maps of every case, each `repeats` times and over both conventions. `on_row` is called with each row.
+/// Measures three maps of every case, each at most `repeats` times and over both conventions. `on_row` is called with each row.
 ///
 /// # Errors
 /// [`SceneError`] when the radar can't see a scene.
@@ -131,12 +133,13 @@ fn measured(radar: &Radar, case: &Case, convention: Convention, repeats: usize) 
     // The first update makes what is kept from scene to scene, as the floor's noise.
     timed(&mut engine, &scene)?;
     let mut scratch = Vec::new();
-    for _ in 0..repeats {
+    while scratch.len() < repeats && scratch.iter().sum::<f64>() < ENOUGH_MS {
         engine.forget();
         scratch.push(timed(&mut engine, &scene)?.0);
     }
     let (mut drag, mut computed) = (Vec::new(), String::new());
-    for step in 0..WARM_UP + repeats {
+    let mut step = 0;
+    while drag.len() < repeats && drag.iter().sum::<f64>() < ENOUGH_MS {
         if let Some(object) = scene.objects.first_mut() {
             object.translate(STEP_METRES, 0.0);
         }
@@ -144,6 +147,7 @@ fn measured(radar: &Radar, case: &Case, convention: Convention, repeats: usize) 
         if step >= WARM_UP {
             drag.push(took);
         }
+        step += 1;
         computed = said(&frame);
     }
     Ok(Row {

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 /// Search near a scene for one on which a method does worse, or for the smallest move after which it is right
 ///
-/// Objects move by at most --within. Their echoes change by up to 6 dB against each other, and new noise is drawn. The same seed gives the same
+/// Objects move by at most --within, and bodies turn by up to 45 degrees. Their echoes change by up to 6 dB against each other, and new noise is drawn. The same seed gives the same
 /// scene if --tries ends the search, and not --minutes. With --repair only objects move. An output is right if it misses no object
 /// (--measure missed), has no ghost (ghosts), or has a fifth of the squared error. Prints figures before and after. Writes OUT.toml if the search
 /// succeeds.
@@ -161,6 +161,10 @@ fn changes(before: &Scene, after: &Scene) -> String {
         let (dx, dy) = (bx - ax, by - ay);
         let mut line =
             format!("object {} ({}): moved by {dx:+.3} m, {dy:+.3} m ({:.3} m)", i + 1, a.kind(), dx.hypot(dy));
+        let turned = b.turned_degrees(a);
+        if turned.abs() > 0.05 {
+            line += &format!(", turned by {turned:+.1} degrees");
+        }
         let db = 20.0 * (b.reflectivity() / a.reflectivity()).abs().log10();
         if db.abs() > 0.005 {
             line += &format!(", echo {db:+.2} dB");

@@ -74,8 +74,7 @@ mod tests {
             let mut heard = Vec::new();
             Sources::from(&echoing).scattered(radar.pair(element), &mut heard);
             let point = heard.iter().find(|e| e.kind == EchoKind::Point).unwrap();
-            let free = radar.transmit_power_watts
-                / ((5.0 - radar.pair(element).transmitter_x_metres).powi(2) + 144.0);
+            let free = radar.transmit_power_watts / ((5.0 - radar.pair(element).transmitter_x_metres).powi(2) + 144.0);
             20.0 * (point.amplitude.norm() / free).log10()
         };
         let elements = |end: End| match end {

@@ -12,6 +12,7 @@ pub mod npz;
 mod object;
 pub mod presets;
 pub mod shape;
+mod turn;
 
 pub use body::{Block, Body, Polygon, Post, Surface, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};

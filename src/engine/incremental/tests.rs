@@ -2,9 +2,11 @@ use super::super::Outcome;
 use super::*;
 use crate::maps::{Aperture, LogMaps, Normalisation, RangeAngleMap};
 use crate::radar::{DecibelMilliwatts, Decibels, End};
-use crate::scene::{Block, Object, Point, Post, Wall};
+use crate::scene::{Object, Point};
 use crate::signal::{self, Floor};
 use proptest::prelude::*;
+
+mod bodies;
 
 fn small() -> Radar {
     Radar { elements: 64, samples: 32, end_elements: 4, ..Radar::default() }
@@ -380,84 +382,4 @@ proptest! {
             prop_assert!(frame.map(aperture).unwrap().lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)));
         }
     }
-}
-
-/// A car, a wall behind it, a post beside both and a point.
-fn street(x: f64) -> Scene {
-    let objects = vec![
-        Object::Box(Block::new([x, 0.8], [0.3, 0.15], 20.0)),
-        Object::Wall(Wall::new(0.0, 1.5, 1.0, 5.0)),
-        Object::Post(Post::new(1.2, 0.5, 0.05)),
-        Object::Point(Point::new(-1.3, 0.7)),
-    ];
-    Scene { objects, ..Scene::default() }
-}
-
-#[test]
-fn a_body_that_moves_leaves_what_a_fresh_start_computes() {
-    for normalisation in [Normalisation::DynamicRange(Decibels(60.0)), Normalisation::MinMax] {
-        for floor in [Floor::Exact, Floor::Thesis] {
-            let wanted = Wanted { normalisation, floor, ..Wanted::default() };
-            let mut engine = Engine::new(small());
-            for step in 0..8 {
-                let scene = street(-0.4 + 0.1 * f64::from(step));
-                let dragged = engine.update(&scene, &wanted).unwrap();
-                let fresh = Engine::new(small()).update(&scene, &wanted).unwrap();
-                let (dragged, fresh) = (lambda(&dragged), lambda(&fresh));
-                let off = (&dragged.lambda - &fresh.lambda).iter().fold(0.0f32, |m, v| m.max(v.abs()));
-                assert!(off < 2e-3, "{floor}, {normalisation:?}, step {step}: {off}");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_body_that_moves_has_only_itself_computed_again_with_what_it_hides() {
-    let wanted =
-        Wanted { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..Wanted::default() };
-    let mut engine = Engine::new(Radar { elements: 64, end_elements: 4, ..Radar::default() });
-    let scene = |x: f64, post: f64| {
-        let objects = vec![
-            Object::Box(Block::new([x, 10.0], [2.0, 1.0], 0.0)),
-            Object::Wall(Wall::new(0.0, 20.0, 2.0, 0.0)),
-            Object::Wall(Wall::new(-20.0, 8.0, 2.0, 60.0)),
-            Object::Post(Post::new(post, 3.0, 0.1)),
-        ];
-        Scene { objects, ..Scene::default() }
-    };
-    let said = |engine: &mut Engine, scene: &Scene| {
-        let frame = engine.update(scene, &wanted).unwrap();
-        let signal = frame.report.stages.into_iter().find(|s| s.stage == Stage::Signal).unwrap();
-        let Outcome::Computed(what) = signal.outcome else { panic!() };
-        what
-    };
-    assert!(said(&mut engine, &scene(0.0, 15.0)).starts_with("15 echoes from scratch"));
-    let what = said(&mut engine, &scene(0.0, 15.1));
-    assert!(what.starts_with("1 of 15 echoes") || what.starts_with("2 of 15 echoes"), "the post alone: {what}");
-    said(&mut engine, &scene(0.1, 15.1));
-    let what = said(&mut engine, &scene(0.2, 15.1));
-    assert!(what.starts_with("11 of 15 echoes"), "the box and the wall behind it: {what}");
-    let off = engine.update(&Scene { shadows: false, ..scene(0.2, 15.1) }, &wanted).unwrap();
-    assert!(off.report.ran(Stage::Signal), "without shadows the wall is another");
-}
-
-#[test]
-fn a_car_dragged_along_a_street_of_things_has_half_of_the_echoes_computed_again() {
-    let street = crate::scene::presets::Preset::by_id("street-of-things").unwrap().load().unwrap().scene;
-    let wanted =
-        Wanted { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..Wanted::default() };
-    let mut engine = Engine::new(Radar { samples: 64, bandwidth_hz: 2.5e8, ..Radar::default() });
-    engine.update(&street, &wanted).unwrap();
-    let mut evaluated = Vec::new();
-    for step in 1..=6 {
-        let mut scene = street.clone();
-        let Object::Box(car) = &mut scene.objects[0] else { panic!() };
-        car.x_metres += 0.05 * f64::from(step);
-        let frame = engine.update(&scene, &wanted).unwrap();
-        let signal = frame.report.stages.into_iter().find(|s| s.stage == Stage::Signal).unwrap();
-        let Outcome::Computed(what) = signal.outcome else { panic!() };
-        evaluated.push(what);
-    }
-    // The first move takes the car out of the sum at rest. The car has 8 echoes, the two walls behind it 3 each, the post there one.
-    assert!(evaluated[1..].iter().all(|what| what.starts_with("15 of 29 echoes")), "{evaluated:#?}");
 }

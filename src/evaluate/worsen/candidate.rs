@@ -1,4 +1,4 @@
-//! The next scene to try: moved objects, changed echoes, new noise.
+//! The next scene to try: moved objects, turned bodies, changed echoes, new noise.
 
 use super::wanted::{Aim, Finding, Search};
 use crate::scene::{Object, Scene};
@@ -17,6 +17,8 @@ pub(super) const FIRST_STEP: f64 = 0.25;
 pub(super) const LEAST_STEP: f64 = 1e-3;
 /// Echoes of an object change by at most this, dB of amplitude, either way.
 const MOST_LOUDER_DB: f64 = 6.0;
+/// Bodies turn by at most this much, either way, degrees.
+const MOST_TURN_DEGREES: f64 = 45.0;
 /// A repair has reached its whole reach after half of so many tries, however many are left.
 const GROWS: u32 = 256;
 /// How often other noise is drawn.
@@ -52,6 +54,12 @@ impl Search {
             let [dx, dy] = if anywhere { in_disc(rng, reach) } else { [0, 1].map(|_| reach * normal(rng)) };
             object.translate(dx, dy);
             keep_within(object, home, self.within_metres);
+        }
+        for (object, home) in scene.objects.iter_mut().zip(&start.objects).filter(|(object, _)| object.can_turn()) {
+            let part = if anywhere { rng.random_range(-1.0..=1.0) } else { state.step * normal(rng) };
+            let now = object.turned_degrees(home);
+            let then = (now + MOST_TURN_DEGREES * part).clamp(-MOST_TURN_DEGREES, MOST_TURN_DEGREES);
+            object.turn(then - now);
         }
         // All louder together changes nothing.
         if scene.objects.len() > 1 {

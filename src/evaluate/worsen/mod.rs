@@ -1,6 +1,6 @@
 //! The search near a scene for another on which a method does worse, or for the smallest move after which it is right.
 //!
-//! Candidates move objects, change their echoes against each other and draw other noise. The search draws a third of them anywhere within
+//! Candidates move objects, turn bodies, change echoes against each other and draw other noise. The search draws a third of them anywhere within
 //! reach, and the others around the worst so far. Their steps grow with success, shrink without, and start anew when they are small.
 //! Candidate `n` of a search depends on the seed and on the results of earlier batches, so a search of a given number of tries repeats
 //! itself.

@@ -1,0 +1,61 @@
+//! What bodies hide.
+
+use super::*;
+use crate::scene::{Block, Point, Post, Wall};
+
+#[test]
+fn an_obstacle_that_comes_from_the_side_begins_with_no_effect() {
+    let radar = Radar::default();
+    let kappa = Wave::of(&radar).radians_per_metre;
+    let antennas = Antennas::at([0.0, 0.0]);
+    let wall = Object::Wall(Wall::new(0.0, 20.0, 30.0, 0.0));
+    let at = |x: f64| {
+        let scene = [wall.clone(), Object::Box(Block::new([x, 10.0], [1.0, 0.2], 0.0))];
+        let mut echoes = heard(&radar, &scene, &antennas);
+        echoes.truncate(1);
+        echoes[0]
+    };
+    let free = heard(&radar, std::slice::from_ref(&wall), &antennas)[0];
+    assert_eq!(at(-4.0), free, "far beside the way");
+    let mut last = 1.0;
+    for i in 0..=40 {
+        last = at(-2.0 + 0.05 * f64::from(i)).amplitude.norm() / free.amplitude.norm();
+        assert!(last < 1.4, "{last}");
+    }
+    assert!(last < 0.1, "behind the middle of the box: {last}");
+    let step = largest_step(|x| at_range(&[at(x)], kappa, free.range_metres), -1.6, 16_000);
+    assert!(step < 0.002, "{step}");
+}
+
+#[test]
+fn what_a_body_hides_is_seen_again_without_shadows() {
+    let radar = Radar::default();
+    let objects = vec![Object::Point(Point::new(0.0, 20.0)), Object::Box(Block::new([0.0, 10.0], [6.0, 1.0], 0.0))];
+    let scene = Scene { objects, ..Scene::default() };
+    let amplitude = |scene: &Scene| {
+        let echoing = Echoing::of(&radar, scene);
+        let mut found = Vec::new();
+        Sources::from(&echoing).scattered(radar.pair(500), &mut found);
+        let hidden = found.iter().find(|e| e.kind == EchoKind::Point).map(|e| e.amplitude.norm());
+        (echoing.points.len(), hidden)
+    };
+    let (points, hidden) = amplitude(&scene);
+    assert!(points == 0 && hidden.unwrap() < 1e-3 * 0.25, "{hidden:?}");
+    assert_eq!(amplitude(&Scene { shadows: false, ..scene }), (1, None));
+}
+
+#[test]
+fn only_what_a_body_may_hide_depends_on_it() {
+    let radar = Radar::default();
+    let seen = |x: f64| {
+        let objects = vec![
+            Object::Post(Post::new(x, 5.0, 0.2)),
+            Object::Wall(Wall::new(0.0, 20.0, 3.0, 0.0)),
+            Object::Point(Point::new(15.0, 10.0)),
+        ];
+        Seen::all(&radar, &Scene { objects, ..Scene::default() })
+    };
+    let (before, after) = (seen(0.0), seen(0.3));
+    assert!(before[1] != after[1] && before[2] == after[2] && before[2].hidden_by.is_empty());
+    assert_eq!(seen(-8.0)[1], seen(-9.0)[1], "out of the way");
+}
