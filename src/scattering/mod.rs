@@ -8,6 +8,7 @@
 //! | [`corner`] | an inner corner: the double reflection |
 //! | [`roughness`] | what a rough surface takes from these echoes, and scatters instead |
 //! | [`shadow`] | what passes an obstacle on the way from an antenna to where an echo comes from |
+//! | [`reference`] | what all of this is held against: quadrature, and the exact series of a cylinder |
 //! | `sight` | which bodies may have an effect on an object at all |
 //! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
 //! | [`parts`] | a polygon as convex parts, for shadows |
@@ -27,6 +28,7 @@ mod geometry;
 pub mod parts;
 pub mod polygon;
 pub mod post;
+pub mod reference;
 pub mod roughness;
 mod scatterer;
 pub mod shadow;
@@ -167,7 +169,5 @@ impl PathEcho {
     }
 }
 
-#[cfg(test)]
-mod reference;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
-//! `apertura bench --bodies`: how long scenes of bodies take, and how that grows with their number.
+//! `apertura bench --bodies`: how long scenes of bodies take, how that grows with their number, and run time against error of a face.
 
 use crate::benchmark::bodies::{self, Case, Row, Times};
+use crate::benchmark::faces::{self, FaceRow, Way};
 use crate::benchmark::front::Convention;
 use crate::commands::figure::{Drawn, Figure, save, save_numbers, tick};
 use crate::commands::{CommandError, print};
@@ -9,26 +10,51 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::path::Path;
 
+const COLOURS: [RGBColor; 5] = [
+    RGBColor(210, 90, 20),
+    RGBColor(40, 140, 60),
+    RGBColor(150, 185, 230),
+    RGBColor(80, 130, 210),
+    RGBColor(30, 70, 160),
+];
+
 /// Sizes of the crowds.
 const COUNTS: [usize; 6] = [3, 10, 30, 100, 300, 1000];
 
-/// Measures, prints, and draws `bodies.svg`, `bodies.png` and `bodies.json` into `output`.
+#[derive(serde::Serialize)]
+struct Report<'a> {
+    #[serde(flatten)]
+    times: &'a Times,
+    faces: &'a [FaceRow],
+}
+
+/// Measures, prints, and draws `bodies.svg`, `faces.svg`, the same as PNG, and `bodies.json` into `output`.
 pub fn run(repeats: usize, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let cases: Vec<Case> =
         Case::street().into_iter().chain(COUNTS.map(Case::crowd)).chain(COUNTS.map(Case::points)).collect();
     let bar = indicatif::ProgressBar::new(cases.len() as u64 * Convention::BOTH.len() as u64);
     let times = bodies::measure(&Radar::default(), &cases, repeats, |_| bar.inc(1)).map_err(CommandError::failed)?;
     bar.finish_and_clear();
-    let chart = Chart { times };
+    let (chart, faces) = (Chart { times }, FaceChart { rows: faces::measure(&Radar::default()) });
+    let report = Report { times: &chart.times, faces: &faces.rows };
     if let Some(folder) = output {
         save(&chart, folder, "bodies")?;
-        save_numbers(&chart.times, folder, "bodies")?;
+        save(&faces, folder, "faces")?;
+        save_numbers(&report, folder, "bodies")?;
     }
     if json {
-        return print(&serde_json::to_string_pretty(&chart.times).map_err(CommandError::failed)?);
+        return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
     }
     print(&heading(&chart.times))?;
-    chart.times.rows.iter().try_for_each(|row| print(&line(row, chart.times.bare_fft_ms)))
+    chart.times.rows.iter().try_for_each(|row| print(&line(row, chart.times.bare_fft_ms)))?;
+    print(
+        "\none face: largest error of a sample over the largest sample, and time of an element's 32 samples on one thread",
+    )?;
+    faces.rows.iter().try_for_each(|row| print(&face_line(row)))
+}
+
+fn face_line(row: &FaceRow) -> String {
+    format!("{:36} {:20} {:>9.1e} {:>10.1} us", row.face, row.way, row.error, row.microseconds)
 }
 
 fn heading(times: &Times) -> String {
@@ -116,6 +142,51 @@ impl Figure for Chart {
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperLeft)
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
+        Ok(())
+    }
+}
+
+struct FaceChart {
+    rows: Vec<FaceRow>,
+}
+
+impl Figure for FaceChart {
+    fn size(&self) -> (u32, u32) {
+        (1000, 640)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+        let span = |of: fn(&FaceRow) -> f64| {
+            let (low, high) = self.rows.iter().map(of).fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
+            (low.max(f64::MIN_POSITIVE) / 2.0..high * 2.0).log_scale()
+        };
+        let mut chart = ChartBuilder::on(area)
+            .caption("A face's samples: run time against error, one mark a face", ("sans-serif", 22))
+            .margin(14)
+            .x_label_area_size(46)
+            .y_label_area_size(74)
+            .build_cartesian_2d(span(|r| r.microseconds), span(|r| r.error))?;
+        chart
+            .configure_mesh()
+            .x_desc("time of an element's 32 samples, us")
+            .y_desc("largest error over the largest sample")
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick)
+            .draw()?;
+        for (i, way) in Way::ALL.iter().enumerate() {
+            let (colour, name) = (COLOURS[i % COLOURS.len()], way.to_string());
+            let rows: Vec<_> = self.rows.iter().filter(|r| r.way == name).map(|r| (r.microseconds, r.error)).collect();
+            chart
+                .draw_series(rows.into_iter().map(|at| Circle::new(at, 6, colour.filled())))?
+                .label(name)
+                .legend(move |(x, y)| Circle::new((x + 9, y), 5, colour.filled()));
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.3))
             .draw()?;

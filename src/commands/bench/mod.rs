@@ -71,7 +71,7 @@ pub struct Args {
     growth: bool,
 
     /// Measure scenes of walls, boxes, posts and polygons instead: a street, and crowds of up to 1000, from scratch and while one is dragged;
-    /// draws bodies.svg and bodies.png
+    /// and run time against error of a face; draws bodies.svg, faces.svg and both as PNG
     #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd", "growth"])]
     bodies: bool,
 

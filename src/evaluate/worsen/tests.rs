@@ -87,20 +87,18 @@ fn a_stopped_search_keeps_what_it_has() {
     assert_eq!(stopped.path, run(&Search { tries: 16, ..worsen }, 1.7).path);
 }
 
-/// Sees what the last end sees, and nothing while its strongest echo is as strong as a glint.
-struct Blinded;
+/// Sees nothing, and everything bright while the last end hears a glint.
+struct Dazzled;
 
-impl Reconstructor for Blinded {
+impl Reconstructor for Dazzled {
     fn about(&self) -> About {
-        About { name: "blinded", description: "sees no glints", told: "nothing", eta: 0.8 }
+        About { name: "dazzled", description: "is dazzled by glints", told: "nothing", eta: 0.8 }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let mut found = ShortSighted.estimate(radar, ends, request)?;
         let strongest = ends.last.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
-        if strongest > 10.0 {
-            found.lambda.lambda.fill(0.0);
-        }
+        found.lambda.lambda.fill(if strongest > 10.0 { 1.0 } else { 0.0 });
         Ok(found)
     }
 }
@@ -109,15 +107,15 @@ impl Reconstructor for Blinded {
 fn a_wall_is_turned_until_it_shines() {
     let wall = crate::scene::Wall::new(0.0, 1.6, 0.6, 25.0);
     let scene = Scene { objects: vec![crate::scene::Object::Wall(wall)], ..Scene::default() };
-    let search = Search { within_metres: 1e-3, ..search(Aim::Worsen, Measure::Missed) };
-    let found = search.run(&scene, &Blinded, &Task::default(), |_, _| true).unwrap();
+    let search = Search { within_metres: 1e-3, ..search(Aim::Worsen, Measure::SquaredError) };
+    let found = search.run(&scene, &Dazzled, &Task::default(), |_, _| true).unwrap();
     let (start, worst) = found.ends().unwrap();
     let worst = worst.unwrap();
-    assert_eq!((start.failures.missed(), worst.failures.missed()), (0, 1));
+    assert!(worst.metrics.squared_error > 2.0 * start.metrics.squared_error, "{start:?} {worst:?}");
     let turned = worst.scene.objects[0].turned_degrees(&scene.objects[0]);
     assert!((-45.0..-10.0).contains(&turned), "it faces the array: {turned}");
     let repair = Search { aim: Aim::Repair, ..search };
-    let path = repair.run(&worst.scene, &Blinded, &Task::default(), |_, _| true).unwrap().path;
+    let path = repair.run(&worst.scene, &Dazzled, &Task::default(), |_, _| true).unwrap().path;
     assert!(
         path.iter().all(|f| f.scene.objects[0].turned_degrees(&worst.scene.objects[0]) == 0.0),
         "repairs only move"

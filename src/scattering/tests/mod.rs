@@ -15,7 +15,7 @@ const SAMPLES: [usize; 5] = [0, 100, 255, 400, 511];
 fn samples(radar: &Radar, echoes: &[PathEcho], with_tilt: bool) -> Vec<Complex64> {
     let middle = Wave::of(radar).radians_per_metre;
     let sample = |n: &usize| {
-        let kappa = reference::radians_per_metre(radar, *n);
+        let kappa = reference::radians_per_metre(radar, *n as f64);
         let more = if with_tilt { kappa.abs() - middle } else { 0.0 };
         let add = |e: &PathEcho| (e.amplitude + e.tilt * more) * Complex64::cis(-kappa * e.range_metres);
         echoes.iter().map(add).sum()

@@ -149,7 +149,7 @@ fn faces_are_their_quadrature() {
                     (p[0] - ax) * (by - ay) - (p[1] - ay) * (bx - ax) > 0.0
                 };
                 if count == 1 || is_outside(antennas.transmitter_metres) && is_outside(antennas.receiver_metres) {
-                    let of_face = reference::face(&radar, ends, scene.objects[0].r, &antennas, &SAMPLES);
+                    let of_face = reference::face(&radar, ends, scene.objects[0].r, &antennas, &SAMPLES, 4.0);
                     sums.iter_mut().zip(of_face).for_each(|(s, v)| *s += v);
                 }
             }
@@ -170,7 +170,7 @@ fn the_two_way_carrier_is_held_to_quadrature() {
         let antennas = Antennas::at([0.3, 0.0]);
         let mut found = Vec::new();
         Scatterer::new(&radar, &Object::Wall(wall(ends, 1.0)), &[]).echoes(&antennas, &mut found);
-        let expected = reference::face(&radar, ends, 1.0, &antennas, &SAMPLES);
+        let expected = reference::face(&radar, ends, 1.0, &antennas, &SAMPLES, 4.0);
         let off = worst(&samples(&radar, &found, true), &expected);
         assert!(off < 1e-3, "{ends:?}: {off:e}");
     }
