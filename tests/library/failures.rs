@@ -18,7 +18,7 @@ const EXPLAINED: [(&str, &str, [usize; 4]); 10] = [
     ("failure-live-ghost", "live", [0, 0, 0, 1]),
     ("failure-wrong-tooth", "live", [0, 0, 1, 0]),
     ("failure-hybrid-merged", "hybrid", [0, 2, 0, 0]),
-    ("failure-hybrid-ghost", "hybrid", [0, 0, 0, 3]),
+    ("failure-hybrid-ghost", "hybrid", [0, 0, 0, 2]),
     ("failure-thesis-missed", "thesis", [1, 0, 0, 0]),
     ("failure-thesis-merged", "thesis", [3, 2, 0, 1]),
     ("failure-thesis-ghost", "thesis", [0, 0, 0, 1]),

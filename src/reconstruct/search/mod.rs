@@ -78,7 +78,7 @@ use crate::signal::TwoEnds;
 use draw::{Noise, Weighted, expected_lambda};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
-pub(super) const ETA: f32 = 0.885;
+pub(super) const ETA: f32 = 0.896;
 
 /// What the search knows beside the samples.
 pub(super) const TOLD: &str = "that a scene holds single reflectors or straight rows of equal ones; for long rows along y also the \
