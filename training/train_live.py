@@ -243,12 +243,16 @@ def main(args):
     options.refuse_untrained(args, run.maps)
     if args.export:
         sets = validation_sets(args)
+        # Written as 16-bit floats, half the bytes for a page to load; the figures are those of what is written.
+        for tensor in (*run.average.state_dict().values(), *run.doubt.state_dict().values()):
+            tensor.copy_(tensor.half())
         report = figures(estimate_with(run.average, team.device), sets)
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
                 "steps": str(run.step), "scenes_simulated": str(run.drawn),
                 "doubt_factor": f"{doubt_factor(run.average, run.doubt, sets):.4f}", **provenance.metadata(run.parts)}
         doubt = {f"{DOUBT}{name}": weights for name, weights in run.doubt.state_dict().items()}
-        export({**run.average.state_dict(), **doubt}, args.export, meta, report, args.validation)
+        tensors = {**run.average.state_dict(), **doubt}
+        export({name: tensor.half() for name, tensor in tensors.items()}, args.export, meta, report, args.validation)
         return
     if team.restarts:
         team.say(f"restart {team.restarts} of {team.size} processes: going on from step {run.step} of {run.path}")

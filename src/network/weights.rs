@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 
 #[cfg(feature = "network")]
 mod load;
+mod values;
 
 /// Entry of a weight file with the radar of its training scenes, as JSON.
 pub const RADAR_ENTRY: &str = "radar";
@@ -250,27 +251,14 @@ impl<'a> WeightFile<'a> {
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
-        let not =
-            |e: serde_json::Error| WeightsError::NotSafetensors { file: self.name.clone(), reason: e.to_string() };
-        let mut header = serde_json::Map::new();
-        for (name, tensor) in &self.tensors {
-            header.insert(rename(name), serde_json::to_value(tensor).map_err(not)?);
-        }
-        header.insert("__metadata__".into(), serde_json::to_value(&self.provenance.entries).map_err(not)?);
-        let mut header = serde_json::to_vec(&header).map_err(not)?;
-        header.resize(header.len().next_multiple_of(8), b' ');
-        Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), self.data].concat())
+        let tensors = self.tensors.iter().map(|(name, tensor)| (rename(name), tensor)).collect();
+        write(&self.name, &tensors, &self.provenance, self.data)
     }
 
     /// What the weights are known by, whatever else the file says about itself.
     pub fn weights(&self) -> Weights {
         let sha256 = sha256::of_pieces([self.data]);
         Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }
-    }
-
-    /// Every 32-bit value in the file, whatever tensor it belongs to.
-    pub fn all_values(&self) -> Vec<f32> {
-        self.data.as_chunks::<4>().0.iter().map(|v| f32::from_le_bytes(*v)).collect()
     }
 
     /// Checks that the file holds weights of `network`.
@@ -298,35 +286,24 @@ impl<'a> WeightFile<'a> {
             found => WeightsError::Foreign { file, found: found.to_owned(), expected },
         }
     }
+}
 
-    /// The values of one tensor.
-    ///
-    /// # Errors
-    /// [`WeightsError::Tensor`] when it is missing, of another shape or type, or not finite.
-    pub fn tensor(&self, name: &str, shape: &[usize]) -> Result<Vec<f32>, WeightsError> {
-        let bad = |problem: String| WeightsError::Tensor { file: self.name.clone(), tensor: name.to_owned(), problem };
-        let found = self.tensors.get(name).ok_or_else(|| bad("is missing".into()))?;
-        if found.shape != shape {
-            return Err(bad(format!("has shape {:?}; expected {shape:?}", found.shape)));
-        }
-        if found.dtype != "F32" {
-            return Err(bad(format!("is of type {}; expected F32", found.dtype)));
-        }
-        let values: Vec<f32> = self
-            .data
-            .get(found.data_offsets[0]..found.data_offsets[1])
-            .filter(|v| v.len() == 4 * shape.iter().product::<usize>())
-            .ok_or_else(|| bad("lies outside the file".into()))?
-            .as_chunks::<4>()
-            .0
-            .iter()
-            .map(|v| f32::from_le_bytes(*v))
-            .collect();
-        match values.iter().position(|v| !v.is_finite()) {
-            Some(i) => Err(bad(format!("is not finite at element {i}"))),
-            None => Ok(values),
-        }
+/// A safetensors file called `name`, for messages, with the header of `tensors` before their `data`.
+fn write<T: Serialize>(
+    name: &str,
+    tensors: &BTreeMap<String, T>,
+    record: &Provenance,
+    data: &[u8],
+) -> Result<Vec<u8>, WeightsError> {
+    let not = |e: serde_json::Error| WeightsError::NotSafetensors { file: name.to_owned(), reason: e.to_string() };
+    let mut header = serde_json::Map::new();
+    for (name, tensor) in tensors {
+        header.insert(name.clone(), serde_json::to_value(tensor).map_err(not)?);
     }
+    header.insert("__metadata__".into(), serde_json::to_value(&record.entries).map_err(not)?);
+    let mut header = serde_json::to_vec(&header).map_err(not)?;
+    header.resize(header.len().next_multiple_of(8), b' ');
+    Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), data].concat())
 }
 
 #[cfg(test)]

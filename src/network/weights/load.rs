@@ -27,7 +27,8 @@ impl WeightFile<'_> {
         if let Some(name) = self.tensors.keys().find(|n| !wanted.contains_key(*n) && !ignored(n)) {
             return Err(bad(name, "is not part of this network".into()));
         }
-        let mut store = SafetensorsStore::from_bytes(Some(self.bytes.to_vec())).with_from_adapter(PyTorchToBurnAdapter);
+        let mut store =
+            SafetensorsStore::from_bytes(Some(self.in_single_precision()?)).with_from_adapter(PyTorchToBurnAdapter);
         let store_error = |reason: String| WeightsError::Store { file: self.name.clone(), reason };
         let result = module.load_from(&mut store).map_err(|e| store_error(e.to_string()))?;
         if !result.missing.is_empty() || !result.errors.is_empty() {
