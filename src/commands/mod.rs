@@ -27,6 +27,7 @@ mod reconstruct;
 mod robustness;
 mod scenes;
 mod stress;
+mod threshold;
 #[cfg(feature = "network")]
 mod train;
 mod worsen;
@@ -75,6 +76,7 @@ enum Command {
     Robustness(robustness::Args),
     Scenes(scenes::Args),
     Stress(stress::Args),
+    Threshold(threshold::Args),
     #[cfg(feature = "network")]
     Train(train::Args),
     Worsen(worsen::Args),
@@ -98,6 +100,7 @@ impl Command {
             Command::Robustness(args) => args.run(),
             Command::Scenes(args) => args.run(),
             Command::Stress(args) => args.run(),
+            Command::Threshold(args) => args.run(),
             #[cfg(feature = "network")]
             Command::Train(args) => args.run(),
             Command::Worsen(args) => args.run(),

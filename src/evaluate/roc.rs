@@ -86,6 +86,23 @@ impl Roc {
         self.points().find(|p| p.false_alarm <= false_alarm)
     }
 
+    /// The lowest threshold that keeps P_FA at most `false_alarm` on further scenes, or `None` where the scenes are too few for that
+    /// ([`Roc::fewest_scenes`]).
+    ///
+    /// Conformal risk control (Angelopoulos et al., *Conformal risk control*, ICLR 2024, theorem 1): P_FA of a scene falls with the threshold
+    /// and is at most 1. Where the `n` scenes averaged and a further one are exchangeable, the mean of P_FA over all such draws is at most
+    /// `false_alarm` at the lowest threshold with (n P_FA + 1) / (n + 1) at most `false_alarm`. It is a mean over scenes and draws: in a
+    /// single scene P_FA may be higher.
+    pub fn keeping_false_alarm(&self, false_alarm: f64) -> Option<RocPoint> {
+        let scenes = self.scenes as f64;
+        self.points().find(|p| scenes * p.false_alarm + 1.0 <= false_alarm * (scenes + 1.0))
+    }
+
+    /// The fewest scenes with which [`Roc::keeping_false_alarm`] can keep the rate.
+    pub fn fewest_scenes(false_alarm: f64) -> f64 {
+        (1.0 / false_alarm - 1.0).ceil()
+    }
+
     /// The highest threshold with P_D at least `detection`, or `None` where no threshold reaches it and without scenes.
     pub fn at_detection(&self, detection: f64) -> Option<RocPoint> {
         self.points().filter(|p| p.detection >= detection).last()
@@ -97,6 +114,7 @@ mod tests {
     use super::*;
     use crate::evaluate::detection_rates;
     use ndarray::Array2;
+    use rand::{RngExt, SeedableRng};
 
     #[test]
     fn agrees_with_counting_at_each_threshold() {
@@ -114,6 +132,48 @@ mod tests {
     fn a_perfect_output_detects_all_without_false_alarm() {
         let target = RangeAngleMap { lambda: Array2::from_shape_fn((10, 10), |(i, _)| i as f32 / 9.0) };
         assert_eq!(Roc::of(&target, &target).at_false_alarm(0.0).unwrap().detection, 1.0);
+    }
+
+    /// A map of 100 cells of which ten are targets, and an output with false alarms of random heights beside the detected targets.
+    fn scene(rng: &mut impl RngExt) -> [RangeAngleMap; 2] {
+        let target = Array2::from_shape_fn((10, 10), |(i, _)| if i == 9 { 1.0 } else { 0.0 });
+        let highest: f32 = rng.random();
+        let output = target.mapv(|t| if t > 0.0 { 1.0 } else { highest * rng.random::<f32>() });
+        [target, output].map(|lambda| RangeAngleMap { lambda })
+    }
+
+    #[test]
+    fn a_threshold_keeps_the_false_alarms_of_further_scenes_on_average() {
+        let rng = &mut rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        const WANTED: f64 = 0.1;
+        const DRAWS: usize = 400;
+        let (mut kept, mut by_mean) = (0.0, 0.0);
+        for _ in 0..DRAWS {
+            let mut roc = Roc::default();
+            for _ in 0..20 {
+                let [target, output] = scene(rng);
+                roc.add(&target, &output);
+            }
+            let [target, output] = scene(rng);
+            let alarms = |point: Option<RocPoint>| detection_rates(&target, &output, point.unwrap().eta).1;
+            kept += alarms(roc.keeping_false_alarm(WANTED)) / DRAWS as f64;
+            by_mean += alarms(roc.at_false_alarm(WANTED)) / DRAWS as f64;
+        }
+        // The standard error of either mean is about 0.006.
+        assert!(kept < WANTED, "{kept}");
+        assert!(by_mean > kept + 0.02, "the mean alone keeps less: {by_mean} against {kept}");
+    }
+
+    #[test]
+    fn too_few_scenes_keep_no_rate() {
+        let mut roc = Roc::default();
+        let target = RangeAngleMap { lambda: Array2::from_shape_fn((10, 10), |(i, _)| i as f32 / 9.0) };
+        for _ in 0..98 {
+            roc.add(&target, &target);
+        }
+        assert_eq!((roc.keeping_false_alarm(0.01), Roc::fewest_scenes(0.01)), (None, 99.0));
+        roc.add(&target, &target);
+        assert_eq!(roc.keeping_false_alarm(0.01).unwrap().false_alarm, 0.0);
     }
 
     #[test]
