@@ -10,5 +10,6 @@ mod reconstruct;
 mod recordings;
 mod rows;
 mod same_bits;
+mod threshold;
 #[cfg(feature = "network")]
 mod training;

@@ -1,0 +1,38 @@
+//! `apertura threshold` from outside.
+
+use assert_cmd::Command;
+use predicates::str::contains;
+
+fn apertura(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.args(arguments);
+    command
+}
+
+#[test]
+fn a_threshold_keeps_the_rate_on_the_scenes_that_chose_it() {
+    let run = apertura(&["threshold", "--method", "baseline", "--false-alarm", "40", "--set", "1,2", "--count", "2"])
+        .args(["--check", "1", "--json"])
+        .assert()
+        .success();
+    let report: serde_json::Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    let number = |name: &str| report[name].as_f64().unwrap();
+    assert_eq!((number("scenes"), number("wanted")), (4.0, 0.4));
+    assert!((4.0 * number("false_alarm") + 1.0) / 5.0 <= 0.4, "{report}");
+    assert!((0.0..1.0).contains(&number("eta")), "{report}");
+    assert_eq!(report["check"]["scenes"], 2);
+    assert_ne!(report["check"]["false_alarm"], report["false_alarm"], "other scenes");
+}
+
+#[test]
+fn a_threshold_that_cannot_be_found_is_explained() {
+    let says = |arguments: &[&str], expected: &str| {
+        apertura(&[&["threshold", "--method", "baseline"], arguments].concat())
+            .assert()
+            .failure()
+            .stderr(contains(expected));
+    };
+    says(&["--set", "1", "--count", "50"], "50 scenes can't keep a rate of 1 %; take 99 scenes or more");
+    says(&["--set", "noise"], "have no echoes");
+    says(&["--false-alarm", "0"], "expected a number from 0.01 to 50");
+}
