@@ -44,7 +44,7 @@ pub const ALL: &[Preset] = presets![
     "failure-live-ghost",
     "failure-wrong-tooth",
     "failure-hybrid-merged",
-    "failure-hybrid-ghost",
+    "failure-hybrid-missed",
     "failure-thesis-missed",
     "failure-thesis-merged",
     "failure-thesis-ghost",
