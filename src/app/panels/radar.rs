@@ -1,5 +1,7 @@
 //! The radar: every constant of it, and what follows from each.
 
+mod antennas;
+
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
@@ -65,6 +67,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                 }
                 None => rows(ui, table, &mut radar, &follows, free),
             }
+            antennas::drawing(ui, &radar);
             radar.end_elements = radar.end_elements.min(radar.elements / 2);
             if radar != *input.radar {
                 asked.push(RadarCommand::Set(Box::new(radar)).into());
@@ -266,7 +269,7 @@ const POWER: Number = Number {
 };
 
 /// Names of the constants, as they stand in the first column.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 13] = [
     CARRIER.name,
     BANDWIDTH.name,
     SAMPLES.name,
@@ -275,6 +278,7 @@ const NAMES: [&str; 12] = [
     SPACING_MILLIMETRES.name,
     SPACING_WAVELENGTHS.name,
     POWER.name,
+    antennas::NAME,
     "convention",
     "phase",
     "windows",
@@ -332,6 +336,7 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     if let Some(watts) = number(ui, table, &POWER, radar.transmit_power_watts, &text, is_free) {
         radar.transmit_power_watts = watts;
     }
+    antennas::row(ui, table, radar, is_free);
     choices(ui, table, radar, follows, is_free);
 }
 

@@ -142,6 +142,20 @@ fn a_convention_brings_its_spacing_with_it() {
 }
 
 #[test]
+fn pairs_are_chosen_with_their_counts() {
+    let mut panel = panel(Radar { elements: 192, ..Radar::default() }.in_convention(Convention::Physical), None);
+    panel.get_by_label("pairs").click();
+    panel.run();
+    let radar = panel.state().0.clone();
+    radar.validate().unwrap();
+    assert_eq!((radar.elements, radar.is_monostatic()), (192, false));
+    let _told = panel.get_by_label_contains("12 × 16 pairs are 192 elements");
+    type_into(&mut panel, "receivers", "4");
+    assert_eq!(panel.state().0.elements, 48);
+    panel.state().0.validate().unwrap();
+}
+
+#[test]
 fn a_snapshot_has_no_ranges_and_one_that_was_measured_no_bandwidth() {
     let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
     let free = panel(radar.clone(), None);

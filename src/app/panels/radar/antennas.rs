@@ -1,0 +1,155 @@
+//! Transmitters and receivers in the panel of the radar: how many there are, where they stand, and the elements that their pairs make.
+
+use super::Table;
+use crate::app::widgets::number_field::NumberField;
+use crate::radar::{Antennas, Radar};
+use eframe::egui;
+use eframe::egui::{Id, Rect, Sense, Stroke, Ui, pos2, vec2};
+
+/// Name of the row.
+pub(super) const NAME: &str = "antennas";
+
+/// Height of the drawing, points.
+const HEIGHT: f32 = 46.0;
+
+/// Most transmitters, and most receivers, that the panel offers.
+const MOST: usize = 64;
+
+/// The range for which the panel says what midpoints cost, metres.
+const NEAR_METRES: f64 = 2.0;
+
+/// The row that says and chooses whether transmitters stand apart from receivers.
+pub(super) fn row(ui: &mut Ui, table: Table, radar: &mut Radar, is_free: bool) {
+    let tooltip = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element halfway \
+                   between both. Pairs make one line without gaps";
+    let text = match &radar.antennas {
+        None => "every element sends and hears by itself".to_owned(),
+        Some(antennas) => consequence(radar, antennas),
+    };
+    table.row(ui, (NAME, tooltip), &text, |ui, label| {
+        ui.add_enabled_ui(is_free, |ui| {
+            ui.vertical(|ui| choices(ui, radar, label));
+        });
+    });
+}
+
+/// One antenna an element, or pairs, and how many.
+fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
+    ui.horizontal(|ui| {
+        let alone = ui.selectable_label(radar.is_monostatic(), "one an element").labelled_by(label);
+        let pairs = ui.selectable_label(!radar.is_monostatic(), "pairs");
+        if alone.clicked() {
+            radar.antennas = None;
+        } else if pairs.clicked() && radar.is_monostatic() {
+            let transmitters = divisor(radar.elements);
+            set(radar, transmitters, radar.elements / transmitters);
+        }
+    });
+    counts(ui, radar);
+}
+
+/// What follows from antennas that stand apart.
+fn consequence(radar: &Radar, antennas: &Antennas) -> String {
+    let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
+    let pairs = (0..radar.elements).map(|n| radar.pair(n));
+    let apart = pairs.map(|p| (p.transmitter_x_metres - p.receiver_x_metres).abs()).fold(0.0, f64::max);
+    let turns = 2.0 * apart * apart / (8.0 * NEAR_METRES) / radar.wavelength_metres();
+    format!(
+        "{transmitters} × {receivers} pairs are {} elements; at {NEAR_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of \
+         their midpoints",
+        transmitters * receivers
+    )
+}
+
+/// How many transmitters and receivers there are, where they stand apart.
+fn counts(ui: &mut Ui, radar: &mut Radar) {
+    let Some(antennas) = &radar.antennas else {
+        return;
+    };
+    let before = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
+    let (mut transmitters, mut receivers) = before;
+    for (name, count) in [("transmitters", &mut transmitters), ("receivers", &mut receivers)] {
+        ui.horizontal(|ui| {
+            let mut value = *count as f64;
+            let field = NumberField::new(&mut value).range(1.0..=MOST as f64).speed(0.1).max_decimals(0);
+            let field = ui.add(field);
+            let label = ui.label(name);
+            if field.labelled_by(label.id).changed() {
+                *count = value.round() as usize;
+            }
+        });
+    }
+    if (transmitters, receivers) != before {
+        set(radar, transmitters, receivers);
+    }
+}
+
+/// Gives the radar that many antennas at its spacing; counts that make no array leave it as it is.
+fn set(radar: &mut Radar, transmitters: usize, receivers: usize) {
+    if let Ok(antennas) = Antennas::filled(transmitters, receivers, radar.element_spacing_metres) {
+        *radar = radar.clone().with_antennas(antennas);
+    }
+}
+
+/// The largest number up to the root of `elements` that divides it: as many transmitters as keep the antennas fewest.
+fn divisor(elements: usize) -> usize {
+    (1..=MOST).take_while(|n| n * n <= elements).filter(|n| elements.is_multiple_of(*n)).last().unwrap_or(1)
+}
+
+/// Transmitters, receivers and the elements that they make, one row each, to one scale.
+pub(super) fn drawing(ui: &mut Ui, radar: &Radar) {
+    let Some(antennas) = &radar.antennas else {
+        return;
+    };
+    let elements: Vec<f64> = (0..radar.elements).map(|n| radar.element_x_metres(n)).collect();
+    let rows: [(&str, &[f64]); 3] = [
+        ("transmitters", antennas.transmitter_x_metres()),
+        ("receivers", antennas.receiver_x_metres()),
+        ("elements", &elements),
+    ];
+    let (response, painter) = ui.allocate_painter(vec2(ui.available_width().min(560.0), HEIGHT), Sense::hover());
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let ink = ui.visuals().text_color();
+    let names = 84.0;
+    let [low, high] = radar.antenna_span_metres();
+    let strip = Rect::from_min_max(response.rect.min + vec2(names, 0.0), response.rect.max - vec2(6.0, 0.0));
+    let at = |x: f64| strip.left() + strip.width() * ((x - low) / (high - low)) as f32;
+    for (row, (name, places)) in rows.into_iter().enumerate() {
+        let y = strip.top() + HEIGHT * (row as f32 + 0.5) / 3.0;
+        painter.text(pos2(response.rect.left(), y), egui::Align2::LEFT_CENTER, name, font.clone(), ink);
+        for x in places {
+            painter.line_segment([pos2(at(*x), y - 5.0), pos2(at(*x), y + 5.0)], Stroke::new(1.2, ink));
+        }
+    }
+    let span = format!(
+        "From {:.1} to {:.1} mm along x: {} antennas.",
+        low * 1e3,
+        high * 1e3,
+        rows[0].1.len() + rows[1].1.len()
+    );
+    response.on_hover_text(span);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Convention;
+
+    #[test]
+    fn elements_are_shared_out_among_fewest_antennas() {
+        assert_eq!([1024, 192, 12, 13].map(divisor), [32, 12, 3, 1]);
+    }
+
+    #[test]
+    fn counts_keep_the_spacing() {
+        let mut radar = Radar { elements: 192, ..Radar::default() }.in_convention(Convention::Physical);
+        let spacing = radar.element_spacing_metres;
+        set(&mut radar, 12, 16);
+        radar.validate().unwrap();
+        assert_eq!(radar.elements, 192);
+        assert!((radar.element_spacing_metres / spacing - 1.0).abs() < 1e-12);
+        let before = radar.clone();
+        set(&mut radar, 1, 2);
+        assert_eq!(radar, before, "two elements are no array");
+    }
+}
