@@ -250,38 +250,3 @@ fn methods_that_know_no_pairs_say_so() {
         assert!(told.contains(method.name()) && told.contains("transmitters stand apart from"), "{told}");
     }
 }
-
-#[test]
-fn points_of_captures_of_pairs_are_placed_within_the_bound() {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let sigma = 0.1;
-    for radar in [near_radar(), Radar { end_elements: 12, ..small(4, 12) }] {
-        let (mut ranges, mut cosines, mut placed) = (0.0, 0.0, 0);
-        let captures = 24;
-        for capture in 0..captures {
-            let (range, cos): (f64, f64) = (1.5 + 6.0 * rng.random::<f64>(), 1.4 * (rng.random::<f64>() - 0.5));
-            let point = (range * cos, range * (1.0 - cos * cos).sqrt());
-            let recording = captured(&radar, &[point], sigma, &mut rng);
-            let found = found("iaa", &recording);
-            let reflector = Reflector { x_metres: point.0, y_metres: point.1, reflectivity: range * range };
-            let radar = &recording.radar;
-            let bound = cramer_rao(radar, &Layout::two_ends(radar), &[reflector], sigma * sigma).unwrap()[0];
-            // A point that is taken for two is no place of it.
-            let [first] = &found[..] else { continue };
-            let range_off = (first.range_metres - range) / bound.range_metres;
-            let cos_off = (first.cos_theta - cos) / bound.cos_theta;
-            println!("capture {capture}: {range_off:.2} {cos_off:.2}");
-            assert!(range_off.abs() < 5.0 && cos_off.abs() < 5.0, "{capture}: {range_off}, {cos_off} bounds off");
-            ranges += range_off * range_off;
-            cosines += cos_off * cos_off;
-            placed += 1;
-        }
-        assert!(placed >= captures * 2 / 3, "{placed} of {captures} were taken for one point");
-        // Of 16 draws a root mean square is known to 18 %.
-        for (what, squares) in [("range", ranges), ("cos(theta)", cosines)] {
-            let ratio = f64::sqrt(squares / f64::from(placed));
-            println!("{what}: error / bound = {ratio:.3}");
-            assert!((0.5..1.5).contains(&ratio), "{what}: error / bound is {ratio}");
-        }
-    }
-}

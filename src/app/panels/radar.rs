@@ -336,7 +336,9 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     if let Some(watts) = number(ui, table, &POWER, radar.transmit_power_watts, &text, is_free) {
         radar.transmit_power_watts = watts;
     }
-    antennas::row(ui, table, radar, is_free);
+    table.row(ui, (antennas::NAME, antennas::TOOLTIP), &antennas::follows(radar), |ui, label| {
+        ui.add_enabled_ui(is_free, |ui| ui.vertical(|ui| antennas::choices(ui, radar, label)));
+    });
     choices(ui, table, radar, follows, is_free);
 }
 

@@ -1,6 +1,5 @@
 //! Transmitters and receivers in the panel of the radar: how many there are, where they stand, and the elements that their pairs make.
 
-use super::Table;
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{Antennas, Radar};
 use eframe::egui;
@@ -18,23 +17,20 @@ const MOST: usize = 64;
 /// The range for which the panel says what midpoints cost, metres.
 const NEAR_METRES: f64 = 2.0;
 
-/// The row that says and chooses whether transmitters stand apart from receivers.
-pub(super) fn row(ui: &mut Ui, table: Table, radar: &mut Radar, is_free: bool) {
-    let tooltip = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element halfway \
-                   between both. Pairs make one line without gaps";
-    let text = match &radar.antennas {
+/// What the row is about.
+pub(super) const TOOLTIP: &str = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element \
+                                  halfway between both. Pairs make one line without gaps";
+
+/// What follows from the antennas.
+pub(super) fn follows(radar: &Radar) -> String {
+    match &radar.antennas {
         None => "every element sends and hears by itself".to_owned(),
         Some(antennas) => consequence(radar, antennas),
-    };
-    table.row(ui, (NAME, tooltip), &text, |ui, label| {
-        ui.add_enabled_ui(is_free, |ui| {
-            ui.vertical(|ui| choices(ui, radar, label));
-        });
-    });
+    }
 }
 
 /// One antenna an element, or pairs, and how many.
-fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
+pub(super) fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
     ui.horizontal(|ui| {
         let alone = ui.selectable_label(radar.is_monostatic(), "one an element").labelled_by(label);
         let pairs = ui.selectable_label(!radar.is_monostatic(), "pairs");
