@@ -45,23 +45,32 @@ impl WeightFile<'_> {
         }
     }
 
-    /// The same file with 32-bit floats, for readers that know no others.
+    /// The same file with 32-bit floats in place of 16-bit ones, for readers that want them; other types stay.
     ///
     /// # Errors
-    /// [`WeightsError::Tensor`] for a tensor of another type, [`WeightsError::NotSafetensors`] if the header can't be written.
+    /// [`WeightsError::Tensor`] for a tensor that lies outside the file, [`WeightsError::NotSafetensors`] if the header can't be written.
     #[cfg(feature = "network")]
     pub(super) fn in_single_precision(&self) -> Result<Vec<u8>, WeightsError> {
-        if self.tensors.values().all(|tensor| tensor.dtype == SINGLE) {
+        if self.tensors.values().all(|tensor| tensor.dtype != HALF) {
             return Ok(self.bytes.to_vec());
         }
         let mut data = Vec::new();
         let mut tensors = std::collections::BTreeMap::new();
         for (name, tensor) in &self.tensors {
             let bad = |problem| WeightsError::Tensor { file: self.name.clone(), tensor: name.clone(), problem };
-            let start = data.len();
-            data.extend(self.values(tensor).map_err(bad)?.iter().flat_map(|v| v.to_le_bytes()));
-            let header =
-                TensorHeader { dtype: SINGLE.into(), shape: tensor.shape.clone(), data_offsets: [start, data.len()] };
+            let (start, [from, to]) = (data.len(), tensor.data_offsets);
+            let dtype = if tensor.dtype == HALF {
+                data.extend(self.values(tensor).map_err(bad)?.iter().flat_map(|v| v.to_le_bytes()));
+                SINGLE
+            } else {
+                data.extend(self.data.get(from..to).ok_or_else(|| bad("lies outside the file".into()))?);
+                &tensor.dtype
+            };
+            let header = TensorHeader {
+                dtype: dtype.to_owned(),
+                shape: tensor.shape.clone(),
+                data_offsets: [start, data.len()],
+            };
             tensors.insert(name.clone(), header);
         }
         super::write(&self.name, &tensors, &self.provenance, &data)
