@@ -109,7 +109,8 @@ impl Said {
                 "radar.elements is {elements}; the antennas make {pairs} pairs: expected that, or no such key"
             ));
         }
-        if let Some(said) = self.element_spacing_metres.filter(|said| !((said / spacing - 1.0).abs() < SAME_SPACING)) {
+        let is_alike = |said: &f64| (said / spacing - 1.0).abs() < SAME_SPACING;
+        if let Some(said) = self.element_spacing_metres.filter(|said| !is_alike(said)) {
             return Err(format!(
                 "radar.element_spacing_metres is {said}; the midpoints of the antennas' pairs stand {spacing} m apart: expected that, or no such key"
             ));

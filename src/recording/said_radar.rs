@@ -34,7 +34,7 @@ pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>)
         "element_spacing_metres" | "elements" => of_pairs,
         _ => false,
     };
-    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || is_known(**key))) {
+    if let Some(key) = needed.iter().find(|key| !(table.contains_key(**key) || is_known(key))) {
         return Err(Fault::key(&format!("radar.{key}"), "is missing", "it: a recording says which radar measured it"));
     }
     let radar: Radar = table.try_into().map_err(|e: toml::de::Error| {

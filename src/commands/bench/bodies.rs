@@ -92,9 +92,11 @@ struct Chart {
     times: Times,
 }
 
+/// A line of the chart: what it is called, its colour, and objects and multiples of the bare transform.
+type Line = (&'static str, RGBColor, Vec<(f64, f64)>);
+
 impl Chart {
-    /// The lines of the chart: what they are called, and objects and multiples of the bare transform.
-    fn lines(&self) -> Vec<(&'static str, RGBColor, Vec<(f64, f64)>)> {
+    fn lines(&self) -> Vec<Line> {
         let of = |scene: &'static str, time: fn(&Row) -> f64| {
             let rows = self.times.rows.iter().filter(move |r| r.scene == scene);
             let rows = rows.filter(|r| r.convention == Convention::FIXED_RANGE);
