@@ -37,6 +37,9 @@ fn measured() -> String {
     timed.unwrap_or_else(|problem| format!("The run times can't be measured: {problem}"))
 }
 
+/// Key of an address that names the cell of a notebook, to which the page tells its scene (`page.js`).
+const CELL: &str = "cell";
+
 /// What an address asks for: `?scene=street`, `?lesson=two-ends`, `?recording=chip-8`, or what was copied as text behind `#`.
 ///
 /// # Errors
@@ -48,6 +51,9 @@ fn options_of(address: &str) -> Result<Options, String> {
         options.shared = Some(fragment.to_owned());
     }
     for (key, name) in query.trim_start_matches('?').split('&').filter_map(|part| part.split_once('=')) {
+        if key == CELL {
+            continue;
+        }
         options.commands.push(command_of(key, name)?);
     }
     Ok(options)
@@ -97,6 +103,12 @@ mod tests {
     #[test]
     fn an_address_carries_a_shared_text() {
         assert_eq!(options_of("#apertura:1:abc").unwrap().shared.as_deref(), Some("apertura:1:abc"));
+    }
+
+    #[test]
+    fn the_cell_of_a_notebook_asks_for_nothing() {
+        let options = options_of("?cell=abc#apertura:1:abc").unwrap();
+        assert!(options.commands.is_empty() && options.shared.is_some());
     }
 
     #[test]

@@ -7,6 +7,20 @@ const SILENT_MILLISECONDS = 5000;
 
 const beats = new Map();
 
+// The files in which the window keeps a scene that is not saved.
+const KEPT_SCENE = /^\/storage\/autosave(-\d+)?\.toml$/;
+
+// The cell of a notebook that this page was made for: its server is told every scene that is not saved, one after
+// the other, and nothing ("") where the scene is as it was opened.
+let told = Promise.resolve();
+function tellCell(scene) {
+  const cell = new URLSearchParams(location.search).get("cell");
+  if (!cell) return;
+  const send = () => fetch(`cell/${encodeURIComponent(cell)}`, { method: "POST", body: scene });
+  // The notebook may have ended; the window goes on.
+  told = told.then(send).catch(() => {});
+}
+
 // The name of this tab. A reload keeps it, so that the page gets its own lock back.
 function tab() {
   let name = sessionStorage.getItem("tab");
@@ -111,6 +125,7 @@ export function store(key, text) {
     postMessage({ ask: "store", key, text });
     return true;
   }
+  if (KEPT_SCENE.test(key)) tellCell(text);
   try {
     localStorage.setItem(key, text);
     return true;
@@ -124,6 +139,7 @@ export function forget(key) {
     postMessage({ ask: "forget", key });
     return;
   }
+  if (KEPT_SCENE.test(key)) tellCell("");
   try {
     localStorage.removeItem(key);
   } catch {
