@@ -4,7 +4,11 @@ use crate::app::panels::scene::Hint;
 use crate::app::state::{MapKind, MethodSlot, State};
 use crate::interact::Place;
 use crate::radar::{End, Radar};
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Scene, presets};
+use std::sync::LazyLock;
+
+/// The scene of a first start, as it opens.
+static STREET: LazyLock<Scene> = LazyLock::new(|| presets::default_scene().scene);
 
 /// What a map shows, in a line; nothing where the box of the theory stands.
 pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
@@ -30,31 +34,35 @@ fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
     }
 }
 
-/// What to do in the scene: in the street a post is to be dragged towards the wall, elsewhere whatever there is.
+/// What to do in the scene: in the street as it opens a post is to be dragged towards the wall, elsewhere whatever there is.
 pub fn of_scene(state: &State) -> Option<Hint> {
     let scene = state.editor.scene();
     state.shows_captions().then(|| hint(scene, state.editor.document().recording().is_some()))
 }
 
 fn hint(scene: &Scene, is_recorded: bool) -> Hint {
+    if is_recorded {
+        return Hint { text: "Double-click to lay a reflector over the recording".to_owned(), way: None };
+    }
+    if scene.objects.is_empty() {
+        return Hint { text: "Double-click to add a reflector".to_owned(), way: None };
+    }
+    let way = (scene.objects == STREET.objects).then(|| from_post_to_wall(scene)).flatten();
+    let text = if way.is_some() { "Drag the post towards the wall" } else { "Drag a reflector: every map follows" };
+    Hint { text: text.to_owned(), way }
+}
+
+fn from_post_to_wall(scene: &Scene) -> Option<[Place; 2]> {
     let place = |object: &Object| Place::from(object.centre_metres());
     let wall = scene.objects.iter().find(|o| matches!(o, Object::Line(_)));
     let post = scene.objects.iter().filter(|o| matches!(o, Object::Point(_)));
     let nearest = post.min_by(|a, b| a.centre_metres()[1].total_cmp(&b.centre_metres()[1]));
-    match (nearest, wall) {
-        _ if is_recorded => Hint { text: "Double-click to lay a reflector over the recording".to_owned(), way: None },
-        (Some(post), Some(wall)) => {
-            Hint { text: "Drag the post towards the wall".to_owned(), way: Some([place(post), place(wall)]) }
-        }
-        _ if scene.objects.is_empty() => Hint { text: "Double-click to add a reflector".to_owned(), way: None },
-        _ => Hint { text: "Drag a reflector: every map follows".to_owned(), way: None },
-    }
+    Some([place(nearest?), place(wall?)])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::presets;
 
     #[test]
     fn every_map_of_the_first_window_says_what_it_shows() {
@@ -72,5 +80,12 @@ mod tests {
         assert_eq!(text, "Drag the post towards the wall");
         assert!(from.y_metres < to.y_metres && from.x_metres < to.x_metres, "{from:?} to {to:?}");
         assert_eq!(hint(&Scene::default(), false).text, "Double-click to add a reflector");
+    }
+
+    #[test]
+    fn another_scene_of_a_point_with_a_line_asks_to_drag_any_reflector() {
+        let mut other = presets::default_scene().scene;
+        other.objects.retain(|object| matches!(object, Object::Line(_) | Object::Point(_)));
+        assert_eq!(hint(&other, false), Hint { text: "Drag a reflector: every map follows".to_owned(), way: None });
     }
 }
