@@ -16,7 +16,7 @@ const STANDS_OUT_DB: f64 = 10.0;
 /// An output shows it if it stands out there by this much, in dB.
 const SHOWN_DB: f64 = 3.0;
 /// No scene has more echoes of a class; a table that says so is damaged.
-const MOST_ECHOES: usize = 1 << 40;
+const MOST_ECHOES: usize = 1 << 30;
 /// Half a resolution cell, in range bins.
 const HALF_BINS: f64 = 1.0;
 /// The same in columns, for an echo that no near field smears.

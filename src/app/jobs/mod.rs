@@ -282,6 +282,7 @@ impl Jobs {
     }
 
     /// A folder of its own for a training by the recipe called `name`; `None` where the app keeps no files.
+    #[cfg(feature = "network")]
     pub fn new_run(&self, name: &str) -> Option<PathBuf> {
         let runs = self.folder.as_ref()?.join("runs");
         (1u32..).map(|n| runs.join(format!("{name}-{n}"))).find(|run| !run.exists())

@@ -148,6 +148,7 @@ struct Block<'a> {
 }
 
 /// Computes one line for one block of output channels with these instructions, or the best there are if this machine lacks them.
+#[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
 fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
     job.check(&block, out);
     #[cfg(target_arch = "x86_64")]

@@ -37,6 +37,7 @@ pub(super) trait Loop {
 
 /// Runs `of` with these instructions, or the best there are if this machine lacks them.
 #[inline]
+#[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
 pub(super) fn run<L: Loop>(simd: Simd, of: L) {
     #[cfg(target_arch = "x86_64")]
     match simd.min(Simd::best()) {
