@@ -130,12 +130,14 @@ class Mirror:
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """Elements as they are built: three arrays, float64 `[elements]`, and the numbers of those that hear nothing."""
+    """Elements as they are built: arrays, float64 `[elements]`, and the numbers of those that hear nothing. `forward_millimetres` is how far
+    each stands off the array's line, towards the scene; no number at all is a straight line."""
 
     gain_db: npt.NDArray[np.float64]
     phase_degrees: npt.NDArray[np.float64]
     position_millimetres: npt.NDArray[np.float64]
     dead: Sequence[int] = field(default_factory=tuple)
+    forward_millimetres: npt.NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
 
     @staticmethod
     def built(

@@ -205,16 +205,22 @@ pub fn of_mirror<'py>(py: Python<'py>, of: &Mirror) -> PyResult<Bound<'py, PyAny
     data_class(py, "Mirror", &fields)
 }
 
-/// Elements as they are built: four lists of equal length, one number an element.
+/// Elements as they are built: lists of equal length, one number an element. No number at all in `forward_millimetres` is a straight line.
 pub fn elements(from: &Bound<'_, PyAny>) -> PyResult<BuiltArray> {
     let list = |name: &str| -> PyResult<Array1<f64>> {
         numbers(&from.getattr(name)?, &format!("elements: {name}"), "[elements]")
     };
     let (gain, phase) = (list("gain_db")?, list("phase_degrees")?);
-    let (position, dead) = (list("position_millimetres")?, from.getattr("dead")?);
+    let (position, forward) = (list("position_millimetres")?, list("forward_millimetres")?);
+    let dead = from.getattr("dead")?;
     let dead: Vec<usize> = dead.extract().map_err(|_| value("elements: dead is no list of numbers of elements"))?;
     let count = gain.len();
-    for (name, len) in [("phase_degrees", phase.len()), ("position_millimetres", position.len())] {
+    let lengths = [
+        ("phase_degrees", phase.len()),
+        ("position_millimetres", position.len()),
+        ("forward_millimetres", if forward.is_empty() { count } else { forward.len() }),
+    ];
+    for (name, len) in lengths {
         if len != count {
             return Err(value(format!("elements: {name} has {len} numbers; expected {count} as gain_db has")));
         }
@@ -226,6 +232,7 @@ pub fn elements(from: &Bound<'_, PyAny>) -> PyResult<BuiltArray> {
         gain: Decibels(gain[n]),
         phase_degrees: phase[n],
         position_millimetres: position[n],
+        forward_millimetres: forward.get(n).copied().unwrap_or(0.0),
         dead: dead.contains(&n),
     };
     Ok(BuiltArray { elements: (0..count).map(element).collect() })
@@ -239,6 +246,7 @@ pub fn of_elements<'py>(py: Python<'py>, of: &BuiltArray) -> PyResult<Bound<'py,
     fields.set_item("gain_db", list(|e| e.gain.0))?;
     fields.set_item("phase_degrees", list(|e| e.phase_degrees))?;
     fields.set_item("position_millimetres", list(|e| e.position_millimetres))?;
+    fields.set_item("forward_millimetres", list(|e| e.forward_millimetres))?;
     fields.set_item("dead", (0..of.elements.len()).filter(|n| of.elements[*n].dead).collect::<Vec<_>>())?;
     data_class(py, "Elements", &fields)
 }

@@ -24,6 +24,7 @@ pub const ALL: &[Shipped] = lessons![
     "grating-lobes",
     "windows-and-side-lobes",
     "near-field",
+    "pairs-of-antennas",
     "phasors",
     "two-ends-and-the-comb",
     "a-line",

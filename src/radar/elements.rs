@@ -17,6 +17,8 @@ pub struct ElementError {
     pub phase_degrees: f64,
     /// How far it stands from its place, towards +x, millimetres.
     pub position_millimetres: f64,
+    /// How far it stands off the array's line, towards the scene, millimetres.
+    pub forward_millimetres: f64,
     /// Whether it is dead: it receives nothing.
     pub dead: bool,
 }
@@ -24,7 +26,13 @@ pub struct ElementError {
 impl Default for ElementError {
     /// An element that is as it should be.
     fn default() -> Self {
-        ElementError { gain: Decibels(0.0), phase_degrees: 0.0, position_millimetres: 0.0, dead: false }
+        ElementError {
+            gain: Decibels(0.0),
+            phase_degrees: 0.0,
+            position_millimetres: 0.0,
+            forward_millimetres: 0.0,
+            dead: false,
+        }
     }
 }
 
@@ -68,6 +76,7 @@ impl Tolerances {
             gain: Decibels(off() * self.gain.0),
             phase_degrees: off() * self.phase_degrees,
             position_millimetres: off() * self.position_millimetres,
+            forward_millimetres: 0.0,
             dead: false,
         };
         BuiltArray { elements: (0..radar.elements).map(element).collect() }
@@ -76,8 +85,8 @@ impl Tolerances {
 
 /// The elements of a built array; an empty list is an array that is as it should be.
 ///
-/// In files it is lists of what differs: `count`, `gain_db`, `phase_degrees`, `position_millimetres` (one number an element each, or
-/// none at all) and `dead`, the elements that receive nothing.
+/// In files it is lists of what differs: `count`, `gain_db`, `phase_degrees`, `position_millimetres`, `forward_millimetres` (one number an
+/// element each, or none at all) and `dead`, the elements that receive nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "Lists", into = "Lists")]
 pub struct BuiltArray {
@@ -97,6 +106,8 @@ struct Lists {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     position_millimetres: Vec<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    forward_millimetres: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     dead: Vec<usize>,
 }
 
@@ -111,6 +122,7 @@ impl From<BuiltArray> for Lists {
             gain_db: list(|e| e.gain.0),
             phase_degrees: list(|e| e.phase_degrees),
             position_millimetres: list(|e| e.position_millimetres),
+            forward_millimetres: list(|e| e.forward_millimetres),
             dead: (0..elements.len()).filter(|n| elements[*n].dead).collect(),
         }
     }
@@ -120,13 +132,16 @@ impl TryFrom<Lists> for BuiltArray {
     type Error = String;
 
     fn try_from(lists: Lists) -> Result<Self, String> {
-        let Lists { count, gain_db, phase_degrees, position_millimetres, dead } = lists;
+        let Lists { count, gain_db, phase_degrees, position_millimetres, forward_millimetres, dead } = lists;
         if count > MOST_ELEMENTS {
             return Err(format!("elements: count is {count}; at most {MOST_ELEMENTS} are read"));
         }
-        for (name, list) in
-            [("gain_db", &gain_db), ("phase_degrees", &phase_degrees), ("position_millimetres", &position_millimetres)]
-        {
+        for (name, list) in [
+            ("gain_db", &gain_db),
+            ("phase_degrees", &phase_degrees),
+            ("position_millimetres", &position_millimetres),
+            ("forward_millimetres", &forward_millimetres),
+        ] {
             if !list.is_empty() && list.len() != count {
                 return Err(format!(
                     "elements: {name} has {} numbers; expected none or {count}, as count says",
@@ -143,6 +158,7 @@ impl TryFrom<Lists> for BuiltArray {
                 gain: Decibels(of(&gain_db, n)),
                 phase_degrees: of(&phase_degrees, n),
                 position_millimetres: of(&position_millimetres, n),
+                forward_millimetres: of(&forward_millimetres, n),
                 dead: false,
             })
             .collect();
@@ -242,6 +258,35 @@ impl BuiltArray {
         self.elements.get(n).copied().unwrap_or_default()
     }
 
+    /// Whether element `n` stands elsewhere than it should.
+    pub fn is_displaced(&self, n: usize) -> bool {
+        let ElementError { position_millimetres, forward_millimetres, .. } = self.element(n);
+        position_millimetres != 0.0 || forward_millimetres != 0.0
+    }
+
+    /// How far element `n` stands off the array's line, towards the scene, metres.
+    pub fn forward_metres(&self, n: usize) -> f64 {
+        self.element(n).forward_millimetres * 1e-3
+    }
+
+    /// The largest distance of a living element from the array's line, millimetres.
+    pub fn most_forward_millimetres(&self) -> f64 {
+        self.elements.iter().filter(|e| !e.dead).map(|e| e.forward_millimetres.abs()).fold(0.0, f64::max)
+    }
+
+    /// The same on a bumper that is bent: the middle of the line keeps its place, its ends stand back by `back_millimetres`, and the
+    /// elements between them stand on a parabola.
+    pub fn bent(&self, radar: &Radar, back_millimetres: f64) -> Self {
+        let half = radar.aperture_metres() / 2.0;
+        let mut elements = self.fitted(radar.elements).elements;
+        elements.resize(radar.elements, ElementError::default());
+        for (n, element) in elements.iter_mut().enumerate() {
+            let part = radar.element_x_metres(n) / half;
+            element.forward_millimetres = -back_millimetres * part * part;
+        }
+        BuiltArray { elements }
+    }
+
     /// Where element `n` of `radar` really stands, metres.
     pub fn element_x_metres(&self, radar: &Radar, n: usize) -> f64 {
         radar.element_x_metres(n) + self.element(n).position_millimetres * 1e-3
@@ -261,6 +306,7 @@ impl BuiltArray {
                 ("gain", e.gain.0, MOST_GAIN),
                 ("phase_degrees", e.phase_degrees, MOST_PHASE),
                 ("position_millimetres", e.position_millimetres, MOST_POSITION),
+                ("forward_millimetres", e.forward_millimetres, MOST_POSITION),
             ] {
                 // Not finite is not within either.
                 if value.is_nan() || value.abs() > most {
@@ -313,9 +359,24 @@ mod tests {
     }
 
     #[test]
+    fn the_ends_of_a_bent_array_stand_back() {
+        let radar = Radar::default();
+        let bent = BuiltArray::default().bent(&radar, 8.0);
+        bent.validate(&radar).unwrap();
+        for end in [0, 1023] {
+            assert!((bent.element(end).forward_millimetres + 8.0).abs() < 1e-9, "{:?}", bent.element(end));
+        }
+        assert!(bent.element(512).forward_millimetres.abs() < 1e-4 && bent.is_displaced(0));
+        assert!((bent.most_forward_millimetres() - 8.0).abs() < 1e-9);
+        let text = toml::to_string(&bent).unwrap();
+        assert_eq!(toml::from_str::<BuiltArray>(&text).unwrap(), bent);
+    }
+
+    #[test]
     fn responses_follow_the_errors() {
         let radar = Radar::default();
-        let off = ElementError { gain: Decibels(20.0), phase_degrees: 90.0, position_millimetres: 3.0, dead: false };
+        let off =
+            ElementError { gain: Decibels(20.0), phase_degrees: 90.0, position_millimetres: 3.0, ..Default::default() };
         assert!((off.response() - Complex64::new(0.0, 10.0)).norm() < 1e-12);
         assert_eq!(ElementError { dead: true, ..off }.response(), Complex64::default());
         assert_eq!(BuiltArray::default().element(5).response(), Complex64::from(1.0));

@@ -4,6 +4,7 @@
 
 mod antennas;
 mod convention;
+mod element_list;
 mod elements;
 mod layout;
 mod layout_kind;
@@ -18,6 +19,7 @@ mod window;
 
 pub use antennas::{Antennas, AntennasError};
 pub use convention::Convention;
+pub use element_list::ElementListError;
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement};
 pub use layout_kind::{LayoutKind, UnknownLayout};

@@ -73,6 +73,10 @@ impl Reconstructor for Hybrid {
         super::search::no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
+    fn knows_pairs(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let found = find(radar, ends, request, &self.settings)?;
         self.filled_in(&found, radar, ends, request)
@@ -101,6 +105,10 @@ impl Reconstructor for Following {
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         self.hybrid.check_radar(radar)
+    }
+
+    fn knows_pairs(&self) -> bool {
+        self.hybrid.knows_pairs()
     }
 
     fn weights(&self) -> Option<Weights> {

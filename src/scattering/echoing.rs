@@ -2,7 +2,7 @@
 
 use super::sight::{Array, Screen};
 use super::{Antennas, PathEcho, Scatterer};
-use crate::radar::{Pair, Radar};
+use crate::radar::Radar;
 use crate::scene::{Object, Reflector, Scene};
 
 /// An object, and the bodies that may hide a part of it from an element. Two that are equal have the same echoes.
@@ -175,9 +175,9 @@ impl Sources<'_> {
     }
 
     /// Replaces `out` by the echoes of all scatterers at `pair`, those it doesn't hear included: their order is the same everywhere.
-    pub fn scattered(&self, pair: Pair, out: &mut Vec<PathEcho>) {
+    pub fn scattered(&self, antennas: impl Into<Antennas>, out: &mut Vec<PathEcho>) {
         out.clear();
-        let antennas = Antennas::from(pair);
+        let antennas = antennas.into();
         self.scatterers.iter().for_each(|s| s.echoes(&antennas, out));
     }
 }

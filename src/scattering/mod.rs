@@ -65,6 +65,14 @@ impl From<Pair> for Antennas {
 }
 
 impl Antennas {
+    /// The antennas of a pair that stands off the x axis, towards the scene.
+    pub fn forward_of(pair: Pair, forward_metres: f64) -> Self {
+        Antennas {
+            transmitter_metres: [pair.transmitter_x_metres, forward_metres],
+            receiver_metres: [pair.receiver_x_metres, forward_metres],
+        }
+    }
+
     /// Both antennas at one place.
     pub fn at(place_metres: [f64; 2]) -> Self {
         Antennas { transmitter_metres: place_metres, receiver_metres: place_metres }

@@ -8,7 +8,7 @@ use super::phase::EchoModel;
 use super::samples::BeatSignal;
 use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
-use crate::scattering::{Echoing, Sources};
+use crate::scattering::{Antennas, Echoing, Sources};
 use crate::scene::{Reflector, Scene, SceneError};
 use crate::task::Task;
 use num_complex::Complex64;
@@ -44,13 +44,16 @@ pub(super) fn simulate_built_for(
     let heard = |signal: &mut BeatSignal| {
         let model = EchoModel::new(radar);
         signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
-            if array.element(n).position_millimetres != 0.0 && !task.is_cancelled() {
+            if array.is_displaced(n) && !task.is_cancelled() {
                 samples.fill(Complex64::default());
                 let Some(samples) = samples.as_slice_mut() else { return };
-                let pair = array.pair(radar, n);
-                echoing.points.iter().for_each(|r| add_echo(&model, pair, r, Complex64::from(1.0), samples));
+                let (pair, forward) = (array.pair(radar, n), array.forward_metres(n));
+                for r in &echoing.points {
+                    let seen = Reflector { y_metres: r.y_metres - forward, ..*r };
+                    add_echo(&model, pair, &seen, Complex64::from(1.0), samples);
+                }
                 let mut echoes = Vec::new();
-                Sources::from(&echoing).scattered(pair, &mut echoes);
+                Sources::from(&echoing).scattered(Antennas::forward_of(pair, forward), &mut echoes);
                 echoes.iter().filter(|e| e.is_heard()).for_each(|e| add_path_echo(&model, e, samples));
             }
         });
@@ -267,6 +270,28 @@ mod tests {
         let ends = crate::signal::simulate_ends(&radar, &scene, Floor::Thesis, 3).unwrap();
         assert_eq!(ends, simulate(&radar, &scene, Floor::Thesis, 3).unwrap().two_ends(&radar));
         assert_eq!(ends.first.row(5).iter().map(|v| v.norm()).sum::<f64>(), 0.0);
+    }
+
+    #[test]
+    fn an_element_off_the_line_hears_what_stands_that_much_nearer() {
+        let radar = small();
+        let array = BuiltArray::default().bent(&radar, 3.0);
+        let forward = array.forward_metres(7);
+        assert!(forward < -1e-4, "{forward}");
+        let turned = |scene: &Scene| {
+            let heard = |array| simulate_built(&radar, scene, array, Floor::Exact, 0).unwrap().samples[[7, 0]];
+            heard(&array) / heard(&BuiltArray::default())
+        };
+        let of_metres = |metres: f64| std::f64::consts::TAU * radar.carrier_turns_per_metre() * metres;
+        let off = |ratio: Complex64, metres: f64| (ratio * Complex64::cis(-of_metres(metres))).arg().abs();
+        let x = radar.element_x_metres(7);
+        let nearer = (2.0 - x).hypot(11.0 - forward) - (2.0 - x).hypot(11.0);
+        let point = turned(&Scene::of_points([(2.0, 11.0)]));
+        assert!(off(point, nearer) < 1e-6, "{point}");
+        // The glint of a wall that faces the array lies straight ahead of every element.
+        let wall = Scene { objects: vec![Object::Wall(Wall::new(0.0, 11.0, 6.0, 0.0))], ..Scene::default() };
+        let glint = turned(&wall);
+        assert!(off(glint, -forward) < 0.02, "{glint}");
     }
 
     #[test]

@@ -27,7 +27,8 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
         .collect();
     let way = radar.carrier_turns_per_metre().signum();
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut heard)| {
-        let distance = (interferer.x_metres - array.pair(radar, n).receiver_x_metres).hypot(interferer.y_metres);
+        let across = interferer.x_metres - array.pair(radar, n).receiver_x_metres;
+        let distance = across.hypot(interferer.y_metres - array.forward_metres(n));
         let amplitude = radar.transmit_power_watts * interferer.strength / distance;
         let turns = (way * distance / radar.wavelength_metres()).fract();
         let factor = Complex64::from_polar(amplitude, TAU * turns);

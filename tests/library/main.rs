@@ -9,6 +9,7 @@ mod failures;
 mod house;
 mod lessons;
 mod lessons_of_bodies;
+mod lessons_of_pairs;
 #[cfg(feature = "network")]
 mod live_network;
 mod memory;

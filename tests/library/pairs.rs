@@ -208,7 +208,8 @@ fn a_capture_of_pairs_has_its_rows_in_the_order_of_elements() {
 }
 
 /// Methods that take ranges from both antennas of an element.
-const KNOW_PAIRS: [&str; 7] = ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl"];
+const KNOW_PAIRS: [&str; 9] =
+    ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl", "nomp", "hybrid"];
 
 /// What `method` finds.
 fn found(method: &str, recording: &Recording) -> Vec<Detection> {
@@ -248,5 +249,57 @@ fn methods_that_know_no_pairs_say_so() {
         assert!(matches!(error, ReconstructError::Unusable { .. }), "{}: {error}", method.name());
         let told = error.to_string();
         assert!(told.contains(method.name()) && told.contains("transmitters stand apart from"), "{told}");
+    }
+}
+
+/// Three points of a capture, apart from each other at both ends, at 2 to 9 m.
+fn random_points(rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
+    let point = |i: usize, rng: &mut ChaCha8Rng| {
+        let range = 2.0 + 2.5 * i as f64 + rng.random_range(0.0..1.5);
+        let cos: f64 = rng.random_range(-0.7..0.7);
+        (range * cos, range * (1.0 - cos * cos).sqrt())
+    };
+    (0..3).map(|i| point(i, rng)).collect()
+}
+
+#[test]
+fn random_captures_are_placed_within_the_bound() {
+    let geometries =
+        [("6 x 16", near_radar()), ("12 x 16", Radar { end_elements: 16, ..small(12, 16) }), ("4 x 12", small(4, 12))];
+    for (name, radar) in geometries {
+        let mut rng = ChaCha8Rng::seed_from_u64(17);
+        let mut squares = Vec::new();
+        for capture in 0..6 {
+            let points = random_points(&mut rng);
+            let sigma = 0.03;
+            let recording = captured(&radar, &points, sigma, &mut rng);
+            let reflectors: Vec<Reflector> = points
+                .iter()
+                .map(|(x, y)| Reflector { x_metres: *x, y_metres: *y, reflectivity: x * x + y * y })
+                .collect();
+            let known = Radar { transmit_power_watts: 1.0, ..radar.clone() };
+            let bounds = cramer_rao(&known, &Layout::two_ends(&known), &reflectors, sigma * sigma).unwrap();
+            for method in ["nomp", "hybrid"] {
+                let found = found(method, &recording);
+                for (bound, (x, y)) in bounds.iter().zip(&points) {
+                    let (range, cos) = (x.hypot(*y), x / x.hypot(*y));
+                    let off = |d: &Detection| {
+                        let range = (d.range_metres - range) / bound.range_metres;
+                        range.hypot((d.cos_theta - cos) / bound.cos_theta)
+                    };
+                    let off = found.iter().map(off).fold(f64::INFINITY, f64::min);
+                    assert!(
+                        off < 5.0,
+                        "{name}, capture {capture}, {method}: {off} bounds off ({x}, {y}); found {found:?}"
+                    );
+                    squares.push(off * off);
+                }
+                assert!(found.len() <= points.len() + 1, "{name}, capture {capture}, {method}: {found:?}");
+            }
+        }
+        // Two errors of one bound each add up to 2 on average.
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        println!("{name}: {mean}");
+        assert!((0.5..4.0).contains(&mean), "{name}: mean square {mean} of two errors in bounds; expected about 2");
     }
 }

@@ -1,12 +1,15 @@
 //! Elements as they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
 
+mod list;
+mod strip;
+
+use self::strip::MOST_MILLIMETRES;
 use crate::app::jobs::Calibrated;
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::theme::Inks;
-use crate::radar::{BuiltArray, Decibels, ElementError, End, Radar, Tolerances};
+use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
 use eframe::egui;
-use eframe::egui::{EventFilter, Grid, Key, Modifiers, PointerButton, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Grid, ScrollArea, Ui};
 use std::sync::Arc;
 
 /// What is shown.
@@ -25,12 +28,13 @@ pub struct Memory {
     chosen: usize,
     tolerances: Tolerances,
     seed: u64,
+    list: list::Memory,
 }
 
 impl Default for Memory {
     fn default() -> Self {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
-        Memory { chosen: 0, tolerances, seed: 0 }
+        Memory { chosen: 0, tolerances, seed: 0, list: list::Memory::default() }
     }
 }
 
@@ -41,10 +45,13 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             summary(ui, &input, &mut asked);
-            strip(ui, &input, memory, &mut asked);
+            if let Some((n, error)) = strip::show(ui, input.radar, input.elements, &mut memory.chosen) {
+                asked.push(with(&input, n, |e| *e = error));
+            }
             one(ui, &input, memory, &mut asked);
             ui.separator();
             draw_from_seed(ui, &input, memory, &mut asked);
+            list::show(ui, input.radar, input.elements, &mut memory.list, &mut asked);
             ui.separator();
             calibration(ui, &input, &mut asked);
         });
@@ -82,7 +89,14 @@ fn told(elements: &BuiltArray) -> String {
         0 => String::new(),
         n => format!("{n} dead, "),
     };
-    format!("{dead}as drawn: gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm", gain.0)
+    let off_the_line = match elements.most_forward_millimetres() {
+        0.0 => String::new(),
+        most => format!(", up to {most:.2} mm off the line"),
+    };
+    format!(
+        "{dead}as drawn: gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm{off_the_line}",
+        gain.0
+    )
 }
 
 /// Why what was drawn differs from what was asked for.
@@ -92,69 +106,6 @@ fn spread_tooltip(living: usize) -> String {
         "Root mean square over the {living} elements that hear. Errors are drawn from normal distributions: over so many elements it \
          differs from the standard deviation asked for by about {percent:.0} % from draw to draw."
     )
-}
-
-/// Phase from which on a dot is drawn: rounding leaves less after a calibration.
-const LEAST_DRAWN_DEGREES: f64 = 0.05;
-
-/// The elements side by side: red where one is dead, the gain as the height of its bar, the phase as where its dot stands.
-fn strip(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
-    let count = input.radar.elements;
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 58.0), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Elements"));
-    let at = |n: usize| rect.left() + (n as f32 + 0.5) / count as f32 * rect.width();
-    let under = |x: f32| (((x - rect.left()) / rect.width() * count as f32).max(0.0) as usize).min(count - 1);
-    let inks = Inks::of(ui.visuals());
-    let painter = ui.painter().with_clip_rect(rect);
-    painter.rect_filled(rect, 3.0, inks.ground);
-    let [first, last] = End::BOTH.map(|end| input.radar.end_range(end));
-    let width = (rect.width() / count as f32 * 0.7).clamp(1.0, 10.0);
-    for n in 0..count {
-        let error = input.elements.element(n);
-        let ink = match n {
-            n if first.contains(&n) => inks.ends[0],
-            n if last.contains(&n) => inks.ends[1],
-            _ => inks.array,
-        };
-        let x = at(n) + (error.position_millimetres * 1e-3 / input.radar.element_spacing_metres) as f32 * width;
-        let middle = rect.center().y;
-        if error.dead {
-            let cross = Stroke::new(1.5, ui.visuals().error_fg_color);
-            painter.line_segment([pos2(x - 3.0, middle - 8.0), pos2(x + 3.0, middle + 8.0)], cross);
-            painter.line_segment([pos2(x - 3.0, middle + 8.0), pos2(x + 3.0, middle - 8.0)], cross);
-            continue;
-        }
-        let half = (9.0 + error.gain.0 as f32 * 2.0).clamp(2.0, 24.0);
-        painter.rect_filled(Rect::from_center_size(pos2(x, middle), vec2(width, 2.0 * half)), 1.0, ink);
-        if error.phase_degrees.abs() >= LEAST_DRAWN_DEGREES {
-            let up = (error.phase_degrees / 180.0) as f32 * 24.0;
-            painter.circle_filled(pos2(x, middle - up), 2.0, inks.selected);
-        }
-    }
-    let chosen = at(memory.chosen);
-    painter.vline(chosen, rect.y_range(), Stroke::new(1.0, inks.selected));
-    if response.clicked() {
-        // The space bar clicks, too, wherever the pointer is.
-        let pointer = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary));
-        memory.chosen = pointer.map_or(memory.chosen, |pos| under(pos.x));
-        asked.push(with(input, memory.chosen, |e| e.dead = !e.dead));
-    }
-    if response.has_focus() {
-        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
-        let steps = |key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key));
-        let (right, left) = (steps(Key::ArrowRight), steps(Key::ArrowLeft));
-        memory.chosen = (memory.chosen + right).saturating_sub(left).min(count - 1);
-    }
-    let tip = response.hover_pos().map(|pos| {
-        let n = under(pos.x);
-        let e = input.elements.element(n);
-        let state = if e.dead { "dead".to_owned() } else { format!("{:+.2} dB, {:+.1}°", e.gain.0, e.phase_degrees) };
-        format!("element {n}: {state}, {:+.2} mm\nclick: dead or alive", e.position_millimetres)
-    });
-    if let Some(tip) = tip {
-        response.on_hover_text_at_pointer(tip);
-    }
 }
 
 /// A number that is typed or dragged; what the focus only passes through keeps its decimals.
@@ -189,8 +140,11 @@ fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
         if let Some(degrees) = number(ui, "phase", "°", error.phase_degrees, 360.0, 0.5) {
             asked.push(with(input, n, |e| e.phase_degrees = degrees));
         }
-        if let Some(mm) = number(ui, "place", " mm", error.position_millimetres, 1000.0, 0.01) {
+        if let Some(mm) = number(ui, "place", " mm", error.position_millimetres, MOST_MILLIMETRES, 0.01) {
             asked.push(with(input, n, |e| e.position_millimetres = mm));
+        }
+        if let Some(mm) = number(ui, "forward", " mm", error.forward_millimetres, MOST_MILLIMETRES, 0.01) {
+            asked.push(with(input, n, |e| e.forward_millimetres = mm));
         }
     });
 }
@@ -256,6 +210,7 @@ mod tests {
     use super::*;
     use crate::scene::Reflector;
     use crate::signal::{Floor, calibrate, simulate_built};
+    use eframe::egui::{Key, pos2, vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -302,6 +257,57 @@ mod tests {
         }
         assert_eq!(panel.state().asked, 2);
         assert!(panel.state().elements.is_ideal());
+    }
+
+    #[test]
+    fn an_element_is_moved_by_the_mouse() {
+        let mut panel = panel(BuiltArray::default(), None);
+        let strip = panel.get_by_label("Elements").rect();
+        let from = pos2(strip.left() + 5.5 / 32.0 * strip.width(), strip.center().y);
+        panel.hover_at(from);
+        panel.drag_at(from);
+        panel.step();
+        for to in [vec2(10.0, -8.0), vec2(40.0, -20.0)] {
+            panel.hover_at(from + to);
+            panel.step();
+        }
+        panel.drop_at(from + vec2(40.0, -20.0));
+        panel.run();
+        let elements = panel.state().elements.clone();
+        let moved = elements.element(5);
+        assert!((moved.position_millimetres - 2.0).abs() < 0.1, "{moved:?}");
+        assert!((moved.forward_millimetres - 1.0).abs() < 0.1 && !moved.dead, "{moved:?}");
+        assert!(!elements.is_displaced(6));
+    }
+
+    #[test]
+    fn a_bent_line_can_be_drawn() {
+        let mut panel = panel(BuiltArray::default(), None);
+        panel.state_mut().memory.list = list::Memory::back_by(5.0);
+        panel.run();
+        panel.get_by_label("Bend").click();
+        panel.run();
+        assert_eq!(*panel.state().elements, BuiltArray::default().bent(&radar(), 5.0));
+        assert!(panel.query_by_label_contains("up to 5.00 mm off the line").is_some());
+    }
+
+    #[test]
+    fn a_pasted_list_replaces_the_elements() {
+        let mut panel = panel(BuiltArray::default(), None);
+        panel.get_by_label("From a list").click();
+        panel.run();
+        panel.get_by_label("place mm, forward mm, gain dB, phase °").focus();
+        panel.run();
+        panel.event(egui::Event::Paste("0.1\t-2\n".repeat(31)));
+        panel.run();
+        assert!(panel.query_by_label_contains("31 lines for 32 elements").is_some());
+        assert!(panel.query_by_label("Use the list").is_none());
+        panel.event(egui::Event::Paste("0.1\t-2".to_owned()));
+        panel.run();
+        panel.get_by_label("Use the list").click_accesskit();
+        panel.run();
+        let elements = &panel.state().elements.elements;
+        assert!(elements.len() == 32 && elements.iter().all(|e| e.forward_millimetres == -2.0), "{elements:?}");
     }
 
     #[test]

@@ -6,8 +6,8 @@
 use super::draw::Expected;
 use super::finish::Found;
 use super::propose::end_beams::{beam_noise_power, beam_of_cos, end_beams};
+use super::propose::view::View;
 use crate::radar::{End, Radar};
-use crate::reconstruct::seen::seen_from;
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::{Array2, ArrayView1, Axis};
@@ -50,7 +50,13 @@ impl Found {
         let decades = (2.0 * expected.decades) as f32;
         let cos_of = |column: usize| radar.cos_of_column(column as f64);
         let [peak_bin, peak_column] = strongest_cell(drawn);
-        let peak = End::BOTH.map(|end| all[end as usize][seen_at(radar, beams, end, peak_bin, cos_of(peak_column))]);
+        let views = End::BOTH.map(|end| View::of(radar, end));
+        let seen_at = |view: &View, bin: usize, cos: f64| {
+            let (range, cos) = (radar.range_of_bin_metres(bin as f64), cos.clamp(-1.0, 1.0));
+            let (range, cos) = view.of_place([range * cos, range * (1.0 - cos * cos).sqrt()], 1e-6);
+            [beam_of_cos(cos, beams), radar.bin_of_range(range).round() as usize % radar.samples]
+        };
+        let peak = [0, 1].map(|end: usize| all[end][seen_at(&views[end], peak_bin, cos_of(peak_column))]);
         parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
             // Power drawn in each cell, over that of the strongest.
             let mut own: Vec<f32> = drawn.row(bin).to_vec();
@@ -59,11 +65,11 @@ impl Found {
                 let cos = cos_of(first + COLUMNS_TOGETHER / 2);
                 // Of the beams' power, and of that of the strongest cell; finite even where an end is silent there.
                 let (mut of_beam, mut of_peak) = (0.0f64, f64::MAX);
-                for (end, (all, left)) in End::BOTH.into_iter().zip(all.iter().zip(&left)) {
-                    let at = seen_at(radar, beams, end, bin, cos);
+                for (end, (all, left)) in all.iter().zip(&left).enumerate() {
+                    let at = seen_at(&views[end], bin, cos);
                     let left = (left[at] - noise).max(0.0);
                     of_beam = of_beam.max(left / all[at].max(f64::MIN_POSITIVE)).min(1.0);
-                    of_peak = of_peak.min(left / peak[end as usize].max(f64::MIN_POSITIVE));
+                    of_peak = of_peak.min(left / peak[end].max(f64::MIN_POSITIVE));
                 }
                 let (of_beam, of_peak) = (of_beam as f32, of_peak.min(f64::from(f32::MAX)) as f32);
                 for column in first..(first + COLUMNS_TOGETHER).min(radar.elements) {
@@ -82,12 +88,6 @@ fn strongest_cell(map: &Array2<f32>) -> [usize; 2] {
     let most = rows.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
     let row = rows.iter().position(|v| *v == most).unwrap_or(0);
     [row, map.row(row).iter().position(|v| *v == most).unwrap_or(0)]
-}
-
-/// Where a cell of the whole array's map lies in the beams of an end: beam and range bin.
-fn seen_at(radar: &Radar, beams: usize, end: End, bin: usize, cos: f64) -> [usize; 2] {
-    let seen = seen_from(radar.end_centre_metres(end), radar.range_of_bin_metres(bin as f64), cos);
-    [beam_of_cos(seen.cos_theta, beams), radar.bin_of_range(seen.range_metres).round() as usize % radar.samples]
 }
 
 /// Means over neighbouring beams and rows, `[beam, range bin]`; the rows wrap.

@@ -122,6 +122,10 @@ impl Reconstructor for Nomp {
         no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
+    fn knows_pairs(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let found = find(radar, ends, request, &self.settings)?;
         Ok(found.reconstruction(radar, request))

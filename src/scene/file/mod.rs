@@ -26,6 +26,7 @@
 //! gain_db = []
 //! phase_degrees = []
 //! position_millimetres = []
+//! forward_millimetres = [] # off the line, towards the scene
 //! dead = [17]
 //!
 //! [[object]]

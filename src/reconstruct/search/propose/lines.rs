@@ -155,8 +155,7 @@ impl LineDetector<'_> {
     /// point would speak for all, and where too few of the bins hold an echo.
     fn score_of_all(&self, x: f64, along: [f64; 2]) -> f64 {
         let energy = [0, 1].map(|end| {
-            let across = x - self.beams.centres_metres[end];
-            let [near, far] = along.map(|y| (across * across + y * y).sqrt());
+            let [near, far] = along.map(|y| self.beams.views[end].of_place([x, y], 0.0).0);
             if near < NEAREST_METRES {
                 return f64::INFINITY;
             }

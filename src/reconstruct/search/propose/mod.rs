@@ -3,6 +3,7 @@
 //! | file | what it is |
 //! |---|---|
 //! | `source` | what every source of candidates is, and what it looks at |
+//! | `view` | at which range and in which direction an end sees a place |
 //! | `end_beams` | each end's plain beams |
 //! | `registered` | both ends' beams laid over each other |
 //! | `peaks` | points where a residual stands out, both ends registered |
@@ -31,3 +32,4 @@ pub mod runs;
 pub mod source;
 pub mod strides;
 mod tones;
+pub mod view;

@@ -2,7 +2,7 @@
 //! it is, and each end's phases say in which direction, so that true pairs agree and others don't.
 
 use super::tones::{Tone, gains_of_tones, tones};
-use crate::radar::{End, Radar};
+use crate::radar::{self, End, Radar};
 use crate::reconstruct::fit::Atom;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -24,6 +24,9 @@ const SEARCH_BINS: f64 = 2.0;
 
 /// Standard deviations of noise that are allowed.
 const DEVIATIONS: f64 = 4.0;
+
+/// Steps from what a pair of antennas measures to what one antenna would: each leaves a small part of the difference.
+const AS_ONE_ROUNDS: usize = 4;
 
 /// A tone is alone where no other is heard within this many range bins.
 const ALONE_BINS: f64 = 3.0;
@@ -95,7 +98,45 @@ impl Pair {
 /// An end's element nearest to its middle, and the tones heard there.
 struct Listener {
     x_metres: f64,
+    /// From this element to the next, from which directions are told.
+    step_metres: f64,
+    /// Antennas of both, where transmitters stand apart from receivers.
+    antennas: Option<[radar::Pair; 2]>,
     heard: Vec<Heard>,
+}
+
+/// A range and the cosine of a direction.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    range_metres: f64,
+    cos: f64,
+}
+
+impl Listener {
+    /// The place (x, y) at a range and in a direction from here, metres.
+    fn place_metres(&self, range_metres: f64, cos: f64) -> [f64; 2] {
+        [self.x_metres + range_metres * cos, range_metres * (1.0 - cos * cos).max(0.0).sqrt()]
+    }
+
+    /// By how much more this element measures of the place at (x, y) than one antenna would that sends and hears where it stands.
+    fn more_than_one_antenna(&self, [x, y]: [f64; 2]) -> Seen {
+        let Some([own, next]) = &self.antennas else { return Seen::default() };
+        let dx = x - self.x_metres;
+        let alone = dx.hypot(y).max(f64::MIN_POSITIVE);
+        let measured = own.range_metres(x, y);
+        let cos = (measured - next.range_metres(x, y)) / self.step_metres;
+        Seen { range_metres: measured - alone, cos: cos - dx / alone }
+    }
+
+    /// What one antenna here would measure of the place that this element measures at a range and in a direction.
+    fn as_one_antenna(&self, range_metres: f64, cos: f64) -> Seen {
+        let measured = Seen { range_metres, cos };
+        let nearer = |seen: Seen| {
+            let more = self.more_than_one_antenna(self.place_metres(seen.range_metres, seen.cos.clamp(-1.0, 1.0)));
+            Seen { range_metres: range_metres - more.range_metres, cos: cos - more.cos }
+        };
+        (0..AS_ONE_ROUNDS).fold(measured, |seen, _| nearer(seen))
+    }
 }
 
 /// What both ends' tones lead to.
@@ -201,7 +242,8 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
         cos_tolerance: COS + DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
         is_alone: is_alone(i),
     });
-    Some(Listener { x_metres, heard: heard.collect() })
+    let antennas = (!radar.is_monostatic()).then(|| [radar.pair(number), radar.pair(number + 1)]);
+    Some(Listener { x_metres, step_metres, antennas, heard: heard.collect() })
 }
 
 /// What tone `i` of the first end may be paired with if its range has wrapped this often.
@@ -209,8 +251,11 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
     let (bins, bin_metres) = (radar.samples as f64, radar.range_resolution_metres());
     let between = last.x_metres - first.x_metres;
     let own = first.heard[i];
-    let range = (own.bins + wraps as f64 * bins) * bin_metres;
-    let predicted = (range * range + between * between - 2.0 * range * own.cos * between).max(0.0).sqrt() / bin_metres;
+    let Seen { range_metres: range, cos } =
+        first.as_one_antenna((own.bins + wraps as f64 * bins) * bin_metres, own.cos);
+    let from_last = (range * range + between * between - 2.0 * range * cos * between).max(0.0).sqrt();
+    let more = last.more_than_one_antenna(first.place_metres(range, cos));
+    let predicted = (from_last + more.range_metres) / bin_metres;
     let mut pairs = Vec::new();
     for (j, other) in last.heard.iter().enumerate() {
         let off = (predicted - other.bins + bins / 2.0).rem_euclid(bins) - bins / 2.0;
@@ -218,15 +263,15 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         if off.abs() > search {
             continue;
         }
-        let other_range = (predicted - off) * bin_metres;
+        let other_range = (predicted - off) * bin_metres - more.range_metres;
         let along = (range * range - other_range * other_range + between * between) / (2.0 * between);
         let square = range * range - along * along;
         if range <= 0.0 || other_range <= 0.0 || square < 0.0 {
             continue;
         }
         let disagreements = [
-            (along / range - own.cos) / own.cos_tolerance,
-            ((along - between) / other_range - other.cos) / other.cos_tolerance,
+            (along / range - cos) / own.cos_tolerance,
+            ((along - between) / other_range - (other.cos - more.cos)) / other.cos_tolerance,
             (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / LOG_GAIN,
         ];
         let apart = disagreements.iter().map(|part| part.abs()).sum();

@@ -4,6 +4,7 @@
 //! write out samples, and good enough to tell which rows are worth that.
 
 use super::end_beams::{beam_of_cos, end_beams};
+use super::view::View;
 use crate::radar::{End, Radar};
 use crate::signal::simd::{LANES_F64, Lanes, phasor};
 use num_complex::Complex64;
@@ -21,8 +22,8 @@ const W: usize = LANES_F64;
 pub struct PhasedBeams {
     /// `[beam * bins + range bin]` for each end.
     beams: [Vec<Complex64>; 2],
-    /// Where the middle of each end stands on the array's axis, metres.
-    pub centres_metres: [f64; 2],
+    /// How each end sees places.
+    pub views: [View; 2],
     bins: usize,
     bins_per_metre: f64,
     /// Phase of an echo at the middle of the chirp, turns a metre.
@@ -82,7 +83,7 @@ impl PhasedBeams {
         });
         PhasedBeams {
             beams,
-            centres_metres: End::BOTH.map(|e| radar.end_centre_metres(e)),
+            views: End::BOTH.map(|end| View::of(radar, end)),
             bins,
             bins_per_metre: 1.0 / radar.range_resolution_metres(),
             turns_per_metre: radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
@@ -116,12 +117,11 @@ impl PhasedBeams {
     }
 
     /// What there is at (x, y), metres.
-    pub fn presence(&self, strongest: &Strongest, [x_metres, y_metres]: [f64; 2]) -> Presence {
+    pub fn presence(&self, strongest: &Strongest, place_metres: [f64; 2]) -> Presence {
         let of_end = |end: usize| {
-            let dx = x_metres - self.centres_metres[end];
-            let range = (dx * dx + y_metres * y_metres).sqrt().max(NEAREST_METRES);
+            let (range, cos) = self.views[end].of_place(place_metres, NEAREST_METRES);
             let bin = (range * self.bins_per_metre).round() as usize % self.bins;
-            let own = self.beams[end][beam_of_cos(dx / range, BEAMS) * self.bins + bin].norm_sqr();
+            let own = self.beams[end][beam_of_cos(cos, BEAMS) * self.bins + bin].norm_sqr();
             let most = strongest.0[end][bin].max(f64::MIN_POSITIVE);
             Presence { part: own / most, even_power: most * range.powi(4) }
         };
@@ -167,15 +167,17 @@ impl PhasedBeams {
         let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
         let [x, y] = row.first_metres;
         let [step_x, step_y] = row.step_metres;
-        let from = x - self.centres_metres[end];
+        let view = &self.views[end];
+        let from = x - view.centre_metres;
         for (block, heard) in heard.chunks_mut(W).enumerate() {
             let i = Lanes::<f64, W>(std::array::from_fn(|lane| number(block * W + lane)));
             let dx = i * Lanes::splat(step_x) + Lanes::splat(from);
             let y = i * Lanes::splat(step_y) + Lanes::splat(y);
-            let range = (dx * dx + y * y).sqrt().map(|r| if r > NEAREST_METRES { r } else { NEAREST_METRES });
+            let range = view.range_metres(dx, y).map(|r| if r > NEAREST_METRES { r } else { NEAREST_METRES });
             let phase = phasor::<f64, W, FMA>(range * Lanes::splat(-turns_per_metre));
             let inverse = range.map(f64::recip);
-            let (cos, at, amplitude) = (dx * inverse, range * Lanes::splat(bins_per_metre), inverse * inverse);
+            let (cos, at, amplitude) =
+                (view.cos_theta(dx, y, inverse), range * Lanes::splat(bins_per_metre), inverse * inverse);
             for (lane, heard) in heard.iter_mut().enumerate() {
                 let beam = &self.beams[end][beam_of_cos(cos.0[lane], BEAMS) * bins..][..bins];
                 let low = at.0[lane] as usize;

@@ -2,6 +2,7 @@
 //! each cell looks up its own range and angle at each end.
 
 use super::end_beams::beam_of_cos;
+use super::view::View;
 use crate::radar::{End, Radar};
 
 /// Where every cell of a polar grid lies in the beams of each end.
@@ -25,12 +26,11 @@ impl Registered {
         };
         let places_metres: Vec<[f64; 2]> = (0..2 * bins * columns).map(place).collect();
         let cells = End::BOTH.map(|end| {
-            let centre = radar.end_centre_metres(end);
-            let cell = |[x, y]: &[f64; 2]| {
-                let dx = x - centre;
-                let range = (dx * dx + y * y).sqrt().max(1e-9);
+            let view = View::of(radar, end);
+            let cell = |place: &[f64; 2]| {
+                let (range, cos) = view.of_place(*place, 1e-9);
                 let row = (range / bin_metres).round() as usize % bins;
-                (beam_of_cos(dx / range, beams) * bins + row) as u32
+                (beam_of_cos(cos, beams) * bins + row) as u32
             };
             places_metres.iter().map(cell).collect()
         });

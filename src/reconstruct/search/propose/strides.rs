@@ -172,7 +172,7 @@ impl Grid {
 /// line of sight, and across.
 pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wavelengths: f64) -> [f64; 2] {
     let range = from[0].hypot(from[1]).max(0.1);
-    let between = (beams.centres_metres[1] - beams.centres_metres[0]).abs().max(1e-3);
+    let between = (beams.views[1].centre_metres - beams.views[0].centre_metres).abs().max(1e-3);
     let wavelength = beams.turns_per_metre.abs().recip();
     let last = (FIRST - 1) as f64;
     // By the range itself, by its difference between the ends, by the row's curvature.
@@ -332,7 +332,7 @@ impl Kernel for SlopeOf<'_> {
     fn run<const FMA: bool>(self) -> Slope {
         let SlopeOf { beams, row, heard } = self;
         let mut out = Slope { added: 0.0, all: 0.0, gradient: [0.0; 4], hessian: [[0.0; 4]; 4] };
-        for (end, centre) in beams.centres_metres.iter().enumerate() {
+        for (end, view) in beams.views.iter().enumerate() {
             beams.listen::<FMA>(end, row, heard);
             let AddedUp { sum, weight, power } = added_up(heard);
             (out.added, out.all) = (out.added + sum.norm_sqr() / weight, out.all + power);
@@ -341,12 +341,10 @@ impl Kernel for SlopeOf<'_> {
             let towards = sum.conj() * weight.recip();
             for (i, h) in heard.iter().enumerate() {
                 let i = i as f64;
-                let [x, y] = row.place_metres(i);
-                let range = ((x - centre) * (x - centre) + y * y).sqrt().max(1e-3);
                 let share = h.weighted * towards;
                 // Phases as they were taken off: by minus the turns of the distance.
-                let turn = -TAU * beams.turns_per_metre / range;
-                let [by_x, by_y] = [turn * (x - centre), turn * y];
+                let turn = -TAU * beams.turns_per_metre;
+                let [by_x, by_y] = view.slope(row.place_metres(i), 1e-3).map(|slope| turn * slope);
                 let by = [by_x, by_y, i * by_x, i * by_y];
                 let certain = share.re.max(0.0);
                 total += certain;

@@ -1,0 +1,153 @@
+//! The strip of elements: side by side, to click and to drag.
+
+use crate::app::widgets::theme::Inks;
+use crate::radar::{BuiltArray, ElementError, End, Radar};
+use eframe::egui;
+use eframe::egui::{
+    Color32, EventFilter, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2,
+    vec2,
+};
+
+/// Phase from which on a dot is drawn: rounding leaves less after a calibration.
+const LEAST_DRAWN_DEGREES: f64 = 0.05;
+
+/// How far an element is moved where the pointer is dragged by a point, millimetres.
+const MILLIMETRES_A_POINT: f64 = 0.05;
+
+/// Most points by which an element is drawn above or below the line.
+const MOST_UP: f32 = 16.0;
+
+/// Largest distance from an element's place, millimetres.
+pub(super) const MOST_MILLIMETRES: f64 = 1000.0;
+
+/// Where elements stand on the screen.
+struct Strip<'a> {
+    radar: &'a Radar,
+    elements: &'a BuiltArray,
+    rect: Rect,
+}
+
+/// Draws the strip. `chosen` is the element whose numbers are shown; the answer is an element that was changed, with its errors.
+pub(super) fn show(
+    ui: &mut Ui,
+    radar: &Radar,
+    elements: &BuiltArray,
+    chosen: &mut usize,
+) -> Option<(usize, ElementError)> {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 58.0), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Elements"));
+    let strip = Strip { radar, elements, rect };
+    strip.draw(ui, *chosen);
+    let changed = strip.switched(&response, chosen).or_else(|| strip.moved(&response, chosen));
+    if response.has_focus() {
+        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+        let steps = |key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key));
+        let (right, left) = (steps(Key::ArrowRight), steps(Key::ArrowLeft));
+        *chosen = (*chosen + right).saturating_sub(left).min(radar.elements - 1);
+    }
+    if let Some(tip) = response.hover_pos().map(|pos| strip.tip(pos.x)) {
+        response.on_hover_text_at_pointer(tip);
+    }
+    changed
+}
+
+impl Strip<'_> {
+    fn at(&self, n: usize) -> f32 {
+        self.rect.left() + (n as f32 + 0.5) / self.radar.elements as f32 * self.rect.width()
+    }
+
+    fn under(&self, x: f32) -> usize {
+        let count = self.radar.elements;
+        (((x - self.rect.left()) / self.rect.width() * count as f32).max(0.0) as usize).min(count - 1)
+    }
+
+    /// The elements side by side: red where one is dead, the gain as the height of its bar, the phase as where its dot stands.
+    fn draw(&self, ui: &Ui, chosen: usize) {
+        let inks = Inks::of(ui.visuals());
+        let painter = ui.painter().with_clip_rect(self.rect);
+        painter.rect_filled(self.rect, 3.0, inks.ground);
+        let [first, last] = End::BOTH.map(|end| self.radar.end_range(end));
+        for n in 0..self.radar.elements {
+            let ink = match n {
+                n if first.contains(&n) => inks.ends[0],
+                n if last.contains(&n) => inks.ends[1],
+                _ => inks.array,
+            };
+            match self.elements.element(n) {
+                error if error.dead => self.cross(&painter, n, Stroke::new(1.5, ui.visuals().error_fg_color)),
+                error => self.bar(&painter, n, error, ink, inks.selected),
+            }
+        }
+        painter.vline(self.at(chosen), self.rect.y_range(), Stroke::new(1.0, inks.selected));
+    }
+
+    /// Width of a bar, points.
+    fn width(&self) -> f32 {
+        (self.rect.width() / self.radar.elements as f32 * 0.7).clamp(1.0, 10.0)
+    }
+
+    /// Where element `n` stands: off its place as it really is, within what can be drawn.
+    fn place(&self, n: usize) -> Pos2 {
+        let error = self.elements.element(n);
+        let along = (error.position_millimetres * 1e-3 / self.radar.element_spacing_metres) as f32 * self.width();
+        let up = (error.forward_millimetres / MILLIMETRES_A_POINT) as f32;
+        pos2(self.at(n) + along, self.rect.center().y - up.clamp(-MOST_UP, MOST_UP))
+    }
+
+    fn cross(&self, painter: &Painter, n: usize, stroke: Stroke) {
+        let Pos2 { x, y } = self.place(n);
+        painter.line_segment([pos2(x - 3.0, y - 8.0), pos2(x + 3.0, y + 8.0)], stroke);
+        painter.line_segment([pos2(x - 3.0, y + 8.0), pos2(x + 3.0, y - 8.0)], stroke);
+    }
+
+    fn bar(&self, painter: &Painter, n: usize, error: ElementError, ink: Color32, dot: Color32) {
+        let place = self.place(n);
+        let half = (9.0 + error.gain.0 as f32 * 2.0).clamp(2.0, 24.0);
+        painter.rect_filled(Rect::from_center_size(place, vec2(self.width(), 2.0 * half)), 1.0, ink);
+        if error.phase_degrees.abs() >= LEAST_DRAWN_DEGREES {
+            let up = (error.phase_degrees / 180.0) as f32 * 24.0;
+            painter.circle_filled(place - vec2(0.0, up), 2.0, dot);
+        }
+    }
+
+    /// The element that a click silenced or woke.
+    fn switched(&self, response: &Response, chosen: &mut usize) -> Option<(usize, ElementError)> {
+        if !response.clicked() {
+            return None;
+        }
+        // The space bar clicks, too, wherever the pointer is.
+        let pointer = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary));
+        *chosen = pointer.map_or(*chosen, |pos| self.under(pos.x));
+        let error = self.elements.element(*chosen);
+        Some((*chosen, ElementError { dead: !error.dead, ..error }))
+    }
+
+    /// The element under a drag's beginning: moved to the side along the array, up towards the scene.
+    fn moved(&self, response: &Response, chosen: &mut usize) -> Option<(usize, ElementError)> {
+        let began = response.interact_pointer_pos().filter(|_| response.drag_started_by(PointerButton::Primary));
+        *chosen = began.map_or(*chosen, |pos| self.under(pos.x));
+        let moved = response.drag_delta();
+        if !response.dragged_by(PointerButton::Primary) || moved == Vec2::ZERO {
+            return None;
+        }
+        let by = |from: f64, points: f32| {
+            (from + f64::from(points) * MILLIMETRES_A_POINT).clamp(-MOST_MILLIMETRES, MOST_MILLIMETRES)
+        };
+        let error = self.elements.element(*chosen);
+        let position_millimetres = by(error.position_millimetres, moved.x);
+        let forward_millimetres = by(error.forward_millimetres, -moved.y);
+        Some((*chosen, ElementError { position_millimetres, forward_millimetres, ..error }))
+    }
+
+    /// What is told of the element under the pointer.
+    fn tip(&self, x: f32) -> String {
+        let n = self.under(x);
+        let e = self.elements.element(n);
+        let state = if e.dead { "dead".to_owned() } else { format!("{:+.2} dB, {:+.1}°", e.gain.0, e.phase_degrees) };
+        let [along, forward] = [e.position_millimetres, e.forward_millimetres];
+        format!(
+            "element {n}: {state}, {along:+.2} mm along, {forward:+.2} mm forward\nclick: dead or alive; drag: move"
+        )
+    }
+}

@@ -1,0 +1,112 @@
+//! Elements from a list of numbers, as a spreadsheet copies it.
+
+use super::{BuiltArray, Decibels, ElementError};
+
+/// Columns of a line.
+const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase in degrees"];
+
+/// Why a text is no list of elements.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ElementListError {
+    /// A cell holds no number.
+    #[error("line {line}, {column}: \"{found}\" is no number")]
+    Cell {
+        /// From 1.
+        line: usize,
+        /// What was expected there.
+        column: &'static str,
+        /// What stands there, cut to a few letters.
+        found: String,
+    },
+    /// A line has more columns than are known.
+    #[error(
+        "line {line} has {found} columns; expected at most 4: place in mm, forward in mm, gain in dB, phase in degrees"
+    )]
+    Columns {
+        /// From 1.
+        line: usize,
+        /// How many.
+        found: usize,
+    },
+    /// Other than one line an element.
+    #[error("{found} lines for {expected} elements; expected one line an element, the leftmost first")]
+    Lines {
+        /// How many.
+        found: usize,
+        /// The radar's elements.
+        expected: usize,
+    },
+}
+
+/// Letters of a cell that are shown.
+const SHOWN: usize = 20;
+
+impl BuiltArray {
+    /// The elements that `text` describes: a line an element, the leftmost first. A line holds up to four numbers with tabs, semicolons, commas or
+    /// spaces between them: how far the element stands from its place towards +x and off the line towards the scene (millimetres), its gain
+    /// (decibels) and its phase (degrees). Missing numbers are 0; a cell left empty between two tabs is, too.
+    ///
+    /// # Errors
+    /// [`ElementListError`] names line and column.
+    pub fn from_list(text: &str, elements: usize) -> Result<BuiltArray, ElementListError> {
+        let lines = text.trim_end().lines();
+        let found = lines.clone().count();
+        if found != elements {
+            return Err(ElementListError::Lines { found, expected: elements });
+        }
+        let elements = lines.enumerate().map(|(i, line)| element(i + 1, line)).collect::<Result<_, _>>()?;
+        Ok(BuiltArray { elements })
+    }
+}
+
+/// The cells of a line. A spreadsheet puts tabs or semicolons between them; else they are commas or spaces.
+fn cells(line: &str) -> Vec<&str> {
+    let line = line.trim_end();
+    if let Some(between) = ['\t', ';'].into_iter().find(|c| line.contains(*c)) {
+        return line.split(between).map(str::trim).collect();
+    }
+    line.split([',', ' ']).map(str::trim).filter(|cell| !cell.is_empty()).collect()
+}
+
+fn element(line: usize, text: &str) -> Result<ElementError, ElementListError> {
+    let cells = cells(text);
+    if cells.len() > COLUMNS.len() {
+        return Err(ElementListError::Columns { line, found: cells.len() });
+    }
+    let mut numbers = [0.0; COLUMNS.len()];
+    for ((number, cell), column) in numbers.iter_mut().zip(cells).zip(COLUMNS) {
+        if !cell.is_empty() {
+            let parsed = cell.parse::<f64>().ok().filter(|v| v.is_finite());
+            let problem = || ElementListError::Cell { line, column, found: cell.chars().take(SHOWN).collect() };
+            *number = parsed.ok_or_else(problem)?;
+        }
+    }
+    let [position_millimetres, forward_millimetres, gain, phase_degrees] = numbers;
+    Ok(ElementError { gain: Decibels(gain), phase_degrees, position_millimetres, forward_millimetres, dead: false })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_from_a_spreadsheet_is_read() {
+        let array = BuiltArray::from_list("0.1\t-2\t0.5\t10\n\t-1\n0.3\n", 3).unwrap();
+        let of = |n: usize| {
+            let e = array.element(n);
+            [e.position_millimetres, e.forward_millimetres, e.gain.0, e.phase_degrees]
+        };
+        assert_eq!([of(0), of(1), of(2)], [[0.1, -2.0, 0.5, 10.0], [0.0, -1.0, 0.0, 0.0], [0.3, 0.0, 0.0, 0.0]]);
+        assert_eq!(BuiltArray::from_list("1, 2\n3 4", 2).unwrap().element(1).forward_millimetres, 4.0);
+        assert_eq!(BuiltArray::from_list("1;;3", 1).unwrap().element(0).gain.0, 3.0);
+    }
+
+    #[test]
+    fn a_problem_names_line_with_column() {
+        let told = |text: &str, elements| BuiltArray::from_list(text, elements).unwrap_err().to_string();
+        assert_eq!(told("1\n2", 3), "2 lines for 3 elements; expected one line an element, the leftmost first");
+        assert_eq!(told("1\n2\tabc", 2), "line 2, forward in mm: \"abc\" is no number");
+        assert_eq!(told("nan", 1), "line 1, place in mm: \"nan\" is no number");
+        assert!(told("1 2 3 4 5", 1).starts_with("line 1 has 5 columns; expected at most 4"));
+    }
+}

@@ -1,0 +1,87 @@
+//! The numbers that the lesson on pairs of antennas teaches, computed again: each must stand in its text as it comes out here.
+
+use apertura::lesson::question::Answer;
+use apertura::lesson::{Lesson, Step, shipped};
+use apertura::maps::{LogMap, LogMaps};
+use apertura::radar::Radar;
+use apertura::signal::{Floor, simulate};
+use ndarray::Array1;
+
+fn lesson() -> (&'static str, Lesson) {
+    let toml = shipped::ALL.iter().find(|s| s.id == "pairs-of-antennas").unwrap().toml;
+    (toml, Lesson::from_toml(toml).unwrap())
+}
+
+/// Holds the lesson to a number as its text has it.
+fn taught(number: &str) {
+    assert!(lesson().0.contains(number), "the lesson does not say \"{number}\"");
+}
+
+fn target(radar: &Radar, step: &Step) -> LogMap {
+    LogMaps::of_signal(radar, &simulate(radar, &step.scene(), Floor::Exact, 0).unwrap()).full
+}
+
+/// The row of the brightest cell, decibels below it.
+fn brightest_row(map: &LogMap) -> Array1<f64> {
+    let peak = map.decades().iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+    let row = map.decades().outer_iter().find(|row| row.iter().any(|v| *v == peak)).unwrap();
+    row.mapv(|v| 20.0 * (v - peak))
+}
+
+/// Columns of the brightest row within 10 dB of its peak.
+fn width_columns(map: &LogMap) -> usize {
+    brightest_row(map).iter().filter(|v| **v > -10.0).count()
+}
+
+fn right_option(step: &Step) -> &str {
+    match &step.predict.as_ref().unwrap().answer {
+        Answer::Choice { options, right } => &options[*right - 1],
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_antennas_are_as_many_as_the_lesson_says() {
+    let (_, lesson) = lesson();
+    let radar = lesson.steps[0].radar.clone();
+    let antennas = radar.antennas.as_ref().unwrap();
+    let extent_centimetres = |x: &[f64]| 100.0 * (x[x.len() - 1] - x[0]);
+    taught(&format!(
+        "{} transmitters on {:.0} cm",
+        antennas.transmitter_x_metres().len(),
+        extent_centimetres(antennas.transmitter_x_metres())
+    ));
+    taught(&format!(
+        "{} receivers on {:.0} cm",
+        antennas.receiver_x_metres().len(),
+        extent_centimetres(antennas.receiver_x_metres())
+    ));
+    taught(&format!("fill a line of {:.0} cm", 100.0 * radar.aperture_metres()));
+    assert_eq!(right_option(&lesson.steps[0]), radar.elements.to_string());
+}
+
+#[test]
+fn the_blob_of_a_near_point_is_as_wide_as_the_lesson_says() {
+    let (_, lesson) = lesson();
+    let step = &lesson.steps[1];
+    let pairs = step.radar.clone();
+    let alone = Radar { antennas: None, ..pairs.clone() };
+    taught(&format!("blob is {} columns wide at -10 dB", width_columns(&target(&alone, step))));
+    assert_eq!(right_option(step), format!("{} columns", width_columns(&target(&pairs, step))));
+}
+
+#[test]
+fn the_physical_convention_shows_a_point_where_the_lesson_says() {
+    let (_, lesson) = lesson();
+    let step = &lesson.steps[2];
+    let shown = |radar: &Radar| {
+        let row = brightest_row(&target(radar, step));
+        let weight = |v: &f64| 10f64.powf(v / 10.0);
+        let sum: f64 = row.iter().enumerate().map(|(k, v)| weight(v) * radar.cos_of_column(k as f64)).sum();
+        sum / row.iter().map(weight).sum::<f64>()
+    };
+    let (physical, thesis) = (shown(&step.radar.clone()), shown(&Radar::default()));
+    assert!((physical - 0.843).abs() < 0.002, "{physical}");
+    assert!((thesis.abs() - 0.81).abs() < 0.005, "{thesis}");
+    assert_eq!(right_option(step), "At 0.843");
+}
