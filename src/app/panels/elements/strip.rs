@@ -125,8 +125,11 @@ impl Strip<'_> {
 
     /// The element under a drag's beginning: moved to the side along the array, up towards the scene.
     fn moved(&self, response: &Response, chosen: &mut usize) -> Option<(usize, ElementError)> {
-        let began = response.interact_pointer_pos().filter(|_| response.drag_started_by(PointerButton::Primary));
-        *chosen = began.map_or(*chosen, |pos| self.under(pos.x));
+        if response.drag_started_by(PointerButton::Primary) {
+            // By then the pointer may have left the element that it was pressed on.
+            let pressed = response.ctx.input(|i| i.pointer.press_origin());
+            *chosen = pressed.map_or(*chosen, |pos| self.under(pos.x));
+        }
         let moved = response.drag_delta();
         if !response.dragged_by(PointerButton::Primary) || moved == Vec2::ZERO {
             return None;
