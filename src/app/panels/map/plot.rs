@@ -4,7 +4,7 @@ use super::frame::Frame;
 use crate::app::state::{MapView, Projection};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::nudge::{pan_keys, zoom_keys};
-use crate::radar::Carrier;
+use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 
 /// Where the picture goes within the panel, below a legend that is `above` points high: between the same margins in every map.
@@ -58,6 +58,21 @@ pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pa
     }
 }
 
+/// Directions this far apart share a column where nearly all directions have one of their own, in cos(theta).
+const LEAST_PERIOD_COS: f64 = 1.9;
+
+/// What the axis of directions is called, the longest name first.
+fn direction_titles(radar: &Radar) -> &'static [&'static str] {
+    if radar.fold_period_cos() < LEAST_PERIOD_COS {
+        return &["cos θ, folded: each column stands for two directions", "cos θ, folded"];
+    }
+    &[
+        "cos θ: −1 is −90° (left), 0 straight ahead, 1 is +90° (right)",
+        "cos θ (0 straight ahead, 1 at 90° right)",
+        "cos θ",
+    ]
+}
+
 /// Draws both axes of the part that is shown; the title below leaves `free` points at each end.
 pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
     let Frame { rect, view, radar, projection, .. } = frame;
@@ -65,20 +80,7 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
         Projection::RangeAngle => {
             let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);
             let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
-            let title = match radar.carrier {
-                Carrier::OneWay => {
-                    let titles = [
-                        "cos θ: −1 is −90° (left), 0 straight ahead, 1 is +90° (right)",
-                        "cos θ (0 straight ahead, 1 at 90° right)",
-                        "cos θ",
-                    ];
-                    axes::fitting(painter, rect.width() - 2.0 * free, &titles)
-                }
-                Carrier::TwoWay => {
-                    let titles = ["cos θ, folded: each column stands for two directions", "cos θ, folded"];
-                    axes::fitting(painter, rect.width() - 2.0 * free, &titles)
-                }
-            };
+            let title = axes::fitting(painter, rect.width() - 2.0 * free, direction_titles(radar));
             // A column stands for the direction in its middle: the ends of a whole map are half a column away from a round number.
             let column = cos(1.0 / radar.elements as f32) - cos(0.0);
             let slack = if view.high.x - view.low.x == 1.0 { 0.51 * column } else { 0.0 };
@@ -99,4 +101,20 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
         }
     };
     axes::draw(ui, painter, rect, x, y);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::presets::RadarPreset;
+
+    #[test]
+    fn only_radars_whose_directions_share_columns_are_called_folded() {
+        let is_folded = |radar: &Radar| direction_titles(radar)[0].contains("folded");
+        for id in ["table-3.1", "table-3.1-physical", "cascade-12x16", "chip-3x4"] {
+            assert!(!is_folded(&RadarPreset::by_id(id).expect("a preset").radar), "{id}");
+        }
+        assert!(is_folded(&RadarPreset::by_id("one-wavelength").expect("a preset").radar));
+        assert!(is_folded(&Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() }));
+    }
 }
