@@ -4,6 +4,7 @@
 //! it. The stream's checksum tells a line that lost a letter. Line breaks within it, as mails put there, don't matter.
 
 use crate::maps::Normalisation;
+use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::scene::SceneError;
 use crate::scene::file::{SceneFile, SceneTextError, from_toml_beside, to_toml_beside};
@@ -56,6 +57,9 @@ pub struct View {
     pub cartesian_part: Part,
     /// eta', the threshold of the target.
     pub target_eta: f32,
+    /// The detector in the place of the thresholds, if one is in use.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cfar: Option<Cfar>,
     /// eta of the method, where it isn't the method's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub eta: Option<f32>,
@@ -247,6 +251,7 @@ mod tests {
             range_angle_part: Part { left: 0.25, ..Part::default() },
             cartesian_part: Part::default(),
             target_eta: 0.9,
+            cfar: None,
             eta: Some(0.31),
             method: "nomp".to_owned(),
             marks: true,
@@ -288,7 +293,8 @@ mod tests {
             let level = Floor::Level(DecibelMilliwatts(snr - 100.0));
             let floor = if marks { level } else { Floor::Snr(Decibels(snr)) };
             let normalisation = Normalisation::DynamicRange(Decibels(range));
-            let view = View { floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
+            let cfar = marks.then(|| Cfar { guard: [samples, 2], ..Cfar::default() });
+            let view = View { cfar, floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
             let shared = Shared { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
             let text = shared.to_text().unwrap();
             prop_assert!(is_shared(&text) && !text.contains(char::is_whitespace));

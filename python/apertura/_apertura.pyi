@@ -40,6 +40,7 @@ __all__ = [
     "__version__",
     "ambiguity",
     "built_elements",
+    "cfar",
     "cramer_rao",
     "dataset",
     "evaluate",
@@ -312,6 +313,7 @@ def metrics(target: npt.ArrayLike, output: npt.ArrayLike, eta: float, *, has_ech
 def roc(
     target: npt.ArrayLike, output: npt.ArrayLike
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+def cfar(power: npt.ArrayLike, detector: str = "ca") -> npt.NDArray[np.bool_]: ...
 def evaluate(
     methods: Sequence[str],
     sets: Sequence[str | int],
@@ -327,6 +329,7 @@ def evaluate(
     progress: _Progress | None = None,
     path: _Path | None = None,
     only: Sequence[tuple[str, int, str]] | None = None,
+    cfar: str | None = None,
 ) -> list[dict[str, Any]]: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...
 def write_rows(path: _Path, rows: Sequence[dict[str, Any]]) -> None: ...

@@ -12,6 +12,7 @@ use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::{Metrics, Roc};
 use apertura::files::{write_atomically, write_bytes};
 use apertura::maps::RangeAngleMap;
+use apertura::maps::cfar::Cfar;
 use apertura::reconstruct::Reconstructor;
 use apertura::scene::generate::Kind;
 use ndarray::{Array1, Array2};
@@ -80,6 +81,35 @@ pub fn metrics<'py>(
     py.import("apertura.objects")?.getattr("Metrics")?.call1(figures)
 }
 
+/// Detects at a constant false-alarm rate: each cell against a threshold from the cells around it.
+///
+/// Args:
+///     power: Linear power, numbers `[range bins, columns]`, as in `10 ** (2 * maps.decades)`; its unit doesn't matter. Columns wrap around.
+///     detector: "ca" (cell averaging, Finn and Johnson 1968) or "os" (ordered statistics, Rohling 1983), with guard and training cells a
+///         side as range bins x columns and the wanted rate, as in "ca:guard=4x0:training=16x0:rate=0.0001".
+///
+/// Returns:
+///     bool `[range bins, columns]`: True where a cell is a detection. The rate holds for noise of exponentially distributed power that is
+///     independent from cell to cell.
+///
+/// Raises:
+///     ValueError: The text is no detector, the window leaves no training cell, or a cell is negative or not finite.
+#[pyfunction]
+#[pyo3(signature = (power, detector="ca"))]
+pub fn cfar<'py>(
+    py: Python<'py>,
+    power: &Bound<'py, PyAny>,
+    detector: &str,
+) -> PyResult<Bound<'py, numpy::PyArray2<bool>>> {
+    let cfar: Cfar = named(detector)?;
+    let power: Array2<f64> = numbers(power, "power", SHAPE)?;
+    if let Some((cell, v)) = power.indexed_iter().find(|(_, v)| !(v.is_finite() && **v >= 0.0)) {
+        return Err(value(format!("power: {v} at {cell:?}; expected finite numbers from 0")));
+    }
+    let mask = work::run(py, None, |_| cfar.detect(power.view()))?.map_err(value)?;
+    Ok(owned(py, mask.cells))
+}
+
 /// P_D and P_FA over 4097 thresholds from 0 to 1.
 ///
 /// Args:
@@ -117,6 +147,8 @@ pub fn roc<'py>(
 ///     radar: The radar; that of table 3.1 where none is given.
 ///     on_row: Called with each row as it is found.
 ///     progress: Called with the part that is done, 0 to 1.
+///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows then have `cfar_detection`,
+///         `cfar_false_alarm` and `cfar`.
 ///     path: A CSV file that all rows are written to in one step, in the program's format.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
@@ -129,7 +161,7 @@ pub fn roc<'py>(
 ///     OSError: `path` can't be written.
 #[pyfunction]
 #[pyo3(signature = (methods, sets, *, count=100, seed=0, floor="thesis", normalisation="min-max", purpose="test", reading="program",
-                    radar=None, on_row=None, progress=None, path=None, only=None))]
+                    radar=None, on_row=None, progress=None, path=None, only=None, cfar=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn evaluate<'py>(
     py: Python<'py>,
@@ -146,6 +178,7 @@ pub fn evaluate<'py>(
     progress: Progress<'_, 'py>,
     path: Option<PathBuf>,
     only: Option<Vec<(String, u32, String)>>,
+    cfar: Option<&str>,
 ) -> PyResult<Bound<'py, PyList>> {
     if count == 0 {
         return Err(value("count is 0; expected at least 1"));
@@ -160,6 +193,7 @@ pub fn evaluate<'py>(
         count,
         floor,
         normalisation,
+        cfar: cfar.map(named).transpose()?,
         ..Campaign::default()
     };
     let kinds: PyResult<Vec<_>> = sets.iter().map(|s| named::<Kind>(&set_name(s)?)).collect();
@@ -304,7 +338,12 @@ fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
     };
     dict.set_item("echoes", echoes)?;
     dict.set_item("echoes_found", echoes_found)?;
-    for part in Part::ALL {
+    if row.cfar.is_some() {
+        dict.set_item("cfar_detection", row.cfar.and_then(|rates| rates.detection))?;
+        dict.set_item("cfar_false_alarm", row.cfar.map(|rates| rates.false_alarm))?;
+    }
+    let has_cfar = row.origin.as_ref().is_some_and(|origin| origin.cfar.is_some());
+    for part in Part::ALL.into_iter().filter(|part| has_cfar || *part != Part::Cfar) {
         dict.set_item(part.name(), row.origin.as_ref().map(|origin| origin.text(part)))?;
     }
     Ok(dict)

@@ -34,6 +34,7 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(methods::methods, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::metrics, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::roc, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::cfar, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::read_rows, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::write_rows_to, module)?)?;

@@ -223,6 +223,7 @@ impl Scene {
             range_angle_part: Part::default(),
             cartesian_part: Part::default(),
             target_eta: TARGET_ETA,
+            cfar: None,
             eta: None,
             method: method.to_owned(),
             marks: false,

@@ -106,3 +106,33 @@ def test_rows_come_one_by_one(tmp_path):
     again = ap.read_rows(tmp_path / "rows.csv")
     assert [row["squared_error"] for row in again] == [row["squared_error"] for row in rows]
     assert again[0]["floor"] == "thesis" and again[0]["methods"] == "baseline"
+
+
+@pytest.mark.parametrize("detector", ["ca:guard=1x1:training=2x3:rate=0.05", "os:guard=1x1:training=2x3:rate=0.05"])
+def test_a_detector_keeps_its_rate_on_noise(detector):
+    power = np.random.default_rng(3).exponential(size=(200, 256))
+    detected = ap.cfar(power, detector)
+    assert detected.shape == power.shape and detected.dtype == bool
+    assert abs(detected.mean() / 0.05 - 1) < 0.1
+    assert (ap.cfar(7e-20 * power, detector) == detected).all()
+
+
+def test_a_detector_that_can_not_work_is_refused():
+    power = np.ones((16, 16))
+    for detector, said in [
+        ("ca:training=0x0", "no training cells"),
+        ("ca:rate=1", "between 0 and 1"),
+        ("mean", "expected ca or os"),
+        ("ca:training=1x20", "span 41 columns and the map has 16"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            ap.cfar(power, detector)
+    with pytest.raises(ValueError, match="finite numbers from 0"):
+        ap.cfar(-power)
+
+
+def test_rows_tell_what_a_detector_makes_of_an_output():
+    rows = [ap.evaluate(["baseline"], ["1"], count=1, cfar=cfar)[0] for cfar in (None, "ca")]
+    assert "cfar" not in rows[0] and rows[1]["cfar"] == "ca:guard=4x0:training=16x0:rate=0.0001"
+    assert 0 < rows[1]["cfar_detection"] <= 1 and 0 <= rows[1]["cfar_false_alarm"] < 1
+    assert rows[0]["squared_error"] == rows[1]["squared_error"]

@@ -16,6 +16,7 @@ use crate::radar::Radar;
 use crate::reconstruct::Detection;
 use crate::scene::Reflector;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 impl App {
     /// The scene being edited, what is selected and what can be undone.
@@ -96,6 +97,14 @@ impl App {
     /// Why the method has no output, where it has none.
     pub fn refusal(&self) -> Option<&str> {
         self.jobs.pipeline.refusal().map(|r| r.reason.as_str())
+    }
+
+    /// Cells that the detector in use finds in the target and in the first method's output, and why it finds none.
+    pub fn detected(&self) -> ([Option<usize>; 2], Option<&str>) {
+        let count = |map: &Option<Arc<RangeAngleMap>>| Some(map.as_ref()?.lambda.iter().filter(|v| **v > 0.5).count());
+        let found = self.jobs.pipeline.result().map(|r| &r.detected);
+        let counts = found.map_or([None, None], |found| [count(&found.target), count(&found.outputs[0])]);
+        (counts, self.jobs.pipeline.detector_error())
     }
 
     /// Bounds asked for since the start.

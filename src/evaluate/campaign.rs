@@ -1,10 +1,11 @@
 //! Methods over many scenes: what fills tables 4.1 to 4.3, row by row.
 
-use super::rows::{GivenTwice, Origin, Row, Scenes, Whole, radar_text};
+use super::rows::{CfarRates, GivenTwice, Origin, Row, Scenes, Whole, radar_text};
 use super::sets::{Case, FolderError, SceneSet};
 pub use super::shard::Shard;
 use super::trial::{Answer, RowPlace, Trial};
 use crate::maps::Normalisation;
+use crate::maps::cfar::{Cfar, CfarError};
 use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstructor, Request, untrained_noise};
 use crate::scattering::Echoing;
@@ -38,6 +39,8 @@ pub struct Campaign {
     pub floor: Floor,
     /// How every map is normalised.
     pub normalisation: Normalisation,
+    /// A detector that is tried on every output beside the method's threshold, if one is.
+    pub cfar: Option<Cfar>,
 }
 
 impl Default for Campaign {
@@ -52,6 +55,7 @@ impl Default for Campaign {
             shard: Shard::default(),
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
+            cfar: None,
         }
     }
 }
@@ -78,6 +82,16 @@ pub enum CampaignError {
     /// A set or a method would count twice.
     #[error(transparent)]
     GivenTwice(#[from] GivenTwice),
+    /// The detector can't work on a scene's maps.
+    #[error("the detector on scene {index} of {set}: {source}")]
+    Detector {
+        /// The set.
+        set: String,
+        /// Number of the scene.
+        index: u32,
+        /// Why.
+        source: CfarError,
+    },
     /// A method failed.
     #[error("{method} on scene {index} of {set}: {source}")]
     Method {
@@ -166,6 +180,7 @@ impl Campaign {
                 weights: method.weights(),
                 shard: self.shard,
                 whole: whole.clone(),
+                cfar: self.cfar,
             };
             Ok(methods.iter().map(|method| Arc::new(origin(method))).collect())
         };
@@ -305,6 +320,16 @@ impl Job<'_> {
         })
     }
 
+    /// P_D and P_FA by the campaign's detector, if it has one.
+    fn cfar_rates(&self, answer: &Answer) -> Result<Option<CfarRates>, CampaignError> {
+        let rates = self.campaign.cfar.map(|cfar| self.trial.cfar_rates(answer, &cfar));
+        rates.transpose().map_err(|source| CampaignError::Detector {
+            set: set_name(self.set),
+            index: self.index,
+            source,
+        })
+    }
+
     /// The rows of the methods of these places, in their order.
     fn rows(
         &self,
@@ -319,7 +344,8 @@ impl Job<'_> {
         for i in order {
             let answer = self.answer(methods[i])?;
             let place = RowPlace { set: &set, index: self.index, seed, origin: Some(&self.origins[i]) };
-            let row = self.trial.row(&place, methods[i].name(), &answer, self.set.false_alarm());
+            let mut row = self.trial.row(&place, methods[i].name(), &answer, self.set.false_alarm());
+            row.cfar = self.cfar_rates(&answer)?;
             on_row(&row, self.trial, &answer);
             found.push((i, row));
         }
@@ -380,6 +406,24 @@ mod tests {
         let origins = campaign.origins(&sets, &methods).unwrap();
         let rest = campaign.run_rest(&sets, &methods, &origins, &is_done, &Task::default(), |_, _, _| ()).unwrap();
         assert_eq!(figures(&rest), figures(&whole[3..]));
+    }
+
+    #[test]
+    fn rows_tell_what_the_detector_makes_of_every_output() {
+        let sets = [SceneSet::Generated(Kind::Set1)];
+        let run = |cfar: Option<Cfar>| {
+            Campaign { count: 1, cfar, ..Campaign::default() }.run(&sets, &[&Baseline], &Task::default(), |_| ())
+        };
+        let [without, with] = [None, Some(Cfar::default())].map(|cfar| figures(&run(cfar).unwrap()));
+        assert_eq!((without[0].cfar, with[0].origin.as_ref().unwrap().cfar), (None, Some(Cfar::default())));
+        assert_eq!(Row { cfar: None, origin: None, ..with[0].clone() }, Row { origin: None, ..without[0].clone() });
+        let few = Cfar { false_alarm: 1e-12, ..Cfar::default() };
+        let few = run(Some(few)).unwrap()[0].cfar.unwrap();
+        let usual = with[0].cfar.unwrap();
+        assert!(usual.detection > Some(0.0) && few.detection < usual.detection, "{usual:?} {few:?}");
+        assert!(few.false_alarm < usual.false_alarm, "{usual:?} {few:?}");
+        let wide = run(Some(Cfar { guard: [3, 600], ..Cfar::default() })).unwrap_err().to_string();
+        assert!(wide.starts_with("the detector on scene 0 of set 1: guard and training cells span"), "{wide}");
     }
 
     #[test]

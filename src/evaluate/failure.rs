@@ -7,7 +7,7 @@
 
 use super::TARGET_ETA;
 use super::blobs::Blobs;
-use crate::maps::{Aperture, LambdaScale, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
+use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::Radar;
 use crate::scattering::{Echoing, Seen};
 use crate::scene::Scene;
@@ -131,7 +131,12 @@ impl Footprints {
 
     /// Judges `output`, thresholded at `eta`, against `target`.
     pub fn judge(&self, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Failures {
-        let found = Blobs::of(&output.above(eta));
+        self.judge_cells(target, output, &output.above(eta))
+    }
+
+    /// Judges `output`, of which `detected` are the detections, against `target`.
+    pub fn judge_cells(&self, target: &RangeAngleMap, output: &RangeAngleMap, detected: &Mask) -> Failures {
+        let found = Blobs::of(detected);
         let alone = self.objects.iter().map(|cells| alone(cells, target, output, &found));
         let (mut objects, covered): (Vec<Fate>, Vec<f64>) = alone.unzip();
         for i in 0..objects.len() {

@@ -127,6 +127,16 @@ impl Tally {
         self.estimate(Column::DetectionAtPrinted)
     }
 
+    /// P_D by the detector of constant false-alarm rate that was tried beside the threshold; NaN where none was.
+    pub fn cfar_detection(&self) -> Estimate {
+        self.estimate(Column::CfarDetection)
+    }
+
+    /// P_FA by that detector.
+    pub fn cfar_false_alarm(&self) -> Estimate {
+        self.estimate(Column::CfarFalseAlarm)
+    }
+
     /// Objects missed, a scene.
     pub fn missed(&self) -> Estimate {
         self.estimate(Column::Missed)

@@ -2,8 +2,9 @@
 
 use super::echoes::{self, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
-use super::rows::{Origin, Row};
+use super::rows::{CfarRates, Origin, Row};
 use super::{Metrics, Roc};
+use crate::maps::cfar::{Cfar, CfarError};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
 use crate::radar::Radar;
@@ -98,7 +99,17 @@ impl Trial {
         echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
-    /// The row of an answer. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
+    /// P_D and P_FA of an answer by `cfar` in the place of the method's threshold. Its Lambda is brought to power on the target's scale.
+    ///
+    /// # Errors
+    /// [`CfarError`] where the detector can't work on the radar's maps.
+    pub fn cfar_rates(&self, answer: &Answer, cfar: &Cfar) -> Result<CfarRates, CfarError> {
+        let detected = cfar.detect_lambda(&answer.found.lambda, self.scale)?.as_map();
+        let metrics = Metrics::of_echoes(!self.scene.is_silent(), &self.target, &detected, 0.5);
+        Ok(CfarRates { detection: metrics.detection, false_alarm: metrics.false_alarm })
+    }
+
+    /// The row of an answer, without [`Row::cfar`]. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
     pub fn row(&self, place: &RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
         let facts = Facts::of(&self.radar, &self.scene);
@@ -125,6 +136,7 @@ impl Trial {
             found: Some(failures.count(|fate| fate == Fate::Found)),
             merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
             wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
+            cfar: None,
             echoes: self.scene.objects.iter().any(|object| object.body().is_some()).then(|| self.echoes(answer)),
             origin: place.origin.cloned(),
         }

@@ -36,6 +36,7 @@ pub const ALL: &[Shipped] = lessons![
     "what-one-end-sees",
     "folding-and-wrapping",
     "the-floor",
+    "a-threshold-that-follows-the-noise",
     "what-a-network-can-know",
 ];
 

@@ -1,5 +1,6 @@
 //! The maps of a step's scene, on which questions and challenges are checked.
 
+use crate::maps::cfar::Cfar;
 use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
 use crate::methods;
 use crate::radar::Radar;
@@ -20,6 +21,8 @@ pub struct View {
     pub normalisation: Normalisation,
     /// The method whose output is shown.
     pub method: String,
+    /// The detector in the place of thresholds, if one is in use.
+    pub cfar: Option<Cfar>,
 }
 
 impl Default for View {
@@ -30,6 +33,7 @@ impl Default for View {
             seed: 0,
             normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
             method: "live".to_owned(),
+            cfar: None,
         }
     }
 }

@@ -9,7 +9,7 @@ use super::stage::View;
 pub struct Uses {
     /// A method's output: a question or a challenge measures it, or a step names a method of its own.
     pub output: bool,
-    /// A threshold: a question asks for one.
+    /// A threshold: a question asks for one, or a step detects by a detector.
     pub threshold: bool,
 }
 
@@ -27,8 +27,11 @@ impl Lesson {
                 || step.predict.as_ref().is_some_and(|question| question.needs_output())
                 || step.challenge.as_ref().is_some_and(|c| c.needs_output() || c.needs_hidden_output())
         });
-        let mut questions = self.steps.iter().filter_map(|step| step.predict.as_ref());
-        let threshold = questions.any(|question| matches!(question.answer, Answer::Threshold { .. }));
+        let threshold = self.steps.iter().any(|step| {
+            let asks =
+                step.predict.as_ref().is_some_and(|question| matches!(question.answer, Answer::Threshold { .. }));
+            asks || step.view.cfar.is_some()
+        });
         Uses { output, threshold }
     }
 }

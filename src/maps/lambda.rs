@@ -110,4 +110,9 @@ impl Mask {
     pub fn count(&self) -> usize {
         self.cells.iter().filter(|&&c| c).count()
     }
+
+    /// Lambda 1 where the mask is set and 0 elsewhere: any threshold between them gives the mask again.
+    pub fn as_map(&self) -> RangeAngleMap {
+        RangeAngleMap { lambda: self.cells.mapv(|set| if set { 1.0 } else { 0.0 }) }
+    }
 }

@@ -5,6 +5,7 @@
 
 pub mod archive;
 pub mod cartesian;
+pub mod cfar;
 pub mod fast;
 mod lambda;
 mod log_map;

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod compare;
+mod detection;
 mod documents;
 mod failures;
 mod figures;

@@ -380,6 +380,29 @@ fn a_networks_rows_say_which_weights_it_had() {
 }
 
 #[test]
+fn a_detector_gets_columns_of_its_own() {
+    let folder = folder();
+    let run = "evaluate --method baseline --set 1 --count 2 --rows";
+    apertura(&folder, &format!("{run} without.csv")).assert().success();
+    let with = format!("{run} with.csv --cfar os:guard=2x2:training=4x8:rate=1e-3");
+    let table = apertura(&folder, &with).assert().success();
+    table.stdout(contains("by os:guard=2x2:training=4x8:rate=0.001"));
+    apertura(&folder, &with).assert().success().stderr(contains("holds all 2 rows of this run already"));
+    let first = |file: &str| {
+        let text = std::fs::read_to_string(folder.path().join(file)).unwrap();
+        text.lines().next().unwrap().to_owned()
+    };
+    assert!(!first("without.csv").contains("cfar") && first("with.csv").contains("cfar_detection,cfar_false_alarm"));
+    let other = apertura(&folder, &format!("{run} with.csv")).assert().failure();
+    other.stderr(contains("cfar is os:guard=2x2:training=4x8:rate=0.001 there and nothing here"));
+    let merged = apertura(&folder, "evaluate --merge with.csv without.csv").assert().failure();
+    merged.stderr(contains("cfar"));
+    apertura(&folder, "evaluate --merge with.csv --json").assert().success().stdout(contains("\"detector\": \"os:"));
+    let wrong = apertura(&folder, "evaluate --cfar ca:training=0x0").assert().failure();
+    wrong.stderr(contains("there are no training cells"));
+}
+
+#[test]
 fn worsen_writes_a_scene_as_bad_as_it_says() {
     let folder = folder();
     apertura(&folder, "scenes --set 2 --seed 3 --index 1 -o s.toml").assert().success();

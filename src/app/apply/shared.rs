@@ -69,6 +69,7 @@ fn share(state: &State) -> Shared {
         range_angle_part: part(state.map_views.range_angle),
         cartesian_part: part(state.map_views.cartesian),
         target_eta: settings.target_eta,
+        cfar: settings.cfar,
         eta: settings.method_eta.get(&method).copied(),
         method,
         marks: settings.show_reflectors,
@@ -126,6 +127,8 @@ fn look(state: &mut State, view: View) {
     settings.colours = view.colours;
     settings.projection = if view.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
     settings.target_eta = view.target_eta;
+    settings.cfar = view.cfar;
+    settings.last_cfar = view.cfar.unwrap_or(settings.last_cfar);
     match view.eta {
         Some(eta) => _ = settings.method_eta.insert(view.method.clone(), eta),
         None => _ = settings.method_eta.remove(&view.method),

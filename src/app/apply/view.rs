@@ -2,6 +2,7 @@
 
 use crate::app::jobs::Jobs;
 use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
+use crate::maps::cfar::Cfar;
 use crate::signal::Floor;
 
 /// Does such a command.
@@ -28,6 +29,14 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
             }
         }
         ViewCommand::SetTargetEta(eta) => settings.target_eta = eta,
+        ViewCommand::SetCfar(cfar) => {
+            settings.cfar = cfar;
+            settings.last_cfar = cfar.unwrap_or(settings.last_cfar);
+        }
+        ViewCommand::Detect(statistic) => {
+            settings.cfar = statistic.map(|statistic| Cfar { statistic, ..settings.last_cfar });
+            settings.last_cfar = settings.cfar.unwrap_or(settings.last_cfar);
+        }
         ViewCommand::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
         ViewCommand::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
         ViewCommand::SetBounds(bounds) => settings.bounds = bounds,

@@ -39,6 +39,7 @@ fn evaluation_plan(state: &State, choice: &EvaluationChoice) -> EvaluationPlan {
         seed: choice.seed,
         floor: state.settings.floor,
         normalisation: state.settings.normalisation,
+        cfar: state.settings.cfar,
         ..Campaign::default()
     };
     let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();

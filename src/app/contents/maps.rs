@@ -52,9 +52,10 @@ impl Contents<'_> {
         let method = pipeline.output().map_or("output", |o| o.method);
         let refusal = pipeline.refusal().map(|r| r.reason.as_str());
         let eta = pipeline.eta(self.state, MethodSlot::First);
-        let is_now = shown.is_some_and(|r| r.request.etas[0] == eta);
+        let cfar = self.state.settings.cfar;
+        let is_now = shown.is_some_and(|r| r.request.etas[0] == eta && r.request.cfar == cfar);
         let metrics = pipeline.scores().filter(|_| is_now).map(|scores| scores.metrics);
-        roc::show(ui, roc::Input { points, method, eta, metrics, refusal })
+        roc::show(ui, roc::Input { points, method, eta, cfar, metrics, refusal })
     }
 
     pub(super) fn map_caption(&self, kind: MapKind) -> Option<String> {
@@ -99,6 +100,7 @@ pub(super) fn map_input<'a>(
         marks: map::Marks { objects, found },
         kinds: kinds(state, jobs, kind),
         told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
+        cfar: settings.cfar.filter(|_| kind.is_above()),
         over: None,
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
@@ -119,8 +121,8 @@ pub(super) fn map_input<'a>(
 /// What tells hits, misses and false alarms of a method's output apart, where there is a target.
 fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map::ToldApart<'a>> {
     let pair = &jobs.pipeline.method(slot).output()?.pair;
-    let etas = [jobs.pipeline.eta(state, slot), TARGET_ETA];
-    Some(map::ToldApart { output: &pair.output, target: pair.target.as_deref()?, etas })
+    let (output, eta) = jobs.pipeline.judged(state, slot)?;
+    Some(map::ToldApart { output, target: pair.target.as_deref()?, etas: [eta, TARGET_ETA] })
 }
 
 /// What is to be known of the method whose map it is: over how much noise it was trained, where the scene has another amount. Nobody knows
@@ -154,6 +156,7 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
         metrics: pipeline.scores_in(slot).map(|s| s.metrics).filter(|_| !state.is_predicting()),
         target_eta: state.settings.target_eta,
         output_eta: pipeline.eta(state, slot),
+        cfar: state.settings.cfar,
         explained: pipeline.unexplained().map(|u| u.explained),
         units: state.settings.units,
         range_db: pipeline.range_db(),
@@ -255,6 +258,11 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
     if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
         // Where there is a target, there is a picture, and nobody reads this.
         let reason = "The recording has the samples of the two ends alone: nobody knows what all elements would see.";
+        return Some(map::Problem { reason, instead: None });
+    }
+    if kind.is_above()
+        && let Some(reason) = jobs.pipeline.detector_error()
+    {
         return Some(map::Problem { reason, instead: None });
     }
     let slot = kind.slot()?;

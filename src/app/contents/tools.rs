@@ -16,6 +16,7 @@ impl Contents<'_> {
             scores: pipeline.scores().filter(|_| !state.is_predicting()),
             outdated: pipeline.output_is_outdated(),
             wanted: pipeline.wants_output(),
+            detector_error: pipeline.detector_error(),
         };
         let input = controls::Input {
             is_recorded: state.editor.document().recording().is_some(),

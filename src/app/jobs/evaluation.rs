@@ -34,6 +34,8 @@ pub struct EvaluationRow {
     pub false_alarm: Estimate,
     /// P_D where every scene's P_FA is held to the printed one of experiment 2.
     pub detection_at_printed: Option<Estimate>,
+    /// P_D and P_FA by a detector of constant false-alarm rate, where one was in use.
+    pub cfar: Option<[Estimate; 2]>,
     /// Time of a map.
     pub median_milliseconds: f64,
 }
@@ -110,14 +112,18 @@ impl Evaluation {
         let mut text = String::from(
             "set,method,eta,scenes,squared_error,squared_error_se,detection,detection_se,false_alarm,false_alarm_se,\
              detection_at_printed_false_alarm,median_milliseconds,optimiser,squared_error_median,detection_median,\
-             false_alarm_median\n",
+             false_alarm_median",
         );
+        let has_cfar = self.rows().iter().any(|r| r.cfar.is_some());
+        text.push_str(if has_cfar { ",cfar_detection,cfar_false_alarm\n" } else { "\n" });
         for r in self.rows() {
             let at = r.detection_at_printed.map_or_else(String::new, |d| d.mean.to_string());
             // Writing to a string can't fail.
+            let cfar = |rates: [Estimate; 2]| format!(",{},{}", rates[0].mean, rates[1].mean);
+            let cfar = r.cfar.map_or_else(|| if has_cfar { ",,".to_owned() } else { String::new() }, cfar);
             let _ = writeln!(
                 text,
-                "{},{},{},{},{},{},{},{},{},{},{at},{:.3},\"{}\",{},{},{}",
+                "{},{},{},{},{},{},{},{},{},{},{at},{:.3},\"{}\",{},{},{}{cfar}",
                 r.set,
                 r.method,
                 r.eta,
@@ -167,6 +173,7 @@ fn run(plan: &Plan, teller: &Teller<'_, EvaluationRow>) -> Result<(), Stopped> {
                 detection: tally.detection(),
                 false_alarm: tally.false_alarm(),
                 detection_at_printed: Some(tally.detection_at_printed()).filter(|d| d.mean.is_finite()),
+                cfar: plan.campaign.cfar.map(|_| [tally.cfar_detection(), tally.cfar_false_alarm()]),
                 median_milliseconds: tally.median_milliseconds(),
             });
         }

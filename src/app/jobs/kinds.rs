@@ -15,12 +15,14 @@ use std::sync::Arc;
 #[derive(Clone)]
 struct Output {
     lambda: Arc<RangeAngleMap>,
+    /// The map that is compared with the threshold: the output itself, or what a detector made of it.
+    judged: Arc<RangeAngleMap>,
     eta: f32,
 }
 
 impl Output {
     fn same(&self, other: &Output) -> bool {
-        Arc::ptr_eq(&self.lambda, &other.lambda) && self.eta == other.eta
+        Arc::ptr_eq(&self.lambda, &other.lambda) && Arc::ptr_eq(&self.judged, &other.judged) && self.eta == other.eta
     }
 }
 
@@ -113,7 +115,8 @@ impl Kinds {
         let output = |slot| {
             let pair = pipeline.method(slot).output().map(|o| &o.pair)?;
             let of_it = pair.target.as_ref().is_some_and(|target| Arc::ptr_eq(target, &truth.target.lambda));
-            of_it.then(|| Output { lambda: pair.output.clone(), eta: pipeline.eta(state, slot) })
+            let (judged, eta) = pipeline.judged(state, slot).filter(|_| of_it)?;
+            Some(Output { lambda: pair.output.clone(), judged: judged.clone(), eta })
         };
         let request = Request { outputs: MethodSlot::BOTH.map(output), truth };
         let is_new = !self.asked.as_ref().is_some_and(|asked| asked.same(&request));
@@ -159,7 +162,7 @@ impl Kinds {
 fn judge(footprints: &Footprints, request: &Request) -> Made {
     let Truth { scene, target, .. } = &request.truth;
     let fates = |output: &Output| {
-        let failures = footprints.judge(&target.lambda, &output.lambda, output.eta);
+        let failures = footprints.judge_cells(&target.lambda, &output.lambda, &output.judged.above(output.eta));
         let brightest = |cells: &[Cell]| {
             let lambda = |cell: &Cell| output.lambda.lambda[*cell];
             cells.iter().copied().max_by(|a, b| lambda(a).total_cmp(&lambda(b)))
@@ -210,9 +213,10 @@ mod tests {
         output.lambda.slice_mut(ndarray::s![.., 512..]).fill(0.0);
         output.lambda.slice_mut(ndarray::s![400..404, 200..210]).fill(0.95);
         output.lambda[[402, 205]] = 1.0;
+        let judged = Arc::new(output.clone());
         let request = Request {
             truth: Truth { radar: radar.clone(), scene: scene.clone(), target },
-            outputs: [Some(Output { lambda: Arc::new(output.clone()), eta: 0.9 }), None],
+            outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None],
         };
         let mut kept = Kept::default();
         let [Some(fates), None] = judge(kept.footprints(&request.truth), &request) else {

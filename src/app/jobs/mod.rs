@@ -4,6 +4,7 @@
 mod bounds;
 mod calibration;
 mod camera;
+mod detected;
 mod dialogs;
 mod evaluation;
 mod export;

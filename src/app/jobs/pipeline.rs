@@ -8,6 +8,7 @@
 //!
 //! The second method works only while the panel that compares it with the first is in sight.
 
+use super::detected::DETECTED;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
 use super::recorded::Unexplained;
 use super::rest::{Motion, Rest};
@@ -15,10 +16,12 @@ use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
 use crate::engine::{Stage, Wanted};
 use crate::evaluate::TARGET_ETA;
+use crate::maps::RangeAngleMap;
 use crate::platform::Instant;
 use crate::signal::{Floor, Unfinished};
 use crate::task::{Reply, Task, Worker};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What is older than this on screen is marked as old: less would flicker.
@@ -189,6 +192,7 @@ impl Pipeline {
             difference: settings.difference,
             dark: state.dark,
             target_eta: settings.target_eta,
+            cfar: settings.cfar,
             etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
             scores: output && (recording.is_some() || !scene.objects.is_empty() || is_noise),
             roc: looked_at.roc,
@@ -270,6 +274,21 @@ impl Pipeline {
         let MapsResult { request, frame, .. } = self.result.as_ref()?;
         let target = frame.full.clone().filter(|_| request.recording.is_none())?;
         Some(Truth { radar: request.radar.clone(), scene: request.scene.clone(), target })
+    }
+
+    /// Why the detector in use finds nothing.
+    pub fn detector_error(&self) -> Option<&str> {
+        self.result.as_ref()?.detected.error.as_deref()
+    }
+
+    /// What says which cells of a method's output are detections: the output and its threshold, or a detector's map and the threshold in the
+    /// middle of its two values; nothing while the detector has not seen the output yet.
+    pub fn judged(&self, state: &State, slot: MethodSlot) -> Option<(&Arc<RangeAngleMap>, f32)> {
+        let output = &self.method(slot).output()?.pair.output;
+        let Some(cfar) = state.settings.cfar else { return Some((output, self.eta(state, slot))) };
+        let result = self.result.as_ref().filter(|r| r.request.cfar == Some(cfar))?;
+        let is_of_it = result.request.pairs[slot as usize].as_ref().is_some_and(|p| Arc::ptr_eq(&p.output, output));
+        Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTED))
     }
 
     /// The maps that can be cut.

@@ -1,12 +1,14 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
+use super::detected::{DETECTED, Detected, Detector};
 use super::painter::{Painter, Picture};
 use super::recorded::{RecordedMaps, Unexplained};
 use super::subject::{Paint, Subject};
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, Frame, ReadyMap, Wanted};
-use crate::evaluate::{Metrics, Roc, RocPoint, blobs};
+use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::RangeAngleMap;
+use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::radar::Radar;
 use crate::recording::Recording;
@@ -74,6 +76,8 @@ pub struct MapsRequest {
     pub target_eta: f32,
     /// eta of either method.
     pub etas: [f32; 2],
+    /// The detector in the place of all three, if one is in use.
+    pub cfar: Option<Cfar>,
     /// Whether P_D, P_FA, SE and blobs are looked at.
     pub scores: bool,
     /// Whether the ROC is looked at.
@@ -107,7 +111,7 @@ impl MapsRequest {
             && self.pictures == other.pictures
             && (self.colours, self.projection) == (other.colours, other.projection)
             && (self.difference, self.dark) == (other.difference, other.dark)
-            && (self.target_eta, self.etas) == (other.target_eta, other.etas)
+            && (self.target_eta, self.etas, self.cfar) == (other.target_eta, other.etas, other.cfar)
             && (self.scores, self.roc) == (other.scores, other.roc)
     }
 }
@@ -132,6 +136,8 @@ pub struct MapsResult {
     pub frame: Frame,
     /// What the scene leaves of a recording, where somebody looks at it, or why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
+    /// What a detector finds in them, where one is in use.
+    pub detected: Detected,
     /// Their pictures.
     pub pictures: BTreeMap<MapKind, Picture>,
     /// Figures of the pairs that were asked about.
@@ -168,6 +174,7 @@ pub struct MapsState {
     engine: Option<Engine>,
     recorded: Option<RecordedMaps>,
     painter: Painter,
+    detector: Detector,
     scores: [Option<ScoresOf>; 2],
     roc: Option<RocOf>,
 }
@@ -176,6 +183,7 @@ pub struct MapsState {
 struct ScoresOf {
     pair: Pair,
     etas: [f32; 2],
+    cfar: Option<Cfar>,
     scores: Scores,
 }
 
@@ -192,9 +200,10 @@ impl MapsState {
     /// Why a scene has no maps, or that `task` was cancelled.
     pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
         let (frame, unexplained) = self.frame(&request, task)?;
+        let detected = self.detector.detect(&request, &frame);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
-            if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, kind) {
+            if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
                 pictures.insert(kind, self.painter.paint(&request.radar, kind, &subject));
             }
         }
@@ -203,12 +212,17 @@ impl MapsState {
         let is_silent = request.recording.is_none() && request.scene.is_silent();
         let mut scores = [None, None];
         for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
-            let etas = [request.target_eta, request.etas[slot]];
-            scores[slot] = pair.as_ref().and_then(|pair| scored(&mut self.scores[slot], is_silent, pair, etas));
+            let judged = Judged {
+                etas: [request.target_eta, request.etas[slot]],
+                cfar: request.cfar,
+                detected: detected.target.as_ref().zip(detected.outputs[slot].as_ref()),
+            };
+            scores[slot] = pair.as_ref().and_then(|pair| scored(&mut self.scores[slot], is_silent, pair, &judged));
         }
         let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
         let painted = self.painter.painted;
-        Ok(MapsResult { request, frame, unexplained, pictures, scores, roc, painted, took: Duration::ZERO })
+        let took = Duration::ZERO;
+        Ok(MapsResult { request, frame, unexplained, detected, pictures, scores, roc, painted, took })
     }
 
     /// The maps of the scene, or of the recording that stands in its place, and what the scene leaves of it.
@@ -253,19 +267,34 @@ impl MapsState {
 }
 
 /// Figures of a pair, which are kept; `None` where there is nothing to compare the output with.
-fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, etas: [f32; 2]) -> Option<Scores> {
-    if let Some(last) = kept.as_ref().filter(|s| s.pair.same(pair) && s.etas == etas) {
+fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, judged: &Judged<'_>) -> Option<Scores> {
+    let Judged { etas, cfar, detected } = *judged;
+    if let Some(last) = kept.as_ref().filter(|s| s.pair.same(pair) && (s.etas, s.cfar) == (etas, cfar)) {
         return Some(last.scores);
     }
     let target = pair.target.as_ref()?;
-    let [target_eta, output_eta] = etas;
-    let scores = Scores {
-        metrics: Metrics::of_echoes(!is_silent, target, &pair.output, output_eta),
-        target_blobs: blobs(target, target_eta),
-        output_blobs: blobs(&pair.output, output_eta),
+    let (above, [target_eta, output_eta]) = match cfar {
+        None => ((target, &pair.output), etas),
+        Some(_) => (detected?, [DETECTED; 2]),
     };
-    *kept = Some(ScoresOf { pair: pair.clone(), etas, scores });
+    let metrics = Metrics::of_echoes(!is_silent, target, above.1, output_eta);
+    let scores = Scores {
+        metrics: Metrics { squared_error: squared_error(target, &pair.output), ..metrics },
+        target_blobs: blobs(above.0, target_eta),
+        output_blobs: blobs(above.1, output_eta),
+    };
+    *kept = Some(ScoresOf { pair: pair.clone(), etas, cfar, scores });
     Some(scores)
+}
+
+/// What says which cells are detected.
+struct Judged<'a> {
+    /// Thresholds of target and output.
+    etas: [f32; 2],
+    /// The detector in their place, if one is in use.
+    cfar: Option<Cfar>,
+    /// What it found in target and output.
+    detected: Option<(&'a Arc<RangeAngleMap>, &'a Arc<RangeAngleMap>)>,
 }
 
 /// What the picture of one map shows; `None` where there is no such map.
@@ -273,6 +302,7 @@ fn subject(
     frame: &Frame,
     unexplained: Option<&Result<Unexplained, String>>,
     request: &MapsRequest,
+    detected: &Detected,
     kind: MapKind,
 ) -> Option<Subject> {
     let lambda = |map: &Option<ReadyMap>| map.as_ref().map(|m| m.lambda.clone());
@@ -287,9 +317,15 @@ fn subject(
         MapKind::Target => (lambda(&frame.full), None, colours),
         MapKind::Output | MapKind::Second => (output, None, colours),
         MapKind::Doubt => (pair?.doubt.clone(), None, Paint::Doubt(request.colours)),
+        MapKind::TargetAbove if request.cfar.is_some() => {
+            (detected.target.clone(), None, Paint::Above { eta: DETECTED, dark })
+        }
         MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above { eta: request.target_eta, dark }),
         MapKind::OutputAbove | MapKind::SecondAbove => {
-            let eta = request.etas[slot?];
+            let (output, eta) = match request.cfar {
+                None => (output, request.etas[slot?]),
+                Some(_) => (detected.outputs[slot?].clone(), DETECTED),
+            };
             match &pair?.target {
                 Some(target) => (output, Some(target.clone()), Paint::Detections { eta, dark }),
                 None => (output, None, Paint::Above { eta, dark }),

@@ -1,5 +1,7 @@
 //! Settings: radar and floor, display, reconstruction with its live figures.
 
+mod detector;
+
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{
     Command, DifferenceView, EditCommand, Projection, RadarCommand, Settings, Units, ViewCommand, WorkCommand,
@@ -67,6 +69,8 @@ pub struct Run<'a> {
     pub outdated: bool,
     /// Whether a panel shows an output, or would if there were one.
     pub wanted: bool,
+    /// Why the detector in use finds nothing.
+    pub detector_error: Option<&'a str>,
 }
 
 /// Draws the panel.
@@ -78,7 +82,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             if input.uses.output {
                 group(ui, "Reconstruction", |ui| reconstruction(ui, &input, &mut asked));
             } else if input.uses.threshold {
-                group(ui, "Threshold", |ui| target_eta(ui, &input, &mut asked));
+                group(ui, "Threshold", |ui| thresholds(ui, &input, None, &mut asked));
             }
             group(ui, "Maps", |ui| maps(ui, &input, &mut asked));
             group(ui, "Display", |ui| display(ui, settings, input.uses, &mut asked));
@@ -135,10 +139,23 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         listed.response
     });
     if input.uses.threshold {
-        output_eta(ui, input, method, asked);
-        target_eta(ui, input, asked);
+        thresholds(ui, input, Some(method), asked);
     }
     figures(ui, method, &input.run, asked);
+}
+
+/// What says which cells are detections: thresholds for the whole map, or a detector.
+fn thresholds(ui: &mut Ui, input: &Input<'_>, method: Option<&dyn Reconstructor>, asked: &mut Vec<Command>) {
+    detector::choice(ui, input.settings, asked);
+    match &input.settings.cfar {
+        Some(cfar) => detector::cells(ui, cfar, input.run.detector_error, asked),
+        None => {
+            if let Some(method) = method {
+                output_eta(ui, input, method, asked);
+            }
+            target_eta(ui, input, asked);
+        }
+    }
 }
 
 /// The threshold of the method's output.
@@ -219,7 +236,7 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
     });
     let Some(scores) = run.scores else { return };
     if scores.output_blobs == 0 {
-        ui.weak(format!("Nothing exceeds η. {}: {}.", method.name(), method.description()));
+        ui.weak(format!("Nothing is detected. {}: {}.", method.name(), method.description()));
     }
     let m = scores.metrics;
     // Figures of an earlier scene or method are dimmed as their maps are.

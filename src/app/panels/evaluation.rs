@@ -141,37 +141,51 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
             continue;
         }
         ui.strong(format!("Table 4.{set}: {}", SETS[set - 1]));
-        Grid::new(("table", set)).num_columns(6).striped(true).spacing([8.0, 3.0]).show(ui, |ui| {
-            let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
-            for title in ["", "SE", "P_D %", "P_FA %"] {
-                ui.weak(title);
-            }
-            ui.weak(&at).on_hover_text(
-                "Every scene has a threshold of its own here, which holds its P_FA to the printed one.\n\
+        let has_cfar = rows.iter().any(|r| r.set == set && r.cfar.is_some());
+        Grid::new(("table", set)).num_columns(if has_cfar { 8 } else { 6 }).striped(true).spacing([8.0, 3.0]).show(
+            ui,
+            |ui| {
+                let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
+                for title in ["", "SE", "P_D %", "P_FA %"] {
+                    ui.weak(title);
+                }
+                ui.weak(&at).on_hover_text(
+                    "Every scene has a threshold of its own here, which holds its P_FA to the printed one.\n\
                  The printed P_D is at one threshold for all scenes: it belongs to the column P_D %.",
-            );
-            ui.weak("ms");
-            ui.end_row();
-            for (name, columns) in PRINTED {
-                let printed = columns[set - 1];
-                ui.weak(name);
-                ui.monospace(format!("{:.0}", printed.squared_error));
-                ui.monospace(format!("{:.2}", 100.0 * printed.detection));
-                ui.monospace(format!("{:.2}", 100.0 * printed.false_alarm));
+                );
+                if has_cfar {
+                    let tip = "Each cell is held against the cells around it, by the detector of the Settings panel";
+                    ui.weak("P_D %\nby CFAR").on_hover_text(tip);
+                    ui.weak("P_FA %\nby CFAR").on_hover_text(tip);
+                }
+                ui.weak("ms");
                 ui.end_row();
-            }
-            for row in rows.iter().filter(|r| r.set == set) {
-                let scenes = counted(row.scenes, "scene", "scenes");
-                ui.strong(label(row))
-                    .on_hover_text(format!("{scenes}; mean ± standard error, and the median in brackets"));
-                ui.monospace(with_error(row.squared_error, 1.0, 0));
-                ui.monospace(with_error(row.detection, 100.0, 2));
-                ui.monospace(with_error(row.false_alarm, 100.0, 2));
-                ui.monospace(row.detection_at_printed.map_or("–".to_owned(), |d| with_error(d, 100.0, 2)));
-                ui.monospace(format!("{:.1}", row.median_milliseconds));
-                ui.end_row();
-            }
-        });
+                for (name, columns) in PRINTED {
+                    let printed = columns[set - 1];
+                    ui.weak(name);
+                    ui.monospace(format!("{:.0}", printed.squared_error));
+                    ui.monospace(format!("{:.2}", 100.0 * printed.detection));
+                    ui.monospace(format!("{:.2}", 100.0 * printed.false_alarm));
+                    ui.end_row();
+                }
+                for row in rows.iter().filter(|r| r.set == set) {
+                    let scenes = counted(row.scenes, "scene", "scenes");
+                    ui.strong(label(row))
+                        .on_hover_text(format!("{scenes}; mean ± standard error, and the median in brackets"));
+                    ui.monospace(with_error(row.squared_error, 1.0, 0));
+                    ui.monospace(with_error(row.detection, 100.0, 2));
+                    ui.monospace(with_error(row.false_alarm, 100.0, 2));
+                    ui.monospace(row.detection_at_printed.map_or("–".to_owned(), |d| with_error(d, 100.0, 2)));
+                    if has_cfar {
+                        let rate = |i: usize| row.cfar.map_or("–".to_owned(), |rates| with_error(rates[i], 100.0, 2));
+                        ui.monospace(rate(0));
+                        ui.monospace(rate(1));
+                    }
+                    ui.monospace(format!("{:.1}", row.median_milliseconds));
+                    ui.end_row();
+                }
+            },
+        );
         ui.add_space(8.0);
     }
 }
@@ -241,6 +255,7 @@ mod tests {
             detection: estimate(0.99351, 0.10123),
             false_alarm: estimate(0.10163, 0.10012),
             detection_at_printed: Some(estimate(1.0, 0.0)),
+            cfar: None,
             median_milliseconds: 1234.5,
         };
         let radar = Radar::default();

@@ -7,6 +7,7 @@ use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::{Metrics, RocPoint, eta_text};
+use crate::maps::cfar::Cfar;
 use eframe::egui;
 use eframe::egui::{Sense, Stroke, Ui};
 
@@ -25,6 +26,8 @@ pub struct Input<'a> {
     pub method: &'a str,
     /// The threshold in use.
     pub eta: f32,
+    /// The detector in its place, if one is in use.
+    pub cfar: Option<Cfar>,
     /// The figures on screen, where they are of this output: the characteristic has thresholds near that in use only.
     pub metrics: Option<Metrics>,
     /// Why there is no output.
@@ -40,13 +43,17 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let place = |p: &RocPoint| [p.false_alarm.max(SMALLEST).log10(), 100.0 * p.detection];
     let nearest = |eta: f32| roc.iter().min_by(|a, b| (a.eta - eta).abs().total_cmp(&(b.eta - eta).abs()));
     let at_eta = |m: Metrics| Some(RocPoint { eta: input.eta, detection: m.detection?, false_alarm: m.false_alarm });
-    let now = input.metrics.and_then(at_eta).or_else(|| nearest(input.eta).copied());
+    let at_threshold = || nearest(input.eta).copied().filter(|_| input.cfar.is_none());
+    let now = input.metrics.and_then(at_eta).or_else(at_threshold);
     let (line, mark) = (Inks::of(ui.visuals()).selected, Inks::of(ui.visuals()).ends[0]);
     egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 }).show(ui, |ui| {
         let mut entries = vec![Entry { sign: Sign::Line, colour: line, name: input.method.to_owned() }];
         if let Some(now) = &now {
             let rates = format!("P_D {}, P_FA {}", percent(now.detection), percent(now.false_alarm));
-            let name = format!("η = {}: {rates}", eta_text(input.eta));
+            let name = match input.cfar {
+                None => format!("η = {}: {rates}", eta_text(input.eta)),
+                Some(cfar) => format!("{}: {rates}", cfar.statistic.name()),
+            };
             entries.push(Entry { sign: Sign::Circle { filled: true }, colour: mark, name });
         }
         legend::row(ui, &entries);
@@ -81,7 +88,7 @@ mod tests {
     #[test]
     fn a_scene_without_a_characteristic_is_told() {
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let input = Input { points: None, method: "baseline", eta: 0.5, metrics: None, refusal: None };
+            let input = Input { points: None, method: "baseline", eta: 0.5, cfar: None, metrics: None, refusal: None };
             asked.extend(show(ui, input));
         };
         let roc = Harness::new_ui_state(draw, Vec::new());
@@ -99,7 +106,8 @@ mod tests {
                 };
                 let points: Vec<RocPoint> = (0..=100).map(point).collect();
                 let metrics = Some(Metrics { squared_error: 1.0, detection: Some(0.4466), false_alarm: 0.0398 });
-                _ = show(ui, Input { points: Some(&points), method: "live", eta: 0.8, metrics, refusal: None });
+                let (points, method) = (Some(points.as_slice()), "live");
+                _ = show(ui, Input { points, method, eta: 0.8, cfar: None, metrics, refusal: None });
             });
             seen::assert_readable(roc.output());
             let texts = seen::texts(roc.output());

@@ -11,6 +11,7 @@ use super::settings::{Projection, Units};
 use super::task_layouts::Task;
 use crate::interact::{Alignment, Along, Coordinates};
 use crate::maps::Normalisation;
+use crate::maps::cfar::Statistic;
 use crate::picture::ColourMap;
 use crate::platform;
 use crate::radar::presets::{self as radar_presets, RadarPreset};
@@ -356,6 +357,24 @@ const TABLE: &[Entry] = {
             View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))),
             "Floor: thermal noise of a level",
             "White noise of -20 dBm in every sample, whatever the scene: an empty scene is noise alone",
+            None,
+        ),
+        entry(
+            View(ViewCommand::Detect(None)),
+            "Detect: global threshold",
+            "Cells whose Λ exceeds η or η' count as detections",
+            None,
+        ),
+        entry(
+            View(ViewCommand::Detect(Some(Statistic::CellAveraging))),
+            "Detect: cell averaging (CFAR)",
+            "Each cell against the mean power of the cells around it, at a constant false-alarm rate",
+            None,
+        ),
+        entry(
+            View(ViewCommand::Detect(Some(Statistic::OrderedStatistics))),
+            "Detect: ordered statistics (CFAR)",
+            "Each cell against a high rank of the cells around it: strong neighbours don't hide it",
             None,
         ),
         entry(

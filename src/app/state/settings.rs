@@ -6,6 +6,7 @@ use super::phasor_settings::PhasorSettings;
 use super::several::Several;
 use crate::interact::{Coordinates, Snap};
 use crate::maps::Normalisation;
+use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::radar::{DecibelMilliwatts, Decibels};
 use crate::signal::Floor;
@@ -97,6 +98,10 @@ pub struct Settings {
     pub difference: DifferenceView,
     /// eta', the threshold of the target.
     pub target_eta: f32,
+    /// The detector in the place of these thresholds, if one is in use.
+    pub cfar: Option<Cfar>,
+    /// The detector that was used last.
+    pub last_cfar: Cfar,
     /// eta for each method, where it differs from the method's own.
     pub method_eta: BTreeMap<String, f32>,
     /// Name of the reconstruction method.
@@ -143,7 +148,7 @@ impl Settings {
                 })*
             };
         }
-        take_back!(floor, snr, level, target_eta, method_eta, normalisation, projection, method);
+        take_back!(floor, snr, level, target_eta, cfar, last_cfar, method_eta, normalisation, projection, method);
         take_back!(show_reflectors, show_kinds);
     }
 }
@@ -160,6 +165,8 @@ impl Default for Settings {
             units: Units::default(),
             difference: DifferenceView::default(),
             target_eta: crate::evaluate::TARGET_ETA,
+            cfar: None,
+            last_cfar: Cfar::default(),
             method_eta: BTreeMap::new(),
             method: String::new(),
             show_reflectors: false,

@@ -49,6 +49,7 @@ fn view_words(command: &ViewCommand) -> &'static str {
         ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => "polar xy coordinates morph bend projection",
         ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
         ViewCommand::Normalise(_) => "dynamic range contrast normalize",
+        ViewCommand::Detect(_) => "cfar constant false alarm rate threshold guard training rohling",
         ViewCommand::SetFloor(_) => "noise snr thermal",
         ViewCommand::ToggleReflectors => "truth ground true rings show objects",
         ViewCommand::ToggleFound => "detections crosses points",

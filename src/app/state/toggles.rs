@@ -18,6 +18,7 @@ impl State {
                 ViewCommand::ToggleWholeDifference => Some(!settings.difference.whole),
                 ViewCommand::Colours(colours) => Some(settings.colours == *colours),
                 ViewCommand::Normalise(normalisation) => Some(settings.normalisation == *normalisation),
+                ViewCommand::Detect(statistic) => Some(settings.cfar.map(|cfar| cfar.statistic) == *statistic),
                 ViewCommand::ToggleReflectors => Some(settings.show_reflectors),
                 ViewCommand::ToggleFound => Some(settings.show_found),
                 ViewCommand::ToggleFieldsOfView => Some(settings.show_fields_of_view),

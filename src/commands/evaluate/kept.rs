@@ -1,7 +1,7 @@
 //! The file of rows that a run appends to and resumes from.
 
 use super::super::CommandError;
-use crate::evaluate::rows::{Column, Origin, Part, Row, RowWriter, Table, merge, read_table, write_rows};
+use crate::evaluate::rows::{Column, Origin, Part, Row, RowWriter, Table, header, merge, read_table, write_rows};
 use crate::files::write_atomically;
 use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions, TryLockError};
@@ -23,6 +23,8 @@ pub struct Wanted {
     pub origins: HashMap<(String, String), Arc<Origin>>,
     /// Seed of generated scenes.
     pub seed: u64,
+    /// Whether a detector of constant false-alarm rate is tried: its rows have more columns.
+    pub has_cfar: bool,
 }
 
 /// Scene and method of a row.
@@ -92,11 +94,11 @@ impl RowFile {
         file.set_len(table.whole_bytes).map_err(on_file(path))?;
         file.seek(SeekFrom::End(0)).map_err(on_file(path))?;
         let out = if table.whole_bytes == 0 {
-            let mut out = RowWriter::new(file).map_err(on_file(path))?;
+            let mut out = RowWriter::new(file, wanted.has_cfar).map_err(on_file(path))?;
             out.flush().map_err(on_file(path))?;
             out
         } else {
-            RowWriter::beneath(file)
+            RowWriter::beneath(file, wanted.has_cfar)
         };
         Ok(RowFile { path: path.to_owned(), out, present: table.rows, appended: Vec::new(), failed: None })
     }
@@ -133,8 +135,7 @@ fn refused(path: &Path, why: &str, ways_out: &str) -> CommandError {
 
 /// The rows of this run that a file holds.
 fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, CommandError> {
-    let names: Vec<&str> = Column::ALL.map(Column::name).into_iter().chain(Part::ALL.map(Part::name)).collect();
-    let header = names.join(",") + "\n";
+    let header = header(wanted.has_cfar).join(",") + "\n";
     let mut start = Vec::new();
     file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
     file.rewind().map_err(on_file(path))?;

@@ -11,6 +11,7 @@ use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{Lack, Row, lacks, merge, read_table};
 use crate::evaluate::sets::{Folder, SceneSet};
+use crate::maps::cfar::Cfar;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
@@ -33,6 +34,9 @@ use std::time::Duration;
 /// its name. For scenes with bodies a further table counts echoes: those that stand 10 dB out of the map of the whole array, and those of them
 /// that the method shows, by classes of 10 dB below the scene's strongest. The end of a wall lies 30 to 60 dB below its glint, where P_D doesn't see it.
 ///
+/// With --cfar a further table gives P_D and P_FA where each cell is held against the cells around it in place of the threshold; rows get the
+/// columns cfar_detection, cfar_false_alarm and cfar. The output is brought to power on the target's scale.
+///
 /// With --rows each row is appended as soon as it is found. The same command resumes a stopped run. Rows of another run are
 /// refused. --merge joins the rows of the parts of one run, and fails where scenes are missing.
 ///
@@ -45,6 +49,7 @@ use std::time::Duration;
 /// scenes, squared_error, detection, false_alarm, missed and ghosts (mean, standard_error and median; rates at the method's threshold),
 /// detection_at_printed_false_alarm (false_alarm, detection, standard_error, median; threshold says that each scene has its own), echoes
 /// (null without bodies; below_db: where each class begins, there and found: echoes of each class, detection: the part of all that are found),
+/// cfar (null without --cfar: detector, and detection and false_alarm by it),
 /// median_milliseconds and near_best (null with one method). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -107,6 +112,10 @@ pub struct Args {
     #[arg(long)]
     thesis_text: bool,
 
+    /// Try a detector of constant false-alarm rate on every output: ca (cell averaging) or os (ordered statistics), with guard and training cells a side as range bins x columns and the wanted rate, as in ca:guard=4x0:training=16x0:rate=1e-4
+    #[arg(long, value_name = "ca|os[:..]", conflicts_with = "merge")]
+    cfar: Option<Cfar>,
+
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
@@ -139,6 +148,7 @@ impl Args {
             count: self.count,
             shard: self.shard,
             floor: self.floor.floor,
+            cfar: self.cfar,
             ..Campaign::default()
         }
     }
@@ -163,7 +173,7 @@ impl Args {
             };
             methods.iter().zip(origins).map(pair).collect::<Vec<_>>()
         });
-        let wanted = Wanted { origins: named.collect(), seed: self.seed };
+        let wanted = Wanted { origins: named.collect(), seed: self.seed, has_cfar: self.cfar.is_some() };
         let open = |path: &PathBuf| RowFile::open(path, &wanted, self.overwrite);
         let mut file = self.rows.as_ref().map(open).transpose()?;
         let maps = scenes * methods.len() as u64;

@@ -60,9 +60,30 @@ struct MethodReport {
     ghosts: Estimate,
     /// `None` where no scene has a body, and in older rows.
     echoes: Option<EchoReport>,
+    /// `None` where no detector of constant false-alarm rate was tried.
+    cfar: Option<CfarReport>,
     median_milliseconds: f64,
     /// Part of the scenes on which no other method is much better; `None` beside no other.
     near_best: Option<f64>,
+}
+
+/// P_D and P_FA by a detector of constant false-alarm rate.
+#[derive(Debug, Serialize)]
+struct CfarReport {
+    detector: String,
+    detection: Estimate,
+    false_alarm: Estimate,
+}
+
+impl CfarReport {
+    fn of(rows: &[&Row], tally: &Tally) -> Option<CfarReport> {
+        let cfar = rows.iter().find_map(|row| row.origin.as_ref()?.cfar)?;
+        Some(CfarReport {
+            detector: cfar.to_string(),
+            detection: tally.cfar_detection(),
+            false_alarm: tally.cfar_false_alarm(),
+        })
+    }
 }
 
 /// P_D where every scene's P_FA is held to a rate.
@@ -211,6 +232,27 @@ impl SetReport {
         }
         let counted = self.methods.iter().filter_map(|m| Some((m.name.as_str(), m.echoes.as_ref()?)));
         by_echo::write(&counted.collect::<Vec<_>>(), width, text);
+        self.write_cfar(width, text);
+    }
+}
+
+impl SetReport {
+    /// P_D and P_FA by a detector of constant false-alarm rate, where one was tried.
+    fn write_cfar(&self, width: usize, text: &mut String) {
+        let Some(first) = self.methods.iter().find_map(|method| method.cfar.as_ref()) else { return };
+        let _ = writeln!(text, "\n{:<width$} {:>20} {:>16}", format!("by {}", first.detector), "P_D %", "P_FA %");
+        for (name, cfar) in self.methods.iter().filter_map(|m| Some((&m.name, m.cfar.as_ref()?))) {
+            let (detection, false_alarm) = (percent_of(&cfar.detection), percent_of(&cfar.false_alarm));
+            let _ = writeln!(text, "{name:<width$} {detection:>20} {false_alarm:>16}");
+        }
+    }
+}
+
+/// A rate in percent, with its standard error.
+fn percent_of(rate: &Estimate) -> String {
+    match rate.mean.is_nan() {
+        true => "-".to_owned(),
+        false => format!("{:.2} \u{b1} {:.3}", 100.0 * rate.mean, 100.0 * rate.standard_error),
     }
 }
 
@@ -251,6 +293,7 @@ impl MethodReport {
             },
             missed: tally.missed(),
             ghosts: tally.ghosts(),
+            cfar: CfarReport::of(rows, &tally),
             echoes: tally.echoes().as_ref().map(EchoReport::of),
             median_milliseconds: tally.median_milliseconds(),
             near_best: part_near_best(rows, name),

@@ -3,7 +3,7 @@
 use super::super::echoes::EchoTally;
 use super::lines::{LongLine, MAX_LINE_BYTES, ShortLines};
 use super::origin::{Origin, Part};
-use super::{Column, MAX_ROWS, Row};
+use super::{CfarRates, Column, MAX_ROWS, Row};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
@@ -38,30 +38,53 @@ impl Row {
             maybe(self.wrong_tooth),
             echoes,
             echoes_found,
+            maybe(self.cfar.and_then(|rates| rates.detection)),
+            maybe(self.cfar.map(|rates| rates.false_alarm)),
         ]
     }
+
+    /// Whether a detector of constant false-alarm rate was tried too.
+    fn has_cfar(&self) -> bool {
+        self.cfar.is_some() || self.origin.as_ref().is_some_and(|origin| origin.cfar.is_some())
+    }
+}
+
+/// Which columns a file has: those of a detector of constant false-alarm rate only where there is one.
+fn has_column(column: Column, has_cfar: bool) -> bool {
+    has_cfar || !column.is_of_cfar()
+}
+
+fn has_part(part: Part, has_cfar: bool) -> bool {
+    has_cfar || part != Part::Cfar
+}
+
+/// The names in a file's first line, with those of a detector of constant false-alarm rate or without.
+pub fn header(has_cfar: bool) -> Vec<&'static str> {
+    let columns = Column::ALL.into_iter().filter(|column| has_column(*column, has_cfar)).map(Column::name);
+    columns.chain(Part::ALL.into_iter().filter(|part| has_part(*part, has_cfar)).map(Part::name)).collect()
 }
 
 /// Writes rows, a line each, under a line of names. [`RowWriter::flush`] after a row hands on whole lines, so that a run that is stopped
 /// keeps what it has found.
 pub struct RowWriter<W: Write> {
     out: csv::Writer<W>,
+    has_cfar: bool,
 }
 
 impl<W: Write> RowWriter<W> {
-    /// Begins with the names.
+    /// Begins with the names, [`header`] of `has_cfar`.
     ///
     /// # Errors
     /// What `out` says.
-    pub fn new(out: W) -> io::Result<Self> {
+    pub fn new(out: W, has_cfar: bool) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
-        out.write_record(Column::ALL.map(Column::name).into_iter().chain(Part::ALL.map(Part::name)))?;
-        Ok(RowWriter { out })
+        out.write_record(header(has_cfar))?;
+        Ok(RowWriter { out, has_cfar })
     }
 
     /// Goes on beneath rows that [`RowWriter::new`] and [`RowWriter::add`] wrote.
-    pub fn beneath(out: W) -> Self {
-        RowWriter { out: csv::Writer::from_writer(out) }
+    pub fn beneath(out: W, has_cfar: bool) -> Self {
+        RowWriter { out: csv::Writer::from_writer(out), has_cfar }
     }
 
     /// Adds a row.
@@ -70,8 +93,11 @@ impl<W: Write> RowWriter<W> {
     /// What `out` says.
     pub fn add(&mut self, row: &Row) -> io::Result<()> {
         let origin = row.origin.as_deref();
-        let parts = Part::ALL.map(|part| origin.map(|origin| origin.text(part)).unwrap_or_default());
-        Ok(self.out.write_record(row.cells().iter().chain(&parts))?)
+        let text = |part| origin.map(|origin| origin.text(part)).unwrap_or_default();
+        let parts = Part::ALL.into_iter().filter(|part| has_part(*part, self.has_cfar)).map(text);
+        let cells = row.cells().into_iter().zip(Column::ALL);
+        let cells = cells.filter(|(_, column)| has_column(*column, self.has_cfar)).map(|(cell, _)| cell);
+        Ok(self.out.write_record(cells.chain(parts))?)
     }
 
     /// Hands on what was added.
@@ -88,7 +114,8 @@ impl<W: Write> RowWriter<W> {
 /// # Errors
 /// What `out` says.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
-    let mut writer = RowWriter::new(out)?;
+    let rows: Vec<&Row> = rows.into_iter().collect();
+    let mut writer = RowWriter::new(out, rows.iter().any(|row| row.has_cfar()))?;
     rows.into_iter().try_for_each(|row| writer.add(row))?;
     writer.flush()
 }
@@ -245,6 +272,14 @@ impl Cells<'_> {
         EchoTally::read(texts).map(Some).ok_or_else(|| self.unexpected(Column::EchoesFound, EXPECTED))
     }
 
+    fn cfar(&self) -> Result<Option<CfarRates>, RowError> {
+        match self.maybe(Column::CfarFalseAlarm)? {
+            Some(false_alarm) => Ok(Some(CfarRates { detection: self.maybe(Column::CfarDetection)?, false_alarm })),
+            None if self.text(Column::CfarDetection).is_empty() => Ok(None),
+            None => Err(self.unexpected(Column::CfarFalseAlarm, "a rate beside cfar_detection")),
+        }
+    }
+
     fn name(&self, column: Column) -> Result<String, RowError> {
         match self.text(column) {
             "" => Err(self.unexpected(column, "a name")),
@@ -293,6 +328,7 @@ impl Cells<'_> {
             merged: self.maybe_count(Column::Merged)?,
             wrong_tooth: self.maybe_count(Column::WrongTooth)?,
             echoes: self.echoes()?,
+            cfar: self.cfar()?,
             origin: None,
         })
     }
@@ -372,8 +408,27 @@ mod tests {
     }
 
     #[test]
+    fn columns_of_a_detector_are_written_where_there_is_one() {
+        let with = |cfar: &str| Some(Arc::new(Origin { cfar: Some(cfar.parse().unwrap()), ..origin() }));
+        let rates = |detection| Some(CfarRates { detection, false_alarm: 1.0 / 3.0 });
+        let rows = vec![
+            Row { cfar: rates(Some(0.1)), origin: with("os:rate=0.01"), ..row("1", 0, "live") },
+            Row { cfar: rates(None), origin: with("os:rate=0.01"), ..row("1", 1, "live") },
+        ];
+        assert_eq!(read_rows(text(&rows).as_bytes()).unwrap(), rows);
+        let first = text(&rows).lines().next().unwrap().to_owned();
+        assert!(
+            first.contains(",cfar_detection,cfar_false_alarm,version,") && first.ends_with(",methods,cfar"),
+            "{first}"
+        );
+        assert!(!text(&[row("1", 0, "live")]).contains("cfar"));
+        let half = text(&rows).replace("0.1,0.3333333333333333", "0.1,");
+        assert!(error(&half).contains("column cfar_false_alarm"), "{}", error(&half));
+    }
+
+    #[test]
     fn tables_from_before_the_kinds_were_counted_are_read() {
-        let old = |line: &str| line.rsplitn(6 + Part::ALL.len(), ',').last().unwrap().to_owned();
+        let old = |line: &str| line.rsplitn(6 + Part::ALL.len() - 1, ',').last().unwrap().to_owned();
         let table = text(&[row("1", 0, "live")]);
         let table: String = table.lines().map(|line| old(line) + "\n").collect();
         assert!(table.lines().next().unwrap().ends_with("strongest_over_weakest_db"));

@@ -6,7 +6,7 @@ mod lines;
 mod order;
 mod origin;
 
-pub use file::{RowError, RowWriter, Table, read_rows, read_table, write_rows};
+pub use file::{RowError, RowWriter, Table, header, read_rows, read_table, write_rows};
 pub use lacks::{Lack, lacks};
 pub use order::{Histogram, MergeError, estimate, merge, sorted_by};
 pub use origin::{FORMAT, GivenTwice, Origin, Part, Scenes, Whole, radar_text};
@@ -66,8 +66,19 @@ pub struct Row {
     /// Echoes that stand out in the target by their strength, and how many of them the method shows; `None` for scenes without bodies, and
     /// in tables that were written before echoes were counted.
     pub echoes: Option<EchoTally>,
+    /// P_D and P_FA by the detector of its origin; `None` where none was asked for.
+    pub cfar: Option<CfarRates>,
     /// What made the row; `None` in tables that were written before this was kept.
     pub origin: Option<Arc<Origin>>,
+}
+
+/// What a detector with a constant false-alarm rate makes of an output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CfarRates {
+    /// P_D: part of the target cells that it detects; `None` where the target has none.
+    pub detection: Option<f64>,
+    /// P_FA: part of the other cells that it detects.
+    pub false_alarm: f64,
 }
 
 impl Row {
@@ -112,6 +123,8 @@ pub enum Column {
     WrongTooth,
     Echoes,
     EchoesFound,
+    CfarDetection,
+    CfarFalseAlarm,
 }
 
 /// What stands in a cell of the table.
@@ -127,7 +140,7 @@ pub enum Value<'a> {
 
 impl Column {
     /// Every column, in the file's order.
-    pub const ALL: [Column; 23] = [
+    pub const ALL: [Column; 25] = [
         Column::Set,
         Column::Index,
         Column::Seed,
@@ -151,6 +164,8 @@ impl Column {
         Column::WrongTooth,
         Column::Echoes,
         Column::EchoesFound,
+        Column::CfarDetection,
+        Column::CfarFalseAlarm,
     ];
 
     /// Name in the file's first line and in filters.
@@ -179,13 +194,20 @@ impl Column {
             Column::WrongTooth => "wrong_tooth",
             Column::Echoes => "echoes",
             Column::EchoesFound => "echoes_found",
+            Column::CfarDetection => "cfar_detection",
+            Column::CfarFalseAlarm => "cfar_false_alarm",
         }
     }
 
     /// Whether a table may lack it: older ones do.
     pub fn is_optional(self) -> bool {
         use Column::{Echoes, EchoesFound, Found, Merged, WrongTooth};
-        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound)
+        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound) || self.is_of_cfar()
+    }
+
+    /// Whether only rows with a detector of constant false-alarm rate have it.
+    pub fn is_of_cfar(self) -> bool {
+        matches!(self, Column::CfarDetection | Column::CfarFalseAlarm)
     }
 
     /// The column called `name`.
@@ -221,6 +243,8 @@ impl Column {
             Column::WrongTooth => count(row.wrong_tooth),
             Column::Echoes => count(row.echoes.map(|echoes| echoes.there.iter().sum())),
             Column::EchoesFound => count(row.echoes.map(|echoes| echoes.found.iter().sum())),
+            Column::CfarDetection => maybe(row.cfar.and_then(|rates| rates.detection)),
+            Column::CfarFalseAlarm => maybe(row.cfar.map(|rates| rates.false_alarm)),
         }
     }
 }
@@ -254,6 +278,7 @@ pub(super) mod tests {
             merged: Some(0),
             wrong_tooth: None,
             echoes: Some(EchoTally { there: [1, 0, 0, 2, 0, 4], found: [1, 0, 0, 1, 0, 0] }),
+            cfar: None,
             origin: None,
         }
     }

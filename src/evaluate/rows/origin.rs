@@ -3,6 +3,7 @@
 use super::MAX_ROWS;
 use crate::evaluate::shard::Shard;
 use crate::maps::Normalisation;
+use crate::maps::cfar::Cfar;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Weights;
 use crate::scene::generate::{Purpose, Reading};
@@ -35,6 +36,8 @@ pub struct Origin {
     pub shard: Shard,
     /// What all shards together are.
     pub whole: Whole,
+    /// The detector that was tried on every output, if one was.
+    pub cfar: Option<Cfar>,
 }
 
 /// Where the scenes of a row are from.
@@ -133,11 +136,12 @@ pub enum Part {
     Shard,
     Whole,
     Methods,
+    Cfar,
 }
 
 impl Part {
     /// Every part, in the order of the file's columns.
-    pub const ALL: [Part; 14] = [
+    pub const ALL: [Part; 15] = [
         Part::Version,
         Part::Program,
         Part::Floor,
@@ -152,6 +156,7 @@ impl Part {
         Part::Shard,
         Part::Whole,
         Part::Methods,
+        Part::Cfar,
     ];
 
     /// Name of the column.
@@ -171,6 +176,7 @@ impl Part {
             Part::Shard => "shard",
             Part::Whole => "whole",
             Part::Methods => "methods",
+            Part::Cfar => "cfar",
         }
     }
 
@@ -187,6 +193,7 @@ impl Part {
             Part::Shard => "I/N with I from 0 to N - 1",
             Part::Whole => "the sets of the whole run with their numbers of scenes, as in 1 x 100; 2 x 100",
             Part::Methods => "the methods of the whole run, as in live; nomp",
+            Part::Cfar => "a detector as --cfar takes it, as in ca:guard=4x0:training=16x0:rate=0.0001, or nothing",
             Part::Radar | Part::Scenes | Part::Weights | Part::Optimiser => "text",
         }
     }
@@ -246,6 +253,7 @@ impl Origin {
                 let sets = self.whole.sets.iter().map(|(name, count)| format!("{} x {count}", listed(name)));
                 sets.collect::<Vec<_>>().join("; ")
             }
+            Part::Cfar => self.cfar.map(|cfar| cfar.to_string()).unwrap_or_default(),
             Part::Methods => self.whole.methods.iter().map(|m| listed(m)).collect::<Vec<_>>().join("; "),
         }
     }
@@ -285,13 +293,17 @@ impl Origin {
             }
             .bounded()
             .ok_or(wrong(Part::Whole))?,
+            cfar: match text(Part::Cfar) {
+                "" => None,
+                text => Some(text.parse().map_err(|_| wrong(Part::Cfar))?),
+            },
         }))
     }
 
     /// The first part in which two rows of one table differ though they must not. Rows of the `same_method` have the same weights, made by
     /// the same program; rows of the `same_set` the same scenes.
     pub fn unlike(&self, other: &Origin, same_method: bool, same_set: bool) -> Option<Part> {
-        let mut parts = vec![Part::Floor, Part::Normalisation];
+        let mut parts = vec![Part::Floor, Part::Normalisation, Part::Cfar];
         match (&self.scenes, &other.scenes) {
             (Scenes::Generated { .. }, Scenes::Generated { .. }) => {
                 parts.extend([Part::Purpose, Part::Reading, Part::Carrier, Part::Radar]);
@@ -353,6 +365,7 @@ pub(super) mod tests {
             weights: None,
             shard: Shard::default(),
             whole: Whole { sets: vec![("1".into(), 4)], methods: vec!["live".into()] },
+            cfar: None,
         }
     }
 
@@ -362,6 +375,7 @@ pub(super) mod tests {
         let generated = Origin {
             floor: "snr=-3.5".parse().unwrap(),
             normalisation: "db=60".parse().unwrap(),
+            cfar: Some(Cfar { false_alarm: 1e-7, ..Cfar::default() }),
             weights: Some(Weights { sha256: "0123456789ab".into(), optimiser: "AdamW, then Muon".into() }),
             shard: "1/4".parse().unwrap(),
             scenes: Scenes::Generated {
@@ -400,6 +414,7 @@ pub(super) mod tests {
             (Part::Whole, "1 times 4"),
             (Part::Whole, "1 x 4294967295"),
             (Part::Methods, "live;"),
+            (Part::Cfar, "ca:rate=1"),
         ] {
             let read = Origin::read(|p| if p == part { text } else { &texts[p as usize] });
             assert_eq!(read.unwrap_err().0, part, "{text}");

@@ -101,6 +101,7 @@ fn shared() -> Reader {
         range_angle_part: Part::default(),
         cartesian_part: Part::default(),
         target_eta: 0.9,
+        cfar: None,
         eta: None,
         method: "live".to_owned(),
         marks: false,
@@ -267,6 +268,7 @@ fn tables_of_rows() -> Reader {
         merged: None,
         wrong_tooth: figure.map(|_| 1),
         echoes: None,
+        cfar: None,
         origin: None,
     };
     let campaign = Campaign::default();

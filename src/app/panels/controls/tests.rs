@@ -1,6 +1,7 @@
 use super::*;
 use crate::app::widgets::seen;
 use crate::evaluate::Metrics;
+use crate::maps::cfar::{Cfar, Statistic};
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -240,4 +241,41 @@ fn what_a_lesson_does_not_use_is_not_shown() {
     assert!(!reconstruction && !method && !eta && target_eta);
     let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: true, threshold: false });
     assert!(reconstruction && method && !eta && !target_eta);
+}
+
+/// The panel with a detector in use.
+fn detecting(cfar: Option<Cfar>, error: Option<&'static str>) -> Harness<'static, Vec<Command>> {
+    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        let settings = Settings { cfar, ..Settings::default() };
+        let radar = Radar::default();
+        let input = Input {
+            is_recorded: false,
+            settings: &settings,
+            radar: &radar,
+            noise_seed: 0,
+            methods: Offered::untimed(&[]),
+            method: Some(&Baseline),
+            eta: 0.5,
+            range_db: None,
+            run: Run { detector_error: error, ..Run::default() },
+            uses: Uses::ALL,
+        };
+        asked.extend(show(ui, input));
+    };
+    Harness::builder().with_size([300.0, 900.0]).build_ui_state(draw, Vec::new())
+}
+
+#[test]
+fn a_detector_stands_in_the_place_of_the_thresholds() {
+    let mut global = detecting(None, None);
+    assert!(global.query_by_label("η in numbers").is_some() && global.query_by_label("Guard cells in range").is_none());
+    global.get_by_label("OS").click();
+    global.step();
+    assert_eq!(global.state(), &[ViewCommand::Detect(Some(Statistic::OrderedStatistics)).into()]);
+    let detecting = detecting(Some(Cfar::default()), Some("There are no training cells."));
+    assert!(detecting.query_by_label("η in numbers").is_none() && detecting.query_by_label("η' in numbers").is_none());
+    for label in ["Guard cells in range", "Training cells in angle", "P_FA", "There are no training cells."] {
+        assert!(detecting.query_by_label(label).is_some(), "{label}");
+    }
+    seen::assert_readable(detecting.output());
 }

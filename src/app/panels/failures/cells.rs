@@ -56,6 +56,8 @@ pub fn title(column: Column) -> [&'static str; 2] {
         Column::WrongTooth => ["Wrong", "tooth"],
         Column::Echoes => ["Echoes of", "bodies"],
         Column::EchoesFound => ["Echoes", "found"],
+        Column::CfarDetection => ["P_D", "by CFAR"],
+        Column::CfarFalseAlarm => ["P_FA", "by CFAR"],
     }
 }
 

@@ -4,6 +4,7 @@ use crate::app::state::{MapKind, Units};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::numbers::percent;
 use crate::evaluate::{Metrics, eta_text};
+use crate::maps::cfar::{Cfar, Statistic};
 
 /// Figures for a map's title bar.
 pub struct Caption {
@@ -21,6 +22,8 @@ pub struct Caption {
     pub target_eta: f32,
     /// eta.
     pub output_eta: f32,
+    /// The detector in the place of both, if one is in use.
+    pub cfar: Option<Cfar>,
     /// Part of a recording's power that the reflectors laid over it explain.
     pub explained: Option<f64>,
     /// What thresholds are told in.
@@ -37,13 +40,17 @@ pub fn caption(input: Caption) -> Option<String> {
         None => "",
     };
     let text = match input.kind {
+        MapKind::TargetAbove if let Some(cfar) = input.cfar => format!("{} {updating}", detector(cfar)),
         MapKind::TargetAbove => format!("η' = {} {updating}", threshold(&input, input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let figures = input.metrics.map_or_else(String::new, |m| {
                 let detection = m.detection.map_or("–".to_owned(), percent);
                 format!("P_D {detection} · P_FA {} · ", percent(m.false_alarm))
             });
-            format!("{figures}η = {} {updating}", threshold(&input, input.output_eta))
+            match input.cfar {
+                Some(cfar) => format!("{figures}{} {updating}", detector(cfar)),
+                None => format!("{figures}η = {} {updating}", threshold(&input, input.output_eta)),
+            }
         }
         MapKind::Output | MapKind::Second | MapKind::Doubt => {
             format!("{} {updating}", input.method.unwrap_or_default())
@@ -58,6 +65,14 @@ pub fn caption(input: Caption) -> Option<String> {
         _ => updating.to_owned(),
     };
     (!text.trim().is_empty()).then_some(text)
+}
+
+/// A detector in a few letters.
+fn detector(cfar: Cfar) -> &'static str {
+    match cfar.statistic {
+        Statistic::CellAveraging => "CA-CFAR",
+        Statistic::OrderedStatistics => "OS-CFAR",
+    }
 }
 
 /// A threshold in Lambda, or in decibels relative to the target's peak where these are chosen and known.
@@ -82,6 +97,7 @@ mod tests {
                 running: None,
                 metrics: None,
                 target_eta: 0.9,
+                cfar: None,
                 output_eta: 0.8,
                 explained: None,
                 units,

@@ -14,7 +14,7 @@ const STEP: f32 = 7.0;
 /// What tells hits, misses and false alarms apart.
 #[derive(Clone, Copy)]
 pub struct ToldApart<'a> {
-    /// Lambda of the output and of the target.
+    /// Lambda of the output, or what a detector made of it.
     pub output: &'a RangeAngleMap,
     /// Lambda of the target.
     pub target: &'a RangeAngleMap,

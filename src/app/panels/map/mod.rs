@@ -15,6 +15,7 @@ mod plot;
 mod scale;
 mod swipe;
 mod theory;
+mod window;
 
 pub use answer::Places;
 pub use blank::{Problem, Veil};
@@ -36,6 +37,7 @@ use crate::app::widgets::entry::{entry, ticked};
 use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
 use crate::interact::Selection;
+use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::radar::{End, Radar};
 use crate::scene::Scene;
@@ -85,6 +87,8 @@ pub struct Input<'a> {
     pub kinds: Option<Kinds<'a>>,
     /// What its cells are, where they are hits, misses and false alarms.
     pub told_apart: Option<ToldApart<'a>>,
+    /// The detector whose window is drawn around the pointer's cell.
+    pub cfar: Option<Cfar>,
     /// Another map right of an edge.
     pub over: Option<Over<'a>>,
     /// What the formulas say of a reflector, if that is drawn over it.
@@ -148,6 +152,7 @@ impl<'a> Input<'a> {
             marks: Marks { objects: &[], found: &[] },
             kinds: None,
             told_apart: None,
+            cfar: None,
             over: None,
             theory: None,
             cursor: None,
@@ -258,6 +263,9 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
             None => beneath,
         };
         overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.units);
+        if let Some(cfar) = input.cfar.as_ref().filter(|_| told && at_rest) {
+            window::draw(inner, frame, cursor, cells, cfar);
+        }
     }
     if input.veil.is_none() {
         let pointer = response.hover_pos();

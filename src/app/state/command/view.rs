@@ -2,6 +2,7 @@
 
 use crate::app::state::{BoundsSettings, Compare, Cursor, PhasorSettings, Projection, Several, Units};
 use crate::maps::Normalisation;
+use crate::maps::cfar::{Cfar, Statistic};
 use crate::picture::ColourMap;
 use crate::signal::Floor;
 
@@ -40,6 +41,10 @@ pub enum ViewCommand {
     SetFloor(Floor),
     /// eta', the threshold of the target.
     SetTargetEta(f32),
+    /// The detector in the place of the thresholds; the thresholds where `None`.
+    SetCfar(Option<Cfar>),
+    /// Detect by a constant false-alarm rate after this statistic, or by thresholds, with the cells that were chosen last.
+    Detect(Option<Statistic>),
     /// eta of the method of this name; its own where `None`.
     SetMethodEta(&'static str, Option<f32>),
     /// What bounds are computed for.

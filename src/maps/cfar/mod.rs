@@ -1,0 +1,255 @@
+//! Detection at a constant false-alarm rate: each cell against a threshold from the cells around it.
+//!
+//! A window around the cell under test has guard cells, which may hold the cell's own echo, and training cells beyond them, which measure the
+//! noise. The cell is a detection where its power exceeds the measured noise times a factor. The factor follows from the wanted rate of false
+//! alarms, for noise whose power is exponentially distributed and independent from cell to cell.
+//!
+//! * Cell averaging (H. M. Finn and R. S. Johnson, *Adaptive detection mode with threshold control as a function of spatially sampled
+//!   clutter-level estimates*, RCA Review 29, 1968) takes the mean of the training cells.
+//! * Ordered statistics (H. Rohling, *Radar CFAR thresholding in clutter and multiple target situations*, IEEE Transactions on Aerospace and
+//!   Electronic Systems 19, 1983) takes the training cell of rank 3/4: strong echoes among the training cells don't raise it.
+//!
+//! A window function, or elements that are missing, make neighbouring cells alike. The rate is then another one than was asked for.
+
+mod factor;
+mod text;
+mod window;
+
+pub use factor::{averaging_factor, ordered_factor};
+
+use super::lambda::{LambdaScale, Mask, RangeAngleMap};
+use ndarray::{Array2, ArrayView2};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Most guard or training cells a side.
+pub const MOST_CELLS: usize = 1000;
+
+/// Rank of the ordered statistic, as a part of the number of training cells (Rohling 1983 recommends 3/4).
+const RANK: f64 = 0.75;
+
+/// What the training cells are summed up by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Statistic {
+    /// Their mean.
+    CellAveraging,
+    /// The cell of rank 3/4 among them.
+    OrderedStatistics,
+}
+
+impl Statistic {
+    /// Both.
+    pub const ALL: [Statistic; 2] = [Statistic::CellAveraging, Statistic::OrderedStatistics];
+
+    /// Name in sentences.
+    pub fn name(self) -> &'static str {
+        match self {
+            Statistic::CellAveraging => "cell averaging",
+            Statistic::OrderedStatistics => "ordered statistics",
+        }
+    }
+}
+
+/// A detector with a constant false-alarm rate. Its text is `ca:guard=4x0:training=16x0:rate=0.0001`, cells as range bins x columns.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Cfar {
+    /// What the training cells are summed up by.
+    pub statistic: Statistic,
+    /// Guard cells a side, `[range bins, columns]`.
+    pub guard: [usize; 2],
+    /// Training cells a side beyond the guard cells, `[range bins, columns]`.
+    pub training: [usize; 2],
+    /// Wanted rate of false alarms, between 0 and 1.
+    pub false_alarm: f64,
+}
+
+impl Default for Cfar {
+    /// Cell averaging along range, behind the main lobe of a usual window function, at one false alarm in ten thousand cells: before a long array an
+    /// echo is a streak over many columns and few range bins.
+    fn default() -> Self {
+        Cfar { statistic: Statistic::CellAveraging, guard: [4, 0], training: [16, 0], false_alarm: 1e-4 }
+    }
+}
+
+/// Why a detector can't work.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CfarError {
+    /// The rate is none.
+    #[error("the wanted false-alarm rate is {0}; expected a number between 0 and 1, without these")]
+    Rate(f64),
+    /// There is nothing to measure the noise by.
+    #[error("there are no training cells; expected at least one a side, in range or in angle")]
+    NoTraining,
+    /// The window is larger than any map.
+    #[error("{what} are {cells} cells a side; expected at most {MOST_CELLS}")]
+    Large {
+        /// Guard or training cells.
+        what: &'static str,
+        /// How many.
+        cells: usize,
+    },
+    /// Columns would be counted twice.
+    #[error("guard and training cells span {span} columns and the map has {columns}; expected fewer cells in angle")]
+    Wide {
+        /// Columns of the window.
+        span: usize,
+        /// Columns of the map.
+        columns: usize,
+    },
+    /// The guard cells cover all that there is.
+    #[error(
+        "the guard of {guard} range bins a side leaves no training cell around range bin {bin} of {bins}; expected \
+         fewer guard cells or more training cells"
+    )]
+    Covered {
+        /// Guard cells in range.
+        guard: usize,
+        /// A range bin without a training cell.
+        bin: usize,
+        /// Range bins of the map.
+        bins: usize,
+    },
+    /// A text is no detector.
+    #[error("\"{0}\" is no detector; expected ca or os, as in ca:guard=4x0:training=16x0:rate=0.0001")]
+    Text(String),
+}
+
+/// What a detector makes of one cell. Powers are in the map's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// Number of training cells.
+    pub training: usize,
+    /// The noise that they measure.
+    pub noise: f64,
+    /// The noise times the factor: the cell is a detection above it.
+    pub threshold: f64,
+    /// Power of the cell.
+    pub power: f64,
+}
+
+impl Level {
+    /// Whether the cell is a detection.
+    pub fn is_detected(&self) -> bool {
+        self.power > self.threshold
+    }
+}
+
+/// Power of every cell relative to the map's peak, linear, from Lambda. A cell at Lambda 0 has at most this power: a dynamic range cuts the map
+/// off there.
+pub fn relative_power(map: &RangeAngleMap, scale: LambdaScale) -> Array2<f64> {
+    let decades = 2.0 * (scale.peak - scale.floor).max(0.0);
+    map.lambda.mapv(|lambda| 10f64.powf((f64::from(lambda) - 1.0) * decades))
+}
+
+impl Cfar {
+    /// Whether it can work on some map.
+    ///
+    /// # Errors
+    /// [`CfarError`] says what is wrong and what was expected.
+    pub fn check(&self) -> Result<(), CfarError> {
+        if !(self.false_alarm > 0.0 && self.false_alarm < 1.0) {
+            return Err(CfarError::Rate(self.false_alarm));
+        }
+        if self.training == [0, 0] {
+            return Err(CfarError::NoTraining);
+        }
+        for (what, sides) in [("the guard cells", self.guard), ("the training cells", self.training)] {
+            if let Some(&cells) = sides.iter().find(|cells| **cells > MOST_CELLS) {
+                return Err(CfarError::Large { what, cells });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether it can work on a map of `[range bins, columns]`.
+    ///
+    /// # Errors
+    /// [`CfarError`] says what is wrong and what was expected.
+    pub fn check_map(&self, [bins, columns]: [usize; 2]) -> Result<(), CfarError> {
+        self.check()?;
+        let span = 2 * (self.guard[1] + self.training[1]) + 1;
+        if span > columns {
+            return Err(CfarError::Wide { span, columns });
+        }
+        match (0..bins).find(|bin| self.training_cells(*bin, bins) == 0) {
+            Some(bin) => Err(CfarError::Covered { guard: self.guard[0], bin, bins }),
+            None => Ok(()),
+        }
+    }
+
+    /// Training cells around a cell of range bin `bin` of `bins`: fewer where the map ends. Columns wrap around, as angles do.
+    pub fn training_cells(&self, bin: usize, bins: usize) -> usize {
+        window::Window::of(self).cells(bin, bins)
+    }
+
+    /// The factor over the noise that `training` cells measure.
+    fn factor(&self, training: usize) -> f64 {
+        match self.statistic {
+            Statistic::CellAveraging => averaging_factor(training, self.false_alarm),
+            Statistic::OrderedStatistics => ordered_factor(training, rank(training), self.false_alarm),
+        }
+    }
+
+    /// The cells that are detections. `power` is linear, `[range bins, columns]`; its unit doesn't matter.
+    ///
+    /// Takes time in proportion to the cells and to the window's sides for cell averaging, to the training cells for ordered statistics.
+    ///
+    /// # Errors
+    /// [`Cfar::check_map`].
+    pub fn detect(&self, power: ArrayView2<'_, f64>) -> Result<Mask, CfarError> {
+        let (bins, columns) = power.dim();
+        self.check_map([bins, columns])?;
+        let window = window::Window::of(self);
+        let mut known = BTreeMap::new();
+        let of_bin: Vec<(usize, f64)> = (0..bins)
+            .map(|bin| window.cells(bin, bins))
+            .map(|n| (n, *known.entry(n).or_insert_with(|| self.factor(n))))
+            .collect();
+        let cells = match self.statistic {
+            // The sum of n cells times factor / n: their mean times the factor.
+            Statistic::CellAveraging => window.above_sum(power, |bin| of_bin[bin].1 / of_bin[bin].0 as f64),
+            Statistic::OrderedStatistics => window.above_rank(power, |bin| (rank(of_bin[bin].0), of_bin[bin].1)),
+        };
+        Ok(Mask { cells })
+    }
+
+    /// [`Cfar::detect`] of a map that is Lambda under `scale`.
+    ///
+    /// # Errors
+    /// [`Cfar::check_map`].
+    pub fn detect_lambda(&self, map: &RangeAngleMap, scale: LambdaScale) -> Result<Mask, CfarError> {
+        self.detect(relative_power(map, scale).view())
+    }
+
+    /// What it makes of the cell `[bin, column]` alone.
+    ///
+    /// # Errors
+    /// [`Cfar::check_map`].
+    ///
+    /// # Panics
+    /// Where the map has no such cell.
+    pub fn level(
+        &self,
+        power: impl Fn([usize; 2]) -> f64,
+        map: [usize; 2],
+        cell: [usize; 2],
+    ) -> Result<Level, CfarError> {
+        self.check_map(map)?;
+        let mut training: Vec<f64> = window::Window::of(self).around(cell, map).map(&power).collect();
+        let n = training.len();
+        let noise = match self.statistic {
+            Statistic::CellAveraging => training.iter().sum::<f64>() / n as f64,
+            Statistic::OrderedStatistics => *training.select_nth_unstable_by(rank(n) - 1, f64::total_cmp).1,
+        };
+        Ok(Level { training: n, noise, threshold: self.factor(n) * noise, power: power(cell) })
+    }
+}
+
+/// Rank of the ordered statistic among `training` cells, from 1.
+fn rank(training: usize) -> usize {
+    ((RANK * training as f64).round() as usize).clamp(1, training.max(1))
+}
+
+#[cfg(test)]
+mod tests;
