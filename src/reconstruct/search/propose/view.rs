@@ -81,11 +81,13 @@ impl View {
     }
 
     /// By how much the range grows for each metre that the place at (x, y) moves along x and along y.
+    #[inline(always)]
     pub fn slope(&self, [x, y]: [f64; 2], nearest_metres: f64) -> [f64; 2] {
         let dx = x - self.centre_metres;
         let of_leg = |antenna: f64| {
-            let range = (dx - antenna).hypot(y).max(nearest_metres);
-            [(dx - antenna) / range, y / range]
+            let across = dx - antenna;
+            let range = (across * across + y * y).sqrt().max(nearest_metres);
+            [across / range, y / range]
         };
         let Some(ViewOfPairs { middle, .. }) = &self.pairs else { return of_leg(0.0) };
         let legs = middle.iter().flat_map(|pair| [pair.transmitter_x_metres, pair.receiver_x_metres]).map(of_leg);
