@@ -202,8 +202,10 @@ pub fn storage_folder(app_id: &str) -> Option<std::path::PathBuf> {
 /// Where there is no display or no OpenGL, or where `create` fails.
 #[cfg(feature = "app")]
 pub fn open_window(app_id: &str, create: eframe::AppCreator<'static>) -> Result<(), eframe::Error> {
+    let icon = eframe::icon_data::from_png_bytes(include_bytes!("../../assets/icon/apertura-128.png"));
     let native = eframe::NativeOptions {
         viewport: eframe::egui::ViewportBuilder::default()
+            .with_icon(icon.unwrap_or_default())
             .with_title(app_id)
             .with_app_id(app_id)
             .with_inner_size([1440.0, 900.0])
