@@ -107,7 +107,7 @@ def module(folder: Path) -> Path:
     wanted = ["build", "--release", "--locked", "--manifest-path", "python/Cargo.toml", "--out", folder]
     if SYSTEM == "linux":
         wanted += ["--zig", "--target", TRIPLE, "--compatibility", f"manylinux_{GLIBC.replace('.', '_')}"]
-    run("maturin" if SYSTEM == "windows" else tools() / "maturin", *wanted, **{**environment(), "CARGO_TARGET_DIR": str(target_folder())})
+    run(tools() / "maturin", *wanted, **{**environment(), "CARGO_TARGET_DIR": str(target_folder())})
     return next(folder.glob("*.whl"))
 
 

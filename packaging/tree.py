@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import os
 import shutil
 from pathlib import Path
 
@@ -62,8 +63,6 @@ def files(folder: Path) -> list[Path]:
 
 def date(folder: Path) -> None:
     """Dates every file and folder of a tree with the commit's moment."""
-    import os
-
     for path in [*folder.rglob("*"), folder]:
         if path.is_dir():
             path.chmod(0o755)
