@@ -208,7 +208,9 @@ impl App {
         let editor = &self.state.editor;
         let kept = match &mut self.jobs.autosave {
             Some(autosave) => autosave.keep_now(editor),
-            None if editor.is_modified() || !editor.left().is_empty() => Err("it has no place to be kept in".to_owned()),
+            None if editor.is_modified() || !editor.left().is_empty() => {
+                Err("it has no place to be kept in".to_owned())
+            }
             None => Ok(()),
         };
         match kept {

@@ -147,17 +147,18 @@ pub mod fs {
 
     impl Write for Draft {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.write(bytes)
+            // The file within: the other one's errors name a path that leads nowhere.
+            self.0.as_file_mut().write(bytes)
         }
 
         fn flush(&mut self) -> io::Result<()> {
-            self.0.flush()
+            self.0.as_file_mut().flush()
         }
     }
 
     impl Seek for Draft {
         fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-            self.0.seek(to)
+            self.0.as_file_mut().seek(to)
         }
     }
 
