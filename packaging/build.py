@@ -33,9 +33,11 @@ def tools() -> Path:
 def environment() -> dict[str, str]:
     """Paths of the builder's home don't belong into a program that others run."""
     cargo = os.environ.get("CARGO_HOME") or str(Path.home() / ".cargo")
-    sources = Path(cargo) / "registry" / "src"
+    crates = Path(cargo) / "registry" / "src"
+    library = Path(output(os.environ.get("RUSTC", "rustc"), "--print", "sysroot").strip()) / "lib/rustlib/src/rust"
+    places = {f"{crates}{os.sep}": "", str(library): "/rustc"}
     return {
-        "CARGO_ENCODED_RUSTFLAGS": f"--remap-path-prefix={sources}{os.sep}=",
+        "CARGO_ENCODED_RUSTFLAGS": "\x1f".join(f"--remap-path-prefix={place}={shown}" for place, shown in places.items()),
         "CARGO_INCREMENTAL": "0",
         "PATH": os.pathsep.join([str(tools()), os.environ["PATH"]]),
     }
