@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import base64
+import email.utils
 import gzip
 import hashlib
 import io
+import os
 import shutil
 import tarfile
 import time
@@ -61,14 +63,19 @@ def debian(laid: Path, folder: Path, libraries: list[str]) -> Path:
         text.write("\nOr, at your choice, the Apache License 2.0 (/usr/share/common-licenses/Apache-2.0).\n")
         text.write("THIRD-PARTY.txt.gz beside this file has the notices of what the program carries.\n")
     (document / "LICENSE-APACHE").unlink()
-    tree.write(document / "changelog.gz", tree.packed((ROOT / "CHANGELOG.md").read_bytes()))
+    tree.write(document / "CHANGELOG.md.gz", tree.packed((ROOT / "CHANGELOG.md").read_bytes()))
+    # Whoever publishes the package says where mail reaches them.
+    maintainer = f"{os.environ.get('DEBFULLNAME', 'The apertura authors')} <{os.environ.get('DEBEMAIL', 'apertura@localhost')}>"
+    when = email.utils.formatdate(moment())
+    changes = f"apertura ({version()}) unstable; urgency=medium\n\n  * CHANGELOG.md.gz says what changed.\n\n -- {maintainer}  {when}\n"
+    tree.write(document / "changelog.gz", tree.packed(changes.encode()))
     paths = tree.files(staging)
     sums = "".join(f"{hashlib.md5((staging / p).read_bytes()).hexdigest()}  {p.as_posix()}\n" for p in paths)
     installed = sum((staging / p).stat().st_size // 1024 + 1 for p in paths)
     depends = ", ".join([f"libc6 (>= {GLIBC})", *libraries, *window_libraries()])
     control = (
         f"Package: apertura\nVersion: {version()}\nArchitecture: {architecture}\nSection: science\nPriority: optional\n"
-        f"Maintainer: The apertura authors <apertura@localhost>\nInstalled-Size: {installed}\nDepends: {depends}\n"
+        f"Maintainer: {maintainer}\nInstalled-Size: {installed}\nDepends: {depends}\n"
         f"Recommends: {', '.join(RECOMMENDED)}\n{DESCRIPTION}"
     )
     tree.write(staging / "DEBIAN/control", control.encode())
