@@ -36,8 +36,9 @@ def environment() -> dict[str, str]:
     crates = Path(cargo) / "registry" / "src"
     library = Path(output(os.environ.get("RUSTC", "rustc"), "--print", "sysroot").strip()) / "lib/rustlib/src/rust"
     places = {f"{crates}{os.sep}": "", str(library): "/rustc"}
+    flags = "\x1f".join(f"--remap-path-prefix={place}={shown}" for place, shown in places.items())
     return {
-        "CARGO_ENCODED_RUSTFLAGS": "\x1f".join(f"--remap-path-prefix={place}={shown}" for place, shown in places.items()),
+        "CARGO_ENCODED_RUSTFLAGS": os.environ.get("CARGO_ENCODED_RUSTFLAGS", flags),
         "CARGO_INCREMENTAL": "0",
         "PATH": os.pathsep.join([str(tools()), os.environ["PATH"]]),
     }
