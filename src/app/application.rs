@@ -206,12 +206,11 @@ impl App {
             return;
         }
         let editor = &self.state.editor;
+        let is_unsaved = editor.is_modified() || !editor.left().is_empty();
         let kept = match &mut self.jobs.autosave {
+            _ if !is_unsaved => Ok(()),
             Some(autosave) => autosave.keep_now(editor),
-            None if editor.is_modified() || !editor.left().is_empty() => {
-                Err("it has no place to be kept in".to_owned())
-            }
-            None => Ok(()),
+            None => Err("it has no place to be kept in".to_owned()),
         };
         match kept {
             Err(reason) if !self.close_refused => {

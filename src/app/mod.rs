@@ -54,27 +54,8 @@ pub enum AppError {
 pub fn run(mut options: Options) -> Result<(), AppError> {
     options.problems.extend(kept::problems(platform::storage_folder(APP_ID).as_deref()));
     let create: eframe::AppCreator<'static> = Box::new(|creation| Ok(Box::new(App::new(creation, options)?)));
-    platform::open_window(APP_ID, create).map_err(window_error)
-}
-
-fn window_error(error: eframe::Error) -> AppError {
-    match error {
+    platform::open_window(APP_ID, create).map_err(|error| match error {
         eframe::Error::AppCreation(error) => AppError::Start(std::io::Error::other(error)),
-        // What was looked for in vain takes ten lines.
-        #[cfg(not(target_arch = "wasm32"))]
-        eframe::Error::NoGlutinConfigs(_, error) => AppError::Window(format!("there is no OpenGL here ({error})")),
         error => AppError::Window(error.to_string()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_missing_opengl_is_one_short_sentence() {
-        let error = eframe::Error::NoGlutinConfigs(Default::default(), "not found".into());
-        let told = window_error(error).to_string();
-        assert_eq!(told, "no window could be opened: there is no OpenGL here (not found)");
-    }
+    })
 }

@@ -96,10 +96,6 @@ impl Said {
                 return Ok(Signs { conjugates, reverses_samples: false, carrier_hz: radar.carrier_hz });
             }
             FORMAT => {}
-            later @ 3.. => {
-                let found = format!("is {later}, of a later version of apertura");
-                return Err(Fault::key("format", found, "1 or 2"));
-            }
             other => return Err(Fault::key("format", format!("is {other}"), "1 or 2")),
         }
         if self.conjugate.is_some() {
@@ -195,7 +191,7 @@ mod tests {
     fn keys_that_do_not_go_together_are_told() {
         for (said, part) in [
             (Said { format: 1, ..said() }, "recording.carrier_at is there"),
-            (Said { format: 3, ..said() }, "format is 3, of a later version of apertura; expected 1 or 2"),
+            (Said { format: 3, ..said() }, "format is 3; expected 1 or 2"),
             (Said { conjugate: Some(true), ..said() }, "beat_sign in its place"),
             (Said { beat_sign: None, ..said() }, "recording.beat_sign is missing"),
             (Said { carrier_at: None, ..said() }, "recording.carrier_at is missing"),
