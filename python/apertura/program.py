@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import os
 import shutil
 import subprocess
@@ -15,13 +16,13 @@ _NAME = "apertura.exe" if sys.platform == "win32" else "apertura"
 
 
 def find_program() -> str:
-    """Path of the program: beside this module, beside the Python that runs, or on PATH.
+    """Path of the program: beside this module, where pip put it, beside the Python that runs, or on PATH.
 
     Raises:
         FileNotFoundError: It is in none of these places; the message says how to get it.
     """
     beside = [Path(__file__).parent / "bin" / _NAME, Path(sys.executable).parent / _NAME]
-    for path in beside:
+    for path in [beside[0], *_of_wheel(), beside[1]]:
         if path.is_file() and os.access(path, os.X_OK):
             return str(path)
     found = shutil.which(_NAME)
@@ -31,6 +32,15 @@ def find_program() -> str:
             "release of it, provides it"
         )
     return found
+
+
+def _of_wheel() -> list[Path]:
+    """Where pip put the program of a wheel: a place of its own for each way to install."""
+    try:
+        files = importlib.metadata.files("apertura") or []
+    except importlib.metadata.PackageNotFoundError:
+        return []
+    return [Path(str(file.locate())) for file in files if file.name == _NAME]
 
 
 def open(scene: Scene | str | os.PathLike[str]) -> subprocess.Popen[bytes]:

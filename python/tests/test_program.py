@@ -63,3 +63,23 @@ def test_a_missing_program_is_told(tmp_path, monkeypatch):
         program.find_program()
     with pytest.raises(FileNotFoundError, match="cargo install"):
         ap.open(ap.Scene())
+
+
+def test_the_program_of_a_wheel_is_found_where_pip_put_it(tmp_path, monkeypatch):
+    placed = tmp_path / "user" / "bin" / program._NAME
+
+    class Placed:
+        name = program._NAME
+
+        def locate(self):
+            return placed
+
+    monkeypatch.setattr(program.importlib.metadata, "files", lambda name: [Placed()])
+    monkeypatch.setattr(program.sys, "executable", str(tmp_path / "nowhere" / "python"))
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(FileNotFoundError):
+        program.find_program()
+    placed.parent.mkdir(parents=True)
+    placed.write_text("")
+    placed.chmod(placed.stat().st_mode | stat.S_IXUSR)
+    assert program.find_program() == str(placed)

@@ -5,18 +5,16 @@ use super::chrome::{file_dialog, help, menu, messages, palette, save_question, s
 use super::contents::{self, Contents};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
+use super::kept::{self, Kept};
 use super::state::{
-    Arrangement, Command, DocumentCommand, LessonCommand, MethodTimes, Methods, Notices, Pointer, Settings, State,
-    ViewCommand,
+    Arrangement, Command, DocumentCommand, LessonCommand, Methods, Notices, Pointer, State, ViewCommand,
 };
 use super::widgets::{focus_ring, theme};
 use crate::interact::{Document, Editor};
-use crate::lesson::Progress;
 use crate::platform::{self, Instant};
 use crate::reconstruct::Reconstructor;
 use crate::scene::presets;
 use eframe::egui;
-use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -58,31 +56,8 @@ pub struct Options {
     pub own_dialogs: bool,
     /// What is done first.
     pub commands: Vec<Command>,
-}
-
-/// What is kept from one start to the next.
-#[derive(Default, Serialize, Deserialize)]
-#[serde(default)]
-struct Kept {
-    settings: Settings,
-    #[serde(alias = "layout")]
-    arrangement: Arrangement,
-    recent: Vec<PathBuf>,
-    progress: Progress,
-    method_times: MethodTimes,
-    /// Size of the interface before a presentation that was on screen in the end.
-    zoom: Option<f32>,
-    /// Whether something has been dragged, so that maps needn't say what they show.
-    captions_seen: bool,
-    /// Names of the commands that the palette ran last.
-    recent_commands: Vec<String>,
-}
-
-/// What was kept, and whether maps say what they show: not where nothing can be kept, as in tests.
-fn kept(storage: Option<&dyn eframe::Storage>) -> (Kept, bool) {
-    let kept: Kept = storage.and_then(|s| eframe::get_value(s, eframe::APP_KEY)).unwrap_or_default();
-    let captions = storage.is_some() && !kept.captions_seen;
-    (kept, captions)
+    /// What went wrong before the window opened.
+    pub problems: Vec<String>,
 }
 
 /// The app.
@@ -104,6 +79,8 @@ pub struct App {
     later: input::Later,
     /// Whether a field had the focus at the end of the last frame.
     in_a_field: bool,
+    /// Whether the window was kept open once, since what is unsaved can't be kept.
+    close_refused: bool,
 }
 
 /// What chrome and panels remember from frame to frame.
@@ -122,9 +99,9 @@ impl App {
     /// When the system can't start a thread or create the frame log.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
         let ctx = &creation.egui_ctx;
-        let (kept, captions) = kept(creation.storage);
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
         let folder = options.data_folder.or_else(|| creation.storage.and_then(|_| platform::storage_folder(APP_ID)));
+        let (kept, captions, unread) = kept::read(creation.storage, folder.as_deref());
         let began = options.started.unwrap_or_else(Instant::now);
         let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
         let mut state = State {
@@ -156,6 +133,7 @@ impl App {
         if let Some(zoom) = kept.zoom {
             ctx.set_zoom_factor(zoom);
         }
+        options.problems.into_iter().chain(unread).for_each(|problem| state.notices.error(problem));
         start(&mut state, &jobs, options.scene);
         let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
         let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v))));
@@ -174,6 +152,7 @@ impl App {
             zoom_before_lesson: None,
             later: Default::default(),
             in_a_field: false,
+            close_refused: false,
         })
     }
 
@@ -219,6 +198,29 @@ impl App {
         }
         commands.extend(input::read(ctx, input));
         commands
+    }
+
+    /// Keeps the window open once where it is to be closed and what is unsaved can't be kept. Whoever closes it again means it.
+    fn check_close(&mut self, ctx: &egui::Context) {
+        if !ctx.input(|i| i.viewport().close_requested()) {
+            return;
+        }
+        let editor = &self.state.editor;
+        let is_unsaved = editor.is_modified() || !editor.left().is_empty();
+        let kept = match &mut self.jobs.autosave {
+            _ if !is_unsaved => Ok(()),
+            Some(autosave) => autosave.keep_now(editor),
+            None => Err("it has no place to be kept in".to_owned()),
+        };
+        match kept {
+            Err(reason) if !self.close_refused => {
+                ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+                let advice = "Save it elsewhere (Ctrl+Shift+S), or close the window again to lose it.";
+                self.state.notices.error(format!("The scene is unsaved and can't be autosaved: {reason}. {advice}"));
+                self.close_refused = true;
+            }
+            _ => self.close_refused = false,
+        }
     }
 
     /// Draws everything; what was asked for meanwhile.
@@ -349,6 +351,7 @@ impl eframe::App for App {
         // Before anything is drawn, so that no panel acts on what is no longer there.
         commands.extend(self.read_input(&ctx));
         self.apply(&ctx, commands);
+        self.check_close(&ctx);
         if let Some(question) = self.jobs.dialogs.take_unanswered() {
             self.memory.file_dialog.ask(question);
         }
@@ -386,7 +389,7 @@ impl eframe::App for App {
             method_times: state.method_times.clone(),
             zoom: self.zoom_before_lesson.or(self.zoom_before),
         };
-        eframe::set_value(storage, eframe::APP_KEY, &kept);
+        kept.write(storage);
         *state.kept_arrangement() = kept.arrangement;
         if let Some(autosave) = &mut self.jobs.autosave
             && let Err(error) = autosave.keep_now(&state.editor)
@@ -402,37 +405,6 @@ impl eframe::App for App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeMap;
-
-    #[derive(Default)]
-    struct InMemory(BTreeMap<String, String>);
-
-    impl eframe::Storage for InMemory {
-        fn get_string(&self, key: &str) -> Option<String> {
-            self.0.get(key).cloned()
-        }
-
-        fn set_string(&mut self, key: &str, value: String) {
-            self.0.insert(key.to_owned(), value);
-        }
-
-        fn remove_string(&mut self, key: &str) {
-            self.0.remove(key);
-        }
-
-        fn flush(&mut self) {}
-    }
-
-    #[test]
-    fn maps_say_what_they_show_until_something_was_dragged() {
-        let mut storage = InMemory::default();
-        assert!(kept(Some(&storage)).1, "a first start");
-        for seen in [false, true] {
-            eframe::set_value(&mut storage, eframe::APP_KEY, &Kept { captions_seen: seen, ..Kept::default() });
-            assert_eq!(kept(Some(&storage)).1, !seen);
-        }
-        assert!(!kept(None).1, "nowhere to keep that it was seen");
-    }
 
     #[test]
     fn a_presentation_grows_with_the_screen() {

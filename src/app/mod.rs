@@ -19,6 +19,7 @@ mod contents;
 mod input;
 mod inspect;
 mod jobs;
+mod kept;
 mod page;
 mod panels;
 mod state;
@@ -50,7 +51,8 @@ pub enum AppError {
 ///
 /// # Errors
 /// [`AppError`] where there is no display or no OpenGL, where the frame log can't be created or no thread be started.
-pub fn run(options: Options) -> Result<(), AppError> {
+pub fn run(mut options: Options) -> Result<(), AppError> {
+    options.problems.extend(kept::problems(platform::storage_folder(APP_ID).as_deref()));
     let create: eframe::AppCreator<'static> = Box::new(|creation| Ok(Box::new(App::new(creation, options)?)));
     platform::open_window(APP_ID, create).map_err(|error| match error {
         eframe::Error::AppCreation(error) => AppError::Start(std::io::Error::other(error)),

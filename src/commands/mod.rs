@@ -111,9 +111,7 @@ impl Command {
 /// Runs the program; errors go to standard error and make the exit status non-zero.
 pub fn main() -> ExitCode {
     log_to_stderr();
-    // A negative number is a value, so that what is allowed is told, and not an unknown option.
-    let command = Cli::command().mut_subcommands(|command| command.allow_negative_numbers(true));
-    let cli = Cli::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
+    let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
     let result = Simd::requested().map_err(CommandError::failed).and_then(|_| match cli.command {
         Some(command) => command.run(),
         None => cli.open.run(),
@@ -125,6 +123,12 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The command line as `clap` knows it, for what is made from it: man pages, completions.
+pub fn command() -> clap::Command {
+    // A negative number is a value, so that what is allowed is told, and not an unknown option.
+    Cli::command().mut_subcommands(|command| command.allow_negative_numbers(true))
 }
 
 /// Shows warnings on standard error; `APERTURA_LOG=debug` (or any `tracing` filter) shows more.

@@ -50,7 +50,7 @@ impl Args {
             #[cfg(feature = "app")]
             Err(WindowError::Failed(error)) => return Err(CommandError::failed(error)),
         };
-        let reason = without_source_place(&reason);
+        let reason = shortened(&reason);
         eprintln!("apertura: {reason}; drawing its panels to a picture instead");
         draw_instead(&input)
     }
@@ -80,12 +80,17 @@ impl Args {
     }
 }
 
-/// The window library's message without the place in its own source that it names.
-fn without_source_place(message: &str) -> String {
+/// The window library's message without the place in its own source that it names, and without all that it looked for.
+fn shortened(message: &str) -> String {
     let plain = message.split_once("os error at ").and_then(|(before, after)| {
         let (_, place_and_reason) = after.split_once(".rs:")?;
         let (_, reason) = place_and_reason.split_once(": ")?;
         Some(format!("{before}{reason}"))
+    });
+    let plain = plain.or_else(|| {
+        let (before, after) = message.split_once("Found no glutin configs")?;
+        let (_, reason) = after.rsplit_once("Error: ")?;
+        Some(format!("{before}there is no OpenGL here ({reason})"))
     });
     plain.as_deref().unwrap_or(message).trim_end_matches('.').to_owned()
 }
@@ -137,10 +142,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn messages_name_no_source_file() {
+    fn messages_are_short_sentences_that_name_no_source_file() {
         let message = "no window: winit EventLoopError: os error at /somewhere/linux/mod.rs:765: DISPLAY is not set.";
-        assert_eq!(without_source_place(message), "no window: winit EventLoopError: DISPLAY is not set");
-        assert_eq!(without_source_place("this build has no app"), "this build has no app");
+        assert_eq!(shortened(message), "no window: winit EventLoopError: DISPLAY is not set");
+        assert_eq!(shortened("this build has no app"), "this build has no app");
+        let message =
+            "no window: Found no glutin configs matching the template: ConfigTemplate { api: None }. Error: not found";
+        assert_eq!(shortened(message), "no window: there is no OpenGL here (not found)");
     }
 
     #[test]

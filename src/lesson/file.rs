@@ -108,7 +108,8 @@ impl Lesson {
         })?;
         let whole = |message: String| LessonTextError { line: 1, message };
         if lesson.format != FORMAT {
-            return Err(whole(format!("format is {}; this program reads format {FORMAT}", lesson.format)));
+            let later = if lesson.format > FORMAT { ", of a later version of apertura" } else { "" };
+            return Err(whole(format!("format is {}{later}; this program reads format {FORMAT}", lesson.format)));
         }
         if lesson.steps.is_empty() {
             return Err(whole("there is no [[step]]".to_owned()));

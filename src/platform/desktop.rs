@@ -147,17 +147,18 @@ pub mod fs {
 
     impl Write for Draft {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.write(bytes)
+            // The file within: the other one's errors name a path that leads nowhere.
+            self.0.as_file_mut().write(bytes)
         }
 
         fn flush(&mut self) -> io::Result<()> {
-            self.0.flush()
+            self.0.as_file_mut().flush()
         }
     }
 
     impl Seek for Draft {
         fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-            self.0.seek(to)
+            self.0.as_file_mut().seek(to)
         }
     }
 
@@ -202,8 +203,10 @@ pub fn storage_folder(app_id: &str) -> Option<std::path::PathBuf> {
 /// Where there is no display or no OpenGL, or where `create` fails.
 #[cfg(feature = "app")]
 pub fn open_window(app_id: &str, create: eframe::AppCreator<'static>) -> Result<(), eframe::Error> {
+    let icon = eframe::icon_data::from_png_bytes(include_bytes!("../../assets/icon/apertura-128.png"));
     let native = eframe::NativeOptions {
         viewport: eframe::egui::ViewportBuilder::default()
+            .with_icon(icon.unwrap_or_default())
             .with_title(app_id)
             .with_app_id(app_id)
             .with_inner_size([1440.0, 900.0])

@@ -46,7 +46,7 @@ use super::doubts::doubts;
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_radar::said_radar;
-use super::signs::{BeatSign, CarrierAt, Said, Signs, Sweep};
+use super::signs::{BeatSign, CarrierAt, FORMAT, Said, Signs, Sweep};
 use super::{AxisKind, Calibration, Capture, Chirp, Fault, RadarProfile, Recorded, Recording, RecordingError, matlab};
 use crate::platform::fs::File;
 use crate::radar::{End, Radar};
@@ -173,8 +173,24 @@ fn read_text(file: impl Read) -> Result<String, Fault> {
     String::from_utf8(text).map_err(|_| Fault::key("the text", "is not UTF-8", "text in UTF-8"))
 }
 
+/// Refuses a text of a later format before its unknown keys are.
+fn check_format(text: &str) -> Result<(), Fault> {
+    #[derive(Deserialize)]
+    struct Said {
+        #[serde(default = "oldest")]
+        format: u32,
+    }
+    match toml::from_str(text) {
+        Ok(Said { format: later }) if later > FORMAT => {
+            Err(Fault::key("format", format!("is {later}, of a later version of apertura"), "1 or 2"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
 pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
+    check_format(text).map_err(|fault| fault.of(path))?;
     let document: Document = toml::from_str(text).map_err(|error| {
         let start = error.span().map_or(0, |span| span.start);
         Fault::Text(SceneTextError::at(text, start, error.message().lines().collect::<Vec<_>>().join(", "))).of(path)

@@ -7,7 +7,7 @@ use apertura::radar::{Carrier, Radar, WindowFunction};
 use apertura::reconstruct::Baseline;
 use apertura::scene::file::{self, SceneFile};
 use apertura::scene::{Object, Scene};
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -212,4 +212,30 @@ fn a_named_scene_comes_back_under_its_name() {
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
     s.ask(DocumentCommand::Save);
     assert_eq!((title(&s).as_str(), points(&s.folder.path().join("scene.toml"))), ("scene.toml", 3));
+}
+
+#[test]
+fn a_window_whose_scene_can_not_be_kept_closes_at_the_second_try() {
+    let folder = tempfile::tempdir().unwrap();
+    // A file where the folder of the autosave would be takes no files, whoever tries.
+    std::fs::write(folder.path().join("data"), "").unwrap();
+    let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
+    let mut s = Session { app, folder };
+    s.settle();
+    assert!(!stays_open(&mut s), "nothing is unsaved");
+    s.ask(EditCommand::Add(NewObject::Point, None));
+    assert!(stays_open(&mut s));
+    s.app.get_by_label_contains("can't be autosaved");
+    assert!(!stays_open(&mut s), "whoever closes it again means it");
+}
+
+/// Whether the window answers that it stays open when the system asks it to close.
+fn stays_open(s: &mut Session) -> bool {
+    let window = s.app.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+    window.events.push(ViewportEvent::Close);
+    s.app.step();
+    let stays = s.app.output().viewport_output[&ViewportId::ROOT].commands.contains(&ViewportCommand::CancelClose);
+    s.app.input_mut().viewports.entry(ViewportId::ROOT).or_default().events.clear();
+    s.app.step();
+    stays
 }

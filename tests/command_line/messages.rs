@@ -107,3 +107,46 @@ fn what_is_no_weight_file_is_named() {
     write("x.safetensors", &[&(header.len() as u64).to_le_bytes(), header.as_slice(), &[0; 4]].concat());
     run("x.safetensors").stderr(contains("names no network, and none of ours has its tensors (1 in all): a.weight"));
 }
+
+#[test]
+fn files_of_a_later_version_say_so() {
+    let folder = folder();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("s.toml", "format = 2\nmotion = true\n\n[[object]]\nkind = \"swarm\"\n");
+    write("r.toml", "format = 9\n\n[radar]\n\n[recording]\nfile = \"a.npz\"\n");
+    for (file, says) in [
+        ("s.toml", "line 1, column 10: format is 2, of a later version of apertura; this one reads format 1"),
+        ("r.toml", "format is 9, of a later version of apertura"),
+    ] {
+        apertura(&folder).args(["maps", file, "-o", "x.png"]).assert().failure().stderr(contains(says));
+    }
+    assert!(!folder.path().join("x.png").exists());
+    write("s.toml", "format = 1\n\n[[object]]\nkind = \"point\"\nx_metres = 0.0\ny_metres = 9.0\n");
+    apertura(&folder).args(["maps", "s.toml", "-o", "x.png"]).assert().success();
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_in_one_sentence() {
+    let folder = folder();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let run = || {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
+        command.current_dir(folder.path()).args(["scenes", "--set", "1", "--count", "1", "-o", "scenes"]);
+        command
+    };
+    let done = run().stdout(full).output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert_eq!((done.status.code(), told.lines().count()), (Some(1), 1), "{told}");
+    assert!(told.contains("standard output: No space left on device"), "{told}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_missing_display_is_told_in_one_sentence() {
+    let folder = folder();
+    let told = apertura(&folder).assert().success().get_output().stderr.clone();
+    let told = String::from_utf8(told).unwrap();
+    assert!(told.contains("drawing its panels to a picture instead") && told.lines().count() == 1, "{told}");
+    assert!(folder.path().join("apertura.png").exists());
+}

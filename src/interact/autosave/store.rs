@@ -6,6 +6,7 @@ use crate::interact::document::{Document, Restored};
 use crate::platform::fs;
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
 use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -182,7 +183,9 @@ fn read(path: &Path) -> Result<Document, SceneFileError> {
 /// Deletes a file; not there is as good as deleted.
 fn remove(path: &Path) -> Result<(), String> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(format!("{}: {error}", path.display())),
+        Err(error) if ![ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
+            Err(format!("{}: {error}", path.display()))
+        }
         _ => Ok(()),
     }
 }

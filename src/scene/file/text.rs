@@ -1,4 +1,7 @@
 //! Scenes as TOML: written for people, read with errors that name the line.
+//!
+//! A text may begin with `format = 1`. It is not written: whatever needs more than that format has is written with a higher number, which
+//! older programs name in their message.
 
 use super::content::{SceneFile, SceneTextError};
 use crate::radar::{Convention, Radar};
@@ -10,6 +13,9 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
+
+/// The format of scenes that this program knows. A text that says nothing else is of it; one that needs more will say so.
+const FORMAT: i64 = 1;
 
 /// Most values and tables that a text may ask for, told by the marks that come with each: the largest scene needs some three million.
 const MAX_MARKS: usize = 4_000_000;
@@ -155,6 +161,8 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
     let document = table(text)?;
     let span = document.span();
     let mut document = document.into_inner();
+    check_format(text, &document)?;
+    document.remove("format");
     let radar_spans = document.get("radar").map(Spans::of);
     let entries = document.remove("object");
     let start = span.start;
@@ -182,6 +190,23 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
         },
         other,
     ))
+}
+
+/// Refuses a scene of a later format before its unknown keys are.
+fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError> {
+    let Some(format) = document.get("format") else { return Ok(()) };
+    let number = match format.get_ref() {
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
+        _ => None,
+    };
+    let message = match number {
+        Some(FORMAT) => return Ok(()),
+        Some(later) if later > FORMAT => {
+            format!("format is {later}, of a later version of apertura; this one reads format {FORMAT}")
+        }
+        _ => format!("format is no version; expected {FORMAT}"),
+    };
+    Err(SceneTextError::at(text, format.span().start, message))
 }
 
 /// Reads the list of `[[object]]` tables.

@@ -73,8 +73,9 @@ impl House {
         }
         rooms.remove("lib");
         rooms.remove("main");
-        // The program of the page, as `main` is that of the desktop.
+        // Programs of their own, as `main` is that of the desktop: the page, and what writes man pages.
         rooms.remove("page");
+        rooms.remove("manual");
         for imports in rooms.values_mut() {
             imports.remove("lib");
         }
