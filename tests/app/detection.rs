@@ -81,5 +81,5 @@ fn the_window_of_the_cell_under_the_pointer_is_told() {
         let shapes = s.app.output().shapes.iter();
         shapes.filter(|s| matches!(&s.shape, Shape::Text(t) if t.galley.text().contains(text))).count()
     };
-    assert_eq!([told("over the noise\nthreshold"), told("training cells")], [2, 2], "in both maps of detections");
+    assert_eq!([told(" dB\nthreshold"), told("training cells")], [2, 2], "in both maps of detections");
 }

@@ -1,7 +1,5 @@
 //! What a detector with a constant false-alarm rate finds in the maps on screen; computed only while one is in use.
 
-use super::scene_maps::MapsRequest;
-use crate::app::state::{MapKind, MethodSlot};
 use crate::engine::Frame;
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -36,34 +34,31 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// What the request's detector finds in the maps that somebody looks at; nothing where it has none.
-    pub fn detect(&mut self, request: &MapsRequest, frame: &Frame) -> Detected {
-        let Some(cfar) = request.cfar else {
-            self.kept = [None, None, None];
-            return Detected::default();
-        };
+    /// What a detector finds in the target, where that is looked at, and in those outputs that are given; nothing where there is no detector.
+    pub fn detect(
+        &mut self,
+        cfar: Option<Cfar>,
+        frame: &Frame,
+        target_is_wanted: bool,
+        outputs: [Option<&Arc<RangeAngleMap>>; 2],
+    ) -> Detected {
         let mut detected = Detected::default();
-        let shows = |kind| request.pictures.contains(&kind);
+        let Some(cfar) = cfar else {
+            self.kept = [None, None, None];
+            return detected;
+        };
         let Some(full) = frame.full.as_ref() else {
-            let looked_at = shows(MapKind::OutputAbove) || shows(MapKind::SecondAbove);
             let error = "The detector needs the power of every cell, which an output has only beside a target.";
-            return Detected { error: looked_at.then(|| error.to_owned()), ..detected };
+            detected.error = outputs.iter().any(Option::is_some).then(|| error.to_owned());
+            return detected;
         };
-        let mut found = |slot: usize, map: &Arc<RangeAngleMap>| match self.find(slot, map, full.scale, cfar) {
-            Ok(found) => Some(found),
-            Err(error) => {
-                detected.error = Some(error);
-                None
-            }
-        };
-        if shows(MapKind::TargetAbove) || request.scores {
-            detected.target = found(0, &full.lambda);
-        }
-        for (slot, above) in MethodSlot::BOTH.into_iter().zip([MapKind::OutputAbove, MapKind::SecondAbove]) {
-            let pair = request.pairs[slot as usize].as_ref().filter(|_| shows(above) || request.scores);
-            detected.outputs[slot as usize] = pair.and_then(|pair| found(1 + slot as usize, &pair.output));
-        }
-        detected
+        let target = Some(&full.lambda).filter(|_| target_is_wanted);
+        let mut found = [target, outputs[0], outputs[1]].into_iter().enumerate().map(|(slot, map)| {
+            self.find(slot, map?, full.scale, cfar).map_err(|error| detected.error = Some(error)).ok()
+        });
+        let [target, first, second] = [0; 3].map(|_| found.next().flatten());
+        drop(found);
+        Detected { target, outputs: [first, second], ..detected }
     }
 
     fn find(

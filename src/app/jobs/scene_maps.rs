@@ -200,7 +200,11 @@ impl MapsState {
     /// Why a scene has no maps, or that `task` was cancelled.
     pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
         let (frame, unexplained) = self.frame(&request, task)?;
-        let detected = self.detector.detect(&request, &frame);
+        let shows = |kind| request.pictures.contains(&kind) || request.scores;
+        let output =
+            |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &pair.output);
+        let outputs = [output(0, MapKind::OutputAbove), output(1, MapKind::SecondAbove)];
+        let detected = self.detector.detect(request.cfar, &frame, shows(MapKind::TargetAbove), outputs);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {

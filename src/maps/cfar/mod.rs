@@ -180,7 +180,7 @@ impl Cfar {
 
     /// Training cells around a cell of range bin `bin` of `bins`: fewer where the map ends. Columns wrap around, as angles do.
     pub fn training_cells(&self, bin: usize, bins: usize) -> usize {
-        window::Window::of(self).cells(bin, bins)
+        window::Window::new(self.guard, self.training).cells(bin, bins)
     }
 
     /// The factor over the noise that `training` cells measure.
@@ -200,7 +200,7 @@ impl Cfar {
     pub fn detect(&self, power: ArrayView2<'_, f64>) -> Result<Mask, CfarError> {
         let (bins, columns) = power.dim();
         self.check_map([bins, columns])?;
-        let window = window::Window::of(self);
+        let window = window::Window::new(self.guard, self.training);
         let mut known = BTreeMap::new();
         let of_bin: Vec<(usize, f64)> = (0..bins)
             .map(|bin| window.cells(bin, bins))
@@ -236,7 +236,8 @@ impl Cfar {
         cell: [usize; 2],
     ) -> Result<Level, CfarError> {
         self.check_map(map)?;
-        let mut training: Vec<f64> = window::Window::of(self).around(cell, map).map(&power).collect();
+        let mut training: Vec<f64> =
+            window::Window::new(self.guard, self.training).around(cell, map).map(&power).collect();
         let n = training.len();
         let noise = match self.statistic {
             Statistic::CellAveraging => training.iter().sum::<f64>() / n as f64,

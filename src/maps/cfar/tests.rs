@@ -69,7 +69,7 @@ fn windows_have_the_cells_that_counting_finds() {
     let cfar = small(Statistic::CellAveraging);
     // 7 x 9 cells without 3 x 3; at the edge 4 x 9 without 2 x 3.
     assert_eq!([cfar.training_cells(10, 40), cfar.training_cells(0, 40)], [54, 30]);
-    let around: Vec<_> = window::Window::of(&cfar).around([0, 0], [40, 48]).collect();
+    let around: Vec<_> = window::Window::new(cfar.guard, cfar.training).around([0, 0], [40, 48]).collect();
     assert!(around.len() == 30 && around.contains(&[0, 46]) && around.contains(&[3, 4]), "columns wrap around");
     assert!(!around.contains(&[1, 47]) && !around.contains(&[39, 0]), "guard cells and the far end are left out");
 }

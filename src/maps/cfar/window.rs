@@ -3,7 +3,6 @@
 //! Sums are made of positive numbers alone. The difference of two corners of a summed-area table would lose the noise: a map may span 30
 //! decades of power, more than the 16 digits of a double.
 
-use super::Cfar;
 use ndarray::{Array2, ArrayView2, Axis, Zip};
 use std::ops::Range;
 
@@ -16,10 +15,10 @@ pub struct Window {
 }
 
 impl Window {
-    /// Of a detector.
-    pub fn of(cfar: &Cfar) -> Window {
-        let reach = [0, 1].map(|axis| cfar.guard[axis] + cfar.training[axis]);
-        Window { guard: cfar.guard, reach }
+    /// Guard and training cells a side, `[range bins, columns]`.
+    pub fn new(guard: [usize; 2], training: [usize; 2]) -> Window {
+        let reach = [0, 1].map(|axis| guard[axis] + training[axis]);
+        Window { guard, reach }
     }
 
     /// The rows of a map that stand at most `side` from `bin`.

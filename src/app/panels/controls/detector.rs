@@ -1,6 +1,5 @@
 //! Thresholds for the whole map or a detector with a constant false-alarm rate, and the detector's cells.
 
-use super::choices;
 use crate::app::state::{Command, Settings, ViewCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::setting_row::{row, row_of};
@@ -25,7 +24,13 @@ pub fn choice(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
                  neighbours hide no echo",
             ),
         ];
-        choices(ui, settings.cfar.map(|cfar| cfar.statistic), of, ViewCommand::Detect, asked);
+        let chosen = settings.cfar.map(|cfar| cfar.statistic);
+        for (statistic, name, tooltip) in of {
+            let clicked = ui.selectable_label(chosen == statistic, name).on_hover_text(tooltip).clicked();
+            if clicked && chosen != statistic {
+                asked.push(ViewCommand::Detect(statistic).into());
+            }
+        }
     });
 }
 

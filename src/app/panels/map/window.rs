@@ -11,6 +11,12 @@ use eframe::egui::{Align2, Painter, Pos2, Shape, Stroke, pos2, vec2};
 /// Points along each side of the window: in Cartesian maps sides are curved.
 const ALONG: usize = 12;
 
+/// How far below the top of the map the text stands, points: below the value of the cell.
+const BELOW: f32 = 28.0;
+
+/// Nearer to the top the pointer would be under a text in the right corner, points.
+const NEAR_TOP: f32 = 40.0;
+
 /// Draws the window around the pointer's cell.
 pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>, cfar: &Cfar) {
     let Some((bin, column)) = cursor.cell(frame.radar) else { return };
@@ -27,8 +33,13 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<
         }
     }
     if let Some(found) = cells.and_then(|cells| level_of(cells, cfar, map, [bin, column])) {
-        let corner = frame.rect.left_top() + vec2(10.0, 8.0);
-        axes::text_on_patch(painter, corner, Align2::LEFT_TOP, &told(&found));
+        // Below the value of the cell, in the corner where the pointer isn't.
+        let (rect, at) = (frame.rect, frame.cursor(cursor));
+        let (corner, align) = match at.y < rect.top() + NEAR_TOP && at.x > rect.center().x {
+            true => (rect.left_top() + vec2(10.0, BELOW), Align2::LEFT_TOP),
+            false => (rect.right_top() + vec2(-10.0, BELOW), Align2::RIGHT_TOP),
+        };
+        axes::text_on_patch(painter, corner, align, &told(&found));
     }
 }
 
@@ -47,7 +58,7 @@ fn told(found: &Level) -> String {
     let db = |power: f64| with_unit(&difference(10.0 * (power / found.noise).log10()));
     let verdict = if found.is_detected() { "detected" } else { "not detected" };
     let cells = crate::radar::counted(found.training, "training cell", "training cells");
-    format!("{verdict}: {} over the noise\nthreshold {}, {cells}", db(found.power), db(found.threshold))
+    format!("{verdict}, {}\nthreshold {}\nover {cells}", db(found.power), db(found.threshold))
 }
 
 /// The outline of the cells at most `sides` from a cell; in two pieces where it wraps around the end of the columns.
@@ -100,7 +111,7 @@ mod tests {
             let paths = drawn.output().shapes.iter().filter(|s| matches!(s.shape, Shape::Path(_))).count();
             assert_eq!(paths, outlines, "guard and training cells, each in two colours; twice where they wrap around");
             let texts = seen::texts(drawn.output());
-            let expected = if column == 30.0 { "detected: +24.0 dB over the noise" } else { "not detected: ±0.0 dB" };
+            let expected = if column == 30.0 { "detected, +24.0 dB\nthreshold " } else { "not detected, ±0.0 dB" };
             assert!(texts.iter().any(|t| t.text.starts_with(expected)), "{texts:?}");
         }
     }
