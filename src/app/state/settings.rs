@@ -139,6 +139,12 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Takes a detector into use, or thresholds where there is none; the detector's cells are kept for the next time.
+    pub fn detect_by(&mut self, cfar: Option<Cfar>) {
+        self.cfar = cfar;
+        self.last_cfar = cfar.unwrap_or(self.last_cfar);
+    }
+
     /// Where the guide changed a setting from `before` to `after` and nobody changed it since, puts back what it was.
     pub fn take_back(&mut self, before: &Settings, after: &Settings) {
         macro_rules! take_back {
