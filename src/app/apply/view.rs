@@ -36,6 +36,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
         ViewCommand::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
         ViewCommand::SetBounds(bounds) => settings.bounds = bounds,
+        ViewCommand::SetChirp(chirp) => settings.chirp = chirp,
         ViewCommand::SetPhasors(phasors) => settings.phasors = phasors,
         ViewCommand::MarkReflectors => settings.show_reflectors = true,
         ViewCommand::ToggleReflectors => settings.show_reflectors ^= true,
