@@ -127,6 +127,18 @@ impl App {
         self.jobs.phasors.result()?.ok().map(|r| (r.cell, r.measured.sum()))
     }
 
+    /// Beats asked for since the start.
+    pub fn chirps_asked(&self) -> u64 {
+        self.jobs.chirps.requests()
+    }
+
+    /// The range bin in which the beat on screen is strongest, and the element it is of.
+    pub fn beat_peak(&self) -> Option<(usize, usize)> {
+        let result = self.jobs.chirps.result()?.ok()?;
+        let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
+        Some((peak, result.element))
+    }
+
     /// Name of the method whose output is on screen, if there is one.
     pub fn shown_method(&self) -> Option<&'static str> {
         self.jobs.pipeline.output().map(|output| output.method)

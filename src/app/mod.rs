@@ -31,9 +31,10 @@ pub use page::open_page;
 
 pub use application::{APP_ID, App, Options};
 pub use state::{
-    Arrangement, BoundsSettings, Brightness, Command, Compare, Cursor, DifferenceView, DocumentCommand, EditCommand,
-    Elements, EvaluationChoice, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind, NewObject, Panel,
-    Projection, RadarCommand, RowsCommand, SearchChoice, Settings, Units, ViewCommand, WindowCommand, WorkCommand,
+    Arrangement, BoundsSettings, Brightness, ChirpSettings, Command, Compare, Cursor, DifferenceView, DocumentCommand,
+    EditCommand, Elements, EvaluationChoice, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind, NewObject,
+    Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings, Units, ViewCommand, WindowCommand,
+    WorkCommand,
 };
 
 /// Why the app did not open.

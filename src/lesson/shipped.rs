@@ -20,6 +20,7 @@ macro_rules! lessons {
 /// Every lesson, in the order they are best taken.
 pub const ALL: &[Shipped] = lessons![
     "range-and-bandwidth",
+    "chirps-and-beats",
     "angle-and-aperture",
     "grating-lobes",
     "windows-and-side-lobes",

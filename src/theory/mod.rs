@@ -18,6 +18,7 @@
 
 pub mod aliases;
 pub mod blob;
+pub mod chirp;
 pub mod comb;
 pub mod consequences;
 pub mod ellipse;

@@ -1,7 +1,9 @@
 //! What is shown, what is computed for it and what is not.
 
 use crate::session::Session;
-use apertura::app::{Command, DocumentCommand, MapKind, Panel, RadarCommand, Units, ViewCommand, WindowCommand};
+use apertura::app::{
+    ChirpSettings, Command, DocumentCommand, MapKind, Panel, RadarCommand, Units, ViewCommand, WindowCommand,
+};
 use apertura::engine::Stage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
@@ -9,6 +11,7 @@ use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Object;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
+use apertura::theory::chirp::{Chirp, heard};
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
@@ -180,6 +183,28 @@ fn phasors_follow_the_cursor() {
     s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
     s.settle();
     assert_eq!(s.state().phasors_asked(), asked);
+}
+
+#[test]
+fn the_beat_on_screen_is_that_of_the_strongest_echo() {
+    let mut s = Session::start();
+    assert_eq!(s.state().chirps_asked(), 0, "a closed panel costs nothing");
+    s.ask(WindowCommand::OpenPanel(Panel::Chirp));
+    let bin = |s: &Session| {
+        let chirp = Chirp::of(s.state().radar(), s.state().settings().chirp.seconds);
+        let echoes = heard(s.state().radar(), s.state().editor().scene(), s.state().settings().chirp.element);
+        let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
+        chirp.range_bin(chirp.beat_hz(strongest.range_metres))
+    };
+    let (peak, element) = s.state().beat_peak().expect("a beat");
+    assert!(element == 0 && (peak as f64 - bin(&s)).abs() <= 0.5, "{peak} {}", bin(&s));
+    s.ask(ViewCommand::SetChirp(ChirpSettings { element: 500, seconds: 1e-3 }));
+    let (longer, element) = s.state().beat_peak().unwrap();
+    assert_eq!((longer, element), (peak, 127), "the last element; no sample depends on the duration");
+    let asked = s.state().chirps_asked();
+    s.ask(WindowCommand::TogglePanel(Panel::Chirp));
+    s.ask(ViewCommand::SetChirp(ChirpSettings::default()));
+    assert_eq!(s.state().chirps_asked(), asked);
 }
 
 #[test]

@@ -65,8 +65,7 @@ fn set_up(state: &mut State) {
     state.settings.floor = step.view.floor;
     state.settings.normalisation = step.view.normalisation;
     state.settings.method.clone_from(&step.view.method);
-    state.settings.cfar = step.view.cfar;
-    state.settings.last_cfar = step.view.cfar.unwrap_or(state.settings.last_cfar);
+    state.settings.detect_by(step.view.cfar);
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
     // Name and notes of a scene tell what its maps show: that is asked for here.
     let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };

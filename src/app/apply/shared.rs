@@ -127,8 +127,7 @@ fn look(state: &mut State, view: View) {
     settings.colours = view.colours;
     settings.projection = if view.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
     settings.target_eta = view.target_eta;
-    settings.cfar = view.cfar;
-    settings.last_cfar = view.cfar.unwrap_or(settings.last_cfar);
+    settings.detect_by(view.cfar);
     match view.eta {
         Some(eta) => _ = settings.method_eta.insert(view.method.clone(), eta),
         None => _ = settings.method_eta.remove(&view.method),

@@ -29,17 +29,14 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
             }
         }
         ViewCommand::SetTargetEta(eta) => settings.target_eta = eta,
-        ViewCommand::SetCfar(cfar) => {
-            settings.cfar = cfar;
-            settings.last_cfar = cfar.unwrap_or(settings.last_cfar);
-        }
+        ViewCommand::SetCfar(cfar) => settings.detect_by(cfar),
         ViewCommand::Detect(statistic) => {
-            settings.cfar = statistic.map(|statistic| Cfar { statistic, ..settings.last_cfar });
-            settings.last_cfar = settings.cfar.unwrap_or(settings.last_cfar);
+            settings.detect_by(statistic.map(|statistic| Cfar { statistic, ..settings.last_cfar }));
         }
         ViewCommand::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
         ViewCommand::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
         ViewCommand::SetBounds(bounds) => settings.bounds = bounds,
+        ViewCommand::SetChirp(chirp) => settings.chirp = chirp,
         ViewCommand::SetPhasors(phasors) => settings.phasors = phasors,
         ViewCommand::MarkReflectors => settings.show_reflectors = true,
         ViewCommand::ToggleReflectors => settings.show_reflectors ^= true,

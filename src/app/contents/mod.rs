@@ -104,6 +104,7 @@ impl Draw for Contents<'_> {
             Panel::Timing => self.timing(ui),
             Panel::Bounds => self.bounds(ui),
             Panel::Phasors => self.phasors(ui),
+            Panel::Chirp => self.chirp(ui),
             Panel::Evaluation => self.evaluation(ui),
             Panel::Failures => self.failures(ui),
             Panel::RunTime => self.run_time(ui),
@@ -138,7 +139,7 @@ fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
 /// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far
 /// the axes reach.
 fn tells_answers(panel: Panel) -> bool {
-    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts | Panel::Phasors)
+    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts | Panel::Phasors | Panel::Chirp)
 }
 
 /// In the place of a panel that would answer the question.

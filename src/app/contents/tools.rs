@@ -1,7 +1,9 @@
 //! What settings and tools are told.
 
 use super::{Contents, offered};
-use crate::app::panels::{bounds, controls, evaluation, found, lesson, phasors, run_time, several, timing, training};
+use crate::app::panels::{
+    bounds, chirp, controls, evaluation, found, lesson, phasors, run_time, several, timing, training,
+};
 use crate::app::state::{Command, MapKind, MethodSlot};
 use eframe::egui::{TextureOptions, Ui};
 
@@ -84,6 +86,18 @@ impl Contents<'_> {
             result: self.jobs.phasors.result(),
         };
         phasors::show(ui, input, &mut self.memory.phasors)
+    }
+
+    pub(super) fn chirp(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let state = &*self.state;
+        let input = chirp::Input {
+            radar: state.radar(),
+            scene: state.editor.scene(),
+            settings: state.settings.chirp,
+            is_recorded: state.editor.document().recording().is_some(),
+            result: self.jobs.chirps.result(),
+        };
+        chirp::show(ui, input)
     }
 
     pub(super) fn evaluation(&mut self, ui: &mut Ui) -> Vec<Command> {

@@ -4,6 +4,7 @@
 mod bounds;
 mod calibration;
 mod camera;
+mod chirp;
 mod detected;
 mod dialogs;
 mod evaluation;
@@ -33,6 +34,7 @@ mod training;
 pub use bounds::bounds_of;
 pub use bounds::{Bounds, BoundsRequest, BoundsResult};
 pub use calibration::{Calibrated, Calibration};
+pub use chirp::{ChirpResult, Chirps};
 pub use dialogs::{Dialogs, Purpose, Question};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
@@ -76,6 +78,8 @@ pub struct Jobs {
     pub bounds: Bounds,
     /// What every element contributes to the cell under the cursor.
     pub phasors: Phasors,
+    /// The beat of one element.
+    pub chirps: Chirps,
     /// What the selected reflector tells of the elements.
     pub calibration: Calibration,
     /// Methods on test sets.
@@ -120,6 +124,7 @@ impl Jobs {
             pipeline: Pipeline::start(wake.clone())?,
             bounds: Bounds::start(wake.clone())?,
             phasors: Phasors::start(wake.clone())?,
+            chirps: Chirps::start(wake.clone())?,
             calibration: Calibration::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
@@ -146,6 +151,7 @@ impl Jobs {
         self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.bounds.poll());
         errors.extend(self.phasors.poll());
+        errors.extend(self.chirps.poll());
         errors.extend(self.calibration.poll());
         errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
@@ -193,6 +199,9 @@ impl Jobs {
         if shown.contains(&Panel::Phasors) {
             self.phasors.ask(state, &self.pipeline);
         }
+        if shown.contains(&Panel::Chirp) {
+            self.chirps.ask(state);
+        }
         if shown.contains(&Panel::Elements) {
             self.calibration.ask(state);
         }
@@ -232,6 +241,7 @@ impl Jobs {
         self.pipeline.is_busy()
             || self.bounds.is_busy()
             || self.phasors.is_busy()
+            || self.chirps.is_busy()
             || self.theory.is_busy()
             || self.several.is_busy()
             || self.kinds.is_busy()

@@ -14,28 +14,40 @@ use std::sync::Arc;
 
 /// Where the samples come from.
 #[derive(Clone)]
-struct Source {
-    radar: Radar,
+pub(super) struct Source {
+    /// The radar.
+    pub radar: Radar,
     scene: Arc<Scene>,
     recording: Option<Arc<Recording>>,
     floor: Floor,
 }
 
 impl Source {
-    fn same(&self, other: &Source) -> bool {
+    /// Those on screen.
+    pub fn of(state: &State) -> Source {
+        Source {
+            radar: state.radar().clone(),
+            scene: state.editor.scene().clone(),
+            recording: state.editor.document().recording().cloned(),
+            floor: state.settings.floor,
+        }
+    }
+
+    /// Whether both are the same samples.
+    pub fn same(&self, other: &Source) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.recording.as_ref().map(Arc::as_ptr) == other.recording.as_ref().map(Arc::as_ptr)
             && (&self.radar, self.floor) == (&other.radar, other.floor)
     }
 
     /// The samples of every element.
-    fn signal(&self) -> Result<BeatSignal, String> {
+    pub fn signal(&self) -> Result<BeatSignal, String> {
         let Source { radar, scene, recording, floor } = self;
         match recording {
             None => signal::simulate(radar, scene, *floor, scene.noise_seed).map_err(|e| e.to_string()),
             Some(recording) => match seen_by(recording, radar, &scene.disturbances.elements).signal() {
                 Some(signal) => Ok(signal.clone()),
-                None => Err("The recording has the two ends alone; phasors are drawn of every element.".to_owned()),
+                None => Err("The recording has the two ends alone; every element is needed here.".to_owned()),
             },
         }
     }
@@ -150,12 +162,7 @@ impl Phasors {
         let settings = state.settings.phasors;
         let found = pipeline.output_of(state).filter(|_| settings.residual).map(|output| output.reflectors.clone());
         let request = Request {
-            source: Source {
-                radar: radar.clone(),
-                scene: state.editor.scene().clone(),
-                recording: state.editor.document().recording().cloned(),
-                floor: state.settings.floor,
-            },
+            source: Source::of(state),
             cell: [bin, column],
             place: cursor.place,
             settings,

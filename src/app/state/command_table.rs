@@ -517,6 +517,7 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Compare, Key::J),
     (Panel::Values, Key::I),
     (Panel::Phasors, Key::A),
+    (Panel::Chirp, Key::U),
     (Panel::Radar, Key::W),
     (Panel::Training, Key::F12),
 ];

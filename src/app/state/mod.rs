@@ -3,6 +3,7 @@
 
 mod arrangement;
 mod bounds_settings;
+mod chirp_settings;
 mod command;
 mod command_table;
 mod compare;
@@ -28,6 +29,7 @@ mod view;
 
 pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
+pub use chirp_settings::{CHIRP_SECONDS, ChirpSettings};
 pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
     RowsCommand, ViewCommand, WindowCommand, WorkCommand,

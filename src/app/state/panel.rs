@@ -33,6 +33,8 @@ pub enum Panel {
     Bounds,
     /// What every element contributes to the cell under the cursor.
     Phasors,
+    /// What is sent and what returns, as frequency against time, and the beat.
+    Chirp,
     /// Methods on the tables' test sets.
     Evaluation,
     /// Scenes on which methods fail, row by row.
@@ -56,7 +58,7 @@ pub enum Panel {
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 15] = [
+    pub const TOOLS: [Panel; 16] = [
         Panel::Guide,
         Panel::Lesson,
         Panel::Failures,
@@ -66,6 +68,7 @@ impl Panel {
         Panel::Found,
         Panel::Bounds,
         Panel::Phasors,
+        Panel::Chirp,
         Panel::Evaluation,
         Panel::RunTime,
         Panel::Training,
@@ -103,6 +106,7 @@ impl Panel {
             Panel::Timing => "Timing",
             Panel::Bounds => "Bounds",
             Panel::Phasors => "Phasors",
+            Panel::Chirp => "Chirp",
             Panel::Evaluation => "Evaluation",
             Panel::Failures => "Failures",
             Panel::RunTime => "Run time",
@@ -131,6 +135,7 @@ impl Panel {
             Panel::Roc => "Detection against false alarm of this scene, over every threshold",
             Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
             Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
+            Panel::Chirp => "Frequency against time of what is sent and what returns, the beat and its spectrum",
             Panel::Phasors => "What every element contributes to the cell under the cursor, added head to tail",
             Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
             Panel::Failures => {

@@ -1,6 +1,7 @@
 //! What the user chose: kept from one start to the next. What the radar is belongs to the scene's file instead.
 
 use super::bounds_settings::BoundsSettings;
+use super::chirp_settings::ChirpSettings;
 use super::compare::Compare;
 use super::phasor_settings::PhasorSettings;
 use super::several::Several;
@@ -126,6 +127,8 @@ pub struct Settings {
     pub bounds: BoundsSettings,
     /// Which phasors are drawn.
     pub phasors: PhasorSettings,
+    /// Which element's chirp is drawn.
+    pub chirp: ChirpSettings,
     /// Which map is shown several times, and what differs.
     pub several: Several,
     /// Two methods side by side.
@@ -139,6 +142,12 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Takes a detector into use, or thresholds where there is none; the detector's cells are kept for the next time.
+    pub fn detect_by(&mut self, cfar: Option<Cfar>) {
+        self.cfar = cfar;
+        self.last_cfar = cfar.unwrap_or(self.last_cfar);
+    }
+
     /// Where the guide changed a setting from `before` to `after` and nobody changed it since, puts back what it was.
     pub fn take_back(&mut self, before: &Settings, after: &Settings) {
         macro_rules! take_back {
@@ -179,6 +188,7 @@ impl Default for Settings {
             theme: Brightness::System,
             bounds: BoundsSettings::default(),
             phasors: PhasorSettings::default(),
+            chirp: ChirpSettings::default(),
             several: Several::default(),
             compare: Compare::default(),
             own_scenes: None,

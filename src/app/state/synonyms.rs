@@ -77,6 +77,9 @@ fn window_words(command: &WindowCommand) -> &'static str {
         WindowCommand::TogglePanel(Panel::Lesson) => "help teach learn tutorial course",
         WindowCommand::TogglePanel(Panel::Controls) => "options preferences method threshold",
         WindowCommand::TogglePanel(Panel::Radar) => "bandwidth elements carrier constants",
+        WindowCommand::TogglePanel(Panel::Chirp) => {
+            "fmcw sweep ramp beat signal frequency time spectrum fft interferer"
+        }
         WindowCommand::TogglePanel(Panel::Phasors) => "complex plane vector sum cornu spiral contributions elements",
         WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
         WindowCommand::TogglePanel(_) => "window open close",

@@ -81,6 +81,7 @@ fn explore() -> Tree<Panel> {
         Panel::Found,
         Panel::Bounds,
         Panel::Phasors,
+        Panel::Chirp,
         Panel::Evaluation,
         Panel::RunTime,
         Panel::Training,

@@ -1,6 +1,6 @@
 //! Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
 
-use crate::app::state::{BoundsSettings, Compare, Cursor, PhasorSettings, Projection, Several, Units};
+use crate::app::state::{BoundsSettings, ChirpSettings, Compare, Cursor, PhasorSettings, Projection, Several, Units};
 use crate::maps::Normalisation;
 use crate::maps::cfar::{Cfar, Statistic};
 use crate::picture::ColourMap;
@@ -51,6 +51,8 @@ pub enum ViewCommand {
     SetBounds(BoundsSettings),
     /// Which phasors are drawn.
     SetPhasors(PhasorSettings),
+    /// Which element's chirp is drawn, and how long it lasts.
+    SetChirp(ChirpSettings),
     /// Draw true reflectors over the maps.
     MarkReflectors,
     /// Draw true reflectors over the maps or not.

@@ -1,0 +1,362 @@
+//! A chirp: frequency against time of what is sent and of what returns, the beat as its samples, and the beat's spectrum.
+
+use crate::app::jobs::ChirpResult;
+use crate::app::state::{CHIRP_SECONDS, ChirpSettings, Command, RadarCommand, ViewCommand};
+use crate::app::widgets::axes::Axis;
+use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::theme::Inks;
+use crate::radar::Radar;
+use crate::scene::Scene;
+use crate::theory::chirp::{Chirp, Heard, delay_seconds, heard};
+use eframe::egui::{self, CursorIcon, Id, Rect, Sense, Stroke, Ui, vec2};
+
+/// The part of the chirp that the delay from the farthest range is drawn as, where delays are shorter.
+const DRAWN_DELAY: f64 = 0.25;
+
+/// Most echoes that are drawn.
+const ECHOES: usize = 60;
+
+/// Where the beats of the first echoes are told, as parts of the time in which they are heard while the chirp is sent.
+const TOLD: [f64; 2] = [0.2, 0.65];
+
+/// Radius of a handle, points.
+const HANDLE: f32 = 5.0;
+
+/// Least and largest bandwidth and carrier that are dragged to, hertz.
+const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
+const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
+
+/// Decibels that the spectrum spans.
+const SPECTRUM_DB: f64 = 100.0;
+
+/// What is drawn.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Which element, and how long its chirp lasts.
+    pub settings: ChirpSettings,
+    /// Whether a recording stands in the place of the scene: its radar is what it was, and nobody knows what stood where.
+    pub is_recorded: bool,
+    /// The beat, or why there is none; nothing before the first.
+    pub result: Option<Result<&'a ChirpResult, &'a str>>,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+        let chirp = Chirp::of(input.radar, input.settings.seconds);
+        let element = input.settings.element.min(input.radar.elements - 1);
+        let mut echoes = match input.is_recorded {
+            true => Vec::new(),
+            false => heard(input.radar, input.scene, element),
+        };
+        echoes.truncate(ECHOES);
+        choices(ui, &input, element, &mut asked);
+        let stretch = stretch(input.radar, &chirp);
+        legend(ui, &input, stretch);
+        let area = ui.available_rect_before_wrap();
+        ui.advance_cursor_after_rect(area);
+        let [frequencies, beat, spectrum] = parts(area);
+        let shown = Shown { input: &input, chirp, echoes: &echoes, stretch };
+        shown.frequencies(ui, frequencies, &mut asked);
+        match input.result {
+            None => _ = ui.put(beat, egui::Label::new(egui::RichText::new("computing…").weak())),
+            Some(Err(error)) => {
+                _ = ui.put(beat, egui::Label::new(egui::RichText::new(error).color(ui.visuals().error_fg_color)));
+            }
+            Some(Ok(result)) => {
+                shown.beat(ui, beat, result);
+                shown.spectrum(ui, spectrum, result);
+            }
+        }
+    });
+    asked
+}
+
+/// Where the three charts are: beside each other the chirp over its beat, and the spectrum; below each other where there is little width.
+fn parts(area: Rect) -> [Rect; 3] {
+    let part = |left: f32, top: f32, right: f32, bottom: f32| {
+        let at = |x: f32, y: f32| area.min + vec2(x * area.width(), y * area.height());
+        Rect::from_min_max(at(left, top), at(right, bottom))
+    };
+    match area.width() > 1.3 * area.height() {
+        true => [part(0.0, 0.0, 0.58, 0.56), part(0.0, 0.56, 0.58, 1.0), part(0.58, 0.0, 1.0, 1.0)],
+        false => [part(0.0, 0.0, 1.0, 0.4), part(0.0, 0.4, 1.0, 0.68), part(0.0, 0.68, 1.0, 1.0)],
+    }
+}
+
+/// How many times as long delays are drawn: a chirp lasts far longer than its echoes take to return.
+fn stretch(radar: &Radar, chirp: &Chirp) -> f64 {
+    let longest = delay_seconds(radar.max_range_metres());
+    (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0)
+}
+
+fn choices(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let (radar, mut settings) = (input.radar, ChirpSettings { element, ..input.settings });
+        let mut changed = radar.clone();
+        let label = ui.label("Element").on_hover_text("The element whose chirp and beat are drawn, from the left");
+        ui.add(NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3)).labelled_by(label.id);
+        let tooltip = "How long the chirp is taken to last. No sample depends on it: a beat turns 2RB/c times in a chirp of any length.";
+        let label = ui.label("Chirp").on_hover_text(tooltip);
+        let mut microseconds = 1e6 * settings.seconds;
+        let range = 1e6 * CHIRP_SECONDS[0]..=1e6 * CHIRP_SECONDS[1];
+        let field = NumberField::new(&mut microseconds).range(range).speed(0.05).suffix(" µs");
+        if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
+            settings.seconds = 1e-6 * microseconds;
+        }
+        ui.add_enabled_ui(!input.is_recorded, |ui| {
+            let label = ui.label("Samples").on_hover_text("Samples of the beat, and range bins of its spectrum");
+            ui.add(NumberField::new(&mut changed.samples).range(1..=65536)).labelled_by(label.id);
+            let label = ui.label("Bandwidth").on_hover_text("Drag the end of the chirp up or down");
+            gigahertz(ui, &mut changed.bandwidth_hz, label.id);
+            let label = ui.label("Carrier").on_hover_text("Drag the beginning of the chirp up or down");
+            gigahertz(ui, &mut changed.carrier_hz, label.id);
+        });
+        ask(input, settings, changed, asked);
+    });
+}
+
+fn gigahertz(ui: &mut Ui, hertz: &mut f64, label: Id) {
+    let mut giga = *hertz / 1e9;
+    let field = ui.add(NumberField::new(&mut giga).range(1e-3..=300.0).speed(0.01).suffix(" GHz")).labelled_by(label);
+    if field.changed() {
+        *hertz = 1e9 * giga;
+    }
+}
+
+fn ask(input: &Input<'_>, settings: ChirpSettings, radar: Radar, asked: &mut Vec<Command>) {
+    if settings != input.settings {
+        asked.push(ViewCommand::SetChirp(settings).into());
+    }
+    if radar != *input.radar {
+        asked.push(RadarCommand::Set(Box::new(radar)).into());
+    }
+}
+
+fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
+    let inks = Inks::of(ui.visuals());
+    let line = |colour, name: &str| Entry { sign: Sign::Line, colour, name: name.to_owned() };
+    let mut entries = vec![line(inks.selected, "sent")];
+    if !input.is_recorded {
+        let returns = match stretch > 1.0 {
+            true => format!("returns, delays drawn {stretch:.0} times as long"),
+            false => "returns".to_owned(),
+        };
+        entries.push(line(inks.ends[0], &returns));
+    }
+    if input.scene.disturbances.interferer.is_some() && !input.is_recorded {
+        entries.push(line(inks.ends[1], "interferer"));
+    }
+    legend::row(ui, &entries);
+}
+
+/// What all three charts are drawn from.
+struct Shown<'a> {
+    input: &'a Input<'a>,
+    chirp: Chirp,
+    echoes: &'a [Heard],
+    stretch: f64,
+}
+
+impl Shown<'_> {
+    /// Frequency above the carrier against time.
+    fn frequencies(&self, ui: &mut Ui, area: Rect, asked: &mut Vec<Command>) {
+        let (chirp, inks) = (self.chirp, Inks::of(ui.visuals()));
+        let (microseconds, giga) = (1e6 * chirp.duration_seconds, chirp.bandwidth_hz / 1e9);
+        let title = format!("GHz above {:.4} GHz", chirp.start_hz / 1e9);
+        let x = Axis::new(-0.05 * microseconds, 1.25 * microseconds, "time, µs");
+        let drawn = Chart { name: "Frequency against time", x, y: Axis::new(-0.08 * giga, 1.12 * giga, &title) }.show(
+            ui,
+            area,
+            Sense::hover(),
+        );
+        for (i, echo) in self.echoes.iter().enumerate() {
+            let late = 1e6 * self.stretch * delay_seconds(echo.range_metres);
+            let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
+            drawn.line([[late, 0.0], [late + microseconds, giga]], stroke, None);
+            if i < TOLD.len() {
+                self.difference(&drawn, echo, [late, TOLD[i]], stroke);
+            }
+        }
+        if let Some(interferer) = self.input.scene.disturbances.interferer.filter(|_| !self.input.is_recorded) {
+            let at = |part: f64| {
+                let seconds = part * chirp.duration_seconds;
+                [
+                    1e6 * seconds,
+                    (chirp.sent_hz(seconds) - chirp.start_hz + chirp.interferer_above_hz(&interferer, seconds)) / 1e9,
+                ]
+            };
+            drawn.line([at(0.0), at(1.25)], Stroke::new(1.6, inks.ends[1]), Some([6.0, 3.0]));
+        }
+        drawn.line([[0.0, 0.0], [microseconds, giga]], Stroke::new(2.2, inks.selected), None);
+        self.handles(ui, &drawn, [microseconds, giga], asked);
+    }
+
+    /// The beat as the difference of the two lines, at a part of the time in which an echo is heard while the chirp is sent.
+    fn difference(&self, drawn: &Drawn<'_>, echo: &Heard, [late, part]: [f64; 2], stroke: Stroke) {
+        let (microseconds, giga) = (1e6 * self.chirp.duration_seconds, self.chirp.bandwidth_hz / 1e9);
+        let time = late + part * (microseconds - late).max(0.0);
+        let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
+        drawn.line([[time, returned], [time, sent]], stroke, Some([2.0, 2.0]));
+        let beat = self.chirp.beat_hz(echo.range_metres);
+        let name = format!("{} {:.2} MHz", self.name(echo), beat / 1e6);
+        let painter = drawn.painter();
+        let at = drawn.at([time, (sent + returned) / 2.0]) + vec2(4.0, 0.0);
+        painter.text(at, egui::Align2::LEFT_CENTER, name, egui::FontId::proportional(12.0), stroke.color);
+    }
+
+    fn name(&self, echo: &Heard) -> String {
+        format!("{} {}", self.input.scene.objects[echo.object].kind(), echo.object + 1)
+    }
+
+    /// Both ends of what is sent are dragged: the beginning up and down for the carrier, the end for bandwidth and duration.
+    fn handles(&self, ui: &mut Ui, drawn: &Drawn<'_>, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
+        let mut settings = self.input.settings;
+        let mut radar = self.input.radar.clone();
+        let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
+        for (at, name, icon) in [
+            ([0.0, 0.0], "Beginning of the chirp: its carrier", CursorIcon::ResizeVertical),
+            ([microseconds, giga], "End of the chirp: bandwidth and duration", CursorIcon::Move),
+        ] {
+            let centre = drawn.at(at);
+            let response = ui.interact(Rect::from_center_size(centre, size), ui.scope_id().with(name), Sense::drag());
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, name));
+            let by = response.drag_delta();
+            let up = f64::from(-by.y / drawn.rect.height());
+            if response.dragged() && !self.input.is_recorded {
+                let [low, high] = if at[1] == 0.0 { DRAGGED_CARRIER_HZ } else { DRAGGED_BANDWIDTH_HZ };
+                let hertz = if at[1] == 0.0 { &mut radar.carrier_hz } else { &mut radar.bandwidth_hz };
+                *hertz = (*hertz * (1.0 + up)).clamp(low, high);
+            }
+            if response.dragged() && at[1] != 0.0 {
+                let across = f64::from(by.x / drawn.rect.width());
+                settings.seconds = (settings.seconds * (1.0 + across)).clamp(CHIRP_SECONDS[0], CHIRP_SECONDS[1]);
+            }
+            let lit = response.hovered() || response.dragged();
+            let radius = if lit { HANDLE + 1.5 } else { HANDLE };
+            drawn.painter().circle(
+                centre,
+                radius,
+                Inks::of(ui.visuals()).selected,
+                Stroke::new(1.0, ui.visuals().text_color()),
+            );
+            response.on_hover_cursor(icon).on_hover_text(name);
+        }
+        ask(self.input, settings, radar, asked);
+    }
+
+    /// The beat over the chirp, its samples as dots.
+    fn beat(&self, ui: &mut Ui, area: Rect, result: &ChirpResult) {
+        let inks = Inks::of(ui.visuals());
+        let most = result.samples.iter().map(|s| s.norm()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+        let count = result.samples.len() as f64;
+        let title = format!("beat of element {}, real part", result.element);
+        let x = Axis::new(-0.05 * count, 1.25 * count, "sample");
+        let drawn = Chart { name: "Beat", x, y: Axis::new(-1.1, 1.1, &title) }.show(ui, area, Sense::hover());
+        let points = || result.samples.iter().enumerate().map(|(k, s)| [k as f64, s.re / most]);
+        drawn.line(points(), Stroke::new(1.0, inks.grid_text), None);
+        // Where samples stand closer than their dots, dots would be a band.
+        if f64::from(drawn.rect.width()) > 1.5 * count {
+            points().for_each(|point| drawn.dot(point, 1.6, inks.ends[0]));
+        }
+    }
+
+    /// Decibels of every range bin, and where the formulas have each echo.
+    fn spectrum(&self, ui: &mut Ui, area: Rect, result: &ChirpResult) {
+        let inks = Inks::of(ui.visuals());
+        let peak = result.spectrum.iter().copied().fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+        let bins = result.spectrum.len() as f64;
+        let (x, y) = (
+            Axis::new(-0.5, bins - 0.5, "range bin: turns of the beat in a chirp"),
+            Axis::new(-SPECTRUM_DB, 5.0, "dB"),
+        );
+        let drawn = Chart { name: "Spectrum of the beat", x, y }.show(ui, area, Sense::hover());
+        for echo in self.echoes {
+            let bin = self.chirp.range_bin(self.chirp.beat_hz(echo.range_metres));
+            drawn.upright(bin, Stroke::new(1.0, inks.ends[0].gamma_multiply(0.5)));
+        }
+        let decibels = |amplitude: &f64| (20.0 * (amplitude / peak).log10()).max(-2.0 * SPECTRUM_DB);
+        let points = result.spectrum.iter().enumerate().map(|(bin, v)| [bin as f64, decibels(v)]);
+        drawn.line(points, Stroke::new(1.5, inks.selected), None);
+        if let Some(pos) = drawn.response.hover_pos() {
+            let bin = drawn.x_at(pos).round().clamp(0.0, bins - 1.0);
+            let level = result.spectrum.get(bin as usize).map_or(-SPECTRUM_DB, decibels);
+            let beat = bin / self.chirp.duration_seconds / 1e6;
+            let range = self.input.radar.range_of_bin_metres(bin);
+            let told = format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{level:.1} dB");
+            drawn.response.on_hover_text_at_pointer(told);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+    use num_complex::Complex64;
+
+    fn panel(size: [f32; 2], result: Result<(), &'static str>) -> Harness<'static, Vec<Command>> {
+        let radar = Radar { elements: 64, samples: 64, bandwidth_hz: 2.5e8, ..Radar::default() };
+        let scene = Scene::of_points([(0.0, 12.0), (3.0, 20.0)]);
+        let samples = (0..64).map(|k| Complex64::from_polar(1.0, 0.3 * f64::from(k))).collect();
+        let beat =
+            ChirpResult { element: 3, samples, spectrum: (0..64).map(|bin| 1.0 / (1.0 + f64::from(bin))).collect() };
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let settings = ChirpSettings { element: 3, ..ChirpSettings::default() };
+            let result = Some(result.map(|()| &beat));
+            asked.extend(show(ui, Input { radar: &radar, scene: &scene, settings, is_recorded: false, result }));
+        };
+        Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+    }
+
+    #[test]
+    fn every_chart_is_there_in_a_wide_panel_or_a_narrow_one() {
+        for size in [[900.0, 420.0], [380.0, 520.0]] {
+            let panel = panel(size, Ok(()));
+            for name in ["Frequency against time", "Beat", "Spectrum of the beat"] {
+                let rect = panel.get_by_label(name).rect();
+                assert!(rect.height() > 40.0 && rect.right() <= size[0], "{name}: {rect:?}");
+            }
+            // 12 m before the middle element's neighbour: 20.0 turns in 25.6 us.
+            let texts = seen::texts(panel.output());
+            assert!(texts.iter().any(|t| t.text == "point 1 0.78 MHz"), "{texts:?}");
+            seen::assert_readable(panel.output());
+        }
+    }
+
+    #[test]
+    fn dragging_the_end_of_the_chirp_changes_bandwidth_and_duration() {
+        let mut panel = panel([900.0, 420.0], Ok(()));
+        let at = panel.get_by_label("End of the chirp: bandwidth and duration").rect().center();
+        panel.hover_at(at);
+        panel.step();
+        panel.drag_at(at);
+        panel.step();
+        panel.hover_at(at + vec2(20.0, -20.0));
+        panel.step();
+        let radars = panel.state().iter().filter_map(|c| match c {
+            Command::Radar(RadarCommand::Set(radar)) => Some(radar.bandwidth_hz),
+            _ => None,
+        });
+        assert!(radars.last().is_some_and(|hz| hz > 2.5e8), "{:?}", panel.state());
+        let seconds = panel.state().iter().filter_map(|c| match c {
+            Command::View(ViewCommand::SetChirp(settings)) => Some(settings.seconds),
+            _ => None,
+        });
+        assert!(seconds.last().is_some_and(|s| s > 25.6e-6), "{:?}", panel.state());
+    }
+
+    #[test]
+    fn an_error_is_said() {
+        let panel = panel([900.0, 420.0], Err("every element is needed here"));
+        let _said = panel.get_by_label("every element is needed here");
+    }
+}

@@ -1,0 +1,138 @@
+//! A chirp and its echoes as frequencies against time: what is sent, what returns, and the beat as their difference.
+//!
+//! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, whatever its duration
+//! (thesis section 2.1). So the radar has no duration, and a picture with seconds in it chooses one.
+
+use crate::radar::{Radar, SPEED_OF_LIGHT};
+use crate::scene::{Interferer, Scene};
+
+/// A linear chirp that lasts a time of one's choice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chirp {
+    /// Frequency at its start, hertz.
+    pub start_hz: f64,
+    /// Swept bandwidth, hertz.
+    pub bandwidth_hz: f64,
+    /// Its duration, seconds.
+    pub duration_seconds: f64,
+    /// Samples of the beat.
+    pub samples: usize,
+}
+
+/// What one pair of antennas hears of one object.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heard {
+    /// Index of the object in the scene.
+    pub object: usize,
+    /// Half the way from the transmitter to the object and on to the receiver, metres.
+    pub range_metres: f64,
+    /// Amplitude of a sample.
+    pub amplitude: f64,
+}
+
+impl Chirp {
+    /// The chirp of a radar.
+    pub fn of(radar: &Radar, duration_seconds: f64) -> Chirp {
+        let (start_hz, bandwidth_hz, samples) = (radar.carrier_hz, radar.bandwidth_hz, radar.samples);
+        Chirp { start_hz, bandwidth_hz, duration_seconds, samples }
+    }
+
+    /// How fast the frequency rises, hertz a second.
+    pub fn slope_hz_per_second(&self) -> f64 {
+        self.bandwidth_hz / self.duration_seconds
+    }
+
+    /// Frequency that is sent at a time since the start, hertz.
+    pub fn sent_hz(&self, seconds: f64) -> f64 {
+        self.start_hz + self.slope_hz_per_second() * seconds
+    }
+
+    /// The beat of an echo, hertz: slope times delay.
+    pub fn beat_hz(&self, range_metres: f64) -> f64 {
+        self.slope_hz_per_second() * delay_seconds(range_metres)
+    }
+
+    /// The range bin in which a beat shows: its turns in a chirp, wrapped around at the number of samples.
+    pub fn range_bin(&self, beat_hz: f64) -> f64 {
+        (beat_hz * self.duration_seconds).rem_euclid(self.samples as f64)
+    }
+
+    /// Frequency of an interferer above the one that is sent, hertz: through 0 at its crossing, and one turn a sample further for every
+    /// `duration` of a chirp.
+    pub fn interferer_above_hz(&self, interferer: &Interferer, seconds: f64) -> f64 {
+        let sample_hz = self.samples as f64 / self.duration_seconds;
+        sample_hz * (seconds / self.duration_seconds - interferer.crossing) / interferer.duration
+    }
+}
+
+/// Time from an antenna to an object and back, seconds.
+pub fn delay_seconds(range_metres: f64) -> f64 {
+    2.0 * range_metres / SPEED_OF_LIGHT
+}
+
+/// What a pair of antennas hears of every object, nearest first. A line, a cluster or a body is heard at each of its reflectors.
+pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<Heard> {
+    let pair = radar.pair(element);
+    let mut all: Vec<Heard> = scene
+        .objects
+        .iter()
+        .enumerate()
+        .flat_map(|(object, o)| o.marks().into_iter().map(move |r| (object, r)))
+        .map(|(object, r)| {
+            let way = |antenna: f64| (r.x_metres - antenna).hypot(r.y_metres);
+            let [there, back] = [way(pair.transmitter_x_metres), way(pair.receiver_x_metres)];
+            let amplitude = radar.transmit_power_watts * r.reflectivity / (there * back);
+            Heard { object, range_metres: (there + back) / 2.0, amplitude }
+        })
+        .collect();
+    all.sort_by(|a, b| a.range_metres.total_cmp(&b.range_metres));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::range_transform;
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn a_beat_is_the_slope_times_the_way_there_and_back() {
+        let radar = Radar::default();
+        let chirp = Chirp::of(&radar, 25.6e-6);
+        // 2 GHz in 25.6 us, 20 m away: 40 m of way are 133.4 ns.
+        let beat = 2e9 / 25.6e-6 * (2.0 * 20.0 / 299_792_458.0);
+        assert!((chirp.beat_hz(20.0) / beat - 1.0).abs() < 1e-12);
+        assert!((chirp.beat_hz(20.0) - 10.423e6).abs() < 1e3, "{}", chirp.beat_hz(20.0));
+        assert!((chirp.range_bin(beat) - radar.bin_of_range(20.0)).abs() < 1e-9);
+        let longer = Chirp::of(&radar, 1e-3);
+        assert!((longer.range_bin(longer.beat_hz(20.0)) - radar.bin_of_range(20.0)).abs() < 1e-9);
+        assert!((chirp.sent_hz(25.6e-6) - 79e9).abs() < 1.0);
+    }
+
+    #[test]
+    fn the_spectrum_of_a_beat_peaks_in_its_range_bin() {
+        let radar = Radar { elements: 64, ..Radar::default() };
+        for (x, y) in [(0.0, 12.0), (-3.0, 20.0), (1.0, 50.0)] {
+            let scene = Scene::of_points([(x, y)]);
+            let profiles = range_transform(&radar, &simulate(&radar, &scene, Floor::Exact, 0).unwrap()).profiles;
+            for element in [0, 40] {
+                let chirp = Chirp::of(&radar, 25.6e-6);
+                let [one] = heard(&radar, &scene, element)[..] else { panic!("one object") };
+                let bin = chirp.range_bin(chirp.beat_hz(one.range_metres));
+                let row = profiles.row(element);
+                let peak = (0..512).max_by(|a, b| row[*a].norm().total_cmp(&row[*b].norm())).unwrap();
+                assert!((peak as f64 - bin).abs() <= 0.5 + 1e-9, "{x} {y}: {peak} {bin}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_interferer_crosses_when_it_says() {
+        let chirp = Chirp::of(&Radar::default(), 25.6e-6);
+        let interferer = Interferer { crossing: 0.6, duration: 0.1, ..Interferer::default() };
+        assert!(chirp.interferer_above_hz(&interferer, 0.6 * 25.6e-6).abs() < 1e-3);
+        // Half a turn a sample, 10 MHz of 20, after half of its duration.
+        let after = chirp.interferer_above_hz(&interferer, 0.65 * 25.6e-6);
+        assert!((after / 10e6 - 1.0).abs() < 1e-9, "{after}");
+    }
+}
