@@ -136,6 +136,9 @@ impl Reconstructor for Slow {
     fn about(&self) -> About {
         About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
     }
+    fn knows_pairs(&self) -> bool {
+        true
+    }
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let began = Instant::now();
         while began.elapsed() < Duration::from_millis(1200) {
