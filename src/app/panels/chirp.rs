@@ -342,16 +342,16 @@ mod tests {
         panel.step();
         panel.hover_at(at + vec2(20.0, -20.0));
         panel.step();
-        let radars = panel.state().iter().filter_map(|c| match c {
+        let mut radars = panel.state().iter().filter_map(|c| match c {
             Command::Radar(RadarCommand::Set(radar)) => Some(radar.bandwidth_hz),
             _ => None,
         });
-        assert!(radars.last().is_some_and(|hz| hz > 2.5e8), "{:?}", panel.state());
-        let seconds = panel.state().iter().filter_map(|c| match c {
+        assert!(radars.next_back().is_some_and(|hz| hz > 2.5e8), "{:?}", panel.state());
+        let mut seconds = panel.state().iter().filter_map(|c| match c {
             Command::View(ViewCommand::SetChirp(settings)) => Some(settings.seconds),
             _ => None,
         });
-        assert!(seconds.last().is_some_and(|s| s > 25.6e-6), "{:?}", panel.state());
+        assert!(seconds.next_back().is_some_and(|s| s > 25.6e-6), "{:?}", panel.state());
     }
 
     #[test]
