@@ -3,7 +3,6 @@
 use crate::app::jobs::Jobs;
 use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
 use crate::maps::cfar::Cfar;
-use crate::signal::Floor;
 
 /// Does such a command.
 pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
@@ -20,14 +19,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::ToggleWholeDifference => settings.difference.whole ^= true,
         ViewCommand::Colours(colours) => settings.colours = colours,
         ViewCommand::Normalise(normalisation) => settings.normalisation = normalisation,
-        ViewCommand::SetFloor(floor) => {
-            settings.floor = floor;
-            match floor {
-                Floor::Snr(snr) => settings.snr = snr,
-                Floor::Level(level) => settings.level = level,
-                Floor::Thesis | Floor::Exact => {}
-            }
-        }
+        ViewCommand::SetFloor(floor) => settings.set_floor(floor),
         ViewCommand::SetTargetEta(eta) => settings.target_eta = eta,
         ViewCommand::SetCfar(cfar) => settings.detect_by(cfar),
         ViewCommand::Detect(statistic) => {

@@ -111,6 +111,8 @@ pub struct Jobs {
     wake: Context,
     /// Where the app keeps its files, if anywhere.
     folder: Option<PathBuf>,
+    /// Whether everything that is drawn was there at the end of the frame before.
+    was_done: bool,
 }
 
 impl Jobs {
@@ -141,6 +143,7 @@ impl Jobs {
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
+            was_done: false,
         })
     }
 
@@ -224,7 +227,9 @@ impl Jobs {
     fn take_pictures(&mut self, state: &State, now: Instant) {
         let is_outdated = state.pictured().into_iter().any(|kind| self.pipeline.is_outdated(kind));
         // Maps are computed once more when the scene comes to rest.
-        let is_whole = !self.draws_more() && self.pipeline.rests_in().is_none() && !is_outdated;
+        let is_done = !self.draws_more() && self.pipeline.rests_in().is_none() && !is_outdated;
+        // What came after this frame was drawn is drawn in the next.
+        let is_whole = std::mem::replace(&mut self.was_done, is_done) && is_done;
         self.exports.look(is_whole, now);
         let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
         self.recorder.look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, now);

@@ -148,6 +148,16 @@ impl Settings {
         self.last_cfar = cfar.unwrap_or(self.last_cfar);
     }
 
+    /// Puts another floor below scenes; the level of each kind is kept for the next time.
+    pub fn set_floor(&mut self, floor: Floor) {
+        self.floor = floor;
+        match floor {
+            Floor::Snr(snr) => self.snr = snr,
+            Floor::Level(level) => self.level = level,
+            Floor::Thesis | Floor::Exact => {}
+        }
+    }
+
     /// Where the guide changed a setting from `before` to `after` and nobody changed it since, puts back what it was.
     pub fn take_back(&mut self, before: &Settings, after: &Settings) {
         macro_rules! take_back {
