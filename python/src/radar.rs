@@ -19,6 +19,7 @@ use pyo3::types::{PyDict, PyType};
 ///     elements: Elements of the whole array, also the columns of every map.
 ///     end_elements: Elements of each of the two ends.
 ///     samples: Samples of a chirp, also the range bins of every map.
+///     chirp_seconds: Time that the samples of a chirp span, in seconds. No echo at rest depends on it.
 ///     carrier: "one-way" (the thesis' convention) or "two-way" (the physical convention).
 ///     convention: "thesis" or "physical" in place of carrier. Without element_spacing_metres the elements are filled for it.
 ///     window: "hann", "hamming", "blackman" or "rectangular".
@@ -70,7 +71,7 @@ impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
                         end_elements=None, samples=None, carrier=None, window=None, convention=None, transmitter_x_metres=None,
-                        receiver_x_metres=None))]
+                        receiver_x_metres=None, chirp_seconds=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,
@@ -85,6 +86,7 @@ impl Radar {
         convention: Option<&str>,
         transmitter_x_metres: Option<Vec<f64>>,
         receiver_x_metres: Option<Vec<f64>>,
+        chirp_seconds: Option<f64>,
     ) -> PyResult<Self> {
         let usual = match convention.map(convention_of).transpose()? {
             None => radar::Radar::default(),
@@ -108,6 +110,7 @@ impl Radar {
             elements: elements.unwrap_or(usual.elements),
             end_elements: end_elements.unwrap_or(usual.end_elements),
             samples: samples.unwrap_or(usual.samples),
+            chirp_seconds: chirp_seconds.unwrap_or(usual.chirp_seconds),
             carrier: carrier.map_or(Ok(usual.carrier), carrier_of)?,
             window: window.map_or(Ok(usual.window), window_of)?,
             antennas: None,
@@ -209,6 +212,12 @@ impl Radar {
     #[getter]
     fn samples(&self) -> usize {
         self.0.samples
+    }
+
+    /// Time that the samples of a chirp span, in seconds.
+    #[getter]
+    fn chirp_seconds(&self) -> f64 {
+        self.0.chirp_seconds
     }
 
     /// "one-way" or "two-way".
@@ -328,6 +337,7 @@ impl Radar {
         }
         fields.set_item("end_elements", self.0.end_elements)?;
         fields.set_item("samples", self.0.samples)?;
+        fields.set_item("chirp_seconds", self.0.chirp_seconds)?;
         fields.set_item("carrier", carrier_name(self.0.carrier))?;
         fields.set_item("window", self.0.window.name())?;
         Ok(fields)

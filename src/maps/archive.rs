@@ -2,7 +2,7 @@
 
 use super::{Aperture, LogMap, RangeAngleMap, angle_transform, channels_map, network_input, range_transform};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
-use crate::radar::{Antennas, AntennasError, Carrier, End, Radar, WindowFunction};
+use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, arr0};
@@ -28,7 +28,7 @@ const VERSION_KEY: &str = "format_version";
 /// Beside them stand the axes: `range_metres` (f64 `[range bins]`), `cos_theta` (f64 `[columns]`; the map shows a blob there that
 /// squint may have moved from its true direction), `element_x_metres` (f64 `[elements]`; `sub0` has the first of them, `sub1` the
 /// last). Each constant of the radar is a number of its own: `carrier_hz`, `bandwidth_hz`, `element_spacing_metres`,
-/// `transmit_power_watts` (f64), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
+/// `transmit_power_watts` (f64), `chirp_seconds` (f64, where it is another than [`CHIRP_SECONDS`]), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
 /// and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the weights of the
 /// two transforms. Where transmitters stand apart from receivers, `transmitter_x_metres` and `receiver_x_metres` (f64) are their places;
 /// an element stands halfway between its two antennas. `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
@@ -86,6 +86,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
     let carrier = [Carrier::OneWay, Carrier::TwoWay].into_iter().find(|c| c.turns_per_wavelength() == turns);
     let mut count = |key: &str| Ok::<_, NpzError>(number(archive, key)? as usize);
     let (elements, end_elements, samples) = (count("elements")?, count("end_elements")?, count("samples")?);
+    let chirp_seconds = archive.has("chirp_seconds").then(|| number(archive, "chirp_seconds")).transpose()?;
     let radar = Radar {
         transmit_power_watts: number(archive, "transmit_power_watts")?,
         bandwidth_hz: number(archive, "bandwidth_hz")?,
@@ -94,6 +95,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         elements,
         end_elements,
         samples,
+        chirp_seconds: chirp_seconds.unwrap_or(CHIRP_SECONDS),
         carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
         window: WindowFunction::default(),
         antennas: read_antennas(archive)?,
@@ -153,6 +155,9 @@ fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     ] {
         out.add(key, &arr0(constant))?;
     }
+    if radar.chirp_seconds != CHIRP_SECONDS {
+        out.add("chirp_seconds", &arr0(radar.chirp_seconds))?;
+    }
     for (key, count) in [("elements", radar.elements), ("end_elements", radar.end_elements), ("samples", radar.samples)]
     {
         out.add(key, &arr0(count as i64))?;
@@ -188,7 +193,8 @@ mod tests {
 
     fn small() -> Radar {
         let window = WindowFunction::Blackman;
-        Radar { elements: 32, end_elements: 6, samples: 16, carrier: Carrier::TwoWay, window, ..Radar::default() }
+        let counts = Radar { elements: 32, end_elements: 6, samples: 16, ..Radar::default() };
+        Radar { carrier: Carrier::TwoWay, chirp_seconds: 1e-4, window, ..counts }
     }
 
     /// An archive of one reflector at (0, 0.5) m before `radar`.

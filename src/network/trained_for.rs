@@ -7,7 +7,7 @@ use crate::reconstruct::ReconstructError;
 const SAME_QUANTITY: f64 = 1e-9;
 
 /// What makes the samples of `radar` others than those of `trained`: of each quantity what the network was trained with, and what it is now.
-/// The transmit power only makes samples louder, which no network hears.
+/// The transmit power only makes samples louder, which no network hears; the chirp's duration changes no echo.
 fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
     // A new constant must be named here, or the networks would not know of it.
     let Radar {
@@ -18,6 +18,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         elements,
         end_elements,
         samples,
+        chirp_seconds: _,
         carrier,
         window,
         antennas,

@@ -35,6 +35,9 @@ use std::ops::Range;
 /// Speed of light in vacuum, metres per second.
 pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
+/// Duration of a chirp where none is said, seconds: 512 samples at 20 MHz.
+pub const CHIRP_SECONDS: f64 = 25.6e-6;
+
 /// How the carrier's phase depends on the distance to a reflector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -92,6 +95,9 @@ pub struct Radar {
     pub end_elements: usize,
     /// Samples of one chirp, N_r; also the number of range bins of every map.
     pub samples: usize,
+    /// Time that the samples of a chirp span, in seconds: they are taken at `samples / chirp_seconds` hertz. Echoes at rest don't depend on
+    /// it, since a beat turns `2 R B / c` times in a chirp of any length; table 3.1 says none, and [`CHIRP_SECONDS`] stands for it.
+    pub chirp_seconds: f64,
     /// Which way the carrier's phase is read.
     pub carrier: Carrier,
     /// Weights of the samples and of the elements in the two transforms that make a map.
@@ -112,6 +118,7 @@ impl Default for Radar {
             elements: 1024,
             end_elements: 12,
             samples: 512,
+            chirp_seconds: CHIRP_SECONDS,
             carrier: Carrier::OneWay,
             window: WindowFunction::Hann,
             antennas: None,
@@ -201,6 +208,7 @@ impl Radar {
             ("transmit_power_watts", self.transmit_power_watts),
             ("bandwidth_hz", self.bandwidth_hz),
             ("carrier_hz", self.carrier_hz),
+            ("chirp_seconds", self.chirp_seconds),
             ("element_spacing_metres", self.element_spacing_metres),
         ] {
             if !(value.is_finite() && value > 0.0) {
@@ -248,6 +256,11 @@ impl Radar {
     /// Range at which the range bins wrap around, in metres (38.4 m for table 3.1).
     pub fn max_range_metres(&self) -> f64 {
         self.samples as f64 * self.range_resolution_metres()
+    }
+
+    /// Samples a second of each receiver, hertz.
+    pub fn sample_rate_hz(&self) -> f64 {
+        self.samples as f64 / self.chirp_seconds
     }
 
     /// Position of element `n` on the x axis in metres, the array being centred on x = 0.

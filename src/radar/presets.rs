@@ -1,6 +1,6 @@
 //! Radars that exist, and radars that show the effect of one constant.
 
-use super::{AntennasError, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
+use super::{AntennasError, CHIRP_SECONDS, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
 use std::sync::LazyLock;
 
 /// A radar ready to look with.
@@ -31,6 +31,7 @@ const TABLE_3_1: Radar = Radar {
     elements: 1024,
     end_elements: 12,
     samples: 512,
+    chirp_seconds: CHIRP_SECONDS,
     carrier: Carrier::OneWay,
     window: WindowFunction::Hann,
 };

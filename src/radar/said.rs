@@ -1,6 +1,6 @@
 //! A radar as files have it: every constant by its name, and short words for what belongs together.
 
-use super::{Antennas, Carrier, Convention, Radar, WindowFunction};
+use super::{Antennas, CHIRP_SECONDS, Carrier, Convention, Radar, WindowFunction};
 use serde::{Deserialize, Serialize};
 
 /// The table `[radar]`: what is left out is that of table 3.1. `convention` says `carrier` and, where that is left out,
@@ -17,6 +17,8 @@ pub(super) struct Said {
     elements: Option<usize>,
     end_elements: Option<usize>,
     samples: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chirp_seconds: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     carrier: Option<Carrier>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,6 +43,7 @@ impl From<Radar> for Said {
             elements: Some(radar.elements),
             end_elements: Some(radar.end_elements),
             samples: Some(radar.samples),
+            chirp_seconds: Some(radar.chirp_seconds).filter(|s| *s != CHIRP_SECONDS),
             carrier: Some(radar.carrier),
             convention: None,
             window: Some(radar.window),
@@ -78,6 +81,7 @@ impl TryFrom<Said> for Radar {
             elements: said.elements.unwrap_or(usual.elements),
             end_elements: said.end_elements.unwrap_or(usual.end_elements),
             samples: said.samples.unwrap_or(usual.samples),
+            chirp_seconds: said.chirp_seconds.unwrap_or(CHIRP_SECONDS),
             carrier,
             window: said.window.unwrap_or(usual.window),
             antennas: None,
@@ -181,7 +185,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         for convention in Convention::ALL {
-            let radar = Radar { elements: 77, ..Radar::default() }.in_convention(convention);
+            let radar = Radar { elements: 77, chirp_seconds: 1e-4, ..Radar::default() }.in_convention(convention);
             assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
         }
     }

@@ -33,7 +33,7 @@
 //! phase_degrees = []
 //!
 //! [recording.capture]                 # for a .bin: a raw capture and the .cfg that set the radar up
-//! config = "profile.cfg"              # says carrier_hz, bandwidth_hz and samples of [radar]
+//! config = "profile.cfg"              # says carrier_hz, bandwidth_hz, samples and chirp_seconds of [radar]
 //! lanes = 2                           # or 4
 //! receivers = "one-after-another"     # or "interleaved"
 //! chirps = [0, 2]                     # the chirps of a loop that form the line of elements

@@ -184,11 +184,17 @@ impl RadarProfile {
         self.start_hz + self.slope_hz_per_second * middle_seconds
     }
 
-    /// Writes carrier, bandwidth and samples into `radar`.
+    /// Time that the samples span, seconds.
+    pub fn chirp_seconds(&self) -> f64 {
+        self.samples as f64 / self.samples_per_second
+    }
+
+    /// Writes carrier, bandwidth, samples and their duration into `radar`.
     pub fn set(&self, radar: &mut Radar) {
         radar.carrier_hz = self.carrier_hz();
         radar.bandwidth_hz = self.bandwidth_hz();
         radar.samples = self.samples;
+        radar.chirp_seconds = self.chirp_seconds();
     }
 }
 

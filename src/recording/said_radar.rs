@@ -17,6 +17,7 @@ pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>)
                 ));
             }
         }
+        table.entry("chirp_seconds").or_insert(profile.chirp_seconds().into());
         let said = table.entry("samples").or_insert((profile.samples as i64).into());
         if said.as_integer() != Some(profile.samples as i64) {
             return Err(Fault::key(

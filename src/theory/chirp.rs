@@ -1,12 +1,12 @@
 //! A chirp and its echoes as frequencies against time: what is sent, what returns, and the beat as their difference.
 //!
 //! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, whatever its duration
-//! (thesis section 2.1). So the radar has no duration, and a picture with seconds in it chooses one.
+//! (thesis section 2.1). The thesis' radar has no duration; [`Radar::chirp_seconds`] gives it one.
 
 use crate::radar::{Radar, SPEED_OF_LIGHT};
 use crate::scene::{Interferer, Scene};
 
-/// A linear chirp that lasts a time of one's choice.
+/// A linear chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chirp {
     /// Frequency at its start, hertz.
@@ -32,8 +32,8 @@ pub struct Heard {
 
 impl Chirp {
     /// The chirp of a radar.
-    pub fn of(radar: &Radar, duration_seconds: f64) -> Chirp {
-        let (start_hz, bandwidth_hz, samples) = (radar.carrier_hz, radar.bandwidth_hz, radar.samples);
+    pub fn of(radar: &Radar) -> Chirp {
+        let Radar { carrier_hz: start_hz, bandwidth_hz, chirp_seconds: duration_seconds, samples, .. } = *radar;
         Chirp { start_hz, bandwidth_hz, duration_seconds, samples }
     }
 
@@ -98,13 +98,13 @@ mod tests {
     #[test]
     fn a_beat_is_the_slope_times_the_way_there_and_back() {
         let radar = Radar::default();
-        let chirp = Chirp::of(&radar, 25.6e-6);
+        let chirp = Chirp::of(&radar);
         // 2 GHz in 25.6 us, 20 m away: 40 m of way are 133.4 ns.
         let beat = 2e9 / 25.6e-6 * (2.0 * 20.0 / 299_792_458.0);
         assert!((chirp.beat_hz(20.0) / beat - 1.0).abs() < 1e-12);
         assert!((chirp.beat_hz(20.0) - 10.423e6).abs() < 1e3, "{}", chirp.beat_hz(20.0));
         assert!((chirp.range_bin(beat) - radar.bin_of_range(20.0)).abs() < 1e-9);
-        let longer = Chirp::of(&radar, 1e-3);
+        let longer = Chirp::of(&Radar { chirp_seconds: 1e-3, ..radar.clone() });
         assert!((longer.range_bin(longer.beat_hz(20.0)) - radar.bin_of_range(20.0)).abs() < 1e-9);
         assert!((chirp.sent_hz(25.6e-6) - 79e9).abs() < 1.0);
     }
@@ -116,7 +116,7 @@ mod tests {
             let scene = Scene::of_points([(x, y)]);
             let profiles = range_transform(&radar, &simulate(&radar, &scene, Floor::Exact, 0).unwrap()).profiles;
             for element in [0, 40] {
-                let chirp = Chirp::of(&radar, 25.6e-6);
+                let chirp = Chirp::of(&radar);
                 let [one] = heard(&radar, &scene, element)[..] else { panic!("one object") };
                 let bin = chirp.range_bin(chirp.beat_hz(one.range_metres));
                 let row = profiles.row(element);
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn an_interferer_crosses_when_it_says() {
-        let chirp = Chirp::of(&Radar::default(), 25.6e-6);
+        let chirp = Chirp::of(&Radar::default());
         let interferer = Interferer { crossing: 0.6, duration: 0.1, ..Interferer::default() };
         assert!(chirp.interferer_above_hz(&interferer, 0.6 * 25.6e-6).abs() < 1e-3);
         // Half a turn a sample, 10 MHz of 20, after half of its duration.

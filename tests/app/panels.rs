@@ -191,14 +191,16 @@ fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     assert_eq!(s.state().chirps_asked(), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::Chirp));
     let bin = |s: &Session| {
-        let chirp = Chirp::of(s.state().radar(), s.state().settings().chirp.seconds);
+        let chirp = Chirp::of(s.state().radar());
         let echoes = heard(s.state().radar(), s.state().editor().scene(), s.state().settings().chirp.element);
         let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
         chirp.range_bin(chirp.beat_hz(strongest.range_metres))
     };
     let (peak, element) = s.state().beat_peak().expect("a beat");
     assert!(element == 0 && (peak as f64 - bin(&s)).abs() <= 0.5, "{peak} {}", bin(&s));
-    s.ask(ViewCommand::SetChirp(ChirpSettings { element: 500, seconds: 1e-3 }));
+    s.ask(ViewCommand::SetChirp(ChirpSettings { element: 500 }));
+    let longer = apertura::radar::Radar { chirp_seconds: 1e-3, ..s.state().radar().clone() };
+    s.ask(RadarCommand::Set(Box::new(longer)));
     let (longer, element) = s.state().beat_peak().unwrap();
     assert_eq!((longer, element), (peak, 127), "the last element; no sample depends on the duration");
     let asked = s.state().chirps_asked();

@@ -46,6 +46,7 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
         ("carrier frequency", before.carrier_hz != after.carrier_hz),
         ("bandwidth", before.bandwidth_hz != after.bandwidth_hz),
         ("samples", before.samples != after.samples),
+        ("duration of a chirp", before.chirp_seconds != after.chirp_seconds),
         ("elements", before.elements != after.elements),
         ("elements of an end", before.end_elements != after.end_elements),
         ("spacing", before.element_spacing_metres != after.element_spacing_metres),

@@ -1,7 +1,7 @@
 //! A chirp: frequency against time of what is sent and of what returns, the beat as its samples, and the beat's spectrum.
 
 use crate::app::jobs::ChirpResult;
-use crate::app::state::{CHIRP_SECONDS, ChirpSettings, Command, RadarCommand, ViewCommand};
+use crate::app::state::{ChirpSettings, Command, RadarCommand, ViewCommand};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
@@ -28,6 +28,9 @@ const HANDLE: f32 = 5.0;
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
 const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 
+/// Shortest and longest chirp that is dragged to, seconds.
+const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
+
 /// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
 
@@ -37,7 +40,7 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// The scene.
     pub scene: &'a Scene,
-    /// Which element, and how long its chirp lasts.
+    /// Which element.
     pub settings: ChirpSettings,
     /// Whether a recording stands in the place of the scene: its radar is what it was, and nobody knows what stood where.
     pub is_recorded: bool,
@@ -49,7 +52,7 @@ pub struct Input<'a> {
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        let chirp = Chirp::of(input.radar, input.settings.seconds);
+        let chirp = Chirp::of(input.radar);
         let element = input.settings.element.min(input.radar.elements - 1);
         let mut echoes = match input.is_recorded {
             true => Vec::new(),
@@ -102,13 +105,13 @@ fn choices(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Comma
         let mut changed = radar.clone();
         let label = ui.label("Element").on_hover_text("The element whose chirp and beat are drawn, from the left");
         ui.add(NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3)).labelled_by(label.id);
-        let tooltip = "How long the chirp is taken to last. No sample depends on it: a beat turns 2RB/c times in a chirp of any length.";
+        let tooltip = "Time that the samples span. No echo at rest depends on it: a beat turns 2RB/c times in a chirp of any length.";
         let label = ui.label("Chirp").on_hover_text(tooltip);
-        let mut microseconds = 1e6 * settings.seconds;
-        let range = 1e6 * CHIRP_SECONDS[0]..=1e6 * CHIRP_SECONDS[1];
+        let mut microseconds = 1e6 * radar.chirp_seconds;
+        let range = 1e6 * DRAGGED_SECONDS[0]..=1e6 * DRAGGED_SECONDS[1];
         let field = NumberField::new(&mut microseconds).range(range).speed(0.05).suffix(" µs");
         if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
-            settings.seconds = 1e-6 * microseconds;
+            changed.chirp_seconds = 1e-6 * microseconds;
         }
         ui.add_enabled_ui(!input.is_recorded, |ui| {
             let label = ui.label("Samples").on_hover_text("Samples of the beat, and range bins of its spectrum");
@@ -217,7 +220,7 @@ impl Shown<'_> {
 
     /// Both ends of what is sent are dragged: the beginning up and down for the carrier, the end for bandwidth and duration.
     fn handles(&self, ui: &mut Ui, drawn: &Drawn<'_>, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
-        let mut settings = self.input.settings;
+        let settings = self.input.settings;
         let mut radar = self.input.radar.clone();
         let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
         for (at, name, icon) in [
@@ -236,7 +239,8 @@ impl Shown<'_> {
             }
             if response.dragged() && at[1] != 0.0 {
                 let across = f64::from(by.x / drawn.rect.width());
-                settings.seconds = (settings.seconds * (1.0 + across)).clamp(CHIRP_SECONDS[0], CHIRP_SECONDS[1]);
+                radar.chirp_seconds =
+                    (radar.chirp_seconds * (1.0 + across)).clamp(DRAGGED_SECONDS[0], DRAGGED_SECONDS[1]);
             }
             let lit = response.hovered() || response.dragged();
             let radius = if lit { HANDLE + 1.5 } else { HANDLE };
@@ -343,15 +347,11 @@ mod tests {
         panel.hover_at(at + vec2(20.0, -20.0));
         panel.step();
         let mut radars = panel.state().iter().filter_map(|c| match c {
-            Command::Radar(RadarCommand::Set(radar)) => Some(radar.bandwidth_hz),
+            Command::Radar(RadarCommand::Set(radar)) => Some(radar),
             _ => None,
         });
-        assert!(radars.next_back().is_some_and(|hz| hz > 2.5e8), "{:?}", panel.state());
-        let mut seconds = panel.state().iter().filter_map(|c| match c {
-            Command::View(ViewCommand::SetChirp(settings)) => Some(settings.seconds),
-            _ => None,
-        });
-        assert!(seconds.next_back().is_some_and(|s| s > 25.6e-6), "{:?}", panel.state());
+        let dragged = |radar: &Radar| radar.bandwidth_hz > 2.5e8 && radar.chirp_seconds > 25.6e-6;
+        assert!(radars.next_back().is_some_and(|radar| dragged(radar)), "{:?}", panel.state());
     }
 
     #[test]

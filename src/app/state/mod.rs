@@ -29,7 +29,7 @@ mod view;
 
 pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
-pub use chirp_settings::{CHIRP_SECONDS, ChirpSettings};
+pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
     RowsCommand, ViewCommand, WindowCommand, WorkCommand,
