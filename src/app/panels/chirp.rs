@@ -101,7 +101,7 @@ fn stretch(radar: &Radar, chirp: &Chirp) -> f64 {
 
 fn choices(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let (radar, mut settings) = (input.radar, ChirpSettings { element, ..input.settings });
+        let (radar, mut settings) = (input.radar, ChirpSettings { element });
         let mut changed = radar.clone();
         let label = ui.label("Element").on_hover_text("The element whose chirp and beat are drawn, from the left");
         ui.add(NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3)).labelled_by(label.id);
@@ -314,7 +314,7 @@ mod tests {
         let beat =
             ChirpResult { element: 3, samples, spectrum: (0..64).map(|bin| 1.0 / (1.0 + f64::from(bin))).collect() };
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let settings = ChirpSettings { element: 3, ..ChirpSettings::default() };
+            let settings = ChirpSettings { element: 3 };
             let result = Some(result.map(|()| &beat));
             asked.extend(show(ui, Input { radar: &radar, scene: &scene, settings, is_recorded: false, result }));
         };
