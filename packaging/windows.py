@@ -6,11 +6,12 @@ import shutil
 import struct
 from pathlib import Path
 
-from build import MOST_BYTES, PROFILE, environment
+from build import MOST_BYTES, environment
 from common import ROOT, SYSTEM, Fault, run, target_folder, version
 from formats import packed_zip
 
 TRIPLE = "x86_64-pc-windows-gnu"
+PROFILE = "packages-windows"
 #: Debian's package of the compiler, and its programs as they are called there and on Windows.
 COMPILER_PACKAGE = "gcc-mingw-w64-x86-64"
 PREFIX = "" if SYSTEM == "windows" else "x86_64-w64-mingw32-"
