@@ -15,7 +15,7 @@ import zipfile
 from pathlib import Path
 
 import tree
-from common import EXE, GLIBC, MACHINE, ROOT, SYSTEM, Fault, moment, name, run, version, window_libraries
+from common import EXE, GLIBC, MACHINE, ROOT, Fault, moment, name, run, version, window_libraries
 
 #: What a session without X, a graphics driver or a file dialog of the system would miss.
 RECOMMENDED = ["libegl1", "libgl1-mesa-dri", "libwayland-client0", "libwayland-egl1", "xdg-desktop-portal"]
@@ -30,9 +30,7 @@ Description: window, command line and simulator of sparse automotive radars
 
 
 def archive(laid: Path, folder: Path) -> Path:
-    """A .tar.gz of a tree, for Windows a .zip. Its one folder can be unpacked anywhere, or over ~/.local."""
-    if SYSTEM == "windows":
-        return _zip({f"{name()}/{f.as_posix()}": ((laid / f).read_bytes(), 0o644) for f in tree.files(laid)}, folder / f"{name()}.zip")
+    """A .tar.gz of a tree. Its one folder can be unpacked anywhere, or over ~/.local."""
     path = folder / f"{name()}.tar.gz"
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w", format=tarfile.GNU_FORMAT) as out:
@@ -105,10 +103,10 @@ def wheel(plain: Path, program: Path, page: Path | None, notices: str, folder: P
     lines = [f"{n},sha256={_digest(data)},{len(data)}" for n, (data, _) in sorted(content.items())]
     content[record] = ("\n".join([*lines, f"{record},,"]).encode() + b"\n", 0o644)
     # As the format wants it: what tells of the wheel comes last.
-    return _zip(dict(sorted(content.items(), key=lambda item: (".dist-info/" in item[0], item[0]))), path)
+    return packed_zip(dict(sorted(content.items(), key=lambda item: (".dist-info/" in item[0], item[0]))), path)
 
 
-def _zip(content: dict[str, tuple[bytes, int]], path: Path) -> Path:
+def packed_zip(content: dict[str, tuple[bytes, int]], path: Path) -> Path:
     """A zip archive of bytes and permissions by name."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
         for entry, (data, mode) in content.items():

@@ -7,7 +7,7 @@ import os
 import shutil
 from pathlib import Path
 
-from common import EXE, ROOT, SYSTEM, moment, run
+from common import ROOT, moment, run
 
 #: Where each shell looks for the completions that `apertura-manual` writes.
 COMPLETIONS = {
@@ -20,13 +20,11 @@ COMPLETIONS = {
 def lay(folder: Path, program: Path, manual: Path, notices: str) -> None:
     """Lays the tree into an empty `folder`."""
     shutil.rmtree(folder, ignore_errors=True)
-    put(program, folder / f"bin/apertura{EXE}", mode=0o755)
+    put(program, folder / "bin/apertura", mode=0o755)
     document = folder / "share/doc/apertura"
     for path in ("README.md", "LICENSE-MIT", "LICENSE-APACHE"):
         put(ROOT / path, document / path)
     write(document / "THIRD-PARTY.txt.gz", packed(notices.encode()))
-    if SYSTEM == "windows":
-        return
     made = folder / "made"
     run(manual, made)
     for page in sorted((made / "man").iterdir()):

@@ -35,6 +35,7 @@ mod worsen;
 pub use error::CommandError;
 pub use output::print;
 
+use crate::platform::console;
 use crate::signal::simd::Simd;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
@@ -110,6 +111,7 @@ impl Command {
 
 /// Runs the program; errors go to standard error and make the exit status non-zero.
 pub fn main() -> ExitCode {
+    console::join();
     log_to_stderr();
     let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
     let result = Simd::requested().map_err(CommandError::failed).and_then(|_| match cli.command {
@@ -119,7 +121,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            console::say(&format!("error: {error}"));
             ExitCode::FAILURE
         }
     }

@@ -5,6 +5,7 @@ use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::methods;
+use crate::platform::console;
 use crate::picture::{Format, Style, compose, compose_recording, is_our_png};
 use crate::scene::file::SceneFile;
 use crate::scene::presets;
@@ -51,7 +52,7 @@ impl Args {
             Err(WindowError::Failed(error)) => return Err(CommandError::failed(error)),
         };
         let reason = shortened(&reason);
-        eprintln!("apertura: {reason}; drawing its panels to a picture instead");
+        console::say(&format!("apertura: {reason}; drawing its panels to a picture instead"));
         draw_instead(&input)
     }
 

@@ -2,6 +2,8 @@
 //! opens. Each has one file; no other room asks which of the two it runs on, but for the SIMD kernels.
 
 #[cfg(not(target_arch = "wasm32"))]
+pub mod console;
+#[cfg(not(target_arch = "wasm32"))]
 mod desktop;
 #[cfg(any(test, target_arch = "wasm32"))]
 #[cfg_attr(test, allow(dead_code, reason = "the page uses what the tests don't"))]

@@ -1,0 +1,21 @@
+//! The console that the program was started from, where there is one.
+
+/// Takes the console of whoever started the program. On Windows a program with a window has none of its own.
+pub fn join() {
+    #[cfg(windows)]
+    {
+        use windows_sys::Win32::System::Console::{ATTACH_PARENT_PROCESS, AttachConsole};
+        // SAFETY: takes no pointer. It fails where there is no console, and where the program has one already.
+        let _joined = unsafe { AttachConsole(ATTACH_PARENT_PROCESS) };
+    }
+}
+
+/// Says a sentence on standard error. On Windows a program that was started by a double click has none: there the system shows a box.
+pub fn say(sentence: &str) {
+    #[cfg(all(windows, feature = "app"))]
+    if std::os::windows::io::AsRawHandle::as_raw_handle(&std::io::stderr()).is_null() {
+        rfd::MessageDialog::new().set_title("apertura").set_description(sentence).show();
+        return;
+    }
+    eprintln!("{sentence}");
+}
