@@ -14,10 +14,12 @@ from .objects import (
     Line,
     Metrics,
     Mirror,
+    Paired,
     Point,
     Polygon,
     PositionBound,
     Post,
+    Rule,
     Wall,
 )
 
@@ -49,8 +51,10 @@ __all__ = [
     "method",
     "methods",
     "metrics",
+    "paired",
     "read_rows",
     "roc",
+    "rules",
     "set_threads",
     "threads",
     "write_rows",
@@ -335,6 +339,8 @@ def evaluate(
     cfar: str | None = None,
 ) -> list[dict[str, Any]]: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...
+def paired(rows: Sequence[dict[str, Any]], first: str, second: str) -> Paired: ...
+def rules(rows: Sequence[dict[str, Any]], bad: str = ...) -> list[Rule]: ...
 def write_rows(path: _Path, rows: Sequence[dict[str, Any]]) -> None: ...
 def cramer_rao(
     reflectors: npt.ArrayLike,

@@ -164,6 +164,28 @@ class Metrics(NamedTuple):
     false_alarm: float
 
 
+class Paired(NamedTuple):
+    """Two methods on the same scenes; the interval is one of 95 %."""
+
+    scenes: int
+    difference: float
+    interval: tuple[float, float]
+    first_alone: int
+    second_alone: int
+    p_value: float
+
+
+class Rule(NamedTuple):
+    """What bad rows have in common, with the counts of the half of the scenes that tests it."""
+
+    text: str
+    rows: int
+    bad: int
+    other_rows: int
+    other_bad: int
+    p_value: float
+
+
 class PositionBound(NamedTuple):
     """Standard deviations that no unbiased estimate of one reflector can stay below.
 

@@ -270,10 +270,16 @@ fn check_only(
 #[pyfunction]
 #[pyo3(name = "write_rows")]
 pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>) -> PyResult<()> {
+    let rows = rows_of(py, &rows)?;
+    write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
+}
+
+/// Rows of dicts, read as the program reads a file of them.
+pub fn rows_of(py: Python<'_>, rows: &[Bound<'_, PyDict>]) -> PyResult<Vec<Row>> {
     let names: Vec<&str> =
         rows::Column::ALL.map(rows::Column::name).into_iter().chain(Part::ALL.map(Part::name)).collect();
     let mut text = names.join(",");
-    for row in &rows {
+    for row in rows {
         text.push('\n');
         for (i, name) in names.iter().enumerate() {
             let cell = row.get_item(name)?.filter(|cell| !cell.is_none());
@@ -285,8 +291,7 @@ pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>
         }
     }
     text.push('\n');
-    let rows = work::run(py, None, |_| read(text.as_bytes()))?.map_err(value)?;
-    write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
+    work::run(py, None, |_| read(text.as_bytes()))?.map_err(value)
 }
 
 /// Reads the rows of `apertura evaluate --rows`.

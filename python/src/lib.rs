@@ -12,6 +12,7 @@ mod pool;
 mod radar;
 mod recording;
 mod scene;
+mod statistics;
 mod work;
 
 use pyo3::prelude::*;
@@ -35,6 +36,8 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(evaluate::metrics, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::roc, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::cfar, module)?)?;
+    module.add_function(wrap_pyfunction!(statistics::paired, module)?)?;
+    module.add_function(wrap_pyfunction!(statistics::rules_of, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::read_rows, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::write_rows_to, module)?)?;

@@ -14,6 +14,7 @@ mod roc;
 pub mod rows;
 pub mod sets;
 mod shard;
+pub mod statistics;
 pub mod tables;
 pub mod trial;
 pub mod worsen;

@@ -1,5 +1,6 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values. Also writes rows, runs shards, and takes your own scenes.
 
+mod against;
 mod by_echo;
 mod kept;
 mod progress;
@@ -50,7 +51,9 @@ use std::time::Duration;
 /// detection_at_printed_false_alarm (false_alarm, detection, standard_error, median; threshold says that each scene has its own), echoes
 /// (null without bodies; below_db: where each class begins, there and found: echoes of each class, detection: the part of all that are found),
 /// cfar (null without --cfar: detector, and detection and false_alarm by it),
-/// median_milliseconds and near_best (null with one method). Rates are fractions, not percent.
+/// median_milliseconds and near_best (null with one method). Each set also has against: the first method beside each other one on the scenes
+/// of both (first, second, scenes, squared_error_difference and its interval_95 by the paired bootstrap, first_alone and second_alone: scenes
+/// in which that one alone finds every object, mcnemar_p). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Methods, separated by commas [default: those of --method-command, or else baseline]

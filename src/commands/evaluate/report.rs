@@ -1,5 +1,6 @@
 //! The tables of an evaluation, from its rows.
 
+use super::against::{self, Against};
 use super::by_echo::{self, EchoReport};
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
@@ -34,6 +35,8 @@ struct SetReport {
     /// At which methods are held against each other.
     false_alarm: f64,
     methods: Vec<MethodReport>,
+    /// The first method against each of the others.
+    against: Vec<Against>,
 }
 
 #[derive(Debug, Serialize)]
@@ -193,8 +196,9 @@ impl SetReport {
         });
         let false_alarm = false_alarm(test_set);
         let method = |name: &&str| MethodReport::of(name, rows, false_alarm);
-        let methods = names(rows, |row| &row.method).iter().map(method).collect();
-        SetReport { set: set.to_owned(), printed, false_alarm, methods }
+        let names = names(rows, |row| &row.method);
+        let (methods, against) = (names.iter().map(method).collect(), Against::of(&names, rows));
+        SetReport { set: set.to_owned(), printed, false_alarm, methods, against }
     }
 
     fn write(&self, count: usize, text: &mut String) {
@@ -233,6 +237,7 @@ impl SetReport {
         let counted = self.methods.iter().filter_map(|m| Some((m.name.as_str(), m.echoes.as_ref()?)));
         by_echo::write(&counted.collect::<Vec<_>>(), width, text);
         self.write_cfar(width, text);
+        against::write(&self.against, text);
     }
 }
 

@@ -24,14 +24,17 @@ pub enum View {
     Columns,
     /// Two methods.
     Methods,
+    /// No chart, but what the bad rows have in common.
+    Shared,
 }
 
 impl View {
-    const ALL: [(View, &'static str, &'static str); 4] = [
+    const ALL: [(View, &'static str, &'static str); 5] = [
         (View::None, "Table", "The table alone"),
         (View::Histogram, "Histogram", "How often the figures of a column fall where"),
         (View::Columns, "Scatter", "One column against another"),
         (View::Methods, "A against B", "One column for one method against the same for another, scene by scene"),
+        (View::Shared, "What do the bad ones share?", "Rules that tell bad rows from others, tested on scenes that did not suggest them"),
     ];
 }
 
@@ -99,7 +102,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut Memory) {
         combo.response.labelled_by(label.id);
     };
     match memory.view {
-        View::None => {}
+        View::None | View::Shared => {}
         View::Histogram => column(ui, "histogram", "of", &mut memory.y),
         View::Columns => {
             column(ui, "scatter y", "of", &mut memory.y);
@@ -135,6 +138,9 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
         memory.mesh = None;
     }
     let Some((_, _, points)) = &memory.made else { return Answer::default() };
+    if let Some(told) = &points.told {
+        ui.label(told);
+    }
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
     if points.dots.is_empty() {
@@ -178,7 +184,7 @@ fn subject(memory: &Memory) -> Option<(Subject, [String; 2])> {
     let (x, y) = (memory.x, memory.y);
     let [a, b] = &memory.methods;
     Some(match memory.view {
-        View::None => return None,
+        View::None | View::Shared => return None,
         View::Histogram => (Subject::Histogram(y), [y.name().to_owned(), "rows".to_owned()]),
         View::Columns => (Subject::Columns(x, y), [x.name().to_owned(), y.name().to_owned()]),
         View::Methods => {

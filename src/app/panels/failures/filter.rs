@@ -26,6 +26,11 @@ impl Memory {
         self.filter.as_ref()
     }
 
+    /// Puts another expression into the field.
+    pub fn set(&mut self, text: String) {
+        self.text = text;
+    }
+
     /// Rises when that changed.
     pub fn stamp(&self) -> u64 {
         self.stamp

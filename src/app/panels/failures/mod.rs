@@ -8,6 +8,7 @@ mod input;
 mod opened;
 mod order;
 mod points;
+mod shared;
 mod table;
 
 pub use input::{Input, Live, Now, Searched};
@@ -29,6 +30,7 @@ pub struct Memory {
     order: Order,
     boxed: Option<Boxed>,
     charts: charts::Memory,
+    shared: shared::Memory,
     table: table::Memory,
     opened: opened::Memory,
     in_sight: Vec<usize>,
@@ -118,6 +120,13 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
 }
 
 fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    if memory.charts.view == View::Shared {
+        if let Some(rule) = shared::show(ui, input.table, &mut memory.shared) {
+            memory.filter.set(rule);
+            ui.request_repaint();
+        }
+        return;
+    }
     let of = charts::Input { table: input.table, order: &memory.order, opened: input.opened };
     let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
     asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));

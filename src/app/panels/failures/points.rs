@@ -2,6 +2,7 @@
 
 use crate::app::jobs::RowTable;
 use crate::evaluate::rows::{Column, Histogram, Row, Value};
+use crate::evaluate::statistics::Paired;
 use std::collections::HashMap;
 
 /// Bars of a histogram.
@@ -36,6 +37,8 @@ pub struct Points {
     pub bars: Option<Histogram>,
     /// Where the axes begin and end.
     pub spans: [[f64; 2]; 2],
+    /// What statistics say of the two methods.
+    pub told: Option<String>,
 }
 
 fn number(row: &Row, column: Column) -> Option<f64> {
@@ -59,7 +62,7 @@ impl Points {
                 let bars = Histogram::of(listed().map(|(_, row)| row), *column, BARS);
                 let most = bars.as_ref().and_then(|b| b.counts.iter().max()).map_or(1, |most| *most);
                 let x = bars.as_ref().map_or([0.0, 1.0], |b| padded(b.low, b.high, 0.0));
-                Points { dots, bars, spans: [x, [0.0, 1.05 * most as f64]] }
+                Points { dots, bars, spans: [x, [0.0, 1.05 * most as f64]], told: None }
             }
             Subject::Columns(x, y) => {
                 let dot = |(index, row): (usize, &Row)| {
@@ -75,7 +78,9 @@ impl Points {
                     let other = *of_b.get(&scene(row))?;
                     Some(Dot { at: [number(row, *column)?, number(&rows[other], *column)?], rows: [index, other] })
                 };
-                Points::scattered(listed().filter(|(_, row)| row.method == *a).filter_map(dot).collect())
+                let dots = listed().filter(|(_, row)| row.method == *a).filter_map(dot).collect();
+                let paired = Paired::of(listed().map(|(_, row)| row), a, b).filter(|_| a != b);
+                Points { told: paired.map(|paired| paired.told(a, b)), ..Points::scattered(dots) }
             }
         }
     }
@@ -86,7 +91,7 @@ impl Points {
             let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
             if low <= high { padded(low, high, 0.03) } else { [0.0, 1.0] }
         };
-        Points { spans: [span(0), span(1)], dots, bars: None }
+        Points { spans: [span(0), span(1)], dots, bars: None, told: None }
     }
 }
 

@@ -181,3 +181,31 @@ fn an_opened_row_keeps_its_figures_beside_those_of_now() {
     }
     assert!(texts.iter().any(|t| t.text == "1 found, 2 missed"), "{texts:?}");
 }
+
+/// Every scene by two methods; the second misses objects where something is near.
+fn by_two_methods() -> Vec<Row> {
+    let of = |i: u32, method: &str| {
+        let near = f64::from(i / 2 % 10);
+        let missed = usize::from(method == "nomp" && near < 3.0);
+        Row { nearest_pair_columns: Some(near), missed, ..some_row(i, method) }
+    };
+    (0..80).flat_map(|i| ["live", "nomp"].map(|method| of(i, method))).collect()
+}
+
+#[test]
+fn two_methods_are_compared_in_a_sentence() {
+    let mut panel = panel_of(by_two_methods(), vec2(900.0, 700.0));
+    click(&mut panel, "A against B");
+    let texts = seen::texts(panel.output());
+    let told = texts.iter().find(|t| t.text.starts_with("SE of live less that of nomp: +0.0")).unwrap();
+    assert!(told.text.contains("by live alone: 24 scenes, by nomp alone: 0 (McNemar p = below 0.0001)"), "{}", told.text);
+}
+
+#[test]
+fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
+    let mut panel = panel_of(by_two_methods(), vec2(900.0, 700.0));
+    click(&mut panel, "What do the bad ones share?");
+    let _said = panel.get_by_label_contains("24 of 160 rows are bad.");
+    click(&mut panel, "nearest_pair_columns < 3");
+    assert_eq!(panel.state().memory.order.shown().len(), 48);
+}

@@ -1,0 +1,100 @@
+//! What the bad rows have in common: rules, each a filter that a click applies.
+
+use crate::app::jobs::RowTable;
+use crate::evaluate::rows::Row;
+use crate::evaluate::statistics::{Rule, Shared, USUALLY_BAD, rules};
+use crate::platform::Instant;
+use crate::radar::counted;
+use eframe::egui::{Label, RichText, ScrollArea, TextEdit, Ui};
+use std::time::Duration;
+
+/// While rows come, rules are looked for so often.
+const EVERY: Duration = Duration::from_secs(2);
+
+/// Of more rows only those of evenly chosen scenes are looked at, so that no frame waits.
+const MOST_ROWS: usize = 20_000;
+
+/// What was typed, and what was found.
+pub struct Memory {
+    bad: String,
+    of: Option<(u64, String)>,
+    when: Option<Instant>,
+    found: Option<Result<Shared, String>>,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Memory { bad: USUALLY_BAD.to_owned(), of: None, when: None, found: None }
+    }
+}
+
+impl Memory {
+    /// Looks for rules, if the rows or what is bad changed.
+    fn update(&mut self, ui: &Ui, table: &RowTable) {
+        let key = (table.version(), self.bad.clone());
+        if self.of.as_ref() == Some(&key) {
+            return;
+        }
+        let only_rows = self.of.as_ref().is_some_and(|(_, bad)| *bad == self.bad);
+        if let Some(wait) = self.when.filter(|_| only_rows).and_then(|when| EVERY.checked_sub(when.elapsed())) {
+            ui.request_repaint_after(wait);
+            return;
+        }
+        self.found = Some(rules(&chosen(table.rows()), &self.bad).map_err(|error| error.to_string()));
+        (self.of, self.when) = (Some(key), Some(Instant::now()));
+    }
+}
+
+/// All rows, or those of every so many scenes where there are too many.
+fn chosen(rows: &[Row]) -> Vec<Row> {
+    let every = rows.len().div_ceil(MOST_ROWS).max(1) as u32;
+    // Two neighbours at a time: one half of the scenes has even numbers.
+    rows.iter().filter(|row| (row.index / 2).is_multiple_of(every)).cloned().collect()
+}
+
+/// Draws it; the filter to apply, if a rule was clicked.
+pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut Memory) -> Option<String> {
+    ui.horizontal(|ui| {
+        let label = ui.label("Bad is");
+        let tip = "A filter: which rows are bad. Rules speak of what is known before a method answers.";
+        let edit = TextEdit::singleline(&mut memory.bad).desired_width(f32::INFINITY);
+        let _labelled = ui.add(edit).on_hover_text(tip).labelled_by(label.id);
+    });
+    memory.update(ui, table);
+    let shared = match memory.found.as_ref()? {
+        Err(error) => {
+            ui.add(Label::new(RichText::new(error).color(ui.visuals().error_fg_color)).wrap());
+            return None;
+        }
+        Ok(shared) => shared,
+    };
+    ui.weak(found(shared));
+    let mut applied = None;
+    ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
+        for rule in &shared.rules {
+            ui.horizontal_wrapped(|ui| {
+                if ui.button(&rule.text).on_hover_text("Show the rows that this is true of").clicked() {
+                    applied = Some(rule.text.clone());
+                }
+                ui.label(rule.told());
+            });
+        }
+    });
+    applied
+}
+
+/// In words, what was looked for and how.
+fn found(shared: &Shared) -> String {
+    let Shared { bad, rows, rules, tried } = shared;
+    let of = format!("{bad} of {} are bad.", counted(*rows, "row", "rows"));
+    let how = "Scenes of even number suggest a rule, those of odd number test it.";
+    match (rules.as_slice(), tried) {
+        ([], 0) => format!("{of} {how} No rule was suggested."),
+        ([], _) => format!("{of} {how} {} suggested, none held.", counted(*tried, "rule was", "rules were")),
+        (rules, _) => format!("{of} {how} {} (at most 5 % of those shown are chance):", held(rules, *tried)),
+    }
+}
+
+fn held(rules: &[Rule], tried: usize) -> String {
+    format!("{} of {tried} held", rules.len())
+}

@@ -1,0 +1,175 @@
+//! Two methods on the same scenes.
+
+use super::chance::Factorials;
+use crate::evaluate::Estimate;
+use crate::evaluate::rows::Row;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::collections::HashMap;
+
+/// How often scenes are drawn anew for the interval.
+pub const RESAMPLES: usize = 2000;
+
+/// Up to so many scenes the interval is that of the bootstrap. With more the mean's own distribution is normal enough, and drawing would take
+/// longer than a frame of the window.
+pub const MOST_RESAMPLED: usize = 5000;
+
+/// Distance of the ends of an interval of 95 % from the mean, in standard deviations of a normal distribution.
+const NORMAL_95: f64 = 1.96;
+
+/// What two methods make of the scenes that both were tried on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paired {
+    /// Scenes that both were tried on.
+    pub scenes: usize,
+    /// Mean over these scenes of the first method's squared error less the second's.
+    pub difference: f64,
+    /// Interval of 95 % of that mean: the paired percentile bootstrap over scenes (Efron and Tibshirani, An Introduction to the Bootstrap,
+    /// 1993, chapter 13), or the normal one for more than [`MOST_RESAMPLED`] scenes.
+    pub interval: [f64; 2],
+    /// Scenes in which the first finds every object and the second does not.
+    pub first_alone: usize,
+    /// The other way round.
+    pub second_alone: usize,
+    /// Probability of counts as uneven as these two, or more, if neither method were better: McNemar's exact test, two-sided.
+    pub p_value: f64,
+}
+
+impl Paired {
+    /// Of the rows of the two methods; `None` for no scene that both have. The same rows give the same interval.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>, first: &str, second: &str) -> Option<Paired> {
+        let mut scenes: HashMap<_, [Option<&Row>; 2]> = HashMap::new();
+        let mut order = Vec::new();
+        for row in rows {
+            let slot = match row.method.as_str() {
+                method if method == first => 0,
+                method if method == second => 1,
+                _ => continue,
+            };
+            let key = (row.set.as_str(), row.seed, row.index);
+            scenes.entry(key).or_insert_with(|| {
+                order.push(key);
+                [None; 2]
+            })[slot] = Some(row);
+        }
+        let both = |key| scenes.get(key).and_then(|[a, b]| Option::zip(*a, *b));
+        let pairs: Vec<(&Row, &Row)> = order.iter().filter_map(both).collect();
+        if pairs.is_empty() {
+            return None;
+        }
+        let differences: Vec<f64> = pairs.iter().map(|(a, b)| a.squared_error - b.squared_error).collect();
+        let alone = |is: fn(bool, bool) -> bool| pairs.iter().filter(|(a, b)| is(finds_all(a), finds_all(b))).count();
+        let [first_alone, second_alone] = [alone(|a, b| a && !b), alone(|a, b| b && !a)];
+        let factorials = Factorials::up_to(first_alone + second_alone);
+        Some(Paired {
+            scenes: pairs.len(),
+            difference: Estimate::of(&differences).mean,
+            interval: interval(&differences),
+            first_alone,
+            second_alone,
+            p_value: factorials.fair_coin(first_alone, second_alone),
+        })
+    }
+
+    /// Whether the interval leaves out zero: the methods' errors differ.
+    pub fn differs(&self) -> bool {
+        self.interval[0] > 0.0 || self.interval[1] < 0.0
+    }
+
+    /// In words, with the methods' names.
+    pub fn told(&self, first: &str, second: &str) -> String {
+        let Paired { scenes, difference, interval: [low, high], first_alone, second_alone, p_value } = self;
+        format!(
+            "SE of {first} less that of {second}: {difference:+.1}, 95 % interval {low:+.1} to {high:+.1} ({scenes} scenes). Every object \
+             found by {first} alone: {first_alone} scenes, by {second} alone: {second_alone} (McNemar p = {})",
+            p_text(*p_value)
+        )
+    }
+}
+
+/// A probability in two digits.
+pub(super) fn p_text(p: f64) -> String {
+    match p {
+        p if p < 1e-4 => "below 0.0001".to_owned(),
+        p if p < 0.01 => format!("{p:.4}"),
+        p => format!("{p:.2}"),
+    }
+}
+
+/// Whether no object of the scene is missed, merged or on a wrong tooth.
+fn finds_all(row: &Row) -> bool {
+    row.missed == 0 && row.merged.unwrap_or(0) == 0 && row.wrong_tooth.unwrap_or(0) == 0
+}
+
+/// Interval of 95 % of the mean of `values`.
+fn interval(values: &[f64]) -> [f64; 2] {
+    if values.len() > MOST_RESAMPLED {
+        let Estimate { mean, standard_error, .. } = Estimate::of(values);
+        return [-1.0, 1.0].map(|side| mean + side * NORMAL_95 * standard_error);
+    }
+    let mut rng = ChaCha8Rng::seed_from_u64(0);
+    let n = values.len();
+    let mut means: Vec<f64> =
+        (0..RESAMPLES).map(|_| (0..n).map(|_| values[rng.random_range(0..n)]).sum::<f64>() / n as f64).collect();
+    means.sort_by(f64::total_cmp);
+    // So many of the means lie below and above.
+    let outside = RESAMPLES / 40;
+    [means[outside], means[RESAMPLES - 1 - outside]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluate::rows::tests::row;
+    use rand_distr::{Distribution, Normal};
+
+    fn of(index: u32, method: &str, squared_error: f64, missed: usize) -> Row {
+        Row { squared_error, missed, merged: None, ..row("1", index, method) }
+    }
+
+    #[test]
+    fn only_scenes_that_both_have_count() {
+        let rows = [of(0, "a", 5.0, 0), of(1, "a", 9.0, 0), of(1, "b", 4.0, 1), of(2, "b", 1.0, 0), of(1, "c", 0.0, 0)];
+        let paired = Paired::of(&rows, "a", "b").unwrap();
+        assert_eq!((paired.scenes, paired.difference, paired.interval), (1, 5.0, [5.0, 5.0]));
+        assert_eq!((paired.first_alone, paired.second_alone, paired.p_value), (1, 0, 1.0));
+        assert_eq!(Paired::of(&rows, "a", "d"), None);
+        assert_eq!(Paired::of(&rows, "b", "a").unwrap().difference, -5.0);
+    }
+
+    #[test]
+    fn a_merged_object_is_not_found() {
+        let merged = Row { merged: Some(1), ..of(0, "b", 1.0, 0) };
+        let paired = Paired::of(&[of(0, "a", 1.0, 0), merged], "a", "b").unwrap();
+        assert_eq!((paired.first_alone, paired.second_alone), (1, 0));
+    }
+
+    /// The interval holds the true mean as often as it says. Of 400 samples of 60 scenes it is 380, give or take 4.4; the bootstrap's
+    /// intervals are a little narrow for so few scenes.
+    #[test]
+    fn the_interval_holds_the_mean_in_95_of_100_samples() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let normal = Normal::new(3.0, 10.0).unwrap();
+        let holds = |values: Vec<f64>| {
+            let [low, high] = interval(&values);
+            low < 3.0 && 3.0 < high
+        };
+        let held = (0..400).filter(|_| holds((0..60).map(|_| normal.sample(&mut rng)).collect())).count();
+        assert!((361..=393).contains(&held), "{held} of 400");
+    }
+
+    #[test]
+    fn many_scenes_have_nearly_the_same_interval_either_way() {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        let normal = Normal::new(0.0, 1.0).unwrap();
+        let values: Vec<f64> = (0..=MOST_RESAMPLED).map(|_| normal.sample(&mut rng)).collect();
+        let [of_all, of_fewer] = [interval(&values), interval(&values[1..])];
+        let width = |[low, high]: [f64; 2]| high - low;
+        assert!((width(of_all) / width(of_fewer) - 1.0).abs() < 0.06, "{of_all:?}, {of_fewer:?}");
+    }
+
+    #[test]
+    fn probabilities_are_told_in_two_digits() {
+        assert_eq!([0.25, 0.0031, 1e-9, 1.0].map(p_text), ["0.25", "0.0031", "below 0.0001", "1.00"]);
+    }
+}
