@@ -15,8 +15,8 @@ use std::path::PathBuf;
 /// Compute the range-Doppler map of a scene whose objects move, to an .npz archive or a .png or .svg picture
 ///
 /// The radar sends several chirps. An object's velocity (velocity_x_metres_per_second and velocity_y_metres_per_second in the scene)
-/// turns its phase from chirp to chirp. Powers are averaged over up to 4 elements of each end. Each chirp lasts its whole interval; a
-/// velocity shifts the range by v f T / B within it.
+/// turns its phase from chirp to chirp. Powers are averaged over up to 4 elements of each end. A velocity
+/// shifts the range by v f T / B within a chirp of duration T.
 ///
 /// The archive has power (f64 [512, chirps]), range_metres (f64 [512]), velocity_metres_per_second (f64 [chirps], away from the radar is
 /// positive), unambiguous_velocity_metres_per_second (f64), chirps (i64), chirp_interval_seconds (f64), and all_point_x and all_point_y
@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = whole(2..=MAX_CHIRPS))]
     chirps: Option<usize>,
 
-    /// From one chirp to the next, microseconds; overrides the scene's radar
+    /// From the beginning of a chirp to that of the next, microseconds, at least the duration of a chirp; overrides the scene's radar
     #[arg(long, value_name = "US", value_parser = real(0.1..=1e6))]
     interval: Option<f64>,
 

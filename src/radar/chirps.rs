@@ -14,6 +14,12 @@ impl Radar {
         Radar { chirps, chirp_interval_seconds, ..self.clone() }
     }
 
+    /// Sets the duration of a chirp; where the next would begin before its end, it begins at its end.
+    pub fn set_chirp_seconds(&mut self, seconds: f64) {
+        self.chirp_seconds = seconds;
+        self.chirp_interval_seconds = self.chirp_interval_seconds.max(seconds);
+    }
+
     /// Velocities below this one, towards the radar or away, have a column of their own: `1 / (2 |kappa| Tc)`, metres a second.
     pub fn unambiguous_velocity_metres_per_second(&self) -> f64 {
         0.5 / (self.middle_turns_per_metre().abs() * self.chirp_interval_seconds)
@@ -42,10 +48,10 @@ impl Radar {
         (columns + (self.chirps / 2) as f64).rem_euclid(self.chirps as f64)
     }
 
-    /// How far a radial velocity moves an echo along the range within a chirp, metres: the phase turns `kappa v Tc` times more while the
-    /// beat is counted, each a range bin. In the physical convention this is `v f T / B`, `f` that of the middle of the chirp.
+    /// How far a radial velocity moves an echo along the range within a chirp, metres: the phase turns `kappa v T` times more while the beat is
+    /// counted, each a range bin. In the physical convention this is `v f T / B`, `f` that of the middle of the chirp.
     pub fn doppler_range_shift_metres(&self, velocity_metres_per_second: f64) -> f64 {
-        let turns = self.middle_turns_per_metre() * velocity_metres_per_second * self.chirp_interval_seconds;
+        let turns = self.middle_turns_per_metre() * velocity_metres_per_second * self.chirp_seconds;
         self.range_of_bin_metres(turns)
     }
 }
@@ -96,6 +102,7 @@ mod tests {
             (Radar { chirps: usize::MAX, ..Radar::default() }, "radar.chirps"),
             (Radar { chirp_interval_seconds: f64::NAN, ..Radar::default() }, "chirp_interval_seconds is NaN"),
             (Radar { chirp_interval_seconds: 0.0, ..Radar::default() }, "above 0"),
+            (Radar { chirps: 2, chirp_seconds: 1e-3, ..Radar::default() }, "at least chirp_seconds, which is 0.001"),
             (Radar { chirps: 4096, samples: 65536, elements: 6, end_elements: 3, ..Radar::default() }, "4096 chirps"),
         ] {
             let told = radar.validate().unwrap_err().to_string();

@@ -1,9 +1,9 @@
 //! Samples of several chirps while objects move.
 //!
-//! Within a chirp the range of every echo runs in a straight line from where it is at the beginning of the chirp to where it is at the
-//! beginning of the next: `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. What this leaves out is the curvature
-//! of the range, at most `v^2 Tc^2 / (8 R)` metres for a speed `v` at range `R`: 3e-9 m for 20 m/s at 10 m in a chirp of 25.6
-//! microseconds. Amplitudes are those of the beginning of the chirp. Echoes of a body that come or go between two chirps stand still in
+//! Within a chirp the range of every echo runs in a straight line that leads from where it is at the beginning of the chirp to where it is
+//! at the beginning of the next: `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. What this leaves out is the
+//! curvature of the range, at most `v^2 Tc^2 / (8 R)` metres for a speed `v` at range `R` and an interval `Tc`: 3e-9 m for 20 m/s at 10 m
+//! and 25.6 microseconds. Amplitudes are those of the beginning of the chirp. Echoes of a body that come or go between two chirps stand still in
 //! between.
 //!
 //! What rests is evaluated once, by the algorithms of a single chirp. Where nothing moves the first chirp has the bits of
@@ -201,6 +201,7 @@ impl Motion<'_> {
         let is_alike = now.points.len() == next.points.len();
         let fastest = self.scene.objects.iter().map(Object::velocity_metres_per_second);
         let fastest = fastest.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)));
+        let part = self.radar.chirp_seconds / self.radar.chirp_interval_seconds;
         let most = (1.0 + 1e-6) * fastest * self.radar.chirp_interval_seconds + 1e-12;
         let (mut heard, mut then, mut scattered) = (Vec::new(), Vec::new(), Vec::new());
         for (row, n) in self.elements.iter().enumerate() {
@@ -215,7 +216,7 @@ impl Motion<'_> {
             for (i, echo) in heard.iter().enumerate().filter(|(_, echo)| echo.amplitude != 0.0) {
                 let next = then.get(i).filter(|next| is_alike && next.amplitude != 0.0);
                 let way = next.map_or(0.0, |next| next.distance_metres - echo.distance_metres);
-                self.add_echo(echo, if way.abs() <= most { way } else { 0.0 }, response, samples);
+                self.add_echo(echo, if way.abs() <= most { way * part } else { 0.0 }, response, samples);
             }
         }
     }

@@ -18,7 +18,7 @@ pub struct DopplerBlob {
 impl DopplerBlob {
     /// That of `object`, as the middle of the array hears it in the middle of the frame.
     pub fn of(radar: &Radar, object: &Object) -> DopplerBlob {
-        let frame = radar.chirps as f64 * radar.chirp_interval_seconds;
+        let frame = (radar.chirps as f64 - 1.0) * radar.chirp_interval_seconds + radar.chirp_seconds;
         let mut then = object.clone();
         let [vx, vy] = object.velocity_metres_per_second();
         then.translate(vx * frame / 2.0, vy * frame / 2.0);
@@ -70,7 +70,8 @@ mod tests {
 
     #[test]
     fn the_map_has_objects_where_it_is_said() {
-        let radar = Radar { elements: 64, chirps: 64, chirp_interval_seconds: 60e-6, ..Radar::default() };
+        let radar =
+            Radar { elements: 64, chirps: 64, chirp_interval_seconds: 60e-6, chirp_seconds: 45e-6, ..Radar::default() };
         for (place, velocity) in [([3.0, 12.0], [0.0, -9.0]), ([-6.0, 20.0], [15.0, 2.0]), ([0.0, 9.0], [0.0, 60.0])] {
             let object = moving(place, velocity);
             let blob = DopplerBlob::of(&radar, &object);

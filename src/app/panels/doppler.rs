@@ -21,8 +21,8 @@ const FIRST_CHIRPS: usize = 128;
 /// Most objects that are marked.
 const MARKS: usize = 200;
 
-/// Shortest and longest interval of chirps that the field takes, microseconds.
-const INTERVAL_MICROSECONDS: [f64; 2] = [1.0, 1e5];
+/// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
+const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
 /// What is drawn.
 pub struct Input<'a> {
@@ -80,18 +80,20 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             let label = ui.label("Chirps").on_hover_text("Chirps that are sent one after another: columns of the map");
             ui.add(NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5)).labelled_by(label.id);
             let tooltip =
-                "From one chirp to the next. A chirp lasts all of it: longer ones couple velocity into range.";
+                "From the beginning of a chirp to that of the next. Half as long makes twice the velocity unambiguous.";
             let label = ui.label("Interval").on_hover_text(tooltip);
             let mut microseconds = 1e6 * radar.chirp_interval_seconds;
-            let [low, high] = INTERVAL_MICROSECONDS;
-            let field = NumberField::new(&mut microseconds).range(low..=high).speed(0.05).suffix(" µs");
+            let least = 1e6 * radar.chirp_seconds;
+            let most = MOST_INTERVAL_MICROSECONDS.max(least);
+            let field = NumberField::new(&mut microseconds).range(least..=most).speed(0.05).suffix(" µs");
             if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
-                radar.chirp_interval_seconds = 1e-6 * microseconds;
+                radar.chirp_interval_seconds = (1e-6 * microseconds).max(radar.chirp_seconds);
             }
             ui.weak(follows(input.radar));
         });
     });
     if radar != *input.radar {
+        radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
         asked.push(RadarCommand::Set(Box::new(radar)).into());
     }
 }
@@ -137,7 +139,8 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ui.horizontal_wrapped(|ui| {
             ui.label("One chirp tells no velocity.");
             if ui.button(format!("Send {FIRST_CHIRPS} chirps")).clicked() {
-                let radar = Radar { chirps: FIRST_CHIRPS, ..input.radar.clone() };
+                let chirp_interval_seconds = input.radar.chirp_interval_seconds.max(input.radar.chirp_seconds);
+                let radar = Radar { chirps: FIRST_CHIRPS, chirp_interval_seconds, ..input.radar.clone() };
                 asked.push(RadarCommand::Set(Box::new(radar)).into());
             }
         });

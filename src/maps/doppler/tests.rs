@@ -27,7 +27,7 @@ fn map(radar: &Radar, scene: &Scene, floor: Floor) -> RangeDopplerMap {
 /// Sample by sample: the range at the very time of each sample put into equation 3.3.
 fn reference(radar: &Radar, element: usize, [x, y, vx, vy]: [f64; 4], chirp: usize, sample: usize) -> Complex64 {
     let part = sample as f64 / radar.samples as f64;
-    let seconds = (chirp as f64 + part) * radar.chirp_interval_seconds;
+    let seconds = chirp as f64 * radar.chirp_interval_seconds + part * radar.chirp_seconds;
     let range = (x + vx * seconds - radar.element_x_metres(element)).hypot(y + vy * seconds);
     let turns = match radar.carrier {
         Carrier::OneWay => -radar.carrier_hz * range / SPEED_OF_LIGHT,
@@ -42,7 +42,7 @@ fn samples_are_those_of_the_range_at_their_own_time() {
     let place = [2.0, 11.0, 17.0, -23.0];
     let scene = scene(vec![moving(2.0, 11.0, [17.0, -23.0])]);
     for convention in Convention::ALL {
-        let radar = radar().in_convention(convention);
+        let radar = Radar { chirp_interval_seconds: 30e-6, ..radar() }.in_convention(convention);
         let samples = simulate_chirps(&radar, &scene, Floor::Exact, 0).unwrap().samples;
         for (row, element) in [(0, 0), (3, 3), (4, 60), (7, 63)] {
             for (chirp, sample) in [(0, 0), (0, 127), (1, 64), (40, 3), (63, 127)] {
@@ -127,18 +127,18 @@ fn expected(radar: &Radar, range_metres: f64, velocity: f64) -> (f64, f64) {
         Carrier::TwoWay => (2.0, radar.carrier_hz + radar.bandwidth_hz / 2.0),
     };
     let doppler_hz = ways * hertz * velocity / SPEED_OF_LIGHT;
-    let turns = doppler_hz * radar.chirp_interval_seconds;
     let sign = f64::signum(ways);
-    let column = (sign * turns * radar.chirps as f64 + (radar.chirps / 2) as f64).rem_euclid(radar.chirps as f64);
+    let column = (sign * doppler_hz * radar.chirp_interval_seconds * radar.chirps as f64 + (radar.chirps / 2) as f64)
+        .rem_euclid(radar.chirps as f64);
     let middle = range_metres + velocity * radar.chirps as f64 * radar.chirp_interval_seconds / 2.0;
-    (middle * 2.0 * radar.bandwidth_hz / SPEED_OF_LIGHT + turns, column)
+    (middle * 2.0 * radar.bandwidth_hz / SPEED_OF_LIGHT + doppler_hz * radar.chirp_seconds, column)
 }
 
 #[test]
 fn a_point_stands_in_the_column_of_its_velocity_or_folds() {
     for convention in Convention::ALL {
-        // 40 microseconds and 400 MHz couple 20 m/s by half a bin.
-        let radar = Radar { chirp_interval_seconds: 40e-6, ..radar() }.in_convention(convention);
+        // Chirps of 35 microseconds, one every 40.
+        let radar = Radar { chirp_interval_seconds: 40e-6, chirp_seconds: 35e-6, ..radar() }.in_convention(convention);
         let most = radar.unambiguous_velocity_metres_per_second();
         for velocity in [0.0, 0.31 * most, -0.77 * most, 1.4 * most, -2.2 * most] {
             let scene = scene(vec![moving(0.0, 14.0, [0.0, velocity])]);
@@ -158,7 +158,8 @@ fn a_point_stands_in_the_column_of_its_velocity_or_folds() {
 /// A chirp of a millisecond: 20 m/s shift the range by v f T / B, several bins.
 #[test]
 fn velocity_couples_into_range() {
-    let radar = Radar { chirps: 4, chirp_interval_seconds: 1e-3, ..radar() }.in_convention(Convention::Physical);
+    let radar = Radar { chirps: 4, chirp_seconds: 1e-3, chirp_interval_seconds: 1e-3, ..radar() }
+        .in_convention(Convention::Physical);
     let bin_of = |velocity: f64| {
         let (bin, _) = map(&radar, &scene(vec![moving(0.0, 20.0, [0.0, velocity])]), Floor::Exact).peak();
         bin as f64
