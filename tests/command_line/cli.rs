@@ -46,7 +46,7 @@ y_metres = 20.0
 fn a_range_doppler_map_is_written_as_numbers_or_a_picture() {
     let folder = folder();
     let small = "[radar]\nelements = 64\nsamples = 64\nconvention = \"physical\"\n";
-    let moving = TWO_POINTS.replacen("y_metres = 12.0", "y_metres = 2.0\nvelocity_y_metres_per_second = 60.0", 1);
+    let moving = TWO_POINTS.replacen("y_metres = 12.0", "y_metres = 2.0\nvelocity_y_metres_per_second = 90.0", 1);
     std::fs::write(folder.path().join("scene.toml"), format!("{small}{moving}")).unwrap();
     let to = |name: &str| {
         let mut command = apertura(&folder);

@@ -89,9 +89,9 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
                 radar.chirp_interval_seconds = (1e-6 * microseconds).max(radar.chirp_seconds);
             }
-            ui.weak(follows(input.radar));
         });
     });
+    ui.weak(follows(input.radar));
     if radar != *input.radar {
         radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
         asked.push(RadarCommand::Set(Box::new(radar)).into());

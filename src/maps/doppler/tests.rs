@@ -210,7 +210,7 @@ fn a_map_of_128_chirps_follows_a_drag() {
     let objects = (0..8).map(|i| moving(f64::from(i) - 4.0, 10.0 + f64::from(i), [f64::from(i), -5.0])).collect();
     let scene = scene(objects);
     let _warm = map(&radar, &scene, Floor::Thesis);
-    let start = crate::platform::Instant::now();
+    let start = std::time::Instant::now();
     let samples = simulate_chirps(&radar, &scene, Floor::Thesis, 3).unwrap();
     let simulated = start.elapsed();
     let map = RangeDopplerMap::of(&radar, samples);
@@ -221,7 +221,7 @@ fn a_map_of_128_chirps_follows_a_drag() {
     let mut street = crate::scene::presets::Preset::by_id("street-of-things").unwrap().load().unwrap().scene;
     let body = street.objects.iter_mut().find(|o| matches!(o, Object::Box(_))).unwrap();
     *body.velocity_mut()[1] = -8.0;
-    let start = crate::platform::Instant::now();
+    let start = std::time::Instant::now();
     let _bodies = self::map(&radar, &street, Floor::Thesis);
     println!("the street of things with one box that moves: {:?}", start.elapsed());
 }
