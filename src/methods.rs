@@ -80,7 +80,7 @@ pub fn preferred() -> Arc<dyn Reconstructor> {
 
 /// The method whose output is shown for samples of `radar` where nobody chose one: the networks know one radar only.
 pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
-    if *radar == Radar::default() {
+    if radar.of_one_chirp() == Radar::default() {
         return preferred();
     }
     by_name("iaa").unwrap_or_else(|_| Arc::new(MatchedFilter::Incoherent))

@@ -286,7 +286,7 @@ mod tests {
             (cartesian, theory, marks, step) in (any::<bool>(), any::<bool>(), any::<bool>(), prop::option::of(1..9usize)),
             (name, samples) in ("\\PC{0,40}", 1..600usize),
         ) {
-            let point = |(x_metres, y_metres, reflectivity)| Object::Point(Point { x_metres, y_metres, reflectivity });
+            let point = |(x_metres, y_metres, reflectivity)| Object::Point(Point { reflectivity, ..Point::new(x_metres, y_metres) });
             let objects = places.into_iter().map(point).collect();
             let scene = Scene { name, noise_seed: seed, objects, ..Scene::default() };
             let lesson = step.map(|step| LessonPlace { id: "a-line".to_owned(), step });

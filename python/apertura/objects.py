@@ -13,12 +13,15 @@ from ._apertura import Radar, built_elements
 
 @dataclass(frozen=True)
 class Point:
-    """One reflector. x lies along the array, y ahead of it, both in metres."""
+    """One reflector. x lies along the array, y ahead of it, both in metres. Every object may have a velocity, which only
+    `range_doppler` sees."""
 
     kind: ClassVar[str] = "point"
     x_metres: float
     y_metres: float
     reflectivity: float = 1.0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,8 @@ class Line:
     count: int
     direction_degrees: float = 90.0
     reflectivity: float = 1.0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -46,6 +51,8 @@ class Cluster:
     count: int
     seed: int = 0
     reflectivity: float = 1.0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -61,6 +68,8 @@ class Wall:
     reflectivity: float = 1.0
     roughness_millimetres: float = 0.0
     seed: int = 0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -76,6 +85,8 @@ class Box:
     reflectivity: float = 1.0
     roughness_millimetres: float = 0.0
     seed: int = 0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -89,6 +100,8 @@ class Post:
     reflectivity: float = 1.0
     roughness_millimetres: float = 0.0
     seed: int = 0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -100,6 +113,8 @@ class Polygon:
     reflectivity: float = 1.0
     roughness_millimetres: float = 0.0
     seed: int = 0
+    velocity_x_metres_per_second: float = 0.0
+    velocity_y_metres_per_second: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -238,11 +238,11 @@ pub fn live_input<'py>(
         check_ends(&radar, &ends)?;
         // The usual radar's tables are made once.
         match EXTRACTOR.get() {
-            Some(extractor) if radar == apertura::radar::Radar::default() => extractor.extract(&ends),
+            Some(extractor) if radar.of_one_chirp() == apertura::radar::Radar::default() => extractor.extract(&ends),
             _ => {
                 let made = FeatureExtractor::new(&radar)?;
                 let input = made.extract(&ends);
-                if radar == apertura::radar::Radar::default() {
+                if radar.of_one_chirp() == apertura::radar::Radar::default() {
                     let _first = EXTRACTOR.set(made);
                 }
                 input

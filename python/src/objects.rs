@@ -29,68 +29,62 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
     let kind: Option<String> = from.getattr_opt("kind")?.and_then(|kind| kind.extract().ok());
     let number = |name: &str| field::<f64>(from, name, &what);
     let count = || field::<usize>(from, "count", &what);
-    Ok(match kind.as_deref() {
-        Some("point") => Object::Point(Point {
-            x_metres: number("x_metres")?,
-            y_metres: number("y_metres")?,
-            reflectivity: number("reflectivity")?,
-        }),
-        Some("line") => Object::Line(Line {
-            x_metres: number("x_metres")?,
-            y_start_metres: number("y_start_metres")?,
-            spacing_metres: number("spacing_metres")?,
-            direction_degrees: number("direction_degrees")?,
-            count: count()?,
-            reflectivity: number("reflectivity")?,
-        }),
-        Some("gaussian") => Object::Gaussian(GaussianCluster {
-            x_metres: number("x_metres")?,
-            y_metres: number("y_metres")?,
-            x_std_metres: number("x_std_metres")?,
-            y_std_metres: number("y_std_metres")?,
-            count: count()?,
-            seed: field(from, "seed", &what)?,
-            reflectivity: number("reflectivity")?,
-        }),
+    let velocity = || Ok::<_, PyErr>([number("velocity_x_metres_per_second")?, number("velocity_y_metres_per_second")?]);
+    let mut object = match kind.as_deref() {
+        Some("point") => {
+            let point = Point::new(number("x_metres")?, number("y_metres")?);
+            Object::Point(Point { reflectivity: number("reflectivity")?, ..point })
+        },
+        Some("line") => {
+            let spacing = number("spacing_metres")?;
+            let line = Line::vertical(number("x_metres")?, number("y_start_metres")?, spacing, count()?);
+            let direction_degrees = number("direction_degrees")?;
+            Object::Line(Line { direction_degrees, reflectivity: number("reflectivity")?, ..line })
+        },
+        Some("gaussian") => {
+            let std = [number("x_std_metres")?, number("y_std_metres")?];
+            let cluster = GaussianCluster::new([number("x_metres")?, number("y_metres")?], std, count()?);
+            let seed = field(from, "seed", &what)?;
+            Object::Gaussian(GaussianCluster { seed, reflectivity: number("reflectivity")?, ..cluster })
+        },
         Some("wall") => Object::Wall(Wall {
-            x_metres: number("x_metres")?,
-            y_metres: number("y_metres")?,
-            length_metres: number("length_metres")?,
-            angle_degrees: number("angle_degrees")?,
             reflectivity: number("reflectivity")?,
             roughness_millimetres: number("roughness_millimetres")?,
             seed: field(from, "seed", &what)?,
+            ..Wall::new(number("x_metres")?, number("y_metres")?, number("length_metres")?, number("angle_degrees")?)
         }),
         Some("box") => Object::Box(Block {
-            x_metres: number("x_metres")?,
-            y_metres: number("y_metres")?,
-            length_metres: number("length_metres")?,
-            width_metres: number("width_metres")?,
-            angle_degrees: number("angle_degrees")?,
             reflectivity: number("reflectivity")?,
             roughness_millimetres: number("roughness_millimetres")?,
             seed: field(from, "seed", &what)?,
+            ..Block::new(
+                [number("x_metres")?, number("y_metres")?],
+                [number("length_metres")?, number("width_metres")?],
+                number("angle_degrees")?,
+            )
         }),
         Some("post") => Object::Post(Post {
-            x_metres: number("x_metres")?,
-            y_metres: number("y_metres")?,
-            radius_metres: number("radius_metres")?,
             reflectivity: number("reflectivity")?,
             roughness_millimetres: number("roughness_millimetres")?,
             seed: field(from, "seed", &what)?,
+            ..Post::new(number("x_metres")?, number("y_metres")?, number("radius_metres")?)
         }),
         Some("polygon") => Object::Polygon(Polygon {
-            corners_metres: corners(from, &what)?,
             reflectivity: number("reflectivity")?,
             roughness_millimetres: number("roughness_millimetres")?,
             seed: field(from, "seed", &what)?,
+            ..Polygon::new(corners(from, &what)?)
         }),
         _ => {
             let found = from.get_type().name()?;
             let expected = "Point, Line, Cluster, Wall, Box, Post or Polygon";
             return Err(PyTypeError::new_err(format!("{what} is a {found}; expected {expected}")));
         }
-    })
+    };
+    let [x, y] = velocity()?;
+    let [velocity_x, velocity_y] = object.velocity_mut();
+    (*velocity_x, *velocity_y) = (x, y);
+    Ok(object)
 }
 
 /// The corners of a polygon.
@@ -108,6 +102,9 @@ fn data_class<'py>(py: Python<'py>, name: &str, fields: &Bound<'py, PyDict>) -> 
 pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, PyAny>> {
     let fields = PyDict::new(py);
     fields.set_item("reflectivity", object.reflectivity())?;
+    let [velocity_x, velocity_y] = object.velocity_metres_per_second();
+    fields.set_item("velocity_x_metres_per_second", velocity_x)?;
+    fields.set_item("velocity_y_metres_per_second", velocity_y)?;
     if let Some(body) = object.body() {
         fields.set_item("roughness_millimetres", body.surface().roughness_millimetres)?;
         fields.set_item("seed", body.surface().seed)?;

@@ -26,6 +26,8 @@ use pyo3::types::{PyDict, PyType};
 ///     transmitter_x_metres: Places of transmitters that stand apart from receivers. Each pair is an element halfway between both, and the
 ///         pairs must make one line without gaps: they say elements and element_spacing_metres.
 ///     receiver_x_metres: Places of the receivers.
+///     chirps: Chirps that are sent one after another; `range_doppler` sees all of them, everything else the first.
+///     chirp_interval_seconds: From the beginning of a chirp to that of the next: at least chirp_seconds where there are several.
 ///
 /// Raises:
 ///     ValueError: A field is out of range, or the radar asks for too much memory.
@@ -71,7 +73,7 @@ impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
                         end_elements=None, samples=None, carrier=None, window=None, convention=None, transmitter_x_metres=None,
-                        receiver_x_metres=None, chirp_seconds=None))]
+                        receiver_x_metres=None, chirp_seconds=None, chirps=None, chirp_interval_seconds=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,
@@ -87,6 +89,8 @@ impl Radar {
         transmitter_x_metres: Option<Vec<f64>>,
         receiver_x_metres: Option<Vec<f64>>,
         chirp_seconds: Option<f64>,
+        chirps: Option<usize>,
+        chirp_interval_seconds: Option<f64>,
     ) -> PyResult<Self> {
         let usual = match convention.map(convention_of).transpose()? {
             None => radar::Radar::default(),
@@ -114,6 +118,8 @@ impl Radar {
             carrier: carrier.map_or(Ok(usual.carrier), carrier_of)?,
             window: window.map_or(Ok(usual.window), window_of)?,
             antennas: None,
+            chirps: chirps.unwrap_or(usual.chirps),
+            chirp_interval_seconds: chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
         };
         let radar = match (transmitter_x_metres, receiver_x_metres) {
             (None, None) => radar,
@@ -250,6 +256,31 @@ impl Radar {
         self.0.window.name()
     }
 
+    /// Chirps that are sent one after another.
+    #[getter]
+    fn chirps(&self) -> usize {
+        self.0.chirps
+    }
+
+    /// From one chirp to the next, seconds.
+    #[getter]
+    fn chirp_interval_seconds(&self) -> f64 {
+        self.0.chirp_interval_seconds
+    }
+
+    /// Radial velocities below this one have a column of their own, metres a second.
+    #[getter]
+    fn unambiguous_velocity_metres_per_second(&self) -> f64 {
+        self.0.unambiguous_velocity_metres_per_second()
+    }
+
+    /// Radial velocities of the columns of a range-Doppler map, away from the radar positive, float64 `[chirps]`.
+    #[getter]
+    fn velocity_metres_per_second<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let of = |column: usize| self.0.velocity_of_column_metres_per_second(column as f64);
+        owned(py, (0..self.0.chirps).map(of).collect::<Array1<f64>>())
+    }
+
     /// Wavelength of the carrier in metres.
     #[getter]
     fn wavelength_metres(&self) -> f64 {
@@ -338,6 +369,8 @@ impl Radar {
         fields.set_item("end_elements", self.0.end_elements)?;
         fields.set_item("samples", self.0.samples)?;
         fields.set_item("chirp_seconds", self.0.chirp_seconds)?;
+        fields.set_item("chirps", self.0.chirps)?;
+        fields.set_item("chirp_interval_seconds", self.0.chirp_interval_seconds)?;
         fields.set_item("carrier", carrier_name(self.0.carrier))?;
         fields.set_item("window", self.0.window.name())?;
         Ok(fields)

@@ -136,3 +136,21 @@ def test_rows_tell_what_a_detector_makes_of_an_output():
     assert "cfar" not in rows[0] and rows[1]["cfar"] == "ca:guard=4x0:training=16x0:rate=0.0001"
     assert 0 < rows[1]["cfar_detection"] <= 1 and 0 <= rows[1]["cfar_false_alarm"] < 1
     assert rows[0]["squared_error"] == rows[1]["squared_error"]
+
+
+def test_a_range_doppler_map_has_a_point_at_its_velocity():
+    radar = SMALL.replace(convention="physical", chirps=64)
+    most = radar.unambiguous_velocity_metres_per_second
+    for velocity, shown in [(0.4 * most, 0.4 * most), (-0.7 * most, -0.7 * most), (1.5 * most, -0.5 * most)]:
+        scene = ap.Scene([ap.Point(0.0, 1.2, velocity_y_metres_per_second=velocity)], radar=radar)
+        power = ap.range_doppler(scene, floor="exact")
+        assert power.shape == (32, 64)
+        column = np.unravel_index(power.argmax(), power.shape)[1]
+        assert abs(radar.velocity_metres_per_second[column] - shown) < 0.02 * most
+        assert scene.objects[0].velocity_y_metres_per_second == velocity
+    with pytest.raises(ValueError, match="seconds is nan"):
+        ap.range_doppler(scene, seconds=float("nan"))
+    with pytest.raises(ValueError, match="chirps is 0"):
+        radar.replace(chirps=0)
+    with pytest.raises(ValueError, match="-10000 to 10000 m/s"):
+        ap.Scene([ap.Point(0.0, 1.2, velocity_x_metres_per_second=float("inf"))])

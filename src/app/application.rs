@@ -123,6 +123,7 @@ impl App {
             progress: kept.progress,
             recent: kept.recent,
             captions,
+            timeline: Default::default(),
             help: None,
             dark: ctx.theme() == egui::Theme::Dark,
         };
@@ -248,6 +249,17 @@ impl App {
         commands
     }
 
+    /// Moves the scene where its motion plays; goes back to time 0 where it was edited.
+    fn let_time_go_on(&mut self, ctx: &egui::Context) {
+        let State { timeline, editor, .. } = &mut self.state;
+        timeline.follow(editor.scene());
+        if timeline.is_playing() {
+            let step = f64::from(ctx.input(|i| i.stable_dt).min(0.1));
+            timeline.set(editor.scene(), timeline.seconds() + step);
+            ctx.request_repaint();
+        }
+    }
+
     fn update_title(&mut self, ctx: &egui::Context) {
         let title = self.state.title();
         if title != self.title {
@@ -355,6 +367,7 @@ impl eframe::App for App {
         if let Some(question) = self.jobs.dialogs.take_unanswered() {
             self.memory.file_dialog.ask(question);
         }
+        self.let_time_go_on(&ctx);
         let commands = self.draw(ui);
         self.apply(&ctx, commands);
         if self.state.pointer.turn(self.state.editor.radar()) {

@@ -14,7 +14,7 @@ use crate::lesson::Progress;
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
-use crate::scene::Reflector;
+use crate::scene::{Reflector, Scene};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -130,6 +130,27 @@ impl App {
     /// Beats asked for since the start.
     pub fn chirps_asked(&self) -> u64 {
         self.jobs.chirps.requests()
+    }
+
+    /// Range-Doppler maps asked for since the start.
+    pub fn dopplers_asked(&self) -> u64 {
+        self.jobs.dopplers.requests()
+    }
+
+    /// Range bin and column of the strongest cell of the range-Doppler map on screen.
+    pub fn doppler_peak(&self) -> Option<(usize, usize)> {
+        let decades = self.jobs.dopplers.result()?.ok()?.decades.decades();
+        decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
+    }
+
+    /// Time at which the scene is looked at, seconds.
+    pub fn time_seconds(&self) -> f64 {
+        self.state.timeline.seconds()
+    }
+
+    /// The scene that is looked at, at that time.
+    pub fn scene_at_time(&self) -> &Scene {
+        self.state.scene()
     }
 
     /// The range bin in which the beat on screen is strongest, and the element it is of.

@@ -23,6 +23,7 @@ mod open;
 mod output;
 mod own_method;
 mod radar_arg;
+mod range_doppler;
 mod reconstruct;
 mod robustness;
 mod scenes;
@@ -73,6 +74,7 @@ enum Command {
     #[cfg(feature = "app")]
     Lesson(lesson::Args),
     Maps(maps::Args),
+    RangeDoppler(range_doppler::Args),
     Reconstruct(reconstruct::Args),
     Robustness(robustness::Args),
     Scenes(scenes::Args),
@@ -97,6 +99,7 @@ impl Command {
             #[cfg(feature = "app")]
             Command::Lesson(args) => args.run(),
             Command::Maps(args) => args.run(),
+            Command::RangeDoppler(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
             Command::Robustness(args) => args.run(),
             Command::Scenes(args) => args.run(),

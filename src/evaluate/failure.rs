@@ -324,7 +324,7 @@ mod tests {
     #[test]
     fn an_object_that_the_target_hides_is_no_failure() {
         let radar = Radar::default();
-        let point = |x_metres, reflectivity| Object::Point(Point { x_metres, y_metres: 15.0, reflectivity });
+        let point = |x_metres, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x_metres, 15.0) });
         let scene = Scene { objects: vec![point(-5.0, 1.0), point(5.0, 1e-6)], ..Scene::default() };
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
         let target = full.normalise(Normalisation::MinMax);

@@ -212,7 +212,7 @@ mod tests {
     fn facts_of_a_known_scene() {
         let radar = Radar::default();
         let bin = radar.range_resolution_metres();
-        let point = |x: f64, y: f64, reflectivity| Object::Point(Point { x_metres: x, y_metres: y, reflectivity });
+        let point = |x: f64, y: f64, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x, y) });
         // At broadside a column is 1 / 512 of the cosine.
         let objects = vec![point(0.0, 100.0 * bin, 1.0), point(0.0, 103.0 * bin, 1.0), point(0.0, 200.0 * bin, 0.04)];
         let facts = Facts::of(&radar, &Scene { objects, ..Scene::default() });

@@ -102,7 +102,8 @@ pub fn question(id: u64, radar: &Radar, ends: &TwoEnds, request: &Request) -> Ve
         apertura: VERSION,
         ask: "map",
         id,
-        radar: Some(radar),
+        // A method sees one chirp.
+        radar: Some(&radar.of_one_chirp()),
         noise: Some(request.noise.to_string()),
         normalisation: Some(request.normalisation.to_string()),
         snapshot_range_metres: request.snapshot_range_metres,

@@ -133,15 +133,7 @@ mod tests {
         let objects = vec![
             Object::Point(Point::new(0.0, 10.0)),
             Object::Line(Line { direction_degrees: 0.0, ..Line::vertical(4.0, 6.0, 1.0, 3) }),
-            Object::Gaussian(GaussianCluster {
-                x_metres: -5.0,
-                y_metres: 20.0,
-                x_std_metres: 1.0,
-                y_std_metres: 2.0,
-                count: 5,
-                seed: 3,
-                reflectivity: 1.0,
-            }),
+            Object::Gaussian(GaussianCluster { seed: 3, ..GaussianCluster::new([-5.0, 20.0], [1.0, 2.0], 5) }),
             Object::Point(Point::new(9.0, 9.0)),
         ];
         let mut editor = Editor::new(Scene { objects, ..Scene::default() });

@@ -45,17 +45,9 @@ mod tests {
     #[test]
     fn every_kind_round_trips() {
         let objects = vec![
-            Object::Point(Point { x_metres: 0.1, y_metres: 1.0 / 3.0, reflectivity: 2.0 }),
+            Object::Point(Point { reflectivity: 2.0, ..Point::new(0.1, 1.0 / 3.0) }),
             Object::Line(Line { reflectivity: 0.5, ..Line::vertical(2.0, 5.0, 0.1, 3) }),
-            Object::Gaussian(GaussianCluster {
-                x_metres: 0.0,
-                y_metres: 10.0,
-                x_std_metres: 1.0,
-                y_std_metres: 2.0,
-                count: 5,
-                seed: 3,
-                reflectivity: 1.0,
-            }),
+            Object::Gaussian(GaussianCluster { seed: 3, ..GaussianCluster::new([0.0, 10.0], [1.0, 2.0], 5) }),
         ];
         assert_eq!(from_text(&to_text(objects.clone()), &Radar::default()).unwrap(), objects);
     }

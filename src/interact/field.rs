@@ -1,7 +1,7 @@
 //! The numbers of an object that can be read and set, by name: a form shows those of one object, or those that several have in common.
 
-use crate::scene::Object;
 use crate::scene::body::{MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
+use crate::scene::{MAX_SPEED_METRES_PER_SECOND, Object};
 use serde::{Deserialize, Serialize};
 
 /// In which numbers places are told and entered.
@@ -52,6 +52,10 @@ pub enum Field {
     Seed,
     /// Reflectivity sigma of each reflector; the reflection coefficient of a body.
     Reflectivity,
+    /// Velocity along the array's axis, metres a second.
+    VelocityX,
+    /// Velocity away from the array, metres a second.
+    VelocityY,
 }
 
 /// What happens to a number.
@@ -83,6 +87,9 @@ pub struct Shared {
     /// Whether all others have the same.
     pub is_same: bool,
 }
+
+/// What every object has after all else.
+const MOTION: &[Field] = &[Field::VelocityX, Field::VelocityY];
 
 impl Field {
     fn of_place(coordinates: Coordinates) -> &'static [Field] {
@@ -123,6 +130,8 @@ impl Field {
             }
             (Field::AngleDegrees, _) => x.atan2(y).to_degrees(),
             (Field::Reflectivity, _) => object.reflectivity(),
+            (Field::VelocityX, _) => object.velocity_metres_per_second()[0],
+            (Field::VelocityY, _) => object.velocity_metres_per_second()[1],
             (Field::Spacing, Object::Line(l)) => l.spacing_metres,
             (Field::Direction, Object::Line(l)) => 90.0 - l.direction_degrees,
             (Field::Count, Object::Line(l)) => l.count as f64,
@@ -149,6 +158,8 @@ impl Field {
             (Field::Y, _) => object.set_anchor([object.anchor_metres()[0], value]),
             (Field::Range | Field::CosTheta | Field::AngleDegrees, _) => self.set_polar(object, value),
             (Field::Reflectivity, _) => object.set_reflectivity(value),
+            (Field::VelocityX, _) => *object.velocity_mut()[0] = speed(value),
+            (Field::VelocityY, _) => *object.velocity_mut()[1] = speed(value),
             (Field::Spacing, Object::Line(l)) => l.spacing_metres = value,
             (Field::Direction, Object::Line(l)) => l.direction_degrees = 90.0 - value,
             (Field::Count, Object::Line(l)) => l.count = value.round().max(1.0) as usize,
@@ -193,6 +204,11 @@ impl Field {
     }
 }
 
+/// The nearest speed that an object can have, metres a second.
+fn speed(value: f64) -> f64 {
+    value.clamp(-MAX_SPEED_METRES_PER_SECOND, MAX_SPEED_METRES_PER_SECOND)
+}
+
 /// The nearest size that a body can have, metres.
 fn size(metres: f64) -> f64 {
     metres.clamp(MIN_SIZE_METRES, MAX_SIZE_METRES)
@@ -201,7 +217,7 @@ fn size(metres: f64) -> f64 {
 /// The fields that all `objects` have, in the order of a form.
 pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates: Coordinates) -> Vec<Shared> {
     let Some(first) = objects.clone().next() else { return Vec::new() };
-    let fields = Field::of_place(coordinates).iter().chain(Field::of_kind(first));
+    let fields = Field::of_place(coordinates).iter().chain(Field::of_kind(first)).chain(MOTION);
     let shared = |field: &Field| {
         let value = field.get(first)?;
         let mut is_same = true;
@@ -219,15 +235,7 @@ mod tests {
     use crate::scene::{Block, GaussianCluster, Line, Point, Polygon, Post, Wall};
 
     fn cluster() -> Object {
-        Object::Gaussian(GaussianCluster {
-            x_metres: 3.0,
-            y_metres: 4.0,
-            x_std_metres: 1.0,
-            y_std_metres: 2.0,
-            count: 5,
-            seed: 3,
-            reflectivity: 1.0,
-        })
+        Object::Gaussian(GaussianCluster { seed: 3, ..GaussianCluster::new([3.0, 4.0], [1.0, 2.0], 5) })
     }
 
     #[test]
@@ -291,7 +299,8 @@ mod tests {
         let of = |objects: &[&Object]| shared(objects.iter().copied(), Coordinates::Cartesian);
         let fields = of(&[&line, &cluster()]);
         let named: Vec<_> = fields.iter().map(|f| (f.field, f.is_same)).collect();
-        assert_eq!(named, [(Field::X, true), (Field::Y, true), (Field::Count, true), (Field::Reflectivity, true)]);
+        let expected = [Field::X, Field::Y, Field::Count, Field::Reflectivity, Field::VelocityX, Field::VelocityY];
+        assert_eq!(named, expected.map(|field| (field, true)));
         let fields = of(&[&point, &line]);
         assert_eq!(fields[1], Shared { field: Field::Y, first: 1.0, is_same: false });
         assert!(of(&[]).is_empty());

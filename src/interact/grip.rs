@@ -250,15 +250,7 @@ mod tests {
 
     #[test]
     fn spreads_are_never_negative() {
-        let cluster = Object::Gaussian(GaussianCluster {
-            x_metres: 0.0,
-            y_metres: 10.0,
-            x_std_metres: 1.0,
-            y_std_metres: 1.0,
-            count: 5,
-            seed: 1,
-            reflectivity: 1.0,
-        });
+        let cluster = Object::Gaussian(GaussianCluster { seed: 1, ..GaussianCluster::new([0.0, 10.0], [1.0, 1.0], 5) });
         let Object::Gaussian(g) = move_grip(&cluster, Grip::SpreadX, Place::new(-2.0, 0.0)) else { panic!() };
         assert_eq!(g.x_std_metres, 2.0);
     }

@@ -2,7 +2,7 @@
 
 use super::object_number::ObjectNumber;
 use crate::radar::{End, Radar};
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use serde::{Deserialize, Serialize};
 
 /// A number that follows from the radar, or from the radar and an object.
@@ -26,6 +26,12 @@ pub enum Quantity {
     ApparentRangeMetres,
     /// By how many range bins the two ends differ on the distance of an object.
     EndsDifferenceBins,
+    /// The largest radial velocity that has a column of its own, metres a second.
+    UnambiguousVelocityMetresPerSecond,
+    /// Difference of velocity between two columns of a range-Doppler map, metres a second.
+    VelocityColumnMetresPerSecond,
+    /// The radial velocity at which a range-Doppler map shows an object: its own, folded, metres a second; below 0 it comes nearer.
+    ApparentVelocityMetresPerSecond,
 }
 
 impl Quantity {
@@ -40,6 +46,9 @@ impl Quantity {
             Quantity::GratingLobeCos => "distance to the grating lobe in cos θ",
             Quantity::ApparentRangeMetres => "apparent range in metres",
             Quantity::EndsDifferenceBins => "difference between the ends in range bins",
+            Quantity::UnambiguousVelocityMetresPerSecond => "unambiguous velocity in metres a second",
+            Quantity::VelocityColumnMetresPerSecond => "column of velocity in metres a second",
+            Quantity::ApparentVelocityMetresPerSecond => "apparent radial velocity in metres a second",
         }
     }
 
@@ -48,11 +57,12 @@ impl Quantity {
     /// # Errors
     /// A sentence when it needs an object that is not named or not there.
     pub fn of(self, radar: &Radar, scene: &Scene, object: Option<ObjectNumber>) -> Result<f64, String> {
-        let centre = || -> Result<[f64; 2], String> {
+        let thing = || -> Result<&Object, String> {
             let number =
                 object.ok_or_else(|| "this quantity belongs to an object; expected object = NUMBER".to_owned())?;
-            Ok(scene.objects[number.index(scene.objects.len())?].centre_metres())
+            Ok(&scene.objects[number.index(scene.objects.len())?])
         };
+        let centre = || thing().map(Object::centre_metres);
         Ok(match self {
             Quantity::RangeBinMetres => radar.range_resolution_metres(),
             Quantity::MaximumRangeMetres => radar.max_range_metres(),
@@ -68,6 +78,11 @@ impl Quantity {
                 let [x, y] = centre()?;
                 let from = |end| (x - radar.end_centre_metres(end)).hypot(y);
                 radar.bin_of_range((from(End::First) - from(End::Last)).abs())
+            }
+            Quantity::UnambiguousVelocityMetresPerSecond => radar.unambiguous_velocity_metres_per_second(),
+            Quantity::VelocityColumnMetresPerSecond => radar.velocity_resolution_metres_per_second(),
+            Quantity::ApparentVelocityMetresPerSecond => {
+                radar.apparent_velocity_metres_per_second(thing()?.radial_velocity_metres_per_second())
             }
         })
     }
@@ -87,6 +102,13 @@ mod tests {
         assert!((of(Quantity::EndsDifferenceBins, Some(ObjectNumber(1))) - 24.0).abs() < 1.0);
         assert!(
             (of(Quantity::ApparentRangeMetres, Some(ObjectNumber(2))) - (60.0 - radar.max_range_metres())).abs() < 1e-9
+        );
+        let velocity = Quantity::ApparentVelocityMetresPerSecond.of(&radar, &scene, Some(ObjectNumber(1)));
+        assert_eq!(velocity, Ok(0.0), "nothing moves");
+        assert!((of(Quantity::UnambiguousVelocityMetresPerSecond, None) - 78.1).abs() < 0.1);
+        assert_eq!(
+            of(Quantity::VelocityColumnMetresPerSecond, None),
+            2.0 * of(Quantity::UnambiguousVelocityMetresPerSecond, None)
         );
         assert!(Quantity::ApparentRangeMetres.of(&radar, &scene, None).is_err());
         assert!(

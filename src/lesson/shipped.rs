@@ -21,6 +21,7 @@ macro_rules! lessons {
 pub const ALL: &[Shipped] = lessons![
     "range-and-bandwidth",
     "chirps-and-beats",
+    "range-and-velocity",
     "angle-and-aperture",
     "grating-lobes",
     "windows-and-side-lobes",

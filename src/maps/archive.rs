@@ -99,6 +99,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
         window: WindowFunction::default(),
         antennas: read_antennas(archive)?,
+        ..Radar::default()
     };
     radar.validate().map_err(|e| NpzError::Damaged { key: e.field().to_owned(), reason: e.to_string() })?;
     let weights = archive.reals::<ndarray::Ix1>("element_window")?;

@@ -6,6 +6,7 @@
 pub mod archive;
 pub mod cartesian;
 pub mod cfar;
+pub mod doppler;
 pub mod fast;
 mod lambda;
 mod log_map;

@@ -22,6 +22,9 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         carrier,
         window,
         antennas,
+        // Networks see one chirp.
+        chirps: _,
+        chirp_interval_seconds: _,
     } = radar;
     let convention = |carrier: &Carrier| match carrier {
         Carrier::OneWay => "the thesis' convention (one-way carrier)",

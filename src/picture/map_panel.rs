@@ -33,24 +33,46 @@ const HIT: Rgb = [245, 245, 240];
 const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
 
+/// What the two axes of a map count, from end to end.
+pub(super) struct MapAxes {
+    /// To the right; where the first is above the second, the map is mirrored.
+    pub x: [f64; 2],
+    /// Upwards.
+    pub y: [f64; 2],
+    /// What is counted to the right.
+    pub x_title: &'static str,
+    /// Digits of its labels after the point.
+    pub x_digits: usize,
+}
+
 impl MapPanel<'_> {
     pub(super) fn draw<B: DrawingBackend>(&self, area: &Area<B>, radar: &Radar) -> Result<(), PictureError> {
+        let axes = MapAxes {
+            x: [radar.cos_of_column(0.0), radar.cos_of_column(radar.elements as f64)],
+            y: [0.0, radar.max_range_metres()],
+            x_title: "cos \u{3b8}",
+            x_digits: 1,
+        };
+        self.draw_over(area, &axes)
+    }
+
+    pub(super) fn draw_over<B: DrawingBackend>(&self, area: &Area<B>, axes: &MapAxes) -> Result<(), PictureError> {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width as i32, height as i32);
         text::line(area, (62, 8), &self.title, 21, Weight::Bold, &INK)?;
 
         let chart_area = area.clone().shrink((0, TITLE_HEIGHT), (width - BAR_SPACE, height - TITLE_HEIGHT));
-        let (left, right) = (radar.cos_of_column(0.0), radar.cos_of_column(radar.elements as f64));
+        let ([left, right], [bottom, top]) = (axes.x, axes.y);
         let mut chart = ChartBuilder::on(&chart_area)
             .x_label_area_size(52)
             .y_label_area_size(62)
             .margin_right(2)
-            .build_cartesian_2d(left.min(right)..left.max(right), 0.0..radar.max_range_metres())
+            .build_cartesian_2d(left.min(right)..left.max(right), bottom..top)
             .map_err(PictureError::new)?;
         let (x, y) = chart.plotting_area().get_pixel_range();
         let size = ((x.end - x.start) as u32, (y.end - y.start) as u32);
         let pixels = self.cells.paint(size.0 as usize, size.1 as usize, right < left);
-        let top_left = (left.min(right), radar.max_range_metres());
+        let top_left = (left.min(right), top);
         let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer(top_left, size, pixels)
             .ok_or_else(|| PictureError::new("a map has no room"))?;
         chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
@@ -59,9 +81,9 @@ impl MapPanel<'_> {
             .disable_mesh()
             .x_labels(5)
             .y_labels(8)
-            .x_label_formatter(&|v| format!("{:.1}", if v.abs() < 1e-9 { 0.0 } else { *v }))
+            .x_label_formatter(&|v| format!("{:.*}", axes.x_digits, if v.abs() < 1e-9 { 0.0 } else { *v }))
             .y_label_formatter(&|v| format!("{v:.0}"))
-            .x_desc("cos \u{3b8}")
+            .x_desc(axes.x_title)
             .y_desc("range (m)")
             .label_style(text::style(16, Weight::Normal, &FAINT_INK))
             .axis_desc_style(text::style(17, Weight::Normal, &INK))

@@ -13,6 +13,8 @@ mod compose;
 #[cfg(feature = "pictures")]
 mod directions;
 #[cfg(feature = "pictures")]
+mod doppler;
+#[cfg(feature = "pictures")]
 mod map_panel;
 #[cfg(feature = "pictures")]
 mod panels;
@@ -34,6 +36,8 @@ pub use canvas::{Drawing, PictureError};
 pub use compose::{ComposeError, Format, Style, compose};
 #[cfg(feature = "pictures")]
 pub use directions::{Curve, Directions, Mark};
+#[cfg(feature = "pictures")]
+pub use doppler::compose_range_doppler;
 #[cfg(feature = "pictures")]
 pub use panels::{Panels, render, render_svg};
 #[cfg(feature = "pictures")]

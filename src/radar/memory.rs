@@ -12,7 +12,17 @@ const BYTES_PER_CELL: u64 = 256;
 /// Bytes for each pair of elements of an end: methods that whiten or look for subspaces hold complex matrices of that size.
 const BYTES_PER_END_PAIR: u64 = 256;
 
+/// Bytes for each sample of each chirp, where there are several: the complex samples of the 8 elements that a range-Doppler map is
+/// made of, their profiles, and the map.
+const BYTES_PER_CHIRP_SAMPLE: u64 = 18 * 16;
+
 impl Radar {
+    /// Bytes of the samples of all chirps; none for a single one.
+    pub(super) fn chirp_bytes(&self) -> u64 {
+        let all = |n: usize| (n as u64).saturating_mul(self.samples as u64).saturating_mul(BYTES_PER_CHIRP_SAMPLE);
+        if self.chirps > 1 { all(self.chirps) } else { 0 }
+    }
+
     /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, whatever command or method makes them;
     /// networks refuse radars other than the one they were trained for, and come on top.
     ///
@@ -20,14 +30,25 @@ impl Radar {
     pub fn memory_bytes(&self) -> u64 {
         let [elements, samples, end] = [self.elements, self.samples, self.end_elements].map(|n| n as u64);
         let cells = elements.saturating_mul(samples).saturating_mul(BYTES_PER_CELL);
-        cells.saturating_add(end.saturating_mul(end).saturating_mul(BYTES_PER_END_PAIR))
+        let ends = end.saturating_mul(end).saturating_mul(BYTES_PER_END_PAIR);
+        cells.saturating_add(ends).saturating_add(self.chirp_bytes())
     }
 
     /// Refuses a radar that asks for more than [`MAX_MEMORY_BYTES`].
     pub(super) fn check_memory(&self) -> Result<(), RadarError> {
         let bytes = self.memory_bytes();
-        if bytes <= MAX_MEMORY_BYTES {
+        if bytes <= MAX_MEMORY_BYTES && self.chirp_bytes() <= MAX_MEMORY_BYTES / 2 {
             return Ok(());
+        }
+        let bytes_of_chirps = Bytes(self.chirp_bytes());
+        if bytes_of_chirps.0 > MAX_MEMORY_BYTES / 2 {
+            let Radar { chirps, samples, .. } = *self;
+            return Err(RadarError::ChirpMemory {
+                chirps,
+                samples,
+                bytes: bytes_of_chirps,
+                most: Bytes(MAX_MEMORY_BYTES / 2),
+            });
         }
         let field = if self.elements >= self.samples { "elements" } else { "samples" };
         let Radar { elements, samples, end_elements, .. } = *self;

@@ -3,6 +3,7 @@
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
 mod antennas;
+mod chirps;
 mod convention;
 mod element_list;
 mod elements;
@@ -37,6 +38,9 @@ pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 /// Duration of a chirp where none is said, seconds: 512 samples at 20 MHz.
 pub const CHIRP_SECONDS: f64 = 25.6e-6;
+
+/// Most chirps that a radar may send one after another.
+pub const MAX_CHIRPS: usize = 4096;
 
 /// How the carrier's phase depends on the distance to a reflector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -105,6 +109,10 @@ pub struct Radar {
     /// Transmitters apart from receivers; `None` where every element sends and hears by itself. Set by [`Radar::with_antennas`], which
     /// keeps elements and spacing those of the pairs.
     pub antennas: Option<Antennas>,
+    /// Chirps that are sent one after another: 1 as in the thesis. A map of ranges and directions is made of the first.
+    pub chirps: usize,
+    /// From the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
+    pub chirp_interval_seconds: f64,
 }
 
 impl Default for Radar {
@@ -122,6 +130,8 @@ impl Default for Radar {
             carrier: Carrier::OneWay,
             window: WindowFunction::Hann,
             antennas: None,
+            chirps: 1,
+            chirp_interval_seconds: CHIRP_SECONDS,
         }
     }
 }
@@ -168,6 +178,28 @@ pub enum RadarError {
         /// [`MAX_MEMORY_BYTES`].
         most: Bytes,
     },
+    /// A chirp would begin before the last one ends.
+    #[error("radar.chirp_interval_seconds is {interval}; it must be at least chirp_seconds, which is {chirp}")]
+    Interval {
+        /// From one chirp to the next, seconds.
+        interval: f64,
+        /// Duration of a chirp, seconds.
+        chirp: f64,
+    },
+    /// The samples of all chirps would not fit into the memory that a radar may ask for.
+    #[error(
+        "radar.chirps asks for too much memory: a range-Doppler map of {chirps} chirps by {samples} samples needs {bytes}; at most {most} can be had"
+    )]
+    ChirpMemory {
+        /// Chirps asked for.
+        chirps: usize,
+        /// Samples asked for.
+        samples: usize,
+        /// Bytes of the samples of all chirps.
+        bytes: Bytes,
+        /// Half of [`MAX_MEMORY_BYTES`].
+        most: Bytes,
+    },
     /// Elements or spacing are not those that the pairs of antennas make.
     #[error("radar.{field} is {value}; its {transmitters} transmitters and {receivers} receivers make {expected}")]
     Pairs {
@@ -188,6 +220,8 @@ impl RadarError {
     /// Name of the field that is wrong.
     pub fn field(&self) -> &'static str {
         match self {
+            RadarError::ChirpMemory { .. } => "chirps",
+            RadarError::Interval { .. } => "chirp_interval_seconds",
             RadarError::NotPositive { field, .. }
             | RadarError::Count { field, .. }
             | RadarError::Memory { field, .. }
@@ -201,7 +235,7 @@ impl Radar {
     ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
-    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array), elements or a spacing other than those
+    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array, 1 to 4096 chirps), elements or a spacing other than those
     /// that the pairs of antennas make, or counts that together ask for more than [`MAX_MEMORY_BYTES`].
     pub fn validate(&self) -> Result<(), RadarError> {
         for (field, value) in [
@@ -210,6 +244,7 @@ impl Radar {
             ("carrier_hz", self.carrier_hz),
             ("chirp_seconds", self.chirp_seconds),
             ("element_spacing_metres", self.element_spacing_metres),
+            ("chirp_interval_seconds", self.chirp_interval_seconds),
         ] {
             if !(value.is_finite() && value > 0.0) {
                 return Err(RadarError::NotPositive { field, value });
@@ -219,10 +254,15 @@ impl Radar {
             ("samples", self.samples, 1, 65536),
             ("elements", self.elements, 6, 65536),
             ("end_elements", self.end_elements, 3, self.elements / 2),
+            ("chirps", self.chirps, 1, MAX_CHIRPS),
         ] {
             if !(min..=max).contains(&value) {
                 return Err(RadarError::Count { field, value, min, max });
             }
+        }
+        let (interval, chirp) = (self.chirp_interval_seconds, self.chirp_seconds);
+        if self.chirps > 1 && interval < chirp {
+            return Err(RadarError::Interval { interval, chirp });
         }
         self.check_pairs()?;
         self.check_memory()

@@ -34,6 +34,8 @@ const TABLE_3_1: Radar = Radar {
     chirp_seconds: CHIRP_SECONDS,
     carrier: Carrier::OneWay,
     window: WindowFunction::Hann,
+    chirps: 1,
+    chirp_interval_seconds: CHIRP_SECONDS,
 };
 
 /// Every preset, table 3.1 first.

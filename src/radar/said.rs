@@ -28,6 +28,10 @@ pub(super) struct Said {
     transmitter_x_metres: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     receiver_x_metres: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chirps: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chirp_interval_seconds: Option<f64>,
 }
 
 /// How far a spacing may lie from that of the pairs beside which it is said, as a part of it.
@@ -49,6 +53,9 @@ impl From<Radar> for Said {
             window: Some(radar.window),
             transmitter_x_metres: radar.antennas.as_ref().map(|a| a.transmitter_x_metres().to_vec()),
             receiver_x_metres: radar.antennas.as_ref().map(|a| a.receiver_x_metres().to_vec()),
+            // One chirp is what a radar had before it could have more: a text that says nothing is read by older programs, too.
+            chirps: Some(radar.chirps).filter(|chirps| *chirps != 1),
+            chirp_interval_seconds: Some(radar.chirp_interval_seconds).filter(|s| *s != CHIRP_SECONDS),
         }
     }
 }
@@ -85,6 +92,8 @@ impl TryFrom<Said> for Radar {
             carrier,
             window: said.window.unwrap_or(usual.window),
             antennas: None,
+            chirps: said.chirps.unwrap_or(usual.chirps),
+            chirp_interval_seconds: said.chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
         };
         let Some(antennas) = antennas else { return Ok(radar) };
         let end_elements = said.end_elements;
@@ -180,6 +189,14 @@ mod tests {
         assert!(alone.contains("receiver_x_metres is missing"), "{alone}");
         let gap = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.1, 0.2]").unwrap_err();
         assert!(gap.contains("without gaps"), "{gap}");
+    }
+
+    #[test]
+    fn chirps_are_written_where_there_are_several() {
+        let radar = Radar { chirps: 128, chirp_interval_seconds: 3e-5, ..Radar::default() };
+        assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
+        assert!(!toml::to_string(&radar.of_one_chirp()).unwrap().contains("chirp"));
+        assert!(read("chirps = -1").is_err());
     }
 
     #[test]

@@ -209,15 +209,7 @@ mod tests {
     #[test]
     fn an_unexplained_scene_is_filled_in() {
         let radar = Radar::default();
-        let cluster = GaussianCluster {
-            x_metres: 2.0,
-            y_metres: 15.0,
-            x_std_metres: 3.0,
-            y_std_metres: 3.0,
-            count: 150,
-            seed: 1,
-            reflectivity: 1.0,
-        };
+        let cluster = GaussianCluster { seed: 1, ..GaussianCluster::new([2.0, 15.0], [3.0, 3.0], 150) };
         let scene = Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() };
         let ends = ends_of(&radar, &scene);
         let request = Request::default();

@@ -47,6 +47,12 @@ pub struct Wall {
     /// Which of all surfaces of this roughness.
     #[serde(default, skip_serializing_if = "is_first")]
     pub seed: u64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 /// A rectangle: a car is 4.5 m by 1.8 m.
@@ -73,6 +79,12 @@ pub struct Block {
     /// Which of all surfaces of this roughness.
     #[serde(default, skip_serializing_if = "is_first")]
     pub seed: u64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 /// A round post.
@@ -94,6 +106,12 @@ pub struct Post {
     /// Which of all surfaces of this roughness.
     #[serde(default, skip_serializing_if = "is_first")]
     pub seed: u64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 /// A closed outline of straight faces, convex or not.
@@ -111,6 +129,12 @@ pub struct Polygon {
     /// Which of all surfaces of this roughness.
     #[serde(default, skip_serializing_if = "is_first")]
     pub seed: u64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 /// What is read where no reflectivity is written.
@@ -130,7 +154,7 @@ pub struct Surface {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-fn is_zero(number: &f64) -> bool {
+pub(super) fn is_zero(number: &f64) -> bool {
     *number == 0.0
 }
 
@@ -143,7 +167,17 @@ impl Wall {
     /// A smooth wall of metal around (`x_metres`, `y_metres`).
     pub fn new(x_metres: f64, y_metres: f64, length_metres: f64, angle_degrees: f64) -> Self {
         let (reflectivity, roughness_millimetres, seed) = (1.0, 0.0, 0);
-        Wall { x_metres, y_metres, length_metres, angle_degrees, reflectivity, roughness_millimetres, seed }
+        Wall {
+            x_metres,
+            y_metres,
+            length_metres,
+            angle_degrees,
+            reflectivity,
+            roughness_millimetres,
+            seed,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
+        }
     }
 
     /// Its two ends, (x, y) in metres: the far end of its length last.
@@ -166,6 +200,8 @@ impl Block {
             reflectivity,
             roughness_millimetres,
             seed,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
         }
     }
 
@@ -183,14 +219,30 @@ impl Block {
 impl Post {
     /// A smooth post of metal.
     pub fn new(x_metres: f64, y_metres: f64, radius_metres: f64) -> Self {
-        Post { x_metres, y_metres, radius_metres, reflectivity: 1.0, roughness_millimetres: 0.0, seed: 0 }
+        Post {
+            x_metres,
+            y_metres,
+            radius_metres,
+            reflectivity: 1.0,
+            roughness_millimetres: 0.0,
+            seed: 0,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
+        }
     }
 }
 
 impl Polygon {
     /// A smooth polygon of metal.
     pub fn new(corners_metres: Vec<[f64; 2]>) -> Self {
-        Polygon { corners_metres, reflectivity: 1.0, roughness_millimetres: 0.0, seed: 0 }
+        Polygon {
+            corners_metres,
+            reflectivity: 1.0,
+            roughness_millimetres: 0.0,
+            seed: 0,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
+        }
     }
 
     /// Its corners counter-clockwise, (x, y) in metres.

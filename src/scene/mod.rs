@@ -8,6 +8,7 @@ mod body_check;
 mod disturbances;
 pub mod file;
 pub mod generate;
+mod motion;
 pub mod npz;
 mod object;
 pub mod presets;
@@ -16,6 +17,7 @@ mod turn;
 
 pub use body::{Block, Body, Polygon, Post, Surface, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
+pub use motion::MAX_SPEED_METRES_PER_SECOND;
 pub use object::{GaussianCluster, Line, Object, Point};
 pub use shape::Shape;
 

@@ -1,6 +1,6 @@
 //! The objects a person places: a point, a line of points, a Gaussian cluster of points, or a body.
 
-use super::body::{Block, Body, Polygon, Post, Wall, one};
+use super::body::{Block, Body, Polygon, Post, Wall, is_zero, one};
 use super::body_check;
 use super::shape::out_of_reach;
 use super::{Reflector, SceneError};
@@ -40,6 +40,12 @@ pub struct Point {
     /// Reflectivity sigma.
     #[serde(default = "one")]
     pub reflectivity: f64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 /// Reflectors at equal spacing on a straight line: the thesis' vertical line (section 3.2), or one at any slant.
@@ -60,6 +66,12 @@ pub struct Line {
     /// Reflectivity sigma of each reflector.
     #[serde(default = "one")]
     pub reflectivity: f64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 /// Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster.
@@ -82,6 +94,12 @@ pub struct GaussianCluster {
     /// Reflectivity sigma of each reflector.
     #[serde(default = "one")]
     pub reflectivity: f64,
+    /// Velocity along the array's axis, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_x_metres_per_second: f64,
+    /// Velocity away from the array, metres a second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub velocity_y_metres_per_second: f64,
 }
 
 fn straight_ahead() -> f64 {
@@ -97,7 +115,16 @@ impl Line {
     /// A line straight ahead from (`x_metres`, `y_start_metres`), of reflectivity 1.
     pub fn vertical(x_metres: f64, y_start_metres: f64, spacing_metres: f64, count: usize) -> Self {
         let direction_degrees = straight_ahead();
-        Line { x_metres, y_start_metres, spacing_metres, direction_degrees, count, reflectivity: 1.0 }
+        Line {
+            x_metres,
+            y_start_metres,
+            spacing_metres,
+            direction_degrees,
+            count,
+            reflectivity: 1.0,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
+        }
     }
 
     /// From one reflector to the next, (x, y) in metres. Exactly (0, spacing) straight ahead.
@@ -119,10 +146,33 @@ impl Line {
     }
 }
 
+impl GaussianCluster {
+    /// A cluster of reflectivity 1 and seed 0 around a centre, with standard deviations along x and y.
+    pub fn new([x_metres, y_metres]: [f64; 2], [x_std_metres, y_std_metres]: [f64; 2], count: usize) -> Self {
+        GaussianCluster {
+            x_metres,
+            y_metres,
+            x_std_metres,
+            y_std_metres,
+            count,
+            seed: 0,
+            reflectivity: 1.0,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
+        }
+    }
+}
+
 impl Point {
     /// A point of reflectivity 1.
     pub fn new(x_metres: f64, y_metres: f64) -> Self {
-        Point { x_metres, y_metres, reflectivity: 1.0 }
+        Point {
+            x_metres,
+            y_metres,
+            reflectivity: 1.0,
+            velocity_x_metres_per_second: 0.0,
+            velocity_y_metres_per_second: 0.0,
+        }
     }
 }
 
@@ -299,6 +349,7 @@ impl Object {
     /// Checks every number; `index` is used in the message only.
     pub(super) fn validate(&self, index: usize) -> Result<(), SceneError> {
         const FINITE: &str = "a finite number";
+        self.check_velocity(index)?;
         if let Some(body) = self.body() {
             return body_check::validate(&body, index);
         }
@@ -369,15 +420,7 @@ mod tests {
 
     #[test]
     fn a_cluster_is_the_same_every_time() {
-        let mut g = Object::Gaussian(GaussianCluster {
-            x_metres: 0.0,
-            y_metres: 10.0,
-            x_std_metres: 1.0,
-            y_std_metres: 2.0,
-            count: 5,
-            seed: 3,
-            reflectivity: 1.0,
-        });
+        let mut g = Object::Gaussian(GaussianCluster { seed: 3, ..GaussianCluster::new([0.0, 10.0], [1.0, 2.0], 5) });
         let before = g.reflectors();
         assert_eq!(before, g.reflectors());
         g.translate(1.0, -1.0);

@@ -33,6 +33,7 @@ pub const ALL: &[Preset] = presets![
     "cylinder-and-cube",
     "street-of-things",
     "car-behind-a-car",
+    "traffic",
     "tunnel",
     "corner",
     "test-set-1",

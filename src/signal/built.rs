@@ -41,27 +41,7 @@ pub(super) fn simulate_built_for(
     scene.validate(radar)?;
     array.validate(radar).map_err(SceneError::from)?;
     let echoing = Echoing::of(radar, scene);
-    let heard = |signal: &mut BeatSignal| {
-        let model = EchoModel::new(radar);
-        signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
-            if array.is_displaced(n) && !task.is_cancelled() {
-                samples.fill(Complex64::default());
-                let Some(samples) = samples.as_slice_mut() else { return };
-                let (pair, forward) = (array.pair(radar, n), array.forward_metres(n));
-                for r in &echoing.points {
-                    let seen = Reflector { y_metres: r.y_metres - forward, ..*r };
-                    add_echo(&model, pair, &seen, Complex64::from(1.0), samples);
-                }
-                let mut echoes = Vec::new();
-                Sources::from(&echoing).scattered(Antennas::forward_of(pair, forward), &mut echoes);
-                echoes.iter().filter(|e| e.is_heard()).for_each(|e| add_path_echo(&model, e, samples));
-            }
-        });
-        if let Some(interferer) = &scene.disturbances.interferer {
-            add_interference(radar, array, interferer, signal);
-        }
-        apply_responses(array, signal);
-    };
+    let heard = |signal: &mut BeatSignal| hear(task, radar, scene, array, &echoing, signal);
     let mut signal = simulate_echoes(radar, &echoing, floor, seed, heard, task);
     task.check()?;
     for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
@@ -70,6 +50,37 @@ pub(super) fn simulate_built_for(
         }
     }
     Ok(signal)
+}
+
+/// Makes of the samples of an ideal array what `array` hears of the same echoes and of the scene's interferer, before its receivers add
+/// their noise. Of no meaning once `task` is cancelled.
+pub(super) fn hear(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    array: &BuiltArray,
+    echoing: &Echoing,
+    signal: &mut BeatSignal,
+) {
+    let model = EchoModel::new(radar);
+    signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
+        if array.is_displaced(n) && !task.is_cancelled() {
+            samples.fill(Complex64::default());
+            let Some(samples) = samples.as_slice_mut() else { return };
+            let (pair, forward) = (array.pair(radar, n), array.forward_metres(n));
+            for r in &echoing.points {
+                let seen = Reflector { y_metres: r.y_metres - forward, ..*r };
+                add_echo(&model, pair, &seen, Complex64::from(1.0), samples);
+            }
+            let mut echoes = Vec::new();
+            Sources::from(echoing).scattered(Antennas::forward_of(pair, forward), &mut echoes);
+            echoes.iter().filter(|e| e.is_heard()).for_each(|e| add_path_echo(&model, e, samples));
+        }
+    });
+    if let Some(interferer) = &scene.disturbances.interferer {
+        add_interference(radar, array, interferer, signal);
+    }
+    apply_responses(array, signal);
 }
 
 /// Multiplies the samples of every element with what it does to them; those of an element that is as it should be keep their bits.
@@ -259,7 +270,10 @@ mod tests {
                 .into_iter()
                 .map(|r| {
                     let Reflector { x_metres, y_metres, reflectivity } = r;
-                    crate::scene::Object::Point(crate::scene::Point { x_metres, y_metres, reflectivity })
+                    crate::scene::Object::Point(crate::scene::Point {
+                        reflectivity,
+                        ..crate::scene::Point::new(x_metres, y_metres)
+                    })
                 })
                 .collect(),
             ..Scene::default()

@@ -19,12 +19,15 @@
 //!
 //! [`built`] is the signal of disturbed scenes, whose elements are not as they should be or hear somebody else, and calibration.
 //!
+//! [`chirps`] is the signal of several chirps while objects move.
+//!
 //! [`echo`] is one reflector's echo as a value: what sparse methods take a signal apart into.
 //!
 //! [`floor`] says what lies beneath the reflectors: rounding noise as in the thesis, nothing, or thermal noise.
 
 mod algorithm;
 pub mod built;
+pub mod chirps;
 pub mod closed_form;
 pub mod direct;
 mod double;
@@ -51,6 +54,7 @@ mod unfinished;
 
 pub use algorithm::{Algorithm, Precision, UnknownAlgorithm};
 pub use built::{Calibration, apply_responses, calibrate, simulate_built};
+pub use chirps::{ChirpSamples, simulate_chirps, simulate_chirps_for};
 pub use echo::ArrayEcho;
 pub use floor::Floor;
 pub use interference::add_interference;

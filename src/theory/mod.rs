@@ -9,6 +9,8 @@
 //! | [`streak`] | how far a near reflector is drawn out over columns and bins |
 //! | [`comb`] | the teeth of two ends that listen together |
 //! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
+//! | [`chirp`] | a chirp and its echoes as frequencies against time |
+//! | [`doppler`] | where a range-Doppler map shows an object |
 //! | [`ellipse`] | the area that no unbiased estimator's error can stay below |
 //! | [`overlay`] | all of it for one reflector on one map, to be drawn over it |
 //! | [`phasors`] | what every element contributes to one cell, in the complex plane |
@@ -21,6 +23,7 @@ pub mod blob;
 pub mod chirp;
 pub mod comb;
 pub mod consequences;
+pub mod doppler;
 pub mod ellipse;
 pub mod overlay;
 pub mod pattern;

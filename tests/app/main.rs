@@ -9,6 +9,7 @@ mod figures;
 mod keyboard;
 mod lessons;
 mod monkey;
+mod motion;
 mod names;
 mod narrow;
 mod panels;

@@ -43,6 +43,29 @@ y_metres = 20.0
 ";
 
 #[test]
+fn a_range_doppler_map_is_written_as_numbers_or_a_picture() {
+    let folder = folder();
+    let small = "[radar]\nelements = 64\nsamples = 64\nconvention = \"physical\"\n";
+    let moving = TWO_POINTS.replacen("y_metres = 12.0", "y_metres = 2.0\nvelocity_y_metres_per_second = 90.0", 1);
+    std::fs::write(folder.path().join("scene.toml"), format!("{small}{moving}")).unwrap();
+    let to = |name: &str| {
+        let mut command = apertura(&folder);
+        command.args(["range-doppler", "scene.toml", "-o", name, "--chirps", "32"]);
+        command
+    };
+    to("map.npz").assert().success().stderr(contains("beyond the unambiguous 37.5 m/s"));
+    let mut archive = Npz::open(&folder.path().join("map.npz")).unwrap();
+    assert_eq!(archive.reals::<Ix2>("power").unwrap().dim(), (64, 32));
+    assert_eq!(archive.reals::<Ix1>("velocity_metres_per_second").unwrap()[16], 0.0);
+    to("map.png").assert().success();
+    assert!(std::fs::read(folder.path().join("map.png")).unwrap().starts_with(b"\x89PNG"));
+    to("map.txt").assert().failure().stderr(contains(".npz, .png or .svg"));
+    to("map.png").args(["--interval", "nan"]).assert().failure().stderr(contains("expected a number"));
+    to("map.png").args(["--chirps", "1"]).assert().failure();
+    assert_eq!(names(folder.path()), ["map.npz", "map.png", "scene.toml"]);
+}
+
+#[test]
 fn the_environment_picks_the_instructions_or_is_refused() {
     let folder = folder();
     std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();

@@ -202,7 +202,7 @@ fn a_reflector_a_million_kilometres_away_is_faint_but_there() {
 #[test]
 fn ten_thousand_reflectors_add_up() {
     let radar = Radar { samples: 32, elements: 64, ..Radar::default() };
-    let point = |reflectivity| Object::Point(Point { x_metres: 1.0, y_metres: 2.0, reflectivity });
+    let point = |reflectivity| Object::Point(Point { reflectivity, ..Point::new(1.0, 2.0) });
     let many = Scene { objects: vec![point(1e-4); 10_000], ..Scene::default() };
     let signal = simulate(&radar, &many, Floor::Exact, 0).unwrap();
     let one = exact::beat_signal(&radar, &Scene { objects: vec![point(1.0)], ..Scene::default() }.reflectors());

@@ -134,15 +134,7 @@ fn noise_is_no_detection() {
 #[test]
 #[ignore = "half a minute"]
 fn ten_thousand_reflectors_end_in_time() {
-    let cluster = GaussianCluster {
-        x_metres: 1.0,
-        y_metres: 14.0,
-        x_std_metres: 6.0,
-        y_std_metres: 3.0,
-        count: 10_000,
-        seed: 2,
-        reflectivity: 1.0,
-    };
+    let cluster = GaussianCluster { seed: 2, ..GaussianCluster::new([1.0, 14.0], [6.0, 3.0], 10_000) };
     let ends = ends_of(&Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() }, Floor::Thesis);
     for method in methods::all() {
         run(&*method, &ends, "ten thousand reflectors");

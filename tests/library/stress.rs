@@ -54,7 +54,7 @@ proptest! {
     ) {
         let object = |(x_metres, y_metres, decades, negative): (f64, f64, f64, bool)| {
             let reflectivity = 10f64.powf(decades) * if negative { -1.0 } else { 1.0 };
-            Object::Point(Point { x_metres, y_metres, reflectivity })
+            Object::Point(Point { reflectivity, ..Point::new(x_metres, y_metres) })
         };
         let scene = Scene { objects: points.into_iter().map(object).collect(), ..Scene::default() };
         let scene = StressScene { name: "random points", scene, refused: false };

@@ -44,6 +44,8 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
         }
         EditCommand::Align(alignment) => editor.align(alignment),
         EditCommand::Distribute(along) => editor.distribute(along),
+        // What is looked at at another time is not where the document has it.
+        EditCommand::Grab(_) if state.timeline.moved().is_some() => state.timeline.set(editor.scene(), 0.0),
         EditCommand::Grab(blob) => editor.grab(blob),
         EditCommand::DragTo(place) => _ = editor.drag_to(place, state.settings.snap),
         EditCommand::Drop => editor.end_drag(),
@@ -88,13 +90,8 @@ fn add(state: &mut State, kind: NewObject, place: Option<Place>) {
             Object::Line(Line::vertical(x_metres, y_start_metres, spacing_metres, count))
         }
         NewObject::Cluster => Object::Gaussian(GaussianCluster {
-            x_metres,
-            y_metres,
-            x_std_metres: 1.0,
-            y_std_metres: 1.0,
-            count: 40,
             seed: state.editor.scene().objects.len() as u64,
-            reflectivity: 1.0,
+            ..GaussianCluster::new([x_metres, y_metres], [1.0, 1.0], 40)
         }),
         NewObject::Wall => Object::Wall(Wall::new(x_metres, y_metres, 5.0, 0.0)),
         NewObject::Box => Object::Box(Block::new([x_metres, y_metres.max(3.0)], [4.5, 1.8], 90.0)),

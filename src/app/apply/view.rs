@@ -29,6 +29,11 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
         ViewCommand::SetBounds(bounds) => settings.bounds = bounds,
         ViewCommand::SetChirp(chirp) => settings.chirp = chirp,
+        ViewCommand::SetTime(seconds) => state.timeline.set(state.editor.scene(), seconds),
+        ViewCommand::TogglePlay => {
+            let is_playing = !state.timeline.is_playing() && state.editor.scene().is_moving();
+            state.timeline.play(state.editor.scene(), is_playing);
+        }
         ViewCommand::SetPhasors(phasors) => settings.phasors = phasors,
         ViewCommand::MarkReflectors => settings.show_reflectors = true,
         ViewCommand::ToggleReflectors => settings.show_reflectors ^= true,

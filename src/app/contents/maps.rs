@@ -65,7 +65,7 @@ impl Contents<'_> {
 
 /// The reflectors to be marked, object by object.
 pub(super) fn marked<'a>(state: &State, reflectors: &'a mut Reflectors) -> &'a [map::Marked] {
-    if state.settings.show_reflectors { reflectors.of(state.editor.scene()) } else { &[] }
+    if state.settings.show_reflectors { reflectors.of(state.scene()) } else { &[] }
 }
 
 /// What a map is told.
@@ -83,7 +83,7 @@ pub(super) fn map_input<'a>(
     map::Input {
         kind,
         radar: state.editor.radar(),
-        scene: state.editor.scene(),
+        scene: state.scene(),
         selection: state.editor.selection(),
         projection: settings.projection,
         other_view: state.map_views.seen(settings.projection.other()),
@@ -130,7 +130,7 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map
 fn note(state: &State, kind: MapKind) -> Option<String> {
     let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
     method.trained_noise()?;
-    let echoing = Echoing::of(state.radar(), state.editor.scene());
+    let echoing = Echoing::of(state.radar(), state.scene());
     untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
 }
 

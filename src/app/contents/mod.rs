@@ -13,8 +13,8 @@ pub use bars::{menu_input, status_input};
 use super::chrome::tiles::Draw;
 use super::jobs::{Jobs, Pipeline};
 use super::panels::{
-    bounds, cuts, elements, evaluation, failures as failures_panel, guide, lesson, map, objects, phasors, run_time,
-    several, training,
+    bounds, cuts, doppler, elements, evaluation, failures as failures_panel, guide, lesson, map, objects, phasors,
+    run_time, several, training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::method_menu::Offered;
@@ -31,6 +31,7 @@ pub struct Memory {
     reflectors: Reflectors,
     bounds: bounds::Memory,
     phasors: phasors::Memory,
+    doppler: doppler::Memory,
     cuts: cuts::Memory,
     elements: elements::Memory,
     evaluation: evaluation::Memory,
@@ -105,6 +106,7 @@ impl Draw for Contents<'_> {
             Panel::Bounds => self.bounds(ui),
             Panel::Phasors => self.phasors(ui),
             Panel::Chirp => self.chirp(ui),
+            Panel::RangeDoppler => self.range_doppler(ui),
             Panel::Evaluation => self.evaluation(ui),
             Panel::Failures => self.failures(ui),
             Panel::RunTime => self.run_time(ui),
@@ -139,7 +141,16 @@ fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
 /// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far
 /// the axes reach.
 fn tells_answers(panel: Panel) -> bool {
-    matches!(panel, Panel::Radar | Panel::Inspector | Panel::Bounds | Panel::Cuts | Panel::Phasors | Panel::Chirp)
+    matches!(
+        panel,
+        Panel::Radar
+            | Panel::Inspector
+            | Panel::Bounds
+            | Panel::Cuts
+            | Panel::Phasors
+            | Panel::Chirp
+            | Panel::RangeDoppler
+    )
 }
 
 /// In the place of a panel that would answer the question.

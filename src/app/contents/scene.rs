@@ -10,6 +10,7 @@ impl Contents<'_> {
         let (state, pipeline) = (&mut *self.state, &self.jobs.pipeline);
         let found = shown_found(state, pipeline);
         let radar = state.editor.radar().clone();
+        let moved = state.timeline.moved();
         let input = scene::Input {
             radar: &radar,
             snapshot_range_metres: state.editor.document().recording().and_then(|r| r.range_metres),
@@ -22,6 +23,7 @@ impl Contents<'_> {
             error: pipeline.scene_error(),
             numbers: state.shows_axes(),
             hint: captions::of_scene(state),
+            moved: moved.as_deref().map(|scene| (scene, state.timeline.seconds())),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)
     }

@@ -2,7 +2,7 @@
 
 use super::{Contents, offered};
 use crate::app::panels::{
-    bounds, chirp, controls, evaluation, found, lesson, phasors, run_time, several, timing, training,
+    bounds, chirp, controls, doppler, evaluation, found, lesson, phasors, run_time, several, timing, training,
 };
 use crate::app::state::{Command, MapKind, MethodSlot};
 use eframe::egui::{TextureOptions, Ui};
@@ -92,12 +92,28 @@ impl Contents<'_> {
         let state = &*self.state;
         let input = chirp::Input {
             radar: state.radar(),
-            scene: state.editor.scene(),
+            scene: state.scene(),
             settings: state.settings.chirp,
             is_recorded: state.editor.document().recording().is_some(),
             result: self.jobs.chirps.result(),
         };
         chirp::show(ui, input)
+    }
+
+    pub(super) fn range_doppler(&mut self, ui: &mut Ui) -> Vec<Command> {
+        let state = &*self.state;
+        let input = doppler::Input {
+            radar: state.radar(),
+            scene: state.scene(),
+            seconds: state.timeline.seconds(),
+            is_playing: state.timeline.is_playing(),
+            marks: state.settings.show_reflectors,
+            colours: state.settings.colours,
+            normalisation: state.settings.normalisation,
+            is_recorded: state.editor.document().recording().is_some(),
+            result: self.jobs.dopplers.result(),
+        };
+        doppler::show(ui, input, &mut self.memory.doppler)
     }
 
     pub(super) fn evaluation(&mut self, ui: &mut Ui) -> Vec<Command> {

@@ -7,6 +7,7 @@ mod camera;
 mod chirp;
 mod detected;
 mod dialogs;
+mod doppler;
 mod evaluation;
 mod export;
 mod failures;
@@ -36,6 +37,7 @@ pub use bounds::{Bounds, BoundsRequest, BoundsResult};
 pub use calibration::{Calibrated, Calibration};
 pub use chirp::{ChirpResult, Chirps};
 pub use dialogs::{Dialogs, Purpose, Question};
+pub use doppler::{DopplerResult, Dopplers};
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
 #[cfg(test)]
@@ -80,6 +82,8 @@ pub struct Jobs {
     pub phasors: Phasors,
     /// The beat of one element.
     pub chirps: Chirps,
+    /// The range-Doppler map.
+    pub dopplers: Dopplers,
     /// What the selected reflector tells of the elements.
     pub calibration: Calibration,
     /// Methods on test sets.
@@ -127,6 +131,7 @@ impl Jobs {
             bounds: Bounds::start(wake.clone())?,
             phasors: Phasors::start(wake.clone())?,
             chirps: Chirps::start(wake.clone())?,
+            dopplers: Dopplers::start(wake.clone())?,
             calibration: Calibration::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
@@ -155,6 +160,7 @@ impl Jobs {
         errors.extend(self.bounds.poll());
         errors.extend(self.phasors.poll());
         errors.extend(self.chirps.poll());
+        errors.extend(self.dopplers.poll());
         errors.extend(self.calibration.poll());
         errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
@@ -205,6 +211,9 @@ impl Jobs {
         if shown.contains(&Panel::Chirp) {
             self.chirps.ask(state);
         }
+        if shown.contains(&Panel::RangeDoppler) && state.radar().chirps > 1 {
+            self.dopplers.ask(state);
+        }
         if shown.contains(&Panel::Elements) {
             self.calibration.ask(state);
         }
@@ -247,6 +256,7 @@ impl Jobs {
             || self.bounds.is_busy()
             || self.phasors.is_busy()
             || self.chirps.is_busy()
+            || self.dopplers.is_busy()
             || self.theory.is_busy()
             || self.several.is_busy()
             || self.kinds.is_busy()

@@ -27,7 +27,7 @@ impl Source {
     pub fn of(state: &State) -> Source {
         Source {
             radar: state.radar().clone(),
-            scene: state.editor.scene().clone(),
+            scene: state.scene().clone(),
             recording: state.editor.document().recording().cloned(),
             floor: state.settings.floor,
         }
@@ -38,6 +38,17 @@ impl Source {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.recording.as_ref().map(Arc::as_ptr) == other.recording.as_ref().map(Arc::as_ptr)
             && (&self.radar, self.floor) == (&other.radar, other.floor)
+    }
+
+    /// The scene and the floor beneath it, where they are simulated.
+    ///
+    /// # Errors
+    /// A sentence for a recording.
+    pub fn simulated(&self) -> Result<(&Scene, Floor), String> {
+        match self.recording {
+            None => Ok((&self.scene, self.floor)),
+            Some(_) => Err("A recording has one chirp, which tells no velocity.".to_owned()),
+        }
     }
 
     /// The samples of every element.

@@ -170,7 +170,7 @@ impl Pipeline {
             full: map(MapKind::Target) || map(MapKind::TargetAbove) || output || map(MapKind::Unexplained),
             ends: output,
         };
-        let (scene, held) = (state.editor.scene(), state.editor.dragged().is_some());
+        let (scene, held) = (state.scene(), state.editor.dragged().is_some());
         self.motion = self.rest.look(scene, state.radar(), settings.floor, held, Instant::now());
         let is_read = |slot: MethodSlot| looked_at.outputs[slot as usize];
         let pair = |slot: MethodSlot| {

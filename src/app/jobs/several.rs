@@ -92,7 +92,7 @@ impl SeveralMaps {
         let variants = settings.several.variants(state.radar(), settings.floor, state.method(), &state.methods.all);
         let request = Request {
             number: self.requests + 1,
-            scene: state.editor.scene().clone(),
+            scene: state.scene().clone(),
             variants,
             map: settings.several.map,
             normalisation: settings.normalisation,

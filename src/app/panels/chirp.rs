@@ -111,7 +111,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Comma
         let range = 1e6 * DRAGGED_SECONDS[0]..=1e6 * DRAGGED_SECONDS[1];
         let field = NumberField::new(&mut microseconds).range(range).speed(0.05).suffix(" µs");
         if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
-            changed.chirp_seconds = 1e-6 * microseconds;
+            changed.set_chirp_seconds(1e-6 * microseconds);
         }
         ui.add_enabled_ui(!input.is_recorded, |ui| {
             let label = ui.label("Samples").on_hover_text("Samples of the beat, and range bins of its spectrum");
@@ -239,8 +239,8 @@ impl Shown<'_> {
             }
             if response.dragged() && at[1] != 0.0 {
                 let across = f64::from(by.x / drawn.rect.width());
-                radar.chirp_seconds =
-                    (radar.chirp_seconds * (1.0 + across)).clamp(DRAGGED_SECONDS[0], DRAGGED_SECONDS[1]);
+                let seconds = radar.chirp_seconds * (1.0 + across);
+                radar.set_chirp_seconds(seconds.clamp(DRAGGED_SECONDS[0], DRAGGED_SECONDS[1]));
             }
             let lit = response.hovered() || response.dragged();
             let radius = if lit { HANDLE + 1.5 } else { HANDLE };

@@ -347,15 +347,7 @@ mod tests {
 
     #[test]
     fn a_cluster_is_called_a_cluster() {
-        let cluster = crate::scene::GaussianCluster {
-            x_metres: 0.0,
-            y_metres: 20.0,
-            x_std_metres: 1.0,
-            y_std_metres: 1.0,
-            count: 40,
-            seed: 0,
-            reflectivity: 1.0,
-        };
+        let cluster = crate::scene::GaussianCluster::new([0.0, 20.0], [1.0, 1.0], 40);
         let mut editor = Editor::new(Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() });
         editor.select_all();
         let inspector = panel(editor, Coordinates::Cartesian);

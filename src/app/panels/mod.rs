@@ -6,6 +6,7 @@ pub mod compare;
 pub mod controls;
 pub mod cuts;
 pub mod disturbances;
+pub mod doppler;
 pub mod elements;
 pub mod evaluation;
 pub mod failures;

@@ -251,6 +251,13 @@ const TABLE: &[Entry] = {
             key(Key::Escape),
         ),
         entry(View(ViewCommand::FitScene), "Fit scene", "Show the whole scene", key(Key::F)),
+        entry(
+            View(ViewCommand::TogglePlay),
+            "Play or stop motion",
+            "Let every object move by its velocity; the file keeps time 0",
+            key(Key::Q),
+        ),
+        entry(View(ViewCommand::SetTime(0.0)), "Back to time 0", "Show the scene as its file has it", None),
         entry(View(ViewCommand::ResetMaps), "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home)),
         entry(Lesson(LessonCommand::Open), "Open lesson…", "Begin a lesson from a TOML file", None),
         entry(
@@ -518,6 +525,7 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Values, Key::I),
     (Panel::Phasors, Key::A),
     (Panel::Chirp, Key::U),
+    (Panel::RangeDoppler, Key::Y),
     (Panel::Radar, Key::W),
     (Panel::Training, Key::F12),
 ];

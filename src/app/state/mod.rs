@@ -24,6 +24,7 @@ mod settings;
 mod several;
 mod synonyms;
 mod task_layouts;
+mod timeline;
 mod toggles;
 mod view;
 
@@ -51,6 +52,7 @@ pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::{menu_path, synonyms};
 pub use task_layouts::Task;
+pub use timeline::{TIMELINE_SECONDS, Timeline};
 pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 
 use crate::interact::{Document, Editor};
@@ -58,6 +60,7 @@ use crate::lesson::{Progress, Uses};
 use crate::platform::fs;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
+use crate::scene::Scene;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -103,6 +106,8 @@ pub struct State {
     pub recent: Vec<PathBuf>,
     /// Whether maps and scene say what they show, until the first drag.
     pub captions: bool,
+    /// The time at which the scene is looked at.
+    pub timeline: Timeline,
     /// The page of help that is open.
     pub help: Option<HelpPage>,
     /// Whether the window is dark at the moment.
@@ -218,6 +223,11 @@ impl State {
     /// The radar before the scene.
     pub fn radar(&self) -> &Radar {
         self.editor.radar()
+    }
+
+    /// The scene that is looked at: the document's, moved to the time that was chosen.
+    pub fn scene(&self) -> &Arc<Scene> {
+        self.timeline.scene(self.editor.scene())
     }
 
     /// Everything that the guide may change, as it is.

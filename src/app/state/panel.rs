@@ -35,6 +35,8 @@ pub enum Panel {
     Phasors,
     /// What is sent and what returns, as frequency against time, and the beat.
     Chirp,
+    /// Range against radial velocity, and the time at which the scene is looked at.
+    RangeDoppler,
     /// Methods on the tables' test sets.
     Evaluation,
     /// Scenes on which methods fail, row by row.
@@ -58,7 +60,7 @@ pub enum Panel {
 
 impl Panel {
     /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 16] = [
+    pub const TOOLS: [Panel; 17] = [
         Panel::Guide,
         Panel::Lesson,
         Panel::Failures,
@@ -69,6 +71,7 @@ impl Panel {
         Panel::Bounds,
         Panel::Phasors,
         Panel::Chirp,
+        Panel::RangeDoppler,
         Panel::Evaluation,
         Panel::RunTime,
         Panel::Training,
@@ -107,6 +110,7 @@ impl Panel {
             Panel::Bounds => "Bounds",
             Panel::Phasors => "Phasors",
             Panel::Chirp => "Chirp",
+            Panel::RangeDoppler => "Range-Doppler",
             Panel::Evaluation => "Evaluation",
             Panel::Failures => "Failures",
             Panel::RunTime => "Run time",
@@ -136,6 +140,9 @@ impl Panel {
             Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
             Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
             Panel::Chirp => "Frequency against time of what is sent and what returns, the beat and its spectrum",
+            Panel::RangeDoppler => {
+                "Range against radial velocity of several chirps, and a timeline that plays the scene"
+            }
             Panel::Phasors => "What every element contributes to the cell under the cursor, added head to tail",
             Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
             Panel::Failures => {

@@ -32,9 +32,13 @@ pub fn least_size(panel: Panel) -> Vec2 {
         Panel::Cuts | Panel::Roc => [260.0, 180.0],
         Panel::Guide | Panel::Lesson => [300.0, 260.0],
         Panel::Elements | Panel::Disturbances => [280.0, 260.0],
-        Panel::Bounds | Panel::Phasors | Panel::Chirp | Panel::RunTime | Panel::Training | Panel::Evaluation => {
-            [360.0, 280.0]
-        }
+        Panel::Bounds
+        | Panel::Phasors
+        | Panel::Chirp
+        | Panel::RangeDoppler
+        | Panel::RunTime
+        | Panel::Training
+        | Panel::Evaluation => [360.0, 280.0],
         Panel::Several => [420.0, 320.0],
         Panel::Compare | Panel::Failures => [560.0, 320.0],
     };

@@ -80,6 +80,9 @@ fn window_words(command: &WindowCommand) -> &'static str {
         WindowCommand::TogglePanel(Panel::Chirp) => {
             "fmcw sweep ramp beat signal frequency time spectrum fft interferer"
         }
+        WindowCommand::TogglePanel(Panel::RangeDoppler) => {
+            "velocity speed chirps timeline time play motion moving doppler"
+        }
         WindowCommand::TogglePanel(Panel::Phasors) => "complex plane vector sum cornu spiral contributions elements",
         WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
         WindowCommand::TogglePanel(_) => "window open close",

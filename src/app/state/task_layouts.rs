@@ -82,6 +82,7 @@ fn explore() -> Tree<Panel> {
         Panel::Bounds,
         Panel::Phasors,
         Panel::Chirp,
+        Panel::RangeDoppler,
         Panel::Evaluation,
         Panel::RunTime,
         Panel::Training,

@@ -37,7 +37,7 @@ fn random_object(rng: &mut impl RngExt) -> Object {
     let (x_metres, y_metres) = (at(4.0), 1.5 + at(2.0));
     let reflectivity = 10f64.powf(at(8.0));
     if at(1.0) < 0.35 {
-        Object::Point(Point { x_metres, y_metres, reflectivity })
+        Object::Point(Point { reflectivity, ..Point::new(x_metres, y_metres) })
     } else {
         Object::Line(Line { reflectivity, ..Line::vertical(x_metres, y_metres, 0.1, 5) })
     }

@@ -63,7 +63,7 @@ pub fn all(radar: &Radar, many: usize) -> Vec<StressScene> {
 }
 
 fn object(r: &Reflector) -> Object {
-    Object::Point(Point { x_metres: r.x_metres, y_metres: r.y_metres, reflectivity: r.reflectivity })
+    Object::Point(Point { reflectivity: r.reflectivity, ..Point::new(r.x_metres, r.y_metres) })
 }
 
 /// The scene of these reflectors, each moved along the array to the next number that f64 holds.

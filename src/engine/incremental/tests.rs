@@ -205,9 +205,9 @@ fn a_scene_at_rest_is_computed_where_it_is_looked_at() {
 #[test]
 fn taking_away_a_giant_leaves_nothing_of_it() {
     let mut engine = Engine::new(small());
-    let small_one = Object::Point(Point { x_metres: 0.2, y_metres: 1.0, reflectivity: 1e-20 });
-    let giant = Object::Point(Point { x_metres: 0.1, y_metres: 1.2, reflectivity: 1e30 });
-    let other = Object::Point(Point { x_metres: -0.4, y_metres: 0.9, reflectivity: 1e-20 });
+    let small_one = Object::Point(Point { reflectivity: 1e-20, ..Point::new(0.2, 1.0) });
+    let giant = Object::Point(Point { reflectivity: 1e30, ..Point::new(0.1, 1.2) });
+    let other = Object::Point(Point { reflectivity: 1e-20, ..Point::new(-0.4, 0.9) });
     let wanted = Wanted::default();
     let with = Scene { objects: vec![small_one.clone(), giant, other.clone()], ..Scene::default() };
     engine.update(&with, &wanted).unwrap();
@@ -372,7 +372,7 @@ proptest! {
     ) {
         let objects = points
             .into_iter()
-            .map(|(x_metres, y_metres, decades)| Object::Point(Point { x_metres, y_metres, reflectivity: 10f64.powf(decades) }))
+            .map(|(x_metres, y_metres, decades)| Object::Point(Point { reflectivity: 10f64.powf(decades), ..Point::new(x_metres, y_metres) }))
             .collect();
         let scene = Scene { objects, ..Scene::default() };
         let floor = [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(snr)), Floor::Thesis][which as usize];

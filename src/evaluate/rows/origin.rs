@@ -106,7 +106,8 @@ pub fn radar_text(radar: &Radar) -> String {
         _ => serde_json::Map::new(),
     };
     let usual = fields(&Radar::default());
-    let mut differing: Vec<String> = fields(radar)
+    // Rows are of one chirp.
+    let mut differing: Vec<String> = fields(&radar.of_one_chirp())
         .iter()
         .filter(|(name, value)| *name != "carrier" && usual.get(*name) != Some(*value))
         .map(|(name, value)| match value {

@@ -142,7 +142,7 @@ mod tests {
     fn a_wall_explains_as_much_of_a_few_range_bins_as_of_all_and_comes_to_the_same_place() {
         for carrier in [Carrier::OneWay, Carrier::TwoWay] {
             let radar = Radar { carrier, ..Radar::default() };
-            let beside = |x, y| Object::Point(Point { x_metres: x, y_metres: y, reflectivity: 1.0 });
+            let beside = |x, y| Object::Point(Point::new(x, y));
             let objects = vec![Object::Line(wall()), beside(1.0, 3.0), beside(9.0, 30.0)];
             let scene = Scene { objects, ..Scene::default() };
             let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();

@@ -76,7 +76,7 @@ mod tests {
     use crate::scene::{Object, Point, Scene};
 
     fn scene() -> SceneFile {
-        let objects = vec![Object::Point(Point { x_metres: 0.1 + 0.2, y_metres: 1e-300, reflectivity: -2.5 })];
+        let objects = vec![Object::Point(Point { reflectivity: -2.5, ..Point::new(0.1 + 0.2, 1e-300) })];
         SceneFile {
             scene: Scene {
                 name: "One".to_owned(),

@@ -25,6 +25,11 @@ pub enum Loss {
         /// Objects that have one.
         objects: usize,
     },
+    /// Velocities: reopened, everything rests.
+    Velocity {
+        /// Objects that move.
+        objects: usize,
+    },
     /// That bodies hide nothing: reopened, there are no bodies.
     Shadows,
     /// Bodies: reopened, they are points where the array's middle sees them echo, which hide nothing.
@@ -59,6 +64,8 @@ impl fmt::Display for Loss {
             Loss::Recording => f.write_str("the recording that it is laid over"),
             Loss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
             Loss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
+            Loss::Velocity { objects: 1 } => f.write_str("the velocity of one object"),
+            Loss::Velocity { objects } => write!(f, "the velocity of {objects} objects"),
             Loss::Structure { objects: 1, points } => write!(f, "one line or cluster, which becomes {points} points"),
             Loss::Structure { objects, points } => {
                 write!(f, "{objects} lines and clusters, which become {points} points")
@@ -83,6 +90,8 @@ impl Format {
         losses.extend((!disturbances.is_none()).then_some(Loss::Disturbances));
         let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
         losses.extend((reflective > 0).then_some(Loss::Reflectivity { objects: reflective }));
+        let moving = objects.iter().filter(|o| o.is_moving()).count();
+        losses.extend((moving > 0).then_some(Loss::Velocity { objects: moving }));
         losses.extend((!shadows).then_some(Loss::Shadows));
         let bodies: Vec<_> = objects.iter().filter_map(Object::body).collect();
         let points = bodies.iter().map(|b| b.echo_places_metres([0.0, 0.0]).len()).sum();
@@ -108,13 +117,9 @@ mod tests {
             match kind {
                 0 => Object::Line(Line { reflectivity, ..Line::vertical(x_metres, y_metres, 0.1, 4) }),
                 1 => Object::Gaussian(GaussianCluster {
-                    x_metres,
-                    y_metres,
-                    x_std_metres: 1.0,
-                    y_std_metres: 1.0,
-                    count: 3,
                     seed: 5,
                     reflectivity,
+                    ..GaussianCluster::new([x_metres, y_metres], [1.0, 1.0], 3)
                 }),
                 2 => Object::Wall(Wall { reflectivity, ..Wall::new(x_metres, y_metres, 3.0, y_metres) }),
                 3 => Object::Box(Block { reflectivity, seed: 4, ..Block::new([x_metres, y_metres], [4.5, 1.8], 20.0) }),
@@ -128,7 +133,11 @@ mod tests {
                     let corners = corners.map(|[x, y]| [x + x_metres, y + y_metres]).to_vec();
                     Object::Polygon(Polygon { reflectivity, ..Polygon::new(corners) })
                 }
-                _ => Object::Point(Point { x_metres, y_metres, reflectivity }),
+                6 => {
+                    let velocity_y_metres_per_second = x_metres;
+                    Object::Point(Point { velocity_y_metres_per_second, ..Point::new(x_metres, y_metres) })
+                }
+                _ => Object::Point(Point { reflectivity, ..Point::new(x_metres, y_metres) }),
             }
         })
     }

@@ -7,6 +7,8 @@
 //!
 //! [radar]                  # optional; only what differs from table 3.1
 //! carrier = "two-way"
+//! chirps = 128             # 1 otherwise
+//! chirp_interval_seconds = 25.6e-6
 //!
 //! [disturbances.mirror]   # optional; a wall that makes ghosts
 //! x_metres = -5.0
@@ -34,6 +36,7 @@
 //! x_metres = -4.0
 //! y_metres = 12.5
 //! reflectivity = 0.5       # optional, 1 otherwise
+//! velocity_x_metres_per_second = 2.0 # optional, 0 otherwise; likewise y; the place is that of time 0
 //!
 //! [over]                   # optional; what the app lays the objects over; commands look at the scene alone
 //! recording = "post.toml"  # beside this file, or the name of one that comes with the program

@@ -309,17 +309,9 @@ mod tests {
 
     fn scene() -> SceneFile {
         let objects = vec![
-            Object::Point(Point { x_metres: 0.1 + 0.2, y_metres: 1e-300, reflectivity: -2.5 }),
+            Object::Point(Point { reflectivity: -2.5, ..Point::new(0.1 + 0.2, 1e-300) }),
             Object::Line(Line { direction_degrees: 30.0, ..Line::vertical(1.0, 2.0, 0.1, 75) }),
-            Object::Gaussian(GaussianCluster {
-                x_metres: -5.0,
-                y_metres: 20.0,
-                x_std_metres: 1.0,
-                y_std_metres: 0.5,
-                count: 40,
-                seed: 9,
-                reflectivity: 1.0,
-            }),
+            Object::Gaussian(GaussianCluster { seed: 9, ..GaussianCluster::new([-5.0, 20.0], [1.0, 0.5], 40) }),
             Object::Wall(Wall { roughness_millimetres: 0.3, ..Wall::new(1.0, 9.0, 4.0, 0.0) }),
             Object::Box(Block { reflectivity: 0.5, seed: 3, ..Block::new([3.0, 9.0], [4.5, 1.8], 12.0) }),
             Object::Post(Post::new(-3.0, 9.0, 0.1)),
@@ -455,7 +447,7 @@ mod tests {
 
         #[test]
         fn positions_keep_every_bit(x in -1e12f64..1e12, y in 1e-3f64..1e12, reflectivity in -1e100f64..1e100) {
-            let objects = vec![Object::Point(Point { x_metres: x, y_metres: y, reflectivity })];
+            let objects = vec![Object::Point(Point { reflectivity, ..Point::new(x, y) })];
             let file = SceneFile { scene: Scene { objects, ..Scene::default() }, radar: Radar::default() };
             prop_assert_eq!(from_toml(&to_toml(&file).unwrap()).unwrap(), file);
         }

@@ -83,7 +83,7 @@ impl Field {
 
     fn point(&self, reflectivity: f64, rng: &mut ChaCha8Rng) -> Object {
         let [x_metres, y_metres] = self.place(rng);
-        Object::Point(Point { x_metres, y_metres, reflectivity })
+        Object::Point(Point { reflectivity, ..Point::new(x_metres, y_metres) })
     }
 
     fn weak_point(&self, rng: &mut ChaCha8Rng) -> Object {
@@ -122,15 +122,9 @@ impl Field {
 
     fn cluster(&self, rng: &mut ChaCha8Rng) -> Object {
         let [x_metres, y_metres] = self.place(rng);
-        Object::Gaussian(GaussianCluster {
-            x_metres,
-            y_metres,
-            x_std_metres: rng.random_range(0.2..1.0),
-            y_std_metres: rng.random_range(0.2..1.0),
-            count: rng.random_range(15..=40),
-            seed: rng.random(),
-            reflectivity: 1.0,
-        })
+        let std = [rng.random_range(0.2..1.0), rng.random_range(0.2..1.0)];
+        let cluster = GaussianCluster::new([x_metres, y_metres], std, rng.random_range(15..=40));
+        Object::Gaussian(GaussianCluster { seed: rng.random(), ..cluster })
     }
 
     fn spacing(&self, rng: &mut ChaCha8Rng, most_bins: f64) -> f64 {

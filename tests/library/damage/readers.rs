@@ -36,15 +36,7 @@ pub fn all() -> Vec<Reader> {
 
 fn scene() -> SceneFile {
     let line = Line { reflectivity: 0.5, direction_degrees: 30.0, ..Line::vertical(1.0, 2.0, 0.1, 75) };
-    let cluster = GaussianCluster {
-        x_metres: -5.0,
-        y_metres: 20.0,
-        x_std_metres: 1.0,
-        y_std_metres: 0.5,
-        count: 40,
-        seed: 9,
-        reflectivity: 1.0,
-    };
+    let cluster = GaussianCluster { seed: 9, ..GaussianCluster::new([-5.0, 20.0], [1.0, 0.5], 40) };
     let objects = vec![Object::Point(Point::new(1.0, 2.0)), Object::Line(line), Object::Gaussian(cluster)];
     let scene = Scene {
         name: "All \"three\"".to_owned(),

@@ -20,6 +20,8 @@ pub fn look(field: Field) -> Look {
     let degrees =
         |name, tooltip| Look { unit: "°", speed: 0.5, low: -360.0, high: 360.0, digits: 2, ..metres(name, tooltip) };
     let plain = |name, tooltip| Look { unit: "", ..metres(name, tooltip) };
+    let velocity =
+        |name, tooltip| Look { unit: " m/s", speed: 0.05, low: -1e3, high: 1e3, digits: 2, ..metres(name, tooltip) };
     let whole = |name, tooltip| Look { digits: 0, speed: 0.2, ..plain(name, tooltip) };
     match field {
         Field::X => metres("x", "Along the array; a line's first reflector, a cluster's centre"),
@@ -56,6 +58,8 @@ pub fn look(field: Field) -> Look {
             high: u64::MAX as f64,
             ..whole("seed", "Another seed scatters the reflectors, or roughens the surface, otherwise")
         },
+        Field::VelocityX => velocity("velocity in x", "Along the array, to the right; metres a second"),
+        Field::VelocityY => velocity("velocity in y", "Away from the array; metres a second"),
         Field::Reflectivity => Look {
             speed: 0.01,
             low: -1e6,

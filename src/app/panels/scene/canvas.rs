@@ -206,6 +206,19 @@ pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look
     }
 }
 
+/// An arrow to where an object will be in a second.
+pub fn velocity(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look) {
+    if !object.is_moving() {
+        return;
+    }
+    let ([x, y], [vx, vy]) = (object.centre_metres(), object.velocity_metres_per_second());
+    let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x + vx, y + vy)));
+    let colour = if look.selected { canvas.inks.selected } else { canvas.inks.reflector };
+    // Arrows far out of sight would have no head in it.
+    let way = (to - from) * (canvas.rect.size().max_elem() / (to - from).length()).min(1.0);
+    painter.arrow(from, way, Stroke::new(1.2, colour));
+}
+
 fn dots(painter: &Painter, object: &Object, radius: f32, colour: Color32, at: impl Fn(Place) -> Pos2) {
     let reflectors = object.reflectors();
     let step = reflectors.len().div_ceil(DOTS).max(1);

@@ -42,6 +42,8 @@ pub struct Input<'a> {
     pub error: Option<&'a str>,
     /// Whether ranges, angles and the scale are told.
     pub numbers: bool,
+    /// The scene at another time than 0, and that time in seconds: it is looked at, not edited.
+    pub moved: Option<(&'a Scene, f64)>,
     /// What to do here, at a first start.
     pub hint: Option<Hint>,
 }
@@ -66,28 +68,24 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let response = ui.interact(rect, ui.scope_id().with("scene canvas"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
     navigate(view, ui, rect, &response);
-    keys(input.radar, editor, view, rect, &response, &mut asked);
-    let was_dragged = editor.dragged().is_some();
-    pointer(ui, &input, editor, view, rect, &response, &mut asked);
-    if was_dragged && editor.dragged().is_none() {
-        view.dropped = response.ctx.pointer_latest_pos();
+    match input.moved {
+        None => edit(ui, &input, editor, view, rect, &response, &mut asked),
+        Some(_) if response.drag_started_by(PointerButton::Primary) => asked.push(ViewCommand::SetTime(0.0).into()),
+        Some(_) => {}
     }
     let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
-    let hovered = hover.and_then(|place| editor.hit(place, view.metres_per_point));
+    let hovered = hover.filter(|_| input.moved.is_none());
+    let hovered = hovered.and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
-    disturbances::draw(&painter, canvas, editor.scene());
-    let at = |place| canvas.at(place);
-    bodies::shadows(&painter, &at, input.radar, editor.scene(), (extent_metres, canvas.inks.ends));
-    for (index, object) in editor.scene().objects.iter().enumerate() {
-        let hovered = hovered.is_some_and(|h| h.object == index);
-        canvas::object(&painter, canvas, object, Look { selected: editor.selection().contains(index), hovered });
-    }
-    bodies::glints(&painter, &at, input.radar, editor.scene(), canvas.inks.ends);
+    let scene = input.moved.map_or(&**editor.scene(), |(scene, _)| scene);
+    objects(&painter, canvas, scene, editor, hovered.map(|h| h.object));
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
     trail::draw(&painter, canvas, input.trails);
-    handles(input.radar.range_resolution_metres(), editor, *view, ui, rect);
+    if input.moved.is_none() {
+        handles(input.radar.range_resolution_metres(), editor, *view, ui, rect);
+    }
     if let (Some(start), Some(pos)) = (view.box_start, ui.input(|i| i.pointer.interact_pos())) {
         canvas::selection_box(&painter, canvas, start, pos);
     }
@@ -98,7 +96,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     }
     if input.numbers {
         canvas::scale_bar(&painter, canvas);
-        elsewhere(ui, &painter, canvas, editor.scene());
+        elsewhere(ui, &painter, canvas, &input, editor.scene());
     }
     if let Some(hint) = &input.hint {
         hint.draw(&painter, canvas);
@@ -114,15 +112,50 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
             _ => CursorIcon::ResizeVertical,
         });
     }
-    context_menu(editor, *view, ui, rect, &response, &mut asked);
+    if input.moved.is_none() {
+        context_menu(editor, *view, ui, rect, &response, &mut asked);
+    }
     asked
 }
 
+/// What keys and pointer do to the scene.
+fn edit(
+    ui: &Ui,
+    input: &Input<'_>,
+    editor: &mut Editor,
+    view: &mut SceneView,
+    rect: Rect,
+    response: &Response,
+    asked: &mut Vec<Command>,
+) {
+    keys(input.radar, editor, view, rect, response, asked);
+    let was_dragged = editor.dragged().is_some();
+    pointer(ui, input, editor, view, rect, response, asked);
+    if was_dragged && editor.dragged().is_none() {
+        view.dropped = response.ctx.pointer_latest_pos();
+    }
+}
+
+/// The objects with what they hide, where they shine and where they move to.
+fn objects(painter: &Painter, canvas: Canvas<'_>, scene: &Scene, editor: &Editor, hovered: Option<usize>) {
+    disturbances::draw(painter, canvas, scene);
+    let at = |place| canvas.at(place);
+    bodies::shadows(painter, &at, canvas.radar, scene, (canvas.extent_metres, canvas.inks.ends));
+    for (index, object) in scene.objects.iter().enumerate() {
+        let look = Look { selected: editor.selection().contains(index), hovered: hovered == Some(index) };
+        canvas::object(painter, canvas, object, look);
+        canvas::velocity(painter, canvas, object, look);
+    }
+    bodies::glints(painter, &at, canvas.radar, scene, canvas.inks.ends);
+}
+
 /// What the maps show elsewhere than it stands.
-fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
+fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, input: &Input<'_>, scene: &Scene) {
+    let later = input.moved.map(|(_, seconds)| format!("At {seconds:.2} s. Press here to go back to 0 s and edit."));
+    let scene = input.moved.map_or(scene, |(scene, _)| scene);
     let behind = behind::mirror(ui, painter, canvas, scene);
     let beyond = beyond::warn(ui, painter, canvas, scene);
-    let said: Vec<String> = behind.into_iter().chain(beyond).collect();
+    let said: Vec<String> = later.into_iter().chain(behind).chain(beyond).collect();
     if !said.is_empty() {
         beyond::write(ui, painter, canvas, &said.join("\n"));
     }

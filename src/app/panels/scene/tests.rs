@@ -25,6 +25,7 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
             error: Some("too far"),
             numbers: true,
             hint: None,
+            moved: None,
         };
         let commands = show(ui, input, &mut held.editor, &mut held.view);
         held.asked.extend(commands);
@@ -99,6 +100,7 @@ fn labels_stand_around_the_half_disc_and_none_is_cut() {
                 error,
                 numbers: true,
                 hint: None,
+                moved: None,
             };
             _ = show(ui, input, editor, view);
         };
@@ -136,6 +138,7 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
             error,
             numbers: true,
             hint: None,
+            moved: None,
         };
         _ = show(ui, input, editor, view);
     };
@@ -262,15 +265,7 @@ fn a_double_click_asks_for_a_point_there() {
 #[test]
 fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
     use crate::scene::{GaussianCluster, Line, Object};
-    let cluster = GaussianCluster {
-        x_metres: -4.0,
-        y_metres: 18.0,
-        x_std_metres: 1.0,
-        y_std_metres: 1.0,
-        count: 20,
-        seed: 1,
-        reflectivity: 1.0,
-    };
+    let cluster = GaussianCluster { seed: 1, ..GaussianCluster::new([-4.0, 18.0], [1.0, 1.0], 20) };
     for (object, key) in [
         (Object::Line(Line::vertical(4.0, 10.0, 0.5, 20)), egui::Key::ArrowUp),
         (Object::Gaussian(cluster.clone()), egui::Key::ArrowRight),

@@ -51,6 +51,10 @@ pub enum ViewCommand {
     SetBounds(BoundsSettings),
     /// Which phasors are drawn.
     SetPhasors(PhasorSettings),
+    /// Look at the scene at this time, seconds.
+    SetTime(f64),
+    /// Let time go on by itself, or stop it.
+    TogglePlay,
     /// Which element's chirp is drawn, and how long it lasts.
     SetChirp(ChirpSettings),
     /// Draw true reflectors over the maps.

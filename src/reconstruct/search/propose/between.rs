@@ -160,7 +160,7 @@ mod tests {
     fn a_dense_wall_is_found_between_its_ends() {
         let radar = Radar::default();
         let wall = Line::vertical(18.5, 20.27, 1.36 * radar.range_resolution_metres(), 91);
-        let point = Point { x_metres: 4.0, y_metres: 8.0, reflectivity: 1.0 };
+        let point = Point::new(4.0, 8.0);
         let objects = vec![Object::Line(wall.clone()), Object::Point(point.clone())];
         let scene = Scene { objects, ..Scene::default() };
         let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();

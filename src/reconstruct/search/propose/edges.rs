@@ -230,7 +230,7 @@ mod tests {
     fn a_wall_is_found_from_its_last_reflector_where_another_hides_the_first() {
         let radar = Radar::default();
         let wall = Line::vertical(-7.3, 8.8, 0.1397, 90);
-        let point = Point { x_metres: 4.0, y_metres: 8.0, reflectivity: 1.0 };
+        let point = Point::new(4.0, 8.0);
         let objects = vec![Object::Line(wall.clone()), Object::Point(point.clone())];
         let scene = Scene { objects, ..Scene::default() };
         let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();

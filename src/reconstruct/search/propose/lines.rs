@@ -319,7 +319,7 @@ mod tests {
         for [x, y, bins] in [[-17.3, 6.0, 1.5], [9.6, 24.0, 1.0]] {
             let step = bins * radar.range_resolution_metres();
             let line = Object::Line(Line::vertical(x, y, step, 90));
-            let point = Object::Point(Point { x_metres: 2.0, y_metres: 6.0, reflectivity: 0.5 });
+            let point = Object::Point(Point { reflectivity: 0.5, ..Point::new(2.0, 6.0) });
             let scene = Scene { objects: vec![line, point], ..Scene::default() };
             let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
             let flat = ends.flat();

@@ -1,0 +1,332 @@
+//! The range-Doppler map: range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
+
+use crate::app::jobs::DopplerResult;
+use crate::app::state::{Command, RadarCommand, TIMELINE_SECONDS, ViewCommand};
+use crate::app::widgets::axes::{self, Axis};
+use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::textures::{Texture, colour_table};
+use crate::app::widgets::theme;
+use crate::maps::Normalisation;
+use crate::picture::ColourMap;
+use crate::radar::{MAX_CHIRPS, Radar};
+use crate::scene::Scene;
+use crate::theory::doppler::{DopplerBlob, folded};
+use eframe::egui::{self, Color32, Pos2, Rect, Sense, Slider, Stroke, TextureOptions, Ui, pos2, vec2};
+
+/// Chirps that the button of an empty map asks for.
+const FIRST_CHIRPS: usize = 128;
+
+/// Most objects that are marked.
+const MARKS: usize = 200;
+
+/// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
+const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
+
+/// What is drawn.
+pub struct Input<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// The scene at the time that is looked at.
+    pub scene: &'a Scene,
+    /// That time, seconds.
+    pub seconds: f64,
+    /// Whether time goes on.
+    pub is_playing: bool,
+    /// Whether true objects are marked.
+    pub marks: bool,
+    /// Colours of maps.
+    pub colours: ColourMap,
+    /// What the colours stand for.
+    pub normalisation: Normalisation,
+    /// Whether a recording stands in the place of the scene: it has one chirp.
+    pub is_recorded: bool,
+    /// The map, or why there is none; nothing before the first.
+    pub result: Option<Result<&'a DopplerResult, &'a str>>,
+}
+
+/// What the panel keeps from frame to frame.
+#[derive(Default)]
+pub struct Memory {
+    texture: Texture,
+}
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+        chirps(ui, &input, &mut asked);
+        timeline(ui, &input, &mut asked);
+        said(ui, &input, &mut asked);
+        match input.result {
+            _ if input.is_recorded || input.radar.chirps < 2 => {}
+            None => _ = ui.weak("computing…"),
+            Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
+            Some(Ok(result)) => {
+                let texture = memory.texture.of(ui.ctx(), "range-Doppler", &result.image, TextureOptions::NEAREST);
+                map(ui, &input, result, texture);
+            }
+        }
+    });
+    asked
+}
+
+/// How many chirps, how far apart, and what follows.
+fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let mut radar = input.radar.clone();
+    ui.add_enabled_ui(!input.is_recorded, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label("Chirps").on_hover_text("Chirps that are sent one after another: columns of the map");
+            ui.add(NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5)).labelled_by(label.id);
+            let tooltip =
+                "From the beginning of a chirp to that of the next. Half as long makes twice the velocity unambiguous.";
+            let label = ui.label("Interval").on_hover_text(tooltip);
+            let mut microseconds = 1e6 * radar.chirp_interval_seconds;
+            let least = 1e6 * radar.chirp_seconds;
+            let most = MOST_INTERVAL_MICROSECONDS.max(least);
+            let field = NumberField::new(&mut microseconds).range(least..=most).speed(0.05).suffix(" µs");
+            if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
+                radar.chirp_interval_seconds = (1e-6 * microseconds).max(radar.chirp_seconds);
+            }
+        });
+    });
+    ui.weak(follows(input.radar));
+    if radar != *input.radar {
+        radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
+        asked.push(RadarCommand::Set(Box::new(radar)).into());
+    }
+}
+
+/// What follows from the chirps.
+fn follows(radar: &Radar) -> String {
+    let most = radar.unambiguous_velocity_metres_per_second();
+    match radar.chirps {
+        1 => format!("unambiguous ±{most:.1} m/s"),
+        _ => format!("unambiguous ±{most:.1} m/s in steps of {:.2} m/s", radar.velocity_resolution_metres_per_second()),
+    }
+}
+
+/// Plays the scene and goes to a time.
+fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let moves = input.scene.is_moving() && !input.is_recorded;
+    ui.add_enabled_ui(moves, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let label = if input.is_playing { "Pause" } else { "Play" };
+            if ui.button(label).on_hover_text("Let every object move by its velocity; all maps follow").clicked() {
+                asked.push(ViewCommand::TogglePlay.into());
+            }
+            let mut seconds = input.seconds;
+            let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
+            let label = ui.label("Time");
+            let tooltip = "Time at which the scene is looked at; its file has time 0";
+            let response = ui.add(slider).labelled_by(label.id).on_hover_text(tooltip);
+            if response.changed() {
+                asked.push(ViewCommand::SetTime(seconds).into());
+            }
+            if input.seconds > 0.0 && ui.button("Back to 0 s").clicked() {
+                asked.push(ViewCommand::SetTime(0.0).into());
+            }
+        });
+    });
+}
+
+/// Why there is no map, or what to know of it.
+fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    if input.is_recorded {
+        ui.weak("A recording has one chirp, which tells no velocity.");
+    } else if input.radar.chirps < 2 {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("One chirp tells no velocity.");
+            if ui.button(format!("Send {FIRST_CHIRPS} chirps")).clicked() {
+                let chirp_interval_seconds = input.radar.chirp_interval_seconds.max(input.radar.chirp_seconds);
+                let radar = Radar { chirps: FIRST_CHIRPS, chirp_interval_seconds, ..input.radar.clone() };
+                asked.push(RadarCommand::Set(Box::new(radar)).into());
+            }
+        });
+    } else if !input.scene.is_moving() {
+        ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
+    } else if let Some(sentence) = folded(input.radar, input.scene) {
+        ui.colored_label(ui.visuals().warn_fg_color, sentence);
+    }
+}
+
+/// Where a map's axes reach: velocities to the edges of the outer columns and a little further, ranges to the edges of the bins.
+fn reach(radar: &Radar) -> ([f64; 2], [f64; 2]) {
+    let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
+    let range = |bin: f64| radar.range_of_bin_metres(bin);
+    ([velocity(-0.5), velocity(radar.chirps as f64 - 0.5)], [range(-0.5), range(radar.samples as f64 - 0.5)])
+}
+
+fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::TextureId) {
+    let radar = &result.radar;
+    let (velocities, ranges) = reach(radar);
+    let beyond = 0.06 * (velocities[1] - velocities[0]);
+    let area = ui.available_rect_before_wrap();
+    ui.advance_cursor_after_rect(area);
+    let x = Axis::new(velocities[0] - beyond, velocities[1] + beyond, "radial velocity, m/s");
+    let chart = Chart { name: "Range-Doppler map", x, y: Axis::new(ranges[0], ranges[1], "range, m") };
+    let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
+    let corners = Rect::from_two_pos(drawn.at([velocities[0], ranges[0]]), drawn.at([velocities[1], ranges[1]]));
+    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+    drawn.painter().image(texture, corners, whole, Color32::WHITE);
+    let most = radar.unambiguous_velocity_metres_per_second();
+    let stroke = Stroke::new(1.2, ui.visuals().warn_fg_color);
+    for edge in [-most, most] {
+        drawn.line([[edge, ranges[0]], [edge, ranges[1]]], stroke, Some([6.0, 4.0]));
+    }
+    if input.marks {
+        marks(ui, input, &drawn, radar);
+    }
+    let (low, high, title) = match input.normalisation {
+        Normalisation::DynamicRange(range) => (-range.0, 0.0, "dB"),
+        Normalisation::MinMax => (0.0, 1.0, "Λ"),
+    };
+    let bar = Bar::new(colour_table(input.colours), low, high, title);
+    bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
+    let Some(pos) = drawn.response.hover_pos() else { return };
+    if let Some(told) = told(result, drawn.x_at(pos), drawn.y_at(pos)) {
+        drawn.response.on_hover_text_at_pointer(told);
+    }
+}
+
+/// A ring where the formulas have each object; dashed where its velocity folds.
+fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn<'_>, radar: &Radar) {
+    for (index, object) in input.scene.objects.iter().take(MARKS).enumerate() {
+        let blob = DopplerBlob::of(radar, object);
+        let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);
+        for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {
+            drawn.painter().circle_stroke(at, 7.0, Stroke::new(width, colour));
+        }
+        let name = if blob.is_folded() { format!("{} folded", index + 1) } else { format!("{}", index + 1) };
+        let text = at + vec2(9.0, 0.0);
+        let font = egui::FontId::proportional(12.0);
+        let galley = ui.painter().layout_no_wrap(name, font, theme::MARK);
+        let rect = Rect::from_min_size(text - vec2(0.0, galley.size().y / 2.0), galley.size());
+        drawn.painter().rect_filled(rect.expand(2.0), 2.0, theme::MARK_EDGE);
+        drawn.painter().galley(rect.min, galley, theme::MARK);
+    }
+}
+
+/// What is told of a place: velocity, range and level of its cell.
+fn told(result: &DopplerResult, velocity: f64, range: f64) -> Option<String> {
+    let radar = &result.radar;
+    let column = (velocity / radar.velocity_resolution_metres_per_second() + (radar.chirps / 2) as f64).round();
+    let bin = radar.bin_of_range(range).round();
+    if column < 0.0 || bin < 0.0 {
+        return None;
+    }
+    let level = result.decades.decades().get([bin as usize, column as usize])? - result.decades.max();
+    let velocity = radar.velocity_of_column_metres_per_second(column);
+    let towards = match velocity {
+        v if v < 0.0 => ", coming nearer",
+        v if v > 0.0 => ", going away",
+        _ => "",
+    };
+    Some(format!(
+        "{velocity:.2} m/s{towards}\nrange {:.2} m\n{:.1} dB below the peak",
+        radar.range_of_bin_metres(bin),
+        -20.0 * level
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use crate::maps::LogMap;
+    use crate::scene::{Object, Point};
+    use eframe::egui::ColorImage;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+    use std::sync::Arc;
+
+    fn radar(chirps: usize) -> Radar {
+        Radar { elements: 64, samples: 32, chirps, ..Radar::default() }
+    }
+
+    fn result(radar: &Radar) -> DopplerResult {
+        let mut decades = ndarray::Array2::from_elem((radar.samples, radar.chirps), -3.0);
+        decades[[10, radar.chirps / 2]] = 0.0;
+        let image = ColorImage::new([radar.chirps, radar.samples], vec![Color32::BLACK; radar.chirps * radar.samples]);
+        DopplerResult { radar: radar.clone(), decades: LogMap::new(decades), image: Arc::new(image) }
+    }
+
+    fn panel(size: [f32; 2], chirps: usize, velocity: f64, seconds: f64) -> Harness<'static, Vec<Command>> {
+        let radar = radar(chirps);
+        let point = Point { velocity_y_metres_per_second: velocity, ..Point::new(0.0, 1.0) };
+        let scene = Scene { objects: vec![Object::Point(point)], ..Scene::default() };
+        let (result, mut memory) = (result(&radar), Memory::default());
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let input = Input {
+                radar: &radar,
+                scene: &scene,
+                seconds,
+                is_playing: false,
+                marks: true,
+                colours: ColourMap::default(),
+                normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
+                is_recorded: false,
+                result: Some(Ok(&result)),
+            };
+            asked.extend(show(ui, input, &mut memory));
+        };
+        Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+    }
+
+    #[test]
+    fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
+        for size in [[700.0, 420.0], [360.0, 300.0]] {
+            let panel = panel(size, 64, -9.0, 0.0);
+            let rect = panel.get_by_label("Range-Doppler map").rect();
+            assert!(rect.height() > 60.0 && rect.right() <= size[0], "{rect:?}");
+            let texts = seen::texts(panel.output());
+            for text in ["radial velocity, m/s", "range, m", "1"] {
+                assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
+            }
+            seen::assert_readable(panel.output());
+        }
+    }
+
+    #[test]
+    fn one_chirp_offers_several() {
+        let mut panel = panel([700.0, 420.0], 1, 5.0, 0.0);
+        assert!(panel.query_by_label("Range-Doppler map").is_none());
+        panel.get_by_label("Send 128 chirps").click();
+        panel.run();
+        let asked = panel.state().iter().find_map(|c| match c {
+            Command::Radar(RadarCommand::Set(radar)) => Some(radar.chirps),
+            _ => None,
+        });
+        assert_eq!(asked, Some(128));
+    }
+
+    #[test]
+    fn what_folds_is_said_with_what_helps() {
+        let most = radar(64).unambiguous_velocity_metres_per_second();
+        let panel = panel([700.0, 420.0], 64, 1.5 * most, 0.0);
+        let texts = seen::texts(panel.output());
+        assert!(texts.iter().any(|t| t.text.contains("beyond the unambiguous")), "{texts:?}");
+        assert!(texts.iter().any(|t| t.text == "1 folded"), "{texts:?}");
+    }
+
+    #[test]
+    fn a_cell_tells_its_velocity_with_its_range() {
+        let radar = radar(64);
+        let found = told(&result(&radar), 0.01, radar.range_of_bin_metres(10.2)).unwrap();
+        assert!(found.starts_with("0.00 m/s\nrange 0.75 m\n") && found.ends_with("0.0 dB below the peak"), "{found}");
+        let away = told(&result(&radar), 2.0 * radar.velocity_resolution_metres_per_second(), 0.0).unwrap();
+        assert!(away.contains("going away") && away.contains("60.0 dB"), "{away}");
+        assert_eq!(told(&result(&radar), 1e4, 0.5), None);
+    }
+
+    #[test]
+    fn play_and_back_are_asked_for() {
+        let mut panel = panel([700.0, 420.0], 64, 5.0, 1.0);
+        panel.get_by_label("Play").click();
+        panel.get_by_label("Back to 0 s").click();
+        panel.run();
+        assert!(panel.state().contains(&Command::View(ViewCommand::TogglePlay)), "{:?}", panel.state());
+        assert!(panel.state().contains(&Command::View(ViewCommand::SetTime(0.0))));
+    }
+}

@@ -1,0 +1,109 @@
+//! The time at which a scene of moving objects is looked at. The document is not changed: it is the scene at time 0.
+
+use crate::scene::Scene;
+use std::sync::Arc;
+
+/// The longest time that is looked at, seconds.
+pub const TIMELINE_SECONDS: f64 = 5.0;
+
+/// Where on the timeline the scene is looked at.
+#[derive(Default)]
+pub struct Timeline {
+    /// The document's scene, and the same at the time; `None` at time 0.
+    moved: Option<(Arc<Scene>, Arc<Scene>)>,
+    seconds: f64,
+    is_playing: bool,
+}
+
+impl Timeline {
+    /// The time, seconds.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Whether time goes on by itself.
+    pub fn is_playing(&self) -> bool {
+        self.is_playing
+    }
+
+    /// Looks at the scene at a time. The end of the timeline stops what plays.
+    pub fn set(&mut self, document: &Arc<Scene>, seconds: f64) {
+        self.seconds = if seconds.is_finite() { seconds.clamp(0.0, TIMELINE_SECONDS) } else { 0.0 };
+        self.is_playing &= self.seconds < TIMELINE_SECONDS;
+        let is_moved = self.seconds > 0.0 && document.is_moving();
+        self.moved = is_moved.then(|| (document.clone(), Arc::new(document.at(self.seconds))));
+    }
+
+    /// Lets time go on, from the beginning where it is at its end, or stops it.
+    pub fn play(&mut self, document: &Arc<Scene>, is_playing: bool) {
+        if is_playing && self.seconds >= TIMELINE_SECONDS {
+            self.set(document, 0.0);
+        }
+        self.is_playing = is_playing;
+    }
+
+    /// Goes back to time 0 where the document's scene has changed since the time was set.
+    pub fn follow(&mut self, document: &Arc<Scene>) {
+        if self.moved.as_ref().is_some_and(|(of, _)| !Arc::ptr_eq(of, document)) {
+            *self = Timeline::default();
+        }
+    }
+
+    /// The scene at the time; at time 0 the document's own.
+    pub fn scene<'a>(&'a self, document: &'a Arc<Scene>) -> &'a Arc<Scene> {
+        match &self.moved {
+            Some((of, moved)) if Arc::ptr_eq(of, document) => moved,
+            _ => document,
+        }
+    }
+
+    /// The scene at the time, where it isn't the document's.
+    pub fn moved(&self) -> Option<Arc<Scene>> {
+        self.moved.as_ref().map(|(_, moved)| moved.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Object, Point};
+
+    fn scene() -> Arc<Scene> {
+        let point = Point { velocity_x_metres_per_second: 2.0, ..Point::new(1.0, 9.0) };
+        Arc::new(Scene { objects: vec![Object::Point(point)], ..Scene::default() })
+    }
+
+    #[test]
+    fn the_document_is_the_scene_at_time_0() {
+        let (document, mut timeline) = (scene(), Timeline::default());
+        assert!(Arc::ptr_eq(timeline.scene(&document), &document));
+        timeline.set(&document, 1.5);
+        assert_eq!(timeline.scene(&document).objects[0].anchor_metres(), [4.0, 9.0]);
+        assert_eq!(document.objects[0].anchor_metres(), [1.0, 9.0]);
+        timeline.set(&document, f64::NAN);
+        assert!(Arc::ptr_eq(timeline.scene(&document), &document) && timeline.moved().is_none());
+    }
+
+    #[test]
+    fn a_change_of_the_scene_goes_back_to_time_0() {
+        let (document, mut timeline) = (scene(), Timeline::default());
+        timeline.set(&document, 1.5);
+        timeline.play(&document, true);
+        timeline.follow(&document);
+        assert_eq!(timeline.seconds(), 1.5);
+        let edited = scene();
+        assert!(Arc::ptr_eq(timeline.scene(&edited), &edited));
+        timeline.follow(&edited);
+        assert_eq!((timeline.seconds(), timeline.is_playing()), (0.0, false));
+    }
+
+    #[test]
+    fn what_plays_stops_at_the_end_with_the_next_play_at_the_beginning() {
+        let (document, mut timeline) = (scene(), Timeline::default());
+        timeline.play(&document, true);
+        timeline.set(&document, 99.0);
+        assert_eq!((timeline.seconds(), timeline.is_playing()), (TIMELINE_SECONDS, false));
+        timeline.play(&document, true);
+        assert_eq!((timeline.seconds(), timeline.is_playing()), (0.0, true));
+    }
+}

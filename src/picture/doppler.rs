@@ -1,0 +1,59 @@
+//! A range-Doppler map as a picture.
+
+use super::canvas::{Area, Drawing, PAPER, PictureError};
+use super::map_panel::{Cells, MapAxes, MapPanel};
+use super::{ColourMap, Format, encode_png, render, render_svg};
+use crate::maps::doppler::RangeDopplerMap;
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::Radar;
+use plotters::prelude::*;
+
+/// Size of the picture, pixels.
+const SIZE: (u32, u32) = (900, 700);
+
+/// The bytes of a file with the map, its axes and what its colours stand for.
+///
+/// # Errors
+/// [`PictureError`] when plotters can't draw.
+pub fn compose_range_doppler(
+    radar: &Radar,
+    map: &RangeDopplerMap,
+    normalisation: Normalisation,
+    colours: ColourMap,
+    format: Format,
+) -> Result<Vec<u8>, PictureError> {
+    let lambda = map.log_magnitude().normalise(normalisation);
+    let picture = Picture { radar, lambda: &lambda, colours };
+    Ok(match format {
+        Format::Png => encode_png(&render(&picture)?)?,
+        Format::Svg => render_svg(&picture)?.into_bytes(),
+    })
+}
+
+struct Picture<'a> {
+    radar: &'a Radar,
+    lambda: &'a RangeAngleMap,
+    colours: ColourMap,
+}
+
+impl Drawing for Picture<'_> {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+        root.fill(&PAPER).map_err(PictureError::new)?;
+        let radar = self.radar;
+        let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
+        let range = |bin: f64| radar.range_of_bin_metres(bin);
+        let x = [velocity(-0.5), velocity(radar.chirps as f64 - 0.5)];
+        let y = [range(-0.5), range(radar.samples as f64 - 0.5)];
+        let axes = MapAxes { x, y, x_title: "radial velocity (m/s)", x_digits: usize::from(x[1] < 5.0) };
+        let title = format!(
+            "Range-Doppler, {} chirps, unambiguous \u{b1}{:.1} m/s",
+            radar.chirps,
+            radar.unambiguous_velocity_metres_per_second()
+        );
+        MapPanel { title, cells: Cells::Lambda(self.lambda, self.colours) }.draw_over(root, &axes)
+    }
+}

@@ -1,0 +1,255 @@
+//! Samples of several chirps while objects move.
+//!
+//! Within a chirp the range of every echo runs in a straight line that leads from where it is at the beginning of the chirp to where it is
+//! at the beginning of the next: `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. What this leaves out is the
+//! curvature of the range, at most `v^2 Tc^2 / (8 R)` metres for a speed `v` at range `R` and an interval `Tc`: 3e-9 m for 20 m/s at 10 m
+//! and 25.6 microseconds. Amplitudes are those of the beginning of the chirp. Echoes of a body that come or go between two chirps stand still in
+//! between.
+//!
+//! What rests is evaluated once, by the algorithms of a single chirp. Where nothing moves the first chirp has the bits of
+//! [`simulate_ends`](super::simulate_ends). Each chirp has noise of its own, the first that of a single one.
+//! An interferer sends the same in every chirp.
+
+use super::built::hear;
+use super::floor::{self, Floor};
+use super::over_floor::tolerance;
+use super::path::Path;
+use super::phase::{Echo, EchoModel};
+use super::plan::{Plan, amplitude_bound};
+use super::run::samples_of;
+use super::samples::BeatSignal;
+use super::unfinished::Unfinished;
+use crate::radar::{BuiltArray, Radar};
+use crate::scattering::{Antennas, Echoing, PathEcho, Seen, Sources};
+use crate::scene::{Object, Reflector, Scene, SceneError};
+use crate::task::Task;
+use ndarray::{Array2, Array3, Axis, concatenate, s};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Most elements of each end whose chirps are evaluated: those farthest out.
+pub const MAX_END_ELEMENTS: usize = 4;
+
+/// Samples after which a running phasor is taken afresh.
+const RESTART: usize = 32;
+
+/// Noise streams of one chirp: no array has more elements.
+const STREAMS: usize = 65536;
+
+/// Samples of all chirps at the outer elements of both ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChirpSamples {
+    /// The samples, `[chirps, elements, samples]`.
+    pub samples: Array3<Complex64>,
+}
+
+/// The elements that are evaluated: up to [`MAX_END_ELEMENTS`] of each end, those farthest out.
+pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
+    let count = radar.end_elements.min(MAX_END_ELEMENTS);
+    [0..count, radar.elements - count..radar.elements]
+}
+
+/// Samples of every chirp of `radar` over the named floor; `seed` picks its noise.
+///
+/// # Errors
+/// [`SceneError`] when the scene can't be simulated, at the first chirp or at the last.
+pub fn simulate_chirps(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<ChirpSamples, SceneError> {
+    simulate_chirps_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
+}
+
+/// [`simulate_chirps`], unless `task` is cancelled before it is done.
+///
+/// # Errors
+/// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
+pub fn simulate_chirps_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> Result<ChirpSamples, Unfinished> {
+    let array = &scene.disturbances.elements;
+    scene.validate(radar)?;
+    array.validate(radar).map_err(SceneError::from)?;
+    let moving = Moving::of(scene);
+    if moving != Moving::Nothing {
+        scene.at(radar.chirps as f64 * radar.chirp_interval_seconds).validate(radar)?;
+    }
+    let ranges = chirp_elements(radar);
+    let base = at_rest(task, radar, scene, &moving.rest(radar, scene), floor, &ranges);
+    let variance = floor::noise_variance(radar, &Echoing::of(radar, scene), floor);
+    let mut samples = Array3::zeros((radar.chirps, base.nrows(), radar.samples));
+    let elements: Vec<usize> = ranges.iter().cloned().flatten().collect();
+    let motion = Motion { radar, scene, array, moving: &moving, elements: &elements, model: EchoModel::new(radar) };
+    samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(chirp, mut samples)| {
+        if task.is_cancelled() {
+            return;
+        }
+        samples.assign(&base);
+        motion.add(chirp, &mut samples);
+        for (row, n) in elements.iter().enumerate() {
+            let mut samples = samples.row_mut(row);
+            if let Some(variance) = &variance {
+                let deviation = variance[*n].sqrt();
+                let noise = floor::unit_noise(seed, chirp * STREAMS + n);
+                samples.iter_mut().zip(noise).for_each(|(sample, noise)| *sample += noise * deviation);
+            }
+            if array.element(*n).dead {
+                samples.fill(Complex64::default());
+            }
+        }
+    });
+    task.check()?;
+    Ok(ChirpSamples { samples })
+}
+
+/// Which objects are evaluated at every chirp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Moving {
+    /// None: everything rests.
+    Nothing,
+    /// Those that move; they change nothing of what rests.
+    Some,
+    /// All: a body that moves hides what rests, or a mirror shows bodies.
+    Everything,
+}
+
+impl Moving {
+    fn of(scene: &Scene) -> Moving {
+        let body_moves = scene.shadows && scene.objects.iter().any(|o| o.body().is_some() && o.is_moving());
+        match scene.is_moving() {
+            false => Moving::Nothing,
+            true if body_moves || (scene.has_bodies() && scene.disturbances.mirror.is_some()) => Moving::Everything,
+            true => Moving::Some,
+        }
+    }
+
+    /// What echoes of the objects that are evaluated once.
+    fn rest(self, radar: &Radar, scene: &Scene) -> Echoing {
+        match self {
+            Moving::Nothing => Echoing::of(radar, scene),
+            Moving::Some => part(radar, scene, |object| !object.is_moving()),
+            Moving::Everything => Echoing::default(),
+        }
+    }
+
+    /// What echoes of those that are evaluated at every chirp, at a time.
+    fn at(self, radar: &Radar, scene: &Scene, seconds: f64) -> Echoing {
+        match self {
+            Moving::Nothing => Echoing::default(),
+            Moving::Some => part(radar, &scene.at(seconds), Object::is_moving),
+            Moving::Everything => Echoing::of(radar, &scene.at(seconds)),
+        }
+    }
+}
+
+/// What echoes of a part of the objects, the others hiding it.
+fn part(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing {
+    if !scene.has_bodies() {
+        let objects = scene.objects.iter().filter(|o| keep(o)).cloned().collect();
+        let disturbances = scene.disturbances.clone();
+        return Echoing::of(radar, &Scene { objects, disturbances, ..Scene::default() });
+    }
+    let seen = Seen::all(radar, scene);
+    let kept: Vec<Seen> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
+    Echoing::seen(radar, &kept)
+}
+
+/// Noiseless samples of what rests at the chosen elements, `[elements, samples]`.
+fn at_rest(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    rest: &Echoing,
+    floor: Floor,
+    ranges: &[Range<usize>; 2],
+) -> Array2<Complex64> {
+    let plan = Plan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
+    let of = |range: Range<usize>| samples_of(radar, rest.into(), &plan, range, task);
+    let [first, last] = if scene.disturbances.is_none() {
+        ranges.clone().map(of)
+    } else {
+        let mut signal = BeatSignal { samples: of(0..radar.elements) };
+        hear(task, radar, scene, &scene.disturbances.elements, rest, &mut signal);
+        ranges.clone().map(|range| signal.samples.slice(s![range, ..]).to_owned())
+    };
+    let empty = || Array2::zeros((first.nrows() + last.nrows(), radar.samples));
+    concatenate(Axis(0), &[first.view(), last.view()]).unwrap_or_else(|_| empty())
+}
+
+/// What is evaluated at every chirp.
+struct Motion<'a> {
+    radar: &'a Radar,
+    scene: &'a Scene,
+    array: &'a BuiltArray,
+    moving: &'a Moving,
+    elements: &'a [usize],
+    model: EchoModel,
+}
+
+impl Motion<'_> {
+    /// Adds the echoes that move to the samples of a chirp, `[elements, samples]`.
+    fn add(&self, chirp: usize, samples: &mut ndarray::ArrayViewMut2<'_, Complex64>) {
+        if *self.moving == Moving::Nothing {
+            return;
+        }
+        let seconds = |chirp: usize| chirp as f64 * self.radar.chirp_interval_seconds;
+        let [now, next] = [chirp, chirp + 1].map(|c| self.moving.at(self.radar, self.scene, seconds(c)));
+        // Where a point comes into the shadow of a body the order of the echoes changes.
+        let is_alike = now.points.len() == next.points.len();
+        let fastest = self.scene.objects.iter().map(Object::velocity_metres_per_second);
+        let fastest = fastest.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)));
+        let part = self.radar.chirp_seconds / self.radar.chirp_interval_seconds;
+        let most = (1.0 + 1e-6) * fastest * self.radar.chirp_interval_seconds + 1e-12;
+        let (mut heard, mut then, mut scattered) = (Vec::new(), Vec::new(), Vec::new());
+        for (row, n) in self.elements.iter().enumerate() {
+            let mut row = samples.row_mut(row);
+            let Some(samples) = row.as_slice_mut() else { return };
+            self.echoes(*n, &now, &mut heard, &mut scattered);
+            self.echoes(*n, &next, &mut then, &mut scattered);
+            let response = match self.array.element(*n) {
+                error if error.dead || error.gain.0 != 0.0 || error.phase_degrees != 0.0 => error.response(),
+                _ => Complex64::from(1.0),
+            };
+            for (i, echo) in heard.iter().enumerate().filter(|(_, echo)| echo.amplitude != 0.0) {
+                let next = then.get(i).filter(|next| is_alike && next.amplitude != 0.0);
+                let way = next.map_or(0.0, |next| next.distance_metres - echo.distance_metres);
+                self.add_echo(echo, if way.abs() <= most { way * part } else { 0.0 }, response, samples);
+            }
+        }
+    }
+
+    /// Replaces `out` by what element `n` hears, in the same order everywhere; of amplitude 0 what it doesn't hear.
+    fn echoes(&self, n: usize, echoing: &Echoing, out: &mut Vec<Echo>, scattered: &mut Vec<PathEcho>) {
+        let (pair, forward) = (self.array.pair(self.radar, n), self.array.forward_metres(n));
+        out.clear();
+        out.extend(
+            echoing.points.iter().map(|r| self.model.echo(pair, &Reflector { y_metres: r.y_metres - forward, ..*r })),
+        );
+        Sources::from(echoing).scattered(Antennas::forward_of(pair, forward), scattered);
+        let path = |e: &PathEcho| Path::new([e.range_metres], [e.amplitude]);
+        out.extend(scattered.iter().map(|e| self.model.heard::<1, false>(path(e)).first()));
+    }
+
+    /// Adds an echo whose range grows by `way_metres` during the chirp.
+    fn add_echo(&self, echo: &Echo, way_metres: f64, gain: Complex64, samples: &mut [Complex64]) {
+        let per_sample = way_metres / self.radar.samples as f64;
+        let carrier = self.radar.carrier_turns_per_metre() * per_sample;
+        let beat = self.radar.beat_turns_per_metre(1.0) * per_sample;
+        let step = echo.turns_at(1) - echo.turns_at(0) + carrier;
+        let bend = Complex64::cis(TAU * 2.0 * beat);
+        for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
+            let n = (block * RESTART) as f64;
+            let turns = echo.turns_at(block * RESTART) + (carrier + beat * n) * n;
+            let mut phasor = gain * Complex64::from_polar(echo.amplitude, TAU * turns);
+            let mut turn = Complex64::cis(TAU * (step + beat * (2.0 * n + 1.0)));
+            for sample in samples {
+                *sample += phasor;
+                phasor *= turn;
+                turn *= bend;
+            }
+        }
+    }
+}

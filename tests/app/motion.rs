@@ -1,0 +1,73 @@
+//! Objects that move: the range-Doppler map, and the time at which the scene is looked at.
+
+use crate::session::{Session, step_until};
+use apertura::app::{Command, EditCommand, Panel, RadarCommand, ViewCommand, WindowCommand};
+use apertura::interact::{Change, Field};
+use apertura::radar::Radar;
+use eframe::egui::{Key, Modifiers, vec2};
+use std::sync::Arc;
+
+fn moving() -> Session {
+    let mut s = Session::start();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.ask(EditCommand::SetField(Field::VelocityY, Change::To(10.0)));
+    s.ask(RadarCommand::Set(Box::new(Radar { chirps: 64, ..s.state().radar().clone() })));
+    s
+}
+
+#[test]
+fn the_range_doppler_map_costs_nothing_while_it_is_closed_or_sends_one_chirp() {
+    let mut s = moving();
+    assert_eq!(s.state().dopplers_asked(), 0, "a closed panel costs nothing");
+    s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
+    let radar = s.state().radar().clone();
+    let (_, column) = s.state().doppler_peak().expect("a map");
+    let velocity = radar.velocity_of_column_metres_per_second(column as f64);
+    // The nearer of the two is the louder one.
+    let expected = s.state().editor().scene().objects[1].radial_velocity_metres_per_second();
+    assert!((velocity - expected).abs() < 0.6 * radar.velocity_resolution_metres_per_second(), "{velocity}");
+    let asked = s.state().dopplers_asked();
+    s.ask(RadarCommand::Set(Box::new(Radar { chirps: 1, ..radar })));
+    assert_eq!(s.state().dopplers_asked(), asked);
+    s.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(s.state().radar().chirps, 64, "chirps are undone");
+    s.ask(WindowCommand::TogglePanel(Panel::RangeDoppler));
+    let asked = s.state().dopplers_asked();
+    s.ask(EditCommand::SetField(Field::VelocityY, Change::To(3.0)));
+    assert_eq!(s.state().dopplers_asked(), asked);
+}
+
+#[test]
+fn maps_follow_time_but_the_document_stays() {
+    let mut s = moving();
+    let document = s.state().editor().scene().clone();
+    let (requested, _) = s.state().work_done();
+    let at = s.handle("point 1: move");
+    s.ask(ViewCommand::SetTime(0.5));
+    assert!(Arc::ptr_eq(s.state().editor().scene(), &document) && s.state().work_done().0 > requested);
+    assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
+    // A press in the scene goes back; the next drag edits.
+    s.drag(at, vec2(30.0, 0.0), 3);
+    assert!(Arc::ptr_eq(s.state().editor().scene(), &document) && s.state().time_seconds() == 0.0);
+    s.ask(ViewCommand::SetTime(0.5));
+    s.ask(EditCommand::Nudge { dx_metres: 1.0, dy_metres: 0.0 });
+    assert_eq!((s.place(0), s.state().time_seconds()), ([1.0, 20.0], 0.0));
+}
+
+#[test]
+fn motion_plays_to_its_end_and_stops() {
+    let mut s = moving();
+    s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
+    s.app.step();
+    let first = s.state().time_seconds();
+    step_until(&mut s, "time goes on", |s| s.state().time_seconds() > first + 0.2);
+    s.ask(ViewCommand::TogglePlay);
+    let stopped = s.state().time_seconds();
+    s.app.run_steps(5);
+    assert_eq!(s.state().time_seconds(), stopped);
+    s.ask(ViewCommand::SetTime(0.0));
+    s.ask(EditCommand::SetField(Field::VelocityY, Change::To(0.0)));
+    s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
+    s.app.run_steps(5);
+    assert_eq!(s.state().time_seconds(), 0.0, "nothing moves");
+}
