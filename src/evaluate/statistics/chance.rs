@@ -35,8 +35,7 @@ impl Factorials {
     pub fn at_least(&self, hit: usize, drawn: usize, bad: usize, all: usize) -> f64 {
         let total = self.ways(all, drawn);
         let possible = hit.max(drawn.saturating_sub(all - bad))..=drawn.min(bad);
-        let tail: f64 =
-            possible.map(|k| (self.ways(bad, k) + self.ways(all - bad, drawn - k) - total).exp()).sum();
+        let tail: f64 = possible.map(|k| (self.ways(bad, k) + self.ways(all - bad, drawn - k) - total).exp()).sum();
         tail.min(1.0)
     }
 }

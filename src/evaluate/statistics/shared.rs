@@ -89,7 +89,12 @@ pub fn rules(rows: &[Row], bad: &str) -> Result<Shared, FilterError> {
     let [suggesting, testing] = [half(false), half(true)];
     let suggested: Vec<Rule> = BEFOREHAND.into_iter().filter_map(|column| table.best(column, &suggesting)).collect();
     let tested: Vec<Rule> = suggested.iter().filter_map(|rule| table.judged(&rule.text, &names, &testing)).collect();
-    Ok(Shared { bad: is_bad.iter().filter(|b| **b).count(), rows: rows.len(), tried: suggested.len(), rules: held(tested) })
+    Ok(Shared {
+        bad: is_bad.iter().filter(|b| **b).count(),
+        rows: rows.len(),
+        tried: suggested.len(),
+        rules: held(tested),
+    })
 }
 
 /// Those of the tested rules that hold together at the rate of false discoveries, the surest first.
@@ -129,10 +134,10 @@ impl Table<'_> {
 
     /// `None` where the rule is true of all rows or of none.
     fn counted(&self, text: String, on: &[usize], chosen: &[bool]) -> Option<Rule> {
-        let count = |of: bool, bad: bool| {
-            on.iter().zip(chosen).filter(|&(&i, &c)| c == of && (!bad || self.bad[i])).count()
-        };
-        let [rows, hit, other_rows, other_bad] = [(true, false), (true, true), (false, false), (false, true)].map(|(of, bad)| count(of, bad));
+        let count =
+            |of: bool, bad: bool| on.iter().zip(chosen).filter(|&(&i, &c)| c == of && (!bad || self.bad[i])).count();
+        let [rows, hit, other_rows, other_bad] =
+            [(true, false), (true, true), (false, false), (false, true)].map(|(of, bad)| count(of, bad));
         let p_value = self.factorials.at_least(hit, rows, hit + other_bad, on.len());
         (rows > 0 && other_rows > 0).then_some(Rule { text, rows, bad: hit, other_rows, other_bad, p_value })
     }
@@ -153,7 +158,8 @@ fn candidates<'a>(column: Column, rows: impl Iterator<Item = &'a Row>) -> Vec<(S
         }
     }
     numbers.sort_by(f64::total_cmp);
-    let mut cuts: Vec<f64> = (1..CUTS).filter_map(|k| numbers.get(k * numbers.len() / CUTS)).map(|v| rounded(*v)).collect();
+    let mut cuts: Vec<f64> =
+        (1..CUTS).filter_map(|k| numbers.get(k * numbers.len() / CUTS)).map(|v| rounded(*v)).collect();
     cuts.dedup();
     let of_cut = |cut: f64| -> [(String, Truth); 2] {
         let number = move |row: &Row| match column.of(row) {
@@ -198,7 +204,14 @@ mod tests {
             let objects = rng.random_range(3..=6);
             let min_range_metres = Some(rng.random_range(2.0..30.0));
             let set = ["2", "3", "walls"][index as usize / 2 % 3];
-            Row { missed, objects, min_range_metres, nearest_pair_columns: Some(apart), merged: None, ..row(set, index, "live") }
+            Row {
+                missed,
+                objects,
+                min_range_metres,
+                nearest_pair_columns: Some(apart),
+                merged: None,
+                ..row(set, index, "live")
+            }
         };
         (0..count).map(&mut of).collect()
     }
@@ -219,7 +232,8 @@ mod tests {
     /// Where chance alone decides, hardly a table has a rule: 5 % at most, give or take 2.2 for a hundred tables.
     #[test]
     fn chance_is_seldom_taken_for_a_rule() {
-        let found = (0..100).filter(|seed| !rules(&rows(200, 100 + seed, |_| 0.3), USUALLY_BAD).unwrap().rules.is_empty());
+        let found =
+            (0..100).filter(|seed| !rules(&rows(200, 100 + seed, |_| 0.3), USUALLY_BAD).unwrap().rules.is_empty());
         let found = found.count();
         assert!(found <= 11, "{found} of 100 tables");
     }

@@ -34,7 +34,11 @@ impl View {
         (View::Histogram, "Histogram", "How often the figures of a column fall where"),
         (View::Columns, "Scatter", "One column against another"),
         (View::Methods, "A against B", "One column for one method against the same for another, scene by scene"),
-        (View::Shared, "What do the bad ones share?", "Rules that tell bad rows from others, tested on scenes that did not suggest them"),
+        (
+            View::Shared,
+            "What do the bad ones share?",
+            "Rules that tell bad rows from others, tested on scenes that did not suggest them",
+        ),
     ];
 }
 

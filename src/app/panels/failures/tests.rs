@@ -198,7 +198,11 @@ fn two_methods_are_compared_in_a_sentence() {
     click(&mut panel, "A against B");
     let texts = seen::texts(panel.output());
     let told = texts.iter().find(|t| t.text.starts_with("SE of live less that of nomp: +0.0")).unwrap();
-    assert!(told.text.contains("by live alone: 24 scenes, by nomp alone: 0 (McNemar p = below 0.0001)"), "{}", told.text);
+    assert!(
+        told.text.contains("by live alone: 24 scenes, by nomp alone: 0 (McNemar p = below 0.0001)"),
+        "{}",
+        told.text
+    );
 }
 
 #[test]
