@@ -76,6 +76,7 @@ impl House {
         // Programs of their own, as `main` is that of the desktop: the page, and what writes man pages.
         rooms.remove("page");
         rooms.remove("manual");
+        rooms.remove("console");
         for imports in rooms.values_mut() {
             imports.remove("lib");
         }
