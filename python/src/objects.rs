@@ -29,24 +29,25 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
     let kind: Option<String> = from.getattr_opt("kind")?.and_then(|kind| kind.extract().ok());
     let number = |name: &str| field::<f64>(from, name, &what);
     let count = || field::<usize>(from, "count", &what);
-    let velocity = || Ok::<_, PyErr>([number("velocity_x_metres_per_second")?, number("velocity_y_metres_per_second")?]);
+    let velocity =
+        || Ok::<_, PyErr>([number("velocity_x_metres_per_second")?, number("velocity_y_metres_per_second")?]);
     let mut object = match kind.as_deref() {
         Some("point") => {
             let point = Point::new(number("x_metres")?, number("y_metres")?);
             Object::Point(Point { reflectivity: number("reflectivity")?, ..point })
-        },
+        }
         Some("line") => {
             let spacing = number("spacing_metres")?;
             let line = Line::vertical(number("x_metres")?, number("y_start_metres")?, spacing, count()?);
             let direction_degrees = number("direction_degrees")?;
             Object::Line(Line { direction_degrees, reflectivity: number("reflectivity")?, ..line })
-        },
+        }
         Some("gaussian") => {
             let std = [number("x_std_metres")?, number("y_std_metres")?];
             let cluster = GaussianCluster::new([number("x_metres")?, number("y_metres")?], std, count()?);
             let seed = field(from, "seed", &what)?;
             Object::Gaussian(GaussianCluster { seed, reflectivity: number("reflectivity")?, ..cluster })
-        },
+        }
         Some("wall") => Object::Wall(Wall {
             reflectivity: number("reflectivity")?,
             roughness_millimetres: number("roughness_millimetres")?,

@@ -51,8 +51,7 @@ fn carrier_name(carrier: Carrier) -> &'static str {
 }
 
 fn convention_of(name: &str) -> PyResult<Convention> {
-    Convention::by_name(name)
-        .ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
+    Convention::by_name(name).ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
 }
 
 fn window_of(name: &str) -> PyResult<WindowFunction> {
@@ -125,7 +124,9 @@ impl Radar {
             (None, None) => radar,
             (Some(transmitters), Some(receivers)) => {
                 if elements.is_some() || element_spacing_metres.is_some() {
-                    return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
+                    return Err(value(
+                        "elements and element_spacing_metres are those of the antennas' pairs; expected neither",
+                    ));
                 }
                 let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
                 let radar = radar.with_antennas(antennas);

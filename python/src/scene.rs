@@ -113,7 +113,7 @@ impl Scene {
     fn of_points(points: &Bound<'_, PyAny>, radar: Option<&Radar>) -> PyResult<Self> {
         let point = |r: scene::Reflector| {
             let scene::Reflector { x_metres, y_metres, reflectivity } = r;
-            scene::Object::Point(scene::Point { x_metres, y_metres, reflectivity })
+            scene::Object::Point(scene::Point { reflectivity, ..scene::Point::new(x_metres, y_metres) })
         };
         let objects = reflectors(points, "points")?.into_iter().map(point).collect();
         let scene = scene::Scene { objects, ..scene::Scene::default() };

@@ -148,7 +148,7 @@ def test_a_range_doppler_map_has_a_point_at_its_velocity():
         column = np.unravel_index(power.argmax(), power.shape)[1]
         assert abs(radar.velocity_metres_per_second[column] - shown) < 0.02 * most
         assert scene.objects[0].velocity_y_metres_per_second == velocity
-    with pytest.raises(ValueError, match="seconds is nan"):
+    with pytest.raises(ValueError, match="seconds is NaN"):
         ap.range_doppler(scene, seconds=float("nan"))
     with pytest.raises(ValueError, match="chirps is 0"):
         radar.replace(chirps=0)
