@@ -52,6 +52,7 @@ __all__ = [
     "methods",
     "metrics",
     "paired",
+    "range_doppler",
     "read_rows",
     "roc",
     "rules",
