@@ -1,6 +1,6 @@
 //! A radar as files have it: every constant by its name, and short words for what belongs together.
 
-use super::{Antennas, CHIRP_SECONDS, Carrier, Convention, Radar, WindowFunction};
+use super::{Antennas, CHIRP_SECONDS, Carrier, Convention, LinkBudget, Radar, WindowFunction};
 use serde::{Deserialize, Serialize};
 
 /// The table `[radar]`: what is left out is that of table 3.1. `convention` says `carrier` and, where that is left out,
@@ -28,6 +28,8 @@ pub(super) struct Said {
     transmitter_x_metres: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     receiver_x_metres: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    budget: Option<LinkBudget>,
 }
 
 /// How far a spacing may lie from that of the pairs beside which it is said, as a part of it.
@@ -49,6 +51,7 @@ impl From<Radar> for Said {
             window: Some(radar.window),
             transmitter_x_metres: radar.antennas.as_ref().map(|a| a.transmitter_x_metres().to_vec()),
             receiver_x_metres: radar.antennas.as_ref().map(|a| a.receiver_x_metres().to_vec()),
+            budget: radar.budget,
         }
     }
 }
@@ -85,6 +88,7 @@ impl TryFrom<Said> for Radar {
             carrier,
             window: said.window.unwrap_or(usual.window),
             antennas: None,
+            budget: said.budget,
         };
         let Some(antennas) = antennas else { return Ok(radar) };
         let end_elements = said.end_elements;
@@ -184,8 +188,10 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        for convention in Convention::ALL {
-            let radar = Radar { elements: 77, chirp_seconds: 1e-4, ..Radar::default() }.in_convention(convention);
+        let wide = LinkBudget { half_power_width_degrees: Some(70.0), ..LinkBudget::default() };
+        for (convention, budget) in Convention::ALL.into_iter().zip([Some(wide), Some(LinkBudget::default())]) {
+            let radar =
+                Radar { elements: 77, chirp_seconds: 1e-4, budget, ..Radar::default() }.in_convention(convention);
             assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
         }
     }

@@ -51,6 +51,7 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
         ("elements of an end", before.end_elements != after.end_elements),
         ("spacing", before.element_spacing_metres != after.element_spacing_metres),
         ("antennas", before.antennas != after.antennas),
+        ("link budget", before.budget != after.budget),
         ("power", before.transmit_power_watts != after.transmit_power_watts),
     ];
     changes.into_iter().find(|(_, changed)| *changed).map_or("radar", |(name, _)| name)

@@ -8,6 +8,12 @@
 //! [radar]                  # optional; only what differs from table 3.1
 //! carrier = "two-way"
 //!
+//! [radar.budget]           # optional; see `radar::budget`
+//! transmit_power_dbm = 12.0
+//! antenna_gain_dbi = 10.0
+//! noise_figure_db = 12.0
+//! half_power_width_degrees = 80.0 # optional; elements are isotropic otherwise
+//!
 //! [disturbances.mirror]   # optional; a wall that makes ghosts
 //! x_metres = -5.0
 //! y_metres = 0.0
@@ -33,7 +39,7 @@
 //! kind = "point"           # or "line", "gaussian"
 //! x_metres = -4.0
 //! y_metres = 12.5
-//! reflectivity = 0.5       # optional, 1 otherwise
+//! reflectivity = 0.5       # optional, 1 otherwise; or cross_section_dbsm = -6.02, which is read as that
 //!
 //! [over]                   # optional; what the app lays the objects over; commands look at the scene alone
 //! recording = "post.toml"  # beside this file, or the name of one that comes with the program

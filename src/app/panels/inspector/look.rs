@@ -56,6 +56,14 @@ pub fn look(field: Field) -> Look {
             high: u64::MAX as f64,
             ..whole("seed", "Another seed scatters the reflectors, or roughens the surface, otherwise")
         },
+        Field::CrossSection => Look {
+            unit: " dBsm",
+            speed: 0.1,
+            low: -300.0,
+            high: 200.0,
+            digits: 1,
+            ..plain("cross section", "The reflectivity as radar cross section of each reflector: σ 1 is 1 m², 0 dBsm")
+        },
         Field::Reflectivity => Look {
             speed: 0.01,
             low: -1e6,
