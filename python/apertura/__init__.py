@@ -13,6 +13,7 @@ becomes ValueError, one of a file OSError. Rust works without the interpreter's 
 from . import data, torch
 from ._apertura import (
     Examples,
+    LinkBudget,
     Maps,
     Method,
     Radar,
@@ -66,6 +67,7 @@ __all__ = [
     "Examples",
     "Interferer",
     "Line",
+    "LinkBudget",
     "Maps",
     "Method",
     "Metrics",

@@ -33,6 +33,7 @@ _Reading = Literal["program", "text"]
 
 __all__ = [
     "Examples",
+    "LinkBudget",
     "Maps",
     "Method",
     "Radar",
@@ -63,6 +64,29 @@ __all__ = [
 __version__: str
 
 @final
+class LinkBudget:
+    def __new__(
+        cls,
+        transmit_power_dbm: float | None = None,
+        antenna_gain_dbi: float | None = None,
+        noise_figure_db: float | None = None,
+        half_power_width_degrees: float | None = None,
+    ) -> LinkBudget: ...
+    @staticmethod
+    def reflectivity_of(cross_section_dbsm: float) -> float: ...
+    @property
+    def transmit_power_dbm(self) -> float: ...
+    @property
+    def antenna_gain_dbi(self) -> float: ...
+    @property
+    def noise_figure_db(self) -> float: ...
+    @property
+    def half_power_width_degrees(self) -> float | None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class Radar:
     def __new__(
         cls,
@@ -82,6 +106,7 @@ class Radar:
         chirp_seconds: float | None = None,
         chirps: int | None = None,
         chirp_interval_seconds: float | None = None,
+        budget: LinkBudget | dict[str, float] | None = None,
     ) -> Radar: ...
     @staticmethod
     def preset(name: str) -> Radar: ...
@@ -104,6 +129,9 @@ class Radar:
     def samples(self) -> int: ...
     @property
     def chirp_seconds(self) -> float: ...
+    @property
+    def budget(self) -> LinkBudget | None: ...
+    def link(self, range_metres: float, cross_section_dbsm: float = 0.0, angle_degrees: float = 0.0) -> dict[str, float]: ...
     @property
     def carrier(self) -> _Carrier: ...
     @property

@@ -25,7 +25,7 @@ class Scenes:
         seed: Seed of the examples.
         length: How many examples the dataset has; at most 2^32.
         purpose: "training", "validation" or "test": their scenes never meet.
-        floor: What lies beneath all scenes: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
+        floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
         thermal: (share, lowest dB, highest dB), in place of `floor`: this share of the scenes lies over thermal noise at a ratio drawn between
             the two, the others over the thesis' floor.
         network: Whose input the examples have: "live" or "thesis".

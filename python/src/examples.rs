@@ -33,7 +33,7 @@ use std::sync::OnceLock;
 ///     mixture: Kinds of scenes with their shares, as in "3" or "1=4,2=12,walls=8".
 ///     seed: Seed of the examples.
 ///     purpose: "training", "validation" or "test": their scenes never meet.
-///     floor: What lies beneath all scenes: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
+///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB): this share of the scenes lies over thermal noise at a ratio drawn between the two, the
 ///         others over the thesis' floor. In place of `floor`.
 ///     elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
@@ -137,7 +137,7 @@ fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
 ///     validation: For validation; a tenth of `count` where none is given.
 ///     test: For the test; likewise.
 ///     seed: Seed of the scenes.
-///     floor: What lies beneath all scenes: "thesis", "exact", "snr=DB" or "dbm=LEVEL".
+///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB), in place of `floor`, as for `Examples`.
 ///     dtype: "f16" or "f32", the precision of features and target.
 ///     arrays: Which of "ends", "features" and "target" to write.

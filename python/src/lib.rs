@@ -2,6 +2,7 @@
 
 mod arrays;
 mod bounds;
+mod budget;
 mod errors;
 mod evaluate;
 mod examples;
@@ -22,6 +23,7 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     pool::remember_process();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<radar::Radar>()?;
+    module.add_class::<budget::LinkBudget>()?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<maps::Maps>()?;
     module.add_class::<methods::Method>()?;

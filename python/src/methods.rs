@@ -98,7 +98,7 @@ impl Method {
     /// Args:
     ///     ends: Complex numbers `[2, end_elements, samples]`, of any gain; they are copied.
     ///     radar: The radar that sampled them; that of table 3.1 where none is given.
-    ///     floor: What lies beneath them: "thesis", "exact", "snr=DB", "dbm=LEVEL", "white" or "white=SIGMA". SIGMA is the root mean
+    ///     floor: What lies beneath them: "thesis", "exact", "thermal", "snr=DB", "dbm=LEVEL", "white" or "white=SIGMA". SIGMA is the root mean
     ///         square of the noise in a sample; the level of any other white noise the method measures.
     ///     normalisation: How the map is normalised: "min-max" or "db=RANGE".
     ///     snapshot_range_metres: Where the echoes of a single sample come from, if anybody knows.

@@ -1,6 +1,7 @@
 //! The radar.
 
 use crate::arrays::owned;
+use crate::budget::{LinkBudget, budget_of};
 use crate::errors::value;
 use apertura::radar::presets::{ALL, RadarPreset};
 use apertura::radar::{self, Carrier, Convention, WindowFunction};
@@ -20,6 +21,7 @@ use pyo3::types::{PyDict, PyType};
 ///     end_elements: Elements of each of the two ends.
 ///     samples: Samples of a chirp, also the range bins of every map.
 ///     chirp_seconds: Time that the samples of a chirp span, in seconds. No echo at rest depends on it.
+///     budget: A `LinkBudget`, or a dict of its fields. Without one, levels are those of the thesis' convention.
 ///     carrier: "one-way" (the thesis' convention) or "two-way" (the physical convention).
 ///     convention: "thesis" or "physical" in place of carrier. Without element_spacing_metres the elements are filled for it.
 ///     window: "hann", "hamming", "blackman" or "rectangular".
@@ -72,7 +74,7 @@ impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
                         end_elements=None, samples=None, carrier=None, window=None, convention=None, transmitter_x_metres=None,
-                        receiver_x_metres=None, chirp_seconds=None, chirps=None, chirp_interval_seconds=None))]
+                        receiver_x_metres=None, chirp_seconds=None, chirps=None, chirp_interval_seconds=None, budget=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,
@@ -90,6 +92,7 @@ impl Radar {
         chirp_seconds: Option<f64>,
         chirps: Option<usize>,
         chirp_interval_seconds: Option<f64>,
+        budget: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let usual = match convention.map(convention_of).transpose()? {
             None => radar::Radar::default(),
@@ -119,6 +122,7 @@ impl Radar {
             antennas: None,
             chirps: chirps.unwrap_or(usual.chirps),
             chirp_interval_seconds: chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
+            budget: budget.map(budget_of).transpose()?,
         };
         let radar = match (transmitter_x_metres, receiver_x_metres) {
             (None, None) => radar,
@@ -225,6 +229,53 @@ impl Radar {
     #[getter]
     fn chirp_seconds(&self) -> f64 {
         self.0.chirp_seconds
+    }
+
+    /// What the radar equation needs; None in the thesis' convention.
+    #[getter]
+    fn budget(&self) -> Option<LinkBudget> {
+        self.0.budget.map(LinkBudget)
+    }
+
+    /// An echo by the radar equation, with the radar's budget or the usual one: levels and signal-to-noise ratios in decibels.
+    ///
+    /// Args:
+    ///     range_metres: Range of the object in metres.
+    ///     cross_section_dbsm: Its radar cross section in decibels over a square metre.
+    ///     angle_degrees: Its direction off broadside in degrees.
+    ///
+    /// Returns:
+    ///     received_dbm, noise_dbm, sample_snr_db, range_snr_db (in a range bin), end_snr_db and array_snr_db (by one end and by
+    ///     the whole array, their elements added in phase). What is lost between two cells is left out.
+    ///
+    /// Raises:
+    ///     ValueError: The range is not above 0, or a number is not finite.
+    #[pyo3(signature = (range_metres, cross_section_dbsm=0.0, angle_degrees=0.0))]
+    fn link<'py>(
+        &self,
+        py: Python<'py>,
+        range_metres: f64,
+        cross_section_dbsm: f64,
+        angle_degrees: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let are_finite = range_metres.is_finite() && cross_section_dbsm.is_finite() && angle_degrees.is_finite();
+        if !(are_finite && range_metres > 0.0) {
+            let said = format!("range_metres is {range_metres}, cross_section_dbsm {cross_section_dbsm}, angle_degrees {angle_degrees}");
+            return Err(value(format!("{said}; expected finite numbers and a range above 0")));
+        }
+        let link = self.0.link(cross_section_dbsm, range_metres, angle_degrees.to_radians().cos());
+        let figures = PyDict::new(py);
+        for (key, decibels) in [
+            ("received_dbm", link.received.0),
+            ("noise_dbm", link.noise.0),
+            ("sample_snr_db", link.sample.0),
+            ("range_snr_db", link.range.0),
+            ("end_snr_db", link.end.0),
+            ("array_snr_db", link.array.0),
+        ] {
+            figures.set_item(key, decibels)?;
+        }
+        Ok(figures)
     }
 
     /// "one-way" or "two-way".
@@ -372,6 +423,9 @@ impl Radar {
         fields.set_item("chirp_seconds", self.0.chirp_seconds)?;
         fields.set_item("chirps", self.0.chirps)?;
         fields.set_item("chirp_interval_seconds", self.0.chirp_interval_seconds)?;
+        if let Some(budget) = self.0.budget {
+            fields.set_item("budget", LinkBudget(budget).into_pyobject(fields.py())?)?;
+        }
         fields.set_item("carrier", carrier_name(self.0.carrier))?;
         fields.set_item("window", self.0.window.name())?;
         Ok(fields)

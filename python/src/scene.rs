@@ -317,7 +317,7 @@ impl Scene {
     ///
     /// Args:
     ///     radar: Another radar than the scene's own.
-    ///     floor: "thesis" (the rounding floor of the thesis' program), "exact", "snr=DB" or "dbm=LEVEL".
+    ///     floor: "thesis" (the rounding floor of the thesis' program), "exact", "thermal", "snr=DB" or "dbm=LEVEL".
     ///     seed: Picks the floor's noise; the scene's `noise_seed` where none is given.
     ///     normalisation: How decades become Lambda: "min-max" (the thesis) or "db=RANGE" below the peak.
     ///     progress: Called with the part that is done, 0 to 1.

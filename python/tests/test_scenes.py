@@ -65,6 +65,24 @@ def test_a_convention_brings_its_carrier_with_its_spacing():
     assert ap.Radar.preset("table-3.1-physical") == ap.Radar(convention="physical")
 
 
+def test_a_budget_is_that_of_the_radar_equation():
+    budget = ap.LinkBudget(noise_figure_db=15, half_power_width_degrees=120)
+    radar = ap.Radar(budget=budget, chirp_seconds=51.2e-6)
+    link = radar.link(50, cross_section_dbsm=10)
+    wavelength = 299_792_458.0 / 77e9
+    received = 10 ** ((12 + 2 * 10 + 10) / 10) * 1e-3 * wavelength**2 / ((4 * np.pi) ** 3 * 50**4)
+    noise = 1.380649e-23 * 290 * 10e6 * 10**1.5
+    assert link["sample_snr_db"] == pytest.approx(10 * np.log10(received / noise))
+    assert radar.link(50, 10, angle_degrees=60)["sample_snr_db"] == pytest.approx(link["sample_snr_db"] - 6.0206, abs=1e-3)
+    assert eval(repr(radar), {"Radar": ap.Radar, "LinkBudget": ap.LinkBudget}) == radar == pickle.loads(pickle.dumps(radar))
+    assert ap.Radar(budget={"noise_figure_db": 15, "half_power_width_degrees": 120}).budget == budget != ap.LinkBudget()
+    assert ap.Radar().budget is None and ap.LinkBudget.reflectivity_of(20) == pytest.approx(10)
+    with pytest.raises(ValueError, match="0 to 100 dB: a receiver adds noise"):
+        ap.LinkBudget(noise_figure_db=-3)
+    small = ap.Radar(elements=32, end_elements=6, samples=16, budget=ap.LinkBudget())
+    assert ap.Scene().simulate(small, floor="thermal").samples.shape == (32, 16)
+
+
 def test_antennas_say_elements_with_spacing():
     radar = ap.Radar(transmitter_x_metres=[-0.008, 0, 0.008], receiver_x_metres=[0, 0.002, 0.004, 0.006], convention="physical")
     assert (radar.elements, radar.end_elements) == (12, 6)

@@ -166,7 +166,10 @@ impl PlacedEcho {
     fn new(radar: &Radar, model: &EchoModel, pair: Pair, r: &Reflector) -> Self {
         PlacedEcho {
             echo: model.echo(pair, r),
-            by: [By::Range, By::CosTheta].map(|by| Change::of_point(pair, [r.x_metres, r.y_metres], by)),
+            by: [By::Range, By::CosTheta].map(|by| {
+                let place = [r.x_metres, r.y_metres];
+                Change::of_point(pair, place, by).through(radar.pattern(), pair, place, by)
+            }),
             carrier_turns_per_metre: radar.carrier_turns_per_metre(),
             beat_turns_per_metre: radar.beat_turns_per_metre(1.0),
         }

@@ -10,9 +10,10 @@ use std::str::FromStr;
 /// The floor: the noise of the maps.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FloorArgs {
-    /// Noise: thesis (its f64 rounding noise), exact (none), snr=DB (thermal noise at a signal-to-noise ratio, -100 to 300) or dbm=LEVEL
+    /// Noise: thesis (its f64 rounding noise), exact (none), thermal (that of the receivers by the link budget), snr=DB (thermal noise at a
+    /// signal-to-noise ratio, -100 to 300) or dbm=LEVEL
     /// (thermal noise of LEVEL dBm a sample in every scene, -300 to 200; a reflector of sigma 1 at 20 m has +18 dBm)
-    #[arg(long, value_name = "thesis|exact|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
+    #[arg(long, value_name = "thesis|exact|thermal|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
     pub floor: Floor,
 }
 

@@ -30,7 +30,8 @@ use std::sync::Arc;
 /// element_x_metres (f64 [1024]; sub0 has the first of them, sub1 the last); the weights of the two transforms: sample_window
 /// (f64 [512]), element_window (f64 [1024]); and each of the radar's constants as a number: carrier_hz, bandwidth_hz,
 /// element_spacing_metres, transmit_power_watts, carrier_turns_per_wavelength (-1 one-way, +2 two-way), elements, end_elements,
-/// samples; chirp_seconds where it is another than 25.6e-6. format_version is 2; archives of version 1 have neither axes nor constants and are still read.
+/// samples; chirp_seconds where it is another than 25.6e-6; transmit_power_dbm, antenna_gain_dbi, noise_figure_db and
+/// half_power_width_degrees of a link budget. format_version is 2; archives of version 1 have neither axes nor constants and are still read.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene (.toml or .npz) or recording (.toml with [recording]) to look at

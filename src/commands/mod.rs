@@ -6,6 +6,7 @@
 mod arguments;
 mod bench;
 mod bounds;
+mod budget;
 #[cfg(feature = "live")]
 mod dataset;
 mod error;
@@ -65,6 +66,7 @@ const ENVIRONMENT: &str = "Environment:
 enum Command {
     Bench(bench::Args),
     Bounds(bounds::Args),
+    Budget(budget::Args),
     #[cfg(feature = "live")]
     Dataset(dataset::Args),
     Evaluate(evaluate::Args),
@@ -90,6 +92,7 @@ impl Command {
         match self {
             Command::Bench(args) => args.run(),
             Command::Bounds(args) => args.run(),
+            Command::Budget(args) => args.run(),
             #[cfg(feature = "live")]
             Command::Dataset(args) => args.run(),
             Command::Evaluate(args) => args.run(),

@@ -40,10 +40,7 @@ impl Job<'_> {
 
     /// Amplitude that noise of a level of its own hardly ever exceeds: echoes may be far beneath it, as no other floor lets them be.
     fn noise_amplitude(&self) -> f64 {
-        match self.wanted.floor {
-            Floor::Level(level) => 10.0 * level.watts().sqrt(),
-            Floor::Thesis | Floor::Exact | Floor::Snr(_) => 0.0,
-        }
+        self.wanted.floor.level_variance(self.radar).map_or(0.0, |variance| 10.0 * variance.sqrt())
     }
 
     /// What is said of maps of which these rows were made.
@@ -51,7 +48,7 @@ impl Job<'_> {
         let all = self.radar.samples;
         match rows.count() {
             made if made == all && over_noise => match self.wanted.floor {
-                Floor::Level(_) => format!("{all} rows: noise lies in each"),
+                floor if floor.has_level() => format!("{all} rows: noise lies in each"),
                 _ => format!("{all} rows: the floor's level follows the scene"),
             },
             made if made == all => format!("{all} rows"),
@@ -332,7 +329,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 rest.iter().zip(active).map(|(a, b)| a + b).collect()
             }
             Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &Echoing::seen(job.radar, job.seen), snr),
-            Floor::Level(level) => floor::level_noise_variance(job.radar, level),
+            floor @ (Floor::Level(_) | Floor::Thermal) => vec![floor.level_variance(job.radar)?; job.radar.elements],
         };
         let seed = job.wanted.seed;
         if self.noise.as_ref().is_none_or(|(s, _)| *s != seed) {

@@ -83,7 +83,8 @@ fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
     Sources::from(&echoing).scattered(Pair::at(0.0), &mut heard);
     let points = echoing.points.iter().map(|r| {
         let range = r.x_metres.hypot(r.y_metres);
-        let strength = radar.transmit_power_watts * r.reflectivity.abs() / (range * range);
+        let left = radar.pattern().map_or(1.0, |pattern| pattern.amplitude(r.y_metres / range).powi(2));
+        let strength = left * radar.transmit_power_watts * r.reflectivity.abs() / (range * range);
         ([r.x_metres, r.y_metres], range, strength, false)
     });
     let bodies = heard.iter().filter(|e| e.is_heard() && e.kind != EchoKind::Diffuse);

@@ -150,7 +150,7 @@ impl SceneSet {
     /// its own, [`NOISE_LEVEL`] where another floor was asked for: all others have no noise where there is no echo.
     pub fn floor(&self, floor: Floor) -> Floor {
         match (self, floor) {
-            (SceneSet::Generated(Kind::Noise), Floor::Level(_)) => floor,
+            (SceneSet::Generated(Kind::Noise), Floor::Level(_) | Floor::Thermal) => floor,
             (SceneSet::Generated(Kind::Noise), _) => Floor::Level(NOISE_LEVEL),
             _ => floor,
         }

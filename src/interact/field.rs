@@ -1,5 +1,6 @@
 //! The numbers of an object that can be read and set, by name: a form shows those of one object, or those that several have in common.
 
+use crate::radar::budget::{cross_section_dbsm, reflectivity_of};
 use crate::scene::body::{MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use crate::scene::{MAX_SPEED_METRES_PER_SECOND, Object};
 use serde::{Deserialize, Serialize};
@@ -56,7 +57,12 @@ pub enum Field {
     VelocityX,
     /// Velocity away from the array, metres a second.
     VelocityY,
+    /// The reflectivity as radar cross section, dBsm ([`crate::radar::budget`]).
+    CrossSection,
 }
+
+/// The cross section of what reflects nothing, dBsm.
+const LEAST_DBSM: f64 = -300.0;
 
 /// What happens to a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,9 +107,13 @@ impl Field {
 
     fn of_kind(object: &Object) -> &'static [Field] {
         match object {
-            Object::Point(_) => &[Field::Reflectivity],
-            Object::Line(_) => &[Field::Spacing, Field::Direction, Field::Count, Field::Reflectivity],
-            Object::Gaussian(_) => &[Field::SpreadX, Field::SpreadY, Field::Count, Field::Seed, Field::Reflectivity],
+            Object::Point(_) => &[Field::Reflectivity, Field::CrossSection],
+            Object::Line(_) => {
+                &[Field::Spacing, Field::Direction, Field::Count, Field::Reflectivity, Field::CrossSection]
+            }
+            Object::Gaussian(_) => {
+                &[Field::SpreadX, Field::SpreadY, Field::Count, Field::Seed, Field::Reflectivity, Field::CrossSection]
+            }
             Object::Wall(_) => &[Field::Length, Field::Angle, Field::Reflectivity, Field::Roughness, Field::Seed],
             Object::Box(_) => {
                 &[Field::Length, Field::Width, Field::Angle, Field::Reflectivity, Field::Roughness, Field::Seed]
@@ -132,6 +142,9 @@ impl Field {
             (Field::Reflectivity, _) => object.reflectivity(),
             (Field::VelocityX, _) => object.velocity_metres_per_second()[0],
             (Field::VelocityY, _) => object.velocity_metres_per_second()[1],
+            (Field::CrossSection, points) if points.body().is_none() => {
+                cross_section_dbsm(object.reflectivity()).max(LEAST_DBSM)
+            }
             (Field::Spacing, Object::Line(l)) => l.spacing_metres,
             (Field::Direction, Object::Line(l)) => 90.0 - l.direction_degrees,
             (Field::Count, Object::Line(l)) => l.count as f64,
@@ -160,6 +173,9 @@ impl Field {
             (Field::Reflectivity, _) => object.set_reflectivity(value),
             (Field::VelocityX, _) => *object.velocity_mut()[0] = speed(value),
             (Field::VelocityY, _) => *object.velocity_mut()[1] = speed(value),
+            (Field::CrossSection, points) if points.body().is_none() => {
+                object.set_reflectivity(reflectivity_of(value).copysign(object.reflectivity()));
+            }
             (Field::Spacing, Object::Line(l)) => l.spacing_metres = value,
             (Field::Direction, Object::Line(l)) => l.direction_degrees = 90.0 - value,
             (Field::Count, Object::Line(l)) => l.count = value.round().max(1.0) as usize,
@@ -299,7 +315,15 @@ mod tests {
         let of = |objects: &[&Object]| shared(objects.iter().copied(), Coordinates::Cartesian);
         let fields = of(&[&line, &cluster()]);
         let named: Vec<_> = fields.iter().map(|f| (f.field, f.is_same)).collect();
-        let expected = [Field::X, Field::Y, Field::Count, Field::Reflectivity, Field::VelocityX, Field::VelocityY];
+        let expected = [
+            Field::X,
+            Field::Y,
+            Field::Count,
+            Field::Reflectivity,
+            Field::CrossSection,
+            Field::VelocityX,
+            Field::VelocityY,
+        ];
         assert_eq!(named, expected.map(|field| (field, true)));
         let fields = of(&[&point, &line]);
         assert_eq!(fields[1], Shared { field: Field::Y, first: 1.0, is_same: false });

@@ -1,6 +1,7 @@
 //! Quantities a learner may be asked for, from the radar and the scene by formula.
 
 use super::object_number::ObjectNumber;
+use crate::radar::budget::cross_section_dbsm;
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Scene};
 use serde::{Deserialize, Serialize};
@@ -32,6 +33,8 @@ pub enum Quantity {
     VelocityColumnMetresPerSecond,
     /// The radial velocity at which a range-Doppler map shows an object: its own, folded, metres a second; below 0 it comes nearer.
     ApparentVelocityMetresPerSecond,
+    /// SNR of an object by the whole array, its elements added in phase, by the radar's link budget, dB; of one reflector, where it has several.
+    SnrDecibels,
 }
 
 impl Quantity {
@@ -45,6 +48,7 @@ impl Quantity {
             Quantity::EndBeamColumns => "beam of an end in columns",
             Quantity::GratingLobeCos => "distance to the grating lobe in cos θ",
             Quantity::ApparentRangeMetres => "apparent range in metres",
+            Quantity::SnrDecibels => "SNR by the whole array in decibels",
             Quantity::EndsDifferenceBins => "difference between the ends in range bins",
             Quantity::UnambiguousVelocityMetresPerSecond => "unambiguous velocity in metres a second",
             Quantity::VelocityColumnMetresPerSecond => "column of velocity in metres a second",
@@ -73,6 +77,15 @@ impl Quantity {
             Quantity::ApparentRangeMetres => {
                 let [x, y] = centre()?;
                 x.hypot(y).rem_euclid(radar.max_range_metres())
+            }
+            Quantity::SnrDecibels => {
+                let ([x, y], number) = (centre()?, object.map_or(1, |number| number.0));
+                let own = &scene.objects[number - 1];
+                if own.body().is_some() {
+                    return Err(format!("object {number} is a body, which has no cross section of its own"));
+                }
+                let range = x.hypot(y);
+                radar.link(cross_section_dbsm(own.reflectivity()), range, y / range).array.0
             }
             Quantity::EndsDifferenceBins => {
                 let [x, y] = centre()?;

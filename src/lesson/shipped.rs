@@ -38,6 +38,7 @@ pub const ALL: &[Shipped] = lessons![
     "what-one-end-sees",
     "folding-and-wrapping",
     "the-floor",
+    "the-link-budget",
     "a-threshold-that-follows-the-noise",
     "what-a-network-can-know",
 ];

@@ -2,7 +2,7 @@
 
 use super::{Aperture, LogMap, RangeAngleMap, angle_transform, channels_map, network_input, range_transform};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
-use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, Radar, WindowFunction};
+use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, LinkBudget, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, arr0};
@@ -16,6 +16,10 @@ const MONOSTATIC_VERSION: i64 = 2;
 
 /// Keys of the antennas, in the order of [`Antennas::new`].
 const ANTENNA_KEYS: [&str; 2] = ["transmitter_x_metres", "receiver_x_metres"];
+
+/// Keys of a link budget, and that of its elements' pattern.
+const BUDGET_KEYS: [&str; 3] = ["transmit_power_dbm", "antenna_gain_dbi", "noise_figure_db"];
+const WIDTH_KEY: &str = "half_power_width_degrees";
 
 /// Key of [`FORMAT_VERSION`].
 const VERSION_KEY: &str = "format_version";
@@ -31,7 +35,8 @@ const VERSION_KEY: &str = "format_version";
 /// `transmit_power_watts` (f64), `chirp_seconds` (f64, where it is another than [`CHIRP_SECONDS`]), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
 /// and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the weights of the
 /// two transforms. Where transmitters stand apart from receivers, `transmitter_x_metres` and `receiver_x_metres` (f64) are their places;
-/// an element stands halfway between its two antennas. `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
+/// an element stands halfway between its two antennas. A link budget is `transmit_power_dbm`, `antenna_gain_dbi`, `noise_figure_db` and, where
+/// elements have a pattern, `half_power_width_degrees` (f64). `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
 ///
 /// # Errors
 /// [`NpzError`] where the file can't be written; nothing is left half-written.
@@ -99,6 +104,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
         window: WindowFunction::default(),
         antennas: read_antennas(archive)?,
+        budget: read_budget(archive)?,
         ..Radar::default()
     };
     radar.validate().map_err(|e| NpzError::Damaged { key: e.field().to_owned(), reason: e.to_string() })?;
@@ -109,6 +115,21 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         reason: "its weights are those of no window that this program knows".to_owned(),
     })?;
     Ok(Some(Radar { window, ..radar }))
+}
+
+/// The link budget, where the radar has one.
+fn read_budget(archive: &mut Npz) -> Result<Option<LinkBudget>, NpzError> {
+    if !archive.has(BUDGET_KEYS[0]) {
+        return Ok(None);
+    }
+    let width = archive.has(WIDTH_KEY).then(|| number(archive, WIDTH_KEY)).transpose()?;
+    let mut of = |key: &str| number(archive, key);
+    Ok(Some(LinkBudget {
+        transmit_power_dbm: of(BUDGET_KEYS[0])?,
+        antenna_gain_dbi: of(BUDGET_KEYS[1])?,
+        noise_figure_db: of(BUDGET_KEYS[2])?,
+        half_power_width_degrees: width,
+    }))
 }
 
 /// The antennas of a version that knows them.
@@ -159,6 +180,13 @@ fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     if radar.chirp_seconds != CHIRP_SECONDS {
         out.add("chirp_seconds", &arr0(radar.chirp_seconds))?;
     }
+    if let Some(budget) = &radar.budget {
+        let numbers = [budget.transmit_power_dbm, budget.antenna_gain_dbi, budget.noise_figure_db];
+        let pattern = budget.half_power_width_degrees.map(|width| (WIDTH_KEY, width));
+        for (key, number) in BUDGET_KEYS.into_iter().zip(numbers).chain(pattern) {
+            out.add(key, &arr0(number))?;
+        }
+    }
     for (key, count) in [("elements", radar.elements), ("end_elements", radar.end_elements), ("samples", radar.samples)]
     {
         out.add(key, &arr0(count as i64))?;
@@ -195,7 +223,8 @@ mod tests {
     fn small() -> Radar {
         let window = WindowFunction::Blackman;
         let counts = Radar { elements: 32, end_elements: 6, samples: 16, ..Radar::default() };
-        Radar { carrier: Carrier::TwoWay, chirp_seconds: 1e-4, window, ..counts }
+        let budget = Some(LinkBudget { half_power_width_degrees: Some(70.0), ..LinkBudget::default() });
+        Radar { carrier: Carrier::TwoWay, chirp_seconds: 1e-4, window, budget, ..counts }
     }
 
     /// An archive of one reflector at (0, 0.5) m before `radar`.

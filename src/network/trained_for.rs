@@ -1,13 +1,13 @@
 //! The radar that a network was trained for.
 
-use crate::radar::{Antennas, Carrier, Radar};
+use crate::radar::{Antennas, Carrier, LinkBudget, Radar};
 use crate::reconstruct::ReconstructError;
 
 /// Quantities that differ by less than this part of themselves are the same.
 const SAME_QUANTITY: f64 = 1e-9;
 
 /// What makes the samples of `radar` others than those of `trained`: of each quantity what the network was trained with, and what it is now.
-/// The transmit power only makes samples louder, which no network hears; the chirp's duration changes no echo.
+/// The transmit power only makes samples louder, which no network hears; the chirp's duration changes no echo, and of a link budget only the pattern of an element does.
 fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
     // A new constant must be named here, or the networks would not know of it.
     let Radar {
@@ -25,6 +25,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         // Networks see one chirp.
         chirps: _,
         chirp_interval_seconds: _,
+        budget,
     } = radar;
     let convention = |carrier: &Carrier| match carrier {
         Carrier::OneWay => "the thesis' convention (one-way carrier)",
@@ -33,6 +34,10 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
     let antennas_of = |antennas: Option<&Antennas>| match antennas {
         None => "one antenna an element",
         Some(_) => "transmitters apart from receivers",
+    };
+    let pattern_of = |budget: &Option<LinkBudget>| match budget.and_then(|b| b.half_power_width_degrees) {
+        None => "isotropic elements".to_owned(),
+        Some(degrees) => format!("elements of {degrees:.1} degrees"),
     };
     let count = |a: usize, b: usize, what: &str| (a != b).then(|| [a, b].map(|n| format!("{n} {what}")));
     let quantity = |a: f64, b: f64, scale: f64, what: &str| {
@@ -48,6 +53,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         quantity(trained.element_spacing_metres, *element_spacing_metres, 1e-3, "mm between elements"),
         named(convention(&trained.carrier), convention(carrier)),
         named(antennas_of(trained.antennas.as_ref()), antennas_of(antennas.as_ref())),
+        named(&pattern_of(&trained.budget), &pattern_of(budget)),
         named(&format!("the {} window", trained.window.name()), &format!("the {} window", window.name())),
     ]
     .into_iter()
@@ -86,6 +92,10 @@ mod tests {
     #[test]
     fn a_louder_radar_is_no_other_radar() {
         assert_eq!(refused(&Radar { transmit_power_watts: 7.0, ..Radar::default() }), None);
+        assert_eq!(
+            refused(&Radar { chirp_seconds: 1e-3, budget: Some(LinkBudget::default()), ..Radar::default() }),
+            None
+        );
     }
 
     #[test]
@@ -94,6 +104,9 @@ mod tests {
         let expected = "trained with 1024 elements, the thesis' convention (one-way carrier); this radar has 512 elements, \
                         the physical convention (two-way carrier)";
         assert!(told.contains(expected), "{told}");
+        let narrow = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
+        let told = refused(&Radar { budget: Some(narrow), ..Radar::default() }).unwrap();
+        assert!(told.contains("isotropic elements; this radar has elements of 60.0 degrees"), "{told}");
         let told = refused(&Radar { carrier_hz: 76e9, ..Radar::default() }).unwrap();
         assert!(told.contains("77.0000 GHz of carrier; this radar has 76.0000 GHz"), "{told}");
     }

@@ -3,6 +3,7 @@
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
 mod antennas;
+pub mod budget;
 mod chirps;
 mod convention;
 mod element_list;
@@ -19,6 +20,7 @@ mod wave;
 mod window;
 
 pub use antennas::{Antennas, AntennasError};
+pub use budget::{LinkBudget, LinkFigures, Pattern};
 pub use convention::Convention;
 pub use element_list::ElementListError;
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
@@ -113,6 +115,9 @@ pub struct Radar {
     pub chirps: usize,
     /// From the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
     pub chirp_interval_seconds: f64,
+    /// What the radar equation needs ([`budget`]); `None` in the thesis' convention, where levels are those of samples and elements are
+    /// isotropic.
+    pub budget: Option<LinkBudget>,
 }
 
 impl Default for Radar {
@@ -132,6 +137,7 @@ impl Default for Radar {
             antennas: None,
             chirps: 1,
             chirp_interval_seconds: CHIRP_SECONDS,
+            budget: None,
         }
     }
 }
@@ -200,6 +206,16 @@ pub enum RadarError {
         /// Half of [`MAX_MEMORY_BYTES`].
         most: Bytes,
     },
+    /// A number of the link budget can't be.
+    #[error("radar.budget.{field} is {value}; expected {expected}")]
+    Budget {
+        /// Name of the number.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is allowed, and why.
+        expected: &'static str,
+    },
     /// Elements or spacing are not those that the pairs of antennas make.
     #[error("radar.{field} is {value}; its {transmitters} transmitters and {receivers} receivers make {expected}")]
     Pairs {
@@ -226,6 +242,7 @@ impl RadarError {
             | RadarError::Count { field, .. }
             | RadarError::Memory { field, .. }
             | RadarError::Pairs { field, .. } => field,
+            RadarError::Budget { .. } => "budget",
         }
     }
 }
@@ -237,6 +254,8 @@ impl Radar {
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
     /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array, 1 to 4096 chirps), elements or a spacing other than those
     /// that the pairs of antennas make, or counts that together ask for more than [`MAX_MEMORY_BYTES`].
+    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array), elements or a spacing other than those
+    /// that the pairs of antennas make, a budget that can't be, or counts that together ask for more than [`MAX_MEMORY_BYTES`].
     pub fn validate(&self) -> Result<(), RadarError> {
         for (field, value) in [
             ("transmit_power_watts", self.transmit_power_watts),
@@ -265,6 +284,7 @@ impl Radar {
             return Err(RadarError::Interval { interval, chirp });
         }
         self.check_pairs()?;
+        self.budget.map_or(Ok(()), |budget| budget.validate())?;
         self.check_memory()
     }
 

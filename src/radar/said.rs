@@ -1,6 +1,6 @@
 //! A radar as files have it: every constant by its name, and short words for what belongs together.
 
-use super::{Antennas, CHIRP_SECONDS, Carrier, Convention, Radar, WindowFunction};
+use super::{Antennas, CHIRP_SECONDS, Carrier, Convention, LinkBudget, Radar, WindowFunction};
 use serde::{Deserialize, Serialize};
 
 /// The table `[radar]`: what is left out is that of table 3.1. `convention` says `carrier` and, where that is left out,
@@ -32,6 +32,8 @@ pub(super) struct Said {
     chirps: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     chirp_interval_seconds: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    budget: Option<LinkBudget>,
 }
 
 /// How far a spacing may lie from that of the pairs beside which it is said, as a part of it.
@@ -56,6 +58,7 @@ impl From<Radar> for Said {
             // One chirp is what a radar had before it could have more: a text that says nothing is read by older programs, too.
             chirps: Some(radar.chirps).filter(|chirps| *chirps != 1),
             chirp_interval_seconds: Some(radar.chirp_interval_seconds).filter(|s| *s != CHIRP_SECONDS),
+            budget: radar.budget,
         }
     }
 }
@@ -94,6 +97,7 @@ impl TryFrom<Said> for Radar {
             antennas: None,
             chirps: said.chirps.unwrap_or(usual.chirps),
             chirp_interval_seconds: said.chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
+            budget: said.budget,
         };
         let Some(antennas) = antennas else { return Ok(radar) };
         let end_elements = said.end_elements;
@@ -201,8 +205,10 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        for convention in Convention::ALL {
-            let radar = Radar { elements: 77, chirp_seconds: 1e-4, ..Radar::default() }.in_convention(convention);
+        let wide = LinkBudget { half_power_width_degrees: Some(70.0), ..LinkBudget::default() };
+        for (convention, budget) in Convention::ALL.into_iter().zip([Some(wide), Some(LinkBudget::default())]) {
+            let radar =
+                Radar { elements: 77, chirp_seconds: 1e-4, budget, ..Radar::default() }.in_convention(convention);
             assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
         }
     }

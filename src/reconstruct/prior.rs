@@ -29,7 +29,7 @@ impl From<Floor> for NoisePrior {
         match floor {
             Floor::Thesis => NoisePrior::Rounding,
             Floor::Exact => NoisePrior::Nothing,
-            Floor::Snr(_) | Floor::Level(_) => NoisePrior::UNKNOWN,
+            Floor::Snr(_) | Floor::Level(_) | Floor::Thermal => NoisePrior::UNKNOWN,
         }
     }
 }
@@ -37,7 +37,7 @@ impl From<Floor> for NoisePrior {
 /// A noise prior's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "unknown noise \"{0}\"; expected white, white=SIGMA with SIGMA above 0, or a floor: thesis, exact, snr=DB or dbm=LEVEL"
+    "unknown noise \"{0}\"; expected white, white=SIGMA with SIGMA above 0, or a floor: thesis, exact, thermal, snr=DB or dbm=LEVEL"
 )]
 pub struct NoisePriorError(String);
 

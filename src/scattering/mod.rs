@@ -38,7 +38,7 @@ pub mod transition;
 pub use echoing::{Echoing, Seen, Sources, heard_in_the_middle};
 pub use scatterer::Scatterer;
 
-use crate::radar::{Pair, Radar};
+use crate::radar::{Pair, Pattern, Radar};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -88,6 +88,8 @@ pub struct Wave {
     pub radians_per_metre: f64,
     /// Whether phases grow with the range: then every amplitude is the conjugate.
     pub is_conjugate: bool,
+    /// Pattern of the elements; `None` where they are isotropic.
+    pub pattern: Option<Pattern>,
 }
 
 impl Wave {
@@ -98,6 +100,7 @@ impl Wave {
             power_watts: radar.transmit_power_watts,
             radians_per_metre: TAU * turns.abs(),
             is_conjugate: turns > 0.0,
+            pattern: radar.pattern(),
         }
     }
 }

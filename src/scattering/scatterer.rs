@@ -94,6 +94,7 @@ impl Scatterer {
     pub fn echoes(&self, antennas: &Antennas, out: &mut Vec<PathEcho>) {
         let begin = out.len();
         self.direct(antennas, out);
+        self.through_pattern(antennas, |place| [place, place], &mut out[begin..]);
         if let Some(mirror) = &self.mirror {
             self.ghosts(mirror, antennas, out);
         }
@@ -138,6 +139,22 @@ impl Scatterer {
         }
     }
 
+    /// Takes off what elements of a pattern don't send and hear: `towards` is where a wave leaves for and comes from.
+    fn through_pattern(
+        &self,
+        antennas: &Antennas,
+        towards: impl Fn([f64; 2]) -> [[f64; 2]; 2],
+        echoes: &mut [PathEcho],
+    ) {
+        let Some(pattern) = self.wave.pattern else { return };
+        for echo in echoes.iter_mut().filter(|e| e.is_heard()) {
+            let [there, back] = towards(echo.place_metres);
+            let left = pattern.amplitude_between(antennas.transmitter_metres, there)
+                * pattern.amplitude_between(antennas.receiver_metres, back);
+            *echo = echo.times(left.into());
+        }
+    }
+
     /// Both ways by the mirror, and one way each: both orders of the latter are one echo of twice the amplitude.
     fn ghosts(&self, mirror: &Mirror, antennas: &Antennas, out: &mut Vec<PathEcho>) {
         let count = self.echo_count() / 3;
@@ -145,10 +162,14 @@ impl Scatterer {
         let there = Antennas { transmitter_metres: image(antennas.transmitter_metres), ..*antennas };
         let both = Antennas { receiver_metres: image(antennas.receiver_metres), ..there };
         let begin = out.len();
-        for (seen, factor) in [(both, mirror.reflection.powi(2)), (there, 2.0 * mirror.reflection)] {
+        for (seen, factor, back_by_mirror) in
+            [(both, mirror.reflection.powi(2), true), (there, 2.0 * mirror.reflection, false)]
+        {
             let start = out.len();
             self.direct(&seen, out);
             out[start..].iter_mut().for_each(|echo| *echo = echo.times(factor.into()));
+            let towards = |place: [f64; 2]| [image(place), if back_by_mirror { image(place) } else { place }];
+            self.through_pattern(antennas, towards, &mut out[start..]);
         }
         for echo in &mut out[begin..begin + 2 * count] {
             let [x, y] = echo.place_metres;

@@ -111,10 +111,13 @@ impl Mirror {
         let mean = (there.range_metres + image.range_metres) / 2.0;
         // An echo over one way each falls with the product of both ranges.
         let one_way = of.reflectivity * self.reflection * mean * mean / (there.range_metres * image.range_metres);
+        // Elements of a pattern send one way and hear the other; a point in one of the two directions would go through it twice.
+        let left = |y: f64, range: f64| radar.pattern().map_or(1.0, |pattern| pattern.amplitude(y / range));
+        let both = left(of.y_metres, there.range_metres) * left(y, image.range_metres);
         let towards = |x: f64, y: f64, range: f64| Reflector {
             x_metres: x * mean / range,
             y_metres: y * mean / range,
-            reflectivity: one_way,
+            reflectivity: one_way * (both / left(y, range).powi(2)),
         };
         vec![
             Reflector { x_metres: x, y_metres: y, reflectivity: of.reflectivity * self.reflection.powi(2) },

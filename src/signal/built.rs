@@ -172,7 +172,7 @@ impl Calibration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::radar::Tolerances;
+    use crate::radar::{LinkBudget, Tolerances};
     use crate::scene::{Object, Wall};
     use crate::signal::simulate;
 
@@ -306,6 +306,34 @@ mod tests {
         let wall = Scene { objects: vec![Object::Wall(Wall::new(0.0, 11.0, 6.0, 0.0))], ..Scene::default() };
         let glint = turned(&wall);
         assert!(off(glint, -forward) < 0.02, "{glint}");
+    }
+
+    #[test]
+    fn a_pattern_takes_from_a_post_what_it_takes_from_a_point() {
+        let budget = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
+        let (isotropic, narrow) = (small(), Radar { budget: Some(budget), ..small() });
+        let pattern = narrow.pattern().unwrap();
+        let x = isotropic.element_x_metres(7);
+        // The nearest part of a post lies towards its centre.
+        let post = Object::Post(crate::scene::Post::new(6.0, 8.0, 0.2));
+        let mirror = crate::scene::Mirror { x_metres: -4.0, ..Default::default() };
+        let mut scene = Scene { objects: vec![post], ..Scene::default() };
+        let kept = |scene: &Scene| {
+            let heard = |radar| simulate(radar, scene, Floor::Exact, 0).unwrap().samples[[7, 0]];
+            (heard(&narrow), heard(&isotropic))
+        };
+        let (own, all) = kept(&scene);
+        let expected = pattern.amplitude(8.0 / (6.0 - x).hypot(8.0)).powi(2);
+        assert!((own / all - expected).norm() < 1e-9, "{}: {expected}", own / all);
+        // The mirror's image stands at x = -14. A weak mirror's echoes go there one way and come back the other.
+        let mut ghosts = |reflection| {
+            scene.disturbances.mirror = Some(crate::scene::Mirror { reflection, ..mirror });
+            kept(&scene)
+        };
+        let (with, without) = (ghosts(1e-3), ghosts(0.0));
+        let part = (with.0 - without.0).norm() / (with.1 - without.1).norm();
+        let towards_image = pattern.amplitude(8.0 / (14.0 + x).hypot(8.0));
+        assert!((part / (towards_image * expected.sqrt()) - 1.0).abs() < 0.05, "{part}: {towards_image}, {expected}");
     }
 
     #[test]

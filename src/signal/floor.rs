@@ -6,6 +6,9 @@
 //! reflector has amplitude `P_out sigma / R^2`, with `P_out` in watts, `R` in metres and no unit for sigma; its power `|y|^2` counts as
 //! watts, so its level is `10 log10(|y|^2 / 1 mW)`. A reflector of sigma 1 at 20 m before a radar of 100 W has amplitude 0.25, which is
 //! +18 dBm. The number says nothing of the watts in anybody's receiver; it makes noise the same for every scene.
+//!
+//! Where the radar has a link budget ([`crate::radar::budget`]), a level is one in its receivers: a sample `y` counts for what the radar
+//! equation has there.
 
 use super::path::{Pairs, plain_path};
 use super::samples::BeatSignal;
@@ -38,6 +41,9 @@ pub enum Floor {
     /// sample's level is.
     #[serde(rename = "dbm")]
     Level(DecibelMilliwatts),
+    /// The noise of the radar's receivers, `k T B F`, beneath echoes as strong as the radar equation has them: by the radar's link budget, or
+    /// [`LinkBudget::default`](crate::radar::LinkBudget) where it has none.
+    Thermal,
 }
 
 /// Signal-to-noise ratios that a floor may have, dB.
@@ -48,7 +54,22 @@ pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200
 impl Floor {
     /// Whether it is white noise of a level that nobody but the samples tells.
     pub fn is_thermal(self) -> bool {
-        matches!(self, Floor::Snr(_) | Floor::Level(_))
+        matches!(self, Floor::Snr(_) | Floor::Level(_) | Floor::Thermal)
+    }
+
+    /// Variance of its noise where that has a level whatever the scene.
+    pub fn level_variance(self, radar: &Radar) -> Option<f64> {
+        match self {
+            Floor::Level(level) if radar.budget.is_none() => Some(level.watts()),
+            Floor::Level(level) => Some(level.watts() / radar.receiver_watts()),
+            Floor::Thermal => Some(radar.receiver_noise().watts() / radar.receiver_watts()),
+            Floor::Thesis | Floor::Exact | Floor::Snr(_) => None,
+        }
+    }
+
+    /// Whether its noise has a level whatever the scene.
+    pub fn has_level(self) -> bool {
+        matches!(self, Floor::Level(_) | Floor::Thermal)
     }
 
     /// The signal-to-noise ratio of a scene over this floor, per sample over the whole array; `None` where the floor is not thermal
@@ -59,7 +80,7 @@ impl Floor {
         match self {
             Floor::Thesis | Floor::Exact => None,
             Floor::Snr(snr) => Some(snr).filter(|_| reflects),
-            Floor::Level(level) => snr_over(radar, sources, level.watts()),
+            Floor::Level(_) | Floor::Thermal => snr_over(radar, sources, self.level_variance(radar)?),
         }
     }
 }
@@ -67,7 +88,7 @@ impl Floor {
 /// A floor's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "unknown floor \"{0}\"; expected thesis, exact, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"
+    "unknown floor \"{0}\"; expected thesis, exact, thermal, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"
 )]
 pub struct FloorError(String);
 
@@ -81,6 +102,7 @@ impl FromStr for Floor {
         let floor = match (s, s.split_once('=')) {
             ("thesis", _) => Some(Floor::Thesis),
             ("exact", _) => Some(Floor::Exact),
+            ("thermal", _) => Some(Floor::Thermal),
             (_, Some(("snr", db))) => number(db, SNR_DECIBELS).map(|db| Floor::Snr(Decibels(db))),
             (_, Some(("dbm", level))) => {
                 number(level, LEVEL_DECIBEL_MILLIWATTS).map(|level| Floor::Level(DecibelMilliwatts(level)))
@@ -96,6 +118,7 @@ impl fmt::Display for Floor {
         match self {
             Floor::Thesis => f.write_str("thesis"),
             Floor::Exact => f.write_str("exact"),
+            Floor::Thermal => f.write_str("thermal"),
             Floor::Snr(db) => write!(f, "snr={}", db.0),
             Floor::Level(level) => write!(f, "dbm={}", level.0),
         }
@@ -133,11 +156,6 @@ pub fn snr_over<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, variance: f6
     (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))
 }
 
-/// Variance of thermal noise of `level` a sample, the same for every element and every scene: the level in watts.
-pub fn level_noise_variance(radar: &Radar, level: DecibelMilliwatts) -> Vec<f64> {
-    vec![level.watts(); radar.elements]
-}
-
 /// Variance of the noise that is `floor`, for each element, if there is any.
 pub fn noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, floor: Floor) -> Option<Vec<f64>> {
     let sources = sources.into();
@@ -145,7 +163,7 @@ pub fn noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, floor:
         Floor::Exact => None,
         Floor::Thesis => Some(thesis_noise_variance(radar, sources)),
         Floor::Snr(snr) => Some(snr_noise_variance(radar, sources, snr)),
-        Floor::Level(level) => Some(level_noise_variance(radar, level)),
+        Floor::Level(_) | Floor::Thermal => Some(vec![floor.level_variance(radar)?; radar.elements]),
     }
 }
 
@@ -193,7 +211,7 @@ impl Kernel for BlockPowers<'_> {
         let pairs = Pairs::new(|i| self.radar.pair(self.first_element + i));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
-            let (range, mut amplitude) = plain_path(self.radar.transmit_power_watts, &pairs, r);
+            let (range, mut amplitude) = plain_path(self.radar, &pairs, r);
             if let Some(rate) = self.radians_per_metre {
                 amplitude = amplitude * range.map(|range| ulp(rate * range));
             }
@@ -240,10 +258,11 @@ fn ulp(v: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::LinkBudget;
 
     #[test]
     fn names_round_trip() {
-        for name in ["thesis", "exact", "snr=20", "snr=-3.5", "dbm=-20", "dbm=17.96"] {
+        for name in ["thesis", "exact", "thermal", "snr=20", "snr=-3.5", "dbm=-20", "dbm=17.96"] {
             assert_eq!(name.parse::<Floor>().unwrap().to_string(), name);
         }
         for bad in
@@ -284,6 +303,44 @@ mod tests {
         let noise = heard - echo;
         let most = noise.iter().zip(&silence).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(most < 1e-13, "{most:e}");
+    }
+
+    #[test]
+    fn the_thermal_floor_leaves_the_snr_of_the_radar_equation() {
+        let budget =
+            LinkBudget { transmit_power_dbm: 10.0, antenna_gain_dbi: 8.0, noise_figure_db: 15.0, ..Default::default() };
+        let radar = Radar { elements: 64, chirp_seconds: 51.2e-6, budget: Some(budget), ..Radar::default() };
+        // By hand, in watts: 4 square metres at 12 m, and 10 MHz of noise.
+        let (four_pi, wavelength): (f64, f64) = (12.566_370_614_36, 299_792_458.0 / 77e9);
+        let received = 1e-2 * 10f64.powf(1.6) * wavelength.powi(2) * 4.0 / (four_pi.powi(3) * 12f64.powi(4));
+        let noise = 1.380_649e-23 * 290.0 * 1e7 * 10f64.powf(1.5);
+        let silence =
+            super::super::simulate(&radar, &crate::scene::Scene::default(), Floor::Thermal, 3).unwrap().samples;
+        let power = silence.mapv(|v| v.norm_sqr()).mean().unwrap();
+        // A point of reflectivity 2 has a cross section of 4 square metres.
+        let reflectors = [Reflector { x_metres: 0.0, y_metres: 12.0, reflectivity: 2.0 }];
+        let echo = super::super::exact::beat_signal(&radar, &reflectors).samples[[32, 0]].norm_sqr();
+        assert!((echo / power / (received / noise) - 1.0).abs() < 0.02, "{} {}", echo / power, received / noise);
+        // The same as a level in the receiver; and that of the usual budget where there is none.
+        let level = Floor::Level(DecibelMilliwatts::of_watts(noise)).level_variance(&radar).unwrap();
+        assert!((level / Floor::Thermal.level_variance(&radar).unwrap() - 1.0).abs() < 1e-9);
+        let [none, usual] = [None, Some(LinkBudget::default())].map(|budget| Radar { budget, ..Radar::default() });
+        assert_eq!(Floor::Thermal.level_variance(&none), Floor::Thermal.level_variance(&usual));
+        assert_eq!(
+            Floor::Level(DecibelMilliwatts(-20.0)).level_variance(&none),
+            Some(DecibelMilliwatts(-20.0).watts())
+        );
+    }
+
+    #[test]
+    fn an_isotropic_budget_changes_no_sample_over_the_thesis_floors() {
+        let plain = Radar { elements: 64, samples: 64, ..Radar::default() };
+        let budget = Radar { budget: Some(LinkBudget::default()), chirp_seconds: 1e-3, ..plain.clone() };
+        let scene = crate::scene::Scene::of_points([(0.4, 2.0), (-1.0, 3.0)]);
+        for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0))] {
+            let of = |radar: &Radar| super::super::simulate(radar, &scene, floor, 3).unwrap();
+            assert_eq!(of(&plain), of(&budget), "over {floor}");
+        }
     }
 
     #[test]

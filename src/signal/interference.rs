@@ -28,8 +28,10 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
     let way = radar.carrier_turns_per_metre().signum();
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut heard)| {
         let across = interferer.x_metres - array.pair(radar, n).receiver_x_metres;
-        let distance = across.hypot(interferer.y_metres - array.forward_metres(n));
-        let amplitude = radar.transmit_power_watts * interferer.strength / distance;
+        let ahead = interferer.y_metres - array.forward_metres(n);
+        let distance = across.hypot(ahead);
+        let left = radar.pattern().map_or(1.0, |pattern| pattern.amplitude(ahead / distance));
+        let amplitude = left * radar.transmit_power_watts * interferer.strength / distance;
         let turns = (way * distance / radar.wavelength_metres()).fract();
         let factor = Complex64::from_polar(amplitude, TAU * turns);
         heard.iter_mut().zip(&chirp).for_each(|(v, c)| *v += factor * c);

@@ -47,7 +47,12 @@ pub fn pair_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, pair: Pai
             root(dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres))
         });
         let distance = (there + back) / 2.0;
-        let amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / (there * back);
+        let mut amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / (there * back);
+        if let Some(pattern) = radar.pattern() {
+            for leg in [there, back] {
+                amplitude *= pattern.amplitude(r.y_metres / leg.hi());
+            }
+        }
         add(distance, Phasor { re: amplitude, im: zero });
     }
     let mut scattered = Vec::new();

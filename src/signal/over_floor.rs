@@ -35,6 +35,6 @@ pub(super) fn tolerance(floor: Floor) -> f64 {
     match floor {
         Floor::Exact => BEST_TOLERANCE,
         Floor::Snr(snr) if snr.0 <= 40.0 => 1e-12,
-        Floor::Thesis | Floor::Snr(_) | Floor::Level(_) => FLOOR_TOLERANCE,
+        Floor::Thesis | Floor::Snr(_) | Floor::Level(_) | Floor::Thermal => FLOOR_TOLERANCE,
     }
 }

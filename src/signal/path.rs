@@ -3,13 +3,13 @@
 //! This is the one place where geometry becomes an echo. [`EchoModel`](super::phase::EchoModel) makes phases of it, for every carrier;
 //! simulation, fits, bounds and theory take both from here. A point of reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude
 //! `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from the transmitter and from the receiver; where both are one antenna, that is
-//! the distance and `P g / R^2`.
+//! the distance and `P g / R^2`. Elements with a pattern take from both ways what [`Pattern::amplitude`] says.
 //!
 //! Bodies give range and complex amplitude of each of their echoes ([`crate::scattering`]); [`Path::new`] takes them.
 
 use super::double::{Double, product, sum};
 use super::simd::Lanes;
-use crate::radar::{Pair, Radar};
+use crate::radar::{Pair, Pattern, Radar};
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -71,19 +71,38 @@ impl<const W: usize> Path<W> {
         }
     }
 
-    /// The echo of a point under a transmit power of `power_watts`.
+    /// The echo of a point under a transmit power of `power_watts`, between elements of this pattern.
     #[inline(always)]
-    pub(super) fn of_point<const FMA: bool>(power_watts: f64, pairs: &Pairs<W>, r: &Reflector) -> Self {
+    pub(super) fn of_point<const FMA: bool>(
+        power_watts: f64,
+        pattern: Option<Pattern>,
+        pairs: &Pairs<W>,
+        r: &Reflector,
+    ) -> Self {
         let scale = power_watts * r.reflectivity;
         let there = leg::<W, FMA>(pairs.transmitter_x_metres, r);
         if pairs.is_monostatic {
             let amplitude = there.hi.map(|d| scale / (d * d));
+            let amplitude = through(pattern, amplitude, [there.hi, there.hi], r);
             return Path { range_metres: there, amplitude, turns: None };
         }
         let back = leg::<W, FMA>(pairs.receiver_x_metres, r);
         let amplitude = there.hi.zip(back.hi, |t, r| scale / (t * r));
+        let amplitude = through(pattern, amplitude, [there.hi, back.hi], r);
         Path { range_metres: Double::mean(there, back), amplitude, turns: None }
     }
+}
+
+/// An amplitude, less what elements of a pattern take from both ways to `r`, whose lengths are `legs` in metres.
+#[inline(always)]
+fn through<const W: usize>(
+    pattern: Option<Pattern>,
+    amplitude: Lanes<f64, W>,
+    legs: [Lanes<f64, W>; 2],
+    r: &Reflector,
+) -> Lanes<f64, W> {
+    let Some(pattern) = pattern else { return amplitude };
+    legs.into_iter().fold(amplitude, |amplitude, leg| amplitude.zip(leg, |a, d| a * pattern.amplitude(r.y_metres / d)))
 }
 
 /// Distance of `r` from antennas.
@@ -104,21 +123,24 @@ fn leg<const W: usize, const FMA: bool>(antenna_x_metres: Lanes<f64, W>, r: &Ref
 /// Range and amplitude of a point in plain f64, for whatever forms no phase of them.
 #[inline(always)]
 pub(super) fn plain_path<const W: usize>(
-    power_watts: f64,
+    radar: &Radar,
     pairs: &Pairs<W>,
     r: &Reflector,
 ) -> (Lanes<f64, W>, Lanes<f64, W>) {
-    let scale = power_watts * r.reflectivity;
+    let scale = radar.transmit_power_watts * r.reflectivity;
+    let pattern = radar.pattern();
     let square = |antenna_x_metres: Lanes<f64, W>| {
         let dx = antenna_x_metres - Lanes::splat(r.x_metres);
         dx * dx + Lanes::splat(r.y_metres * r.y_metres)
     };
     let there = square(pairs.transmitter_x_metres);
     if pairs.is_monostatic {
-        return (there.sqrt(), there.map(|s| scale / s));
+        let range = there.sqrt();
+        return (range, through(pattern, there.map(|s| scale / s), [range, range], r));
     }
     let (there, back) = (there.sqrt(), square(pairs.receiver_x_metres).sqrt());
-    ((there + back) * Lanes::splat(0.5), there.zip(back, |t, r| scale / (t * r)))
+    let amplitude = there.zip(back, |t, r| scale / (t * r));
+    ((there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], r))
 }
 
 /// Range in metres and amplitude of a point for one pair, rounded as the thesis' program rounds them.
@@ -128,7 +150,9 @@ pub(super) fn thesis_path(radar: &Radar, pair: Pair, r: &Reflector) -> (f64, f64
         (dx * dx + r.y_metres * r.y_metres).sqrt()
     };
     let (there, back) = (leg(pair.transmitter_x_metres), leg(pair.receiver_x_metres));
-    ((there + back) / 2.0, radar.transmit_power_watts * r.reflectivity / (there * back))
+    let amplitude = radar.transmit_power_watts * r.reflectivity / (there * back);
+    let left = radar.pattern().map_or(1.0, |p| p.amplitude(r.y_metres / there) * p.amplitude(r.y_metres / back));
+    ((there + back) / 2.0, amplitude * left)
 }
 
 /// Bounds of the ranges of `r` from elements of `radar` up to `elements`, metres; for single antennas they are reached.
@@ -197,6 +221,22 @@ impl Change {
         Change { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
     }
 
+    /// The same between elements of a pattern.
+    pub fn through(self, pattern: Option<Pattern>, pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
+        let Some(pattern) = pattern else { return self };
+        let square = x_metres * x_metres + y_metres * y_metres;
+        // The logarithm of y, and of each leg: the cosine off broadside is their quotient.
+        let of_log_y = match by {
+            By::X => 0.0,
+            By::Y => 1.0 / y_metres,
+            By::Range => 1.0 / square.sqrt(),
+            By::CosTheta => -x_metres * square.sqrt() / (y_metres * y_metres),
+        };
+        // Change::amplitude is the change of minus the logarithms of both legs.
+        let of_log_cos = 2.0 * of_log_y + Change::of_point(pair, [x_metres, y_metres], by).amplitude;
+        Change { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
+    }
+
     /// Relative change of the sample where an echo's phase turns by `turns_per_metre`.
     pub fn of_sample(&self, turns_per_metre: f64) -> Complex64 {
         Complex64::new(self.amplitude, TAU * turns_per_metre * self.range_metres)
@@ -208,7 +248,7 @@ mod tests {
     use super::super::judge;
     use super::super::phase::EchoModel;
     use super::*;
-    use crate::radar::Carrier;
+    use crate::radar::{Carrier, LinkBudget};
 
     const APART: Pair = Pair { transmitter_x_metres: -0.4, receiver_x_metres: 0.7 };
 
@@ -218,6 +258,33 @@ mod tests {
 
     fn point(x_metres: f64, y_metres: f64) -> Reflector {
         Reflector { x_metres, y_metres, reflectivity: 0.7 }
+    }
+
+    /// Elements that leave half of the power 30 degrees off broadside.
+    fn narrow() -> Radar {
+        let budget = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
+        Radar { budget: Some(budget), ..Radar::default() }
+    }
+
+    #[test]
+    fn a_pattern_takes_its_two_way_value_from_every_algorithm() {
+        let (narrow, isotropic) = (narrow(), Radar::default());
+        // cos^n is one half at 30 degrees.
+        let exponent = 0.5f64.ln() / 30f64.to_radians().cos().ln();
+        for r in [point(2.0, 11.0), point(-9.0, 5.0), point(0.0, 14.0), point(3.0, -8.0)] {
+            for pair in [APART, Pair::at(0.3)] {
+                let cos = |x: f64| r.y_metres.abs() / (r.x_metres - x).hypot(r.y_metres);
+                let power = (cos(pair.transmitter_x_metres) * cos(pair.receiver_x_metres)).powf(exponent);
+                let samples = |radar: &Radar| EchoModel::new(radar).echo(pair, &r).sample(77);
+                let kept = samples(&narrow) / samples(&isotropic);
+                assert!(
+                    (kept.norm_sqr() / power - 1.0).abs() < 1e-9 && kept.im.abs() < 1e-12,
+                    "{r:?}: {kept}, {power}"
+                );
+                let judged = judge::pair_signal(&narrow, &[r], pair)[77];
+                assert!((judged - samples(&narrow)).norm() < 1e-13 * judged.norm(), "{r:?}");
+            }
+        }
     }
 
     #[test]
@@ -279,7 +346,7 @@ mod tests {
             By::Range => polar(range + step, x / range),
             By::CosTheta => polar(range, x / range + step),
         };
-        for radar in radars() {
+        for radar in radars().into_iter().chain([narrow()]) {
             let model = EchoModel::new(&radar);
             for by in [By::X, By::Y, By::Range, By::CosTheta] {
                 for pair in [APART, Pair::at(0.3)] {
@@ -289,7 +356,7 @@ mod tests {
                             model.echo(pair, &point(x, y)).sample(n1)
                         };
                         let expected = (at(STEP) - at(-STEP)) / (2.0 * STEP) / at(0.0);
-                        let change = Change::of_point(pair, [x, y], by);
+                        let change = Change::of_point(pair, [x, y], by).through(radar.pattern(), pair, [x, y], by);
                         let found = change.of_sample(radar.turns_per_metre(n1 as f64));
                         assert!((found - expected).norm() < 1e-6 * expected.norm(), "{by:?}: {found}, {expected}");
                     }
@@ -300,11 +367,12 @@ mod tests {
 
     #[test]
     fn plain_paths_agree_with_exact_ones() {
-        let radar = Radar::default();
         let r = point(2.0, 11.0);
-        for pair in [APART, Pair::at(0.3)] {
+        for (radar, pair) in
+            [Radar::default(), narrow()].into_iter().flat_map(|r| [APART, Pair::at(0.3)].map(|p| (r.clone(), p)))
+        {
             let echo = EchoModel::new(&radar).echo(pair, &r);
-            let (range, amplitude) = plain_path(radar.transmit_power_watts, &Pairs::from(pair), &r);
+            let (range, amplitude) = plain_path(&radar, &Pairs::from(pair), &r);
             let thesis = thesis_path(&radar, pair, &r);
             for (range, amplitude) in [(range.0[0], amplitude.0[0]), thesis] {
                 assert!((range - echo.distance_metres).abs() < 1e-14 * range);

@@ -10,7 +10,7 @@
 use super::double::{Double, product, rest};
 use super::path::{Pairs, Path};
 use super::simd::Lanes;
-use crate::radar::{Pair, Radar};
+use crate::radar::{Pair, Pattern, Radar};
 use crate::scene::Reflector;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 /// One echo at one pair of antennas: amplitude, and phase as turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Echo {
-    /// Amplitude: `P_out * reflectivity / R^2` for a reflector.
+    /// Amplitude: `P_out * reflectivity / R^2` for a reflector before isotropic elements.
     pub amplitude: f64,
     /// Range R in metres.
     pub distance_metres: f64,
@@ -91,6 +91,7 @@ impl<const W: usize> EchoLanes<W> {
 #[derive(Debug, Clone, Copy)]
 pub struct EchoModel {
     power_watts: f64,
+    pattern: Option<Pattern>,
     per_wavelength: Double<f64>,
     per_bin: Double<f64>,
     samples: f64,
@@ -102,6 +103,7 @@ impl EchoModel {
     pub fn new(radar: &Radar) -> Self {
         EchoModel {
             power_watts: radar.transmit_power_watts,
+            pattern: radar.pattern(),
             per_wavelength: Double::reciprocal(radar.wavelength_metres()),
             per_bin: Double::reciprocal(radar.range_resolution_metres()),
             samples: radar.samples as f64,
@@ -121,7 +123,7 @@ impl EchoModel {
         pairs: impl Into<Pairs<W>>,
         r: &Reflector,
     ) -> EchoLanes<W> {
-        self.heard::<W, FMA>(Path::of_point::<FMA>(self.power_watts, &pairs.into(), r))
+        self.heard::<W, FMA>(Path::of_point::<FMA>(self.power_watts, self.pattern, &pairs.into(), r))
     }
 
     /// The echo that came along `path`.

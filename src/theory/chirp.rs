@@ -81,7 +81,8 @@ pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<Heard> {
         .map(|(object, r)| {
             let way = |antenna: f64| (r.x_metres - antenna).hypot(r.y_metres);
             let [there, back] = [way(pair.transmitter_x_metres), way(pair.receiver_x_metres)];
-            let amplitude = radar.transmit_power_watts * r.reflectivity / (there * back);
+            let left = |way: f64| radar.pattern().map_or(1.0, |pattern| pattern.amplitude(r.y_metres / way));
+            let amplitude = left(there) * left(back) * radar.transmit_power_watts * r.reflectivity / (there * back);
             Heard { object, range_metres: (there + back) / 2.0, amplitude }
         })
         .collect();

@@ -41,6 +41,28 @@ fn the_table_names_the_gain_an_end() {
 }
 
 #[test]
+fn a_budget_is_that_of_the_radar_equation() {
+    // 15.8 mW and a gain of 10 at 77 GHz, 10 square metres at 50 m; 20 MHz of noise at 290 K and 12 dB.
+    let wavelength: f64 = 299_792_458.0 / 77e9;
+    let received = 15.848_931_9e-3 * 100.0 * wavelength.powi(2) * 10.0 / (12.566_370_6f64.powi(3) * 50f64.powi(4));
+    let noise = 1.380_649e-23 * 290.0 * 20e6 * 15.848_931_9;
+    let report = json(&["budget", "--json"]);
+    let snr = report["object"]["sample_snr_db"].as_f64().unwrap();
+    assert!((snr - 10.0 * (received / noise).log10()).abs() < 1e-5, "{snr}");
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = "[radar.budget]\nnoise_figure_db = 15.0\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 50\ncross_section_dbsm = 10\n";
+    std::fs::write(&scene, text).unwrap();
+    let scene = scene.to_str().unwrap();
+    let report = json(&["budget", scene, "--json"]);
+    for row in [&report["object"], &report["objects"][0]] {
+        assert!((snr - 3.0 - row["sample_snr_db"].as_f64().unwrap()).abs() < 1e-9, "{row}");
+    }
+    apertura(&["budget", scene]).assert().success().stdout(contains("point 1").and(contains("falls to 13 dB at")));
+    apertura(&["budget", "--range", "-1"]).assert().failure().stderr(contains("expected metres from 0.001"));
+}
+
+#[test]
 fn bounds_follow_noise_level() {
     let report = json(&["bounds", "--layout", "two-ends,full", "--snr", "0,20", "--apart", "1", "--json"]);
     let bound = |layout: usize, row: usize, which: &str| {

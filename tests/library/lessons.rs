@@ -340,6 +340,28 @@ fn finds(mask: &Mask, (bin, column): (usize, usize)) -> bool {
 }
 
 #[test]
+fn the_link_budget_is_as_its_lesson_says() {
+    let [at_15, car, _] = [1, 2, 3].map(|step| lesson("the-link-budget").steps[step - 1].clone());
+    let snr = |dbsm, range| at_15.radar.link(dbsm, range, 1.0);
+    assert!((snr(0.0, 15.0).array.0 - snr(0.0, 30.0).array.0 - 12.04).abs() < 0.01, "12 dB");
+    taught("the-link-budget", "12 dB");
+    for (number, decibels) in [
+        ("41.4 dB", snr(0.0, 20.0).array.0),
+        ("-12.2 dB", snr(0.0, 20.0).sample.0),
+        ("51.4 dB", snr(10.0, 20.0).array.0),
+    ] {
+        assert_eq!(format!("{decibels:.1} dB"), number);
+        taught("the-link-budget", number);
+    }
+    // The echo over the noise of the samples, as they are simulated.
+    let power = |scene: &Scene, floor| {
+        simulate(&car.radar, scene, floor, 0).unwrap().samples.mapv(|v| v.norm_sqr()).mean().unwrap()
+    };
+    let simulated = power(&car.scene(), Floor::Exact) / power(&Scene::default(), Floor::Thermal);
+    assert!((10.0 * simulated.log10() - snr(10.0, 20.0).sample.0).abs() < 0.05, "{simulated}");
+}
+
+#[test]
 fn the_detector_keeps_its_rate_as_its_lesson_says() {
     let [quiet, loud] = [1, 2].map(|step| detected(step, None).0.count());
     assert!((350..700).contains(&quiet) && (350..700).contains(&loud), "{quiet} {loud}");

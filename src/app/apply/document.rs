@@ -101,7 +101,7 @@ fn random_scene(state: &mut State, kind: Kind) {
     let scene = Scene { name: kind.scene_name(seed, number), ..scene };
     state.settings.random_number = number.wrapping_add(1);
     let file = SceneFile { scene, radar: state.radar().clone() };
-    if kind == Kind::Noise && !matches!(state.settings.floor, Floor::Level(_)) {
+    if kind == Kind::Noise && !state.settings.floor.has_level() {
         // No other floor has noise in an empty scene.
         state.settings.floor = Floor::Level(state.settings.level);
     }

@@ -53,6 +53,7 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
         ("antennas", before.antennas != after.antennas),
         ("chirps", before.chirps != after.chirps),
         ("interval of chirps", before.chirp_interval_seconds != after.chirp_interval_seconds),
+        ("link budget", before.budget != after.budget),
         ("power", before.transmit_power_watts != after.transmit_power_watts),
     ];
     changes.into_iter().find(|(_, changed)| *changed).map_or("radar", |(name, _)| name)

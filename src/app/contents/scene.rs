@@ -31,7 +31,15 @@ impl Contents<'_> {
     pub(super) fn radar(&mut self, ui: &mut Ui) -> Vec<Command> {
         let recording = self.state.editor.document().recording();
         let measured = recording.map(|r| radar::Measured { by_all_elements: r.signal().is_some() });
-        radar::show(ui, radar::Input { radar: self.state.radar(), measured })
+        let selection = self.state.editor.selection().single();
+        let selected = selection.and_then(|index| {
+            let object = self.state.editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
+            let name = format!("{} {}", object.noun(), index + 1);
+            let of_many = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
+            let (place_metres, reflectivity) = (object.centre_metres(), object.reflectivity());
+            Some(radar::Selected { name: of_many, place_metres, reflectivity })
+        });
+        radar::show(ui, radar::Input { radar: self.state.radar(), measured, selected })
     }
 
     pub(super) fn elements(&mut self, ui: &mut Ui) -> Vec<Command> {

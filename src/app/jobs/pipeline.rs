@@ -18,7 +18,7 @@ use crate::engine::{Stage, Wanted};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::platform::Instant;
-use crate::signal::{Floor, Unfinished};
+use crate::signal::Unfinished;
 use crate::task::{Reply, Task, Worker};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -178,7 +178,7 @@ impl Pipeline {
             output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
         };
         // An empty scene over noise has false alarms to count; one without noise has nothing.
-        let is_noise = matches!(settings.floor, Floor::Level(_));
+        let is_noise = settings.floor.has_level();
         let mut request = MapsRequest {
             document: state.editor.document().id(),
             radar: state.radar().clone(),

@@ -290,7 +290,10 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
 
 /// What a floor of a level of its own is.
 const LEVEL: &str = "Thermal noise of this level in every sample, whatever the scene: an empty scene is noise alone. A reflector of σ 1 at \
-    20 m has +18 dBm";
+    20 m has +18 dBm; with a link budget, what the radar equation says";
+
+/// What the receivers' own noise is.
+const RECEIVER: &str = "The noise of the radar's receivers, kTBF, by its link budget in the panel Radar; by the usual one where it has none";
 
 fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
@@ -303,6 +306,7 @@ fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
                 "Thermal noise at a signal-to-noise ratio: it is louder where the scene is",
             ),
             (Floor::Level(settings.level), "dBm", LEVEL),
+            (Floor::Thermal, "Receiver", RECEIVER),
         ];
         choices(ui, settings.floor, of, ViewCommand::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {

@@ -288,6 +288,9 @@ mod tests {
         enter(&mut inspector, "reflectivity", "0.5");
         let editor = &mut inspector.state_mut().editor;
         assert!(editor.scene().objects.iter().all(|o| o.reflectivity() == 0.5));
+        enter(&mut inspector, "cross section", "20");
+        let editor = &mut inspector.state_mut().editor;
+        assert!(editor.scene().objects.iter().all(|o| (o.reflectivity() - 10.0).abs() < 1e-12), "100 square metres");
         while editor.undo() {}
         assert_eq!(places(&inspector), [[1.0, 10.0], [2.0, 12.0], [3.0, 12.0]]);
     }

@@ -1,13 +1,16 @@
 //! The radar: every constant of it, and what follows from each.
 
 mod antennas;
+mod budget;
+mod table;
 
 use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::number_field::NumberField;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
+pub use budget::Selected;
 use eframe::egui;
-use eframe::egui::{Align, Color32, ComboBox, Grid, Id, Label, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
+use eframe::egui::{Align, Color32, ComboBox, Grid, Label, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
+use table::{GAP, Number, Table, number};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -15,6 +18,8 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// What was recorded with it, where something was: then its constants are what they were.
     pub measured: Option<Measured>,
+    /// What is selected in the scene, where it is one object that is made of points.
+    pub selected: Option<Selected>,
 }
 
 /// A recording made with the radar.
@@ -54,7 +59,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             let follows = Consequences::of(&radar);
             let constants = input.measured.is_none();
             let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
-            let table = Table::that_fits(ui);
+            let table = Table::that_fits(ui, NAMES);
             match table.consequence_width {
                 Some(_) => {
                     _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
@@ -68,6 +73,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                 None => rows(ui, table, &mut radar, &follows, free),
             }
             antennas::drawing(ui, &radar);
+            budget::show(ui, table, &mut radar, input.selected.as_ref());
             radar.end_elements = radar.end_elements.min(radar.elements / 2);
             if radar != *input.radar {
                 asked.push(RadarCommand::Set(Box::new(radar)).into());
@@ -75,63 +81,6 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         });
     });
     asked
-}
-
-/// Between two columns, points.
-const GAP: f32 = 12.0;
-
-/// Width of the widest value, two names of windows beside each other, points.
-const VALUE_WIDTH: f32 = 170.0;
-
-/// The least width of a column of consequences, points: in less, a sentence is torn into single words.
-const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
-
-/// How the constants stand in the panel.
-#[derive(Clone, Copy)]
-struct Table {
-    /// Width of the longest name of a constant, points.
-    name_width: f32,
-    /// Width of the column of consequences; `None` where there is no room for one: then each stands below its constant.
-    consequence_width: Option<f32>,
-}
-
-impl Table {
-    fn that_fits(ui: &Ui) -> Table {
-        let font = TextStyle::Body.resolve(ui.style());
-        let width =
-            |name: &str| ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
-        let name_width = NAMES.into_iter().map(width).fold(0.0, f32::max);
-        let left = ui.available_width() - name_width - VALUE_WIDTH - 2.0 * GAP;
-        Table { name_width, consequence_width: Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH) }
-    }
-
-    /// A row: the name, what `value` draws, what follows.
-    fn row<T>(
-        self,
-        ui: &mut Ui,
-        (name, tooltip): (&str, &str),
-        consequence: &str,
-        value: impl FnOnce(&mut Ui, Id) -> T,
-    ) -> T {
-        let consequence = Label::new(consequence).wrap();
-        let Some(width) = self.consequence_width else {
-            let value = ui.horizontal(|ui| {
-                let label = ui.label(name).on_hover_text(tooltip);
-                ui.add_space((self.name_width - label.rect.width()).max(0.0) + GAP);
-                value(ui, label.id)
-            });
-            ui.indent(("consequence", name), |ui| ui.add(consequence));
-            return value.inner;
-        };
-        let label = ui.label(name).on_hover_text(tooltip);
-        let value = value(ui, label.id);
-        ui.vertical(|ui| {
-            ui.set_max_width(width);
-            ui.add(consequence);
-        });
-        ui.end_row();
-        value
-    }
 }
 
 /// Radars to start from.
@@ -166,33 +115,6 @@ fn about(ui: &mut Ui, text: &str) {
         ui.set_min_height(most);
         ui.add(Label::new(RichText::new(text).weak()).wrap());
     });
-}
-
-/// A number of the radar.
-struct Number {
-    name: &'static str,
-    tooltip: &'static str,
-    unit: &'static str,
-    speed: f64,
-    low: f64,
-    high: f64,
-    decimals: usize,
-}
-
-/// A row: name, the number in its unit, what follows. The number as it is after an edit, where there was one.
-fn number(ui: &mut Ui, table: Table, field: &Number, value: f64, consequence: &str, is_free: bool) -> Option<f64> {
-    let mut edited = value;
-    let changed = table.row(ui, (field.name, field.tooltip), consequence, |ui, label| {
-        let number = NumberField::new(&mut edited)
-            .range(field.low..=field.high)
-            .clamp_existing_to_range(false)
-            .speed(field.speed)
-            .max_decimals(field.decimals)
-            .suffix(field.unit);
-        ui.add_enabled(is_free, number).labelled_by(label).on_hover_text(field.tooltip).changed()
-    });
-    let step = 10f64.powi(-(field.decimals as i32));
-    (changed && (edited - value).abs() >= 0.5 * step).then_some(edited)
 }
 
 const CARRIER: Number = Number {

@@ -367,6 +367,12 @@ const TABLE: &[Entry] = {
             None,
         ),
         entry(
+            View(ViewCommand::SetFloor(Floor::Thermal)),
+            "Floor: noise of the receivers",
+            "kTBF, by the radar's link budget",
+            None,
+        ),
+        entry(
             View(ViewCommand::Detect(None)),
             "Detect: global threshold",
             "Cells whose Λ exceeds η or η' count as detections",

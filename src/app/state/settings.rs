@@ -154,7 +154,7 @@ impl Settings {
         match floor {
             Floor::Snr(snr) => self.snr = snr,
             Floor::Level(level) => self.level = level,
-            Floor::Thesis | Floor::Exact => {}
+            Floor::Thesis | Floor::Exact | Floor::Thermal => {}
         }
     }
 

@@ -110,9 +110,11 @@ pub fn radar_text(radar: &Radar) -> String {
     let mut differing: Vec<String> = fields(&radar.of_one_chirp())
         .iter()
         .filter(|(name, value)| *name != "carrier" && usual.get(*name) != Some(*value))
-        .map(|(name, value)| match value {
-            serde_json::Value::String(text) => format!("{name}={text}"),
-            value => format!("{name}={value}"),
+        .flat_map(|(name, value)| match value {
+            serde_json::Value::String(text) => vec![format!("{name}={text}")],
+            // Those of the budget.
+            serde_json::Value::Object(numbers) => numbers.iter().map(|(key, v)| format!("{name}.{key}={v}")).collect(),
+            value => vec![format!("{name}={value}")],
         })
         .collect();
     differing.sort();
@@ -401,6 +403,9 @@ pub(super) mod tests {
         assert_eq!(radar_text(&Radar { carrier: Carrier::TwoWay, ..Radar::default() }), "");
         let radar = Radar { elements: 64, window: crate::radar::WindowFunction::Blackman, ..Radar::default() };
         assert_eq!(radar_text(&radar), "elements=64 window=blackman");
+        let radar = Radar { elements: 64, budget: Some(crate::radar::LinkBudget::default()), ..Radar::default() };
+        let budget = "budget.antenna_gain_dbi=10.0 budget.noise_figure_db=12.0 budget.transmit_power_dbm=12.0";
+        assert_eq!(radar_text(&radar), format!("{budget} elements=64"));
     }
 
     #[test]

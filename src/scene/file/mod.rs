@@ -10,6 +10,12 @@
 //! chirps = 128             # 1 otherwise
 //! chirp_interval_seconds = 25.6e-6
 //!
+//! [radar.budget]           # optional; see `radar::budget`
+//! transmit_power_dbm = 12.0
+//! antenna_gain_dbi = 10.0
+//! noise_figure_db = 12.0
+//! half_power_width_degrees = 80.0 # optional; elements are isotropic otherwise
+//!
 //! [disturbances.mirror]   # optional; a wall that makes ghosts
 //! x_metres = -5.0
 //! y_metres = 0.0
@@ -37,6 +43,7 @@
 //! y_metres = 12.5
 //! reflectivity = 0.5       # optional, 1 otherwise
 //! velocity_x_metres_per_second = 2.0 # optional, 0 otherwise; likewise y; the place is that of time 0
+//! reflectivity = 0.5       # optional, 1 otherwise; or cross_section_dbsm = -6.02, which is read as that
 //!
 //! [over]                   # optional; what the app lays the objects over; commands look at the scene alone
 //! recording = "post.toml"  # beside this file, or the name of one that comes with the program

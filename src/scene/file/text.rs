@@ -4,6 +4,7 @@
 //! older programs name in their message.
 
 use super::content::{SceneFile, SceneTextError};
+use crate::radar::budget::reflectivity_of;
 use crate::radar::{Convention, Radar};
 use crate::scene::{
     Block, Disturbances, GaussianCluster, Line, Object, Point, Polygon, Post, Scene, SceneError, Wall, yes,
@@ -237,6 +238,7 @@ fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, 
     let Some(kind) = table.remove("kind") else {
         return Err((Some(span), format!("missing key \"kind\"; {KINDS}")));
     };
+    let dbsm = cross_section(&mut table, kind.get_ref().as_str().unwrap_or_default())?;
     let rest = ValueDeserializer::from(Spanned::new(span, DeValue::Table(table)));
     let object = match kind.get_ref().as_str() {
         Some("point") => Point::deserialize(rest).map(Object::Point),
@@ -249,7 +251,36 @@ fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, 
         Some(other) => return Err((Some(kind.span()), format!("unknown kind \"{other}\"; {KINDS}"))),
         None => return Err((Some(kind.span()), format!("\"kind\" is not a string; {KINDS}"))),
     };
-    object.map_err(|e| (e.span(), one_line(e.message())))
+    let mut object = object.map_err(|e| (e.span(), one_line(e.message())))?;
+    if let Some(dbsm) = dbsm {
+        object.set_reflectivity(reflectivity_of(dbsm));
+    }
+    Ok(object)
+}
+
+/// Largest radar cross section that is read, and the smallest below 0, dBsm: reflectivities of 1e100.
+const MOST_DBSM: f64 = 2000.0;
+
+/// Takes `cross_section_dbsm` off the table of an object of this kind: another way to say its reflectivity.
+fn cross_section(table: &mut DeTable<'_>, kind: &str) -> Result<Option<f64>, (Option<Range<usize>>, String)> {
+    const KEY: &str = "cross_section_dbsm";
+    let Some(value) = table.remove(KEY) else { return Ok(None) };
+    let span = Some(value.span());
+    if !["point", "line", "gaussian"].contains(&kind) {
+        let message = format!("a {kind} has no {KEY}, since its echoes follow from its shape; expected reflectivity");
+        return Err((span, message));
+    }
+    if table.contains_key("reflectivity") {
+        return Err((span, format!("{KEY} stands beside reflectivity; expected one of the two, they say the same")));
+    }
+    let dbsm = f64::deserialize(ValueDeserializer::from(value)).map_err(|e| (span.clone(), one_line(e.message())))?;
+    if dbsm.is_nan() || dbsm.abs() > MOST_DBSM {
+        return Err((
+            span,
+            format!("{KEY} is {dbsm}; expected -2000 to 2000 dBsm: 0 is 1 square metre, reflectivity 1"),
+        ));
+    }
+    Ok(Some(dbsm))
 }
 
 /// Where object `index` stands in a text that was read before. Looked up when something is wrong with it only.
@@ -366,6 +397,18 @@ mod tests {
     }
 
     #[test]
+    fn a_cross_section_is_read_as_reflectivity_and_a_budget_is_kept() {
+        let text = "[radar]\nchirp_seconds = 5e-5\n[radar.budget]\nantenna_gain_dbi = 13\nhalf_power_width_degrees = 70\n[[object]]\n\
+                    kind = \"point\"\nx_metres = 1\ny_metres = 2\ncross_section_dbsm = 20\n";
+        let file = from_toml(text).unwrap();
+        assert!((file.scene.objects[0].reflectivity() - 10.0).abs() < 1e-12);
+        let budget = file.radar.budget.unwrap();
+        assert_eq!((budget.antenna_gain_dbi, budget.half_power_width_degrees), (13.0, Some(70.0)));
+        let written = to_toml(&file).unwrap();
+        assert_eq!(from_toml(&written).unwrap(), file, "{written}");
+    }
+
+    #[test]
     fn an_empty_file_is_an_empty_scene() {
         assert_eq!(from_toml("").unwrap(), SceneFile::default());
         assert_eq!(from_toml(&to_toml(&SceneFile::default()).unwrap()).unwrap(), SceneFile::default());
@@ -389,6 +432,26 @@ mod tests {
             (point, 1, vec!["object 1", "y_metres"]),
             (&format!("{point}y_metres = \"two\"\n"), 4, vec!["object 1", "string", "f64"]),
             (&format!("{point}y_metres = 2\ncolour = 1\n"), 5, vec!["object 1", "colour", "reflectivity"]),
+            (
+                &format!("{point}y_metres = 2\ncross_section_dbsm = nan\n"),
+                5,
+                vec!["object 1", "is NaN", "-2000 to 2000"],
+            ),
+            (
+                &format!("{point}y_metres = 2\nreflectivity = 1\ncross_section_dbsm = 0\n"),
+                6,
+                vec!["object 1", "beside reflectivity", "one of the two"],
+            ),
+            (
+                "[[object]]\nkind = \"wall\"\ncross_section_dbsm = 3\n",
+                3,
+                vec!["object 1", "a wall has no cross_section_dbsm", "shape"],
+            ),
+            (
+                "[radar.budget]\nnoise_figure_db = -1",
+                1,
+                vec!["radar.budget.noise_figure_db is -1", "0 to 100 dB", "take some away"],
+            ),
             (&format!("{point}y_metres = nan\n"), 4, vec!["object 1", "y_metres", "NaN", "finite"]),
             (&format!("{point}y_metres = 2\n{point}y_metres = 1e13\n"), 8, vec!["object 2", "1e12"]),
             (

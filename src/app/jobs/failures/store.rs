@@ -112,12 +112,14 @@ fn read_conditions(bytes: &[u8]) -> Result<Conditions, String> {
 }
 
 /// What the thread is asked for.
+#[expect(clippy::large_enum_variant, reason = "one request at a time is under way")]
 enum Request {
     Read { path: PathBuf, own: bool },
     Write { path: PathBuf, rows: Arc<Vec<Row>>, conditions: Conditions, version: u64 },
 }
 
 /// What came of it.
+#[expect(clippy::large_enum_variant, reason = "one answer at a time is under way")]
 pub enum Done {
     /// The rows of a file that somebody opened, or of the last session (`own`).
     Read {

@@ -60,6 +60,14 @@ pub fn look(field: Field) -> Look {
         },
         Field::VelocityX => velocity("velocity in x", "Along the array, to the right; metres a second"),
         Field::VelocityY => velocity("velocity in y", "Away from the array; metres a second"),
+        Field::CrossSection => Look {
+            unit: " dBsm",
+            speed: 0.1,
+            low: -300.0,
+            high: 200.0,
+            digits: 1,
+            ..plain("cross section", "The reflectivity as radar cross section of each reflector: σ 1 is 1 m², 0 dBsm")
+        },
         Field::Reflectivity => Look {
             speed: 0.01,
             low: -1e6,

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 /// A panel that does what it asks for, as the app would.
 fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, Vec<Command>)> {
     let draw = move |ui: &mut Ui, state: &mut (Radar, Vec<Command>)| {
-        let asked = show(ui, Input { radar: &state.0, measured });
+        let asked = show(ui, Input { radar: &state.0, measured, selected: None });
         for command in &asked {
             match command {
                 Command::Radar(RadarCommand::Set(radar)) => state.0 = (**radar).clone(),
@@ -31,7 +31,8 @@ fn type_into(panel: &mut Harness<'_, (Radar, Vec<Command>)>, label: &str, text: 
 
 #[test]
 fn every_consequence_is_in_sight_in_a_panel_beside_the_maps() {
-    let draw = |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None });
+    let draw =
+        |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None });
     let panel = Harness::builder().with_size([480.0, 700.0]).build_ui_state(draw, ());
     seen::assert_readable(panel.output());
     for label in ["range bin 7.49 cm", "one phase cycle per wavelength of range (the thesis' convention)"] {
@@ -45,7 +46,8 @@ const NARROW: [f32; 2] = [438.0, 342.0];
 #[test]
 fn every_consequence_can_be_read_in_a_small_window() {
     for width in NARROW.into_iter().chain([600.0]) {
-        let draw = |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None });
+        let draw =
+            |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None });
         let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, ());
         seen::assert_readable(panel.output());
         for label in ["range bin 7.49 cm", "maximum range", "far field", "first grating lobe", "from side to side"] {
@@ -60,7 +62,7 @@ fn every_consequence_can_be_read_in_a_small_window() {
 fn the_table_stays_where_it_is_when_the_preset_goes() {
     for width in NARROW.into_iter().chain([640.0]) {
         let place = |radar: Radar| {
-            let draw = |ui: &mut Ui, radar: &mut Radar| _ = show(ui, Input { radar, measured: None });
+            let draw = |ui: &mut Ui, radar: &mut Radar| _ = show(ui, Input { radar, measured: None, selected: None });
             let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, radar);
             panel.get_by_role_and_label(egui::accesskit::Role::SpinButton, "bandwidth").rect().top()
         };
@@ -164,4 +166,55 @@ fn a_snapshot_has_no_ranges_and_one_that_was_measured_no_bandwidth() {
     let measured = panel(radar, Some(Measured { by_all_elements: true }));
     let _told = measured.get_by_label("not known");
     assert!(measured.query_by_label_contains("2000").is_none());
+}
+
+/// The heading of the group.
+const BUDGET: &str = "Link budget";
+
+fn with_budget(size: [f32; 2]) -> Harness<'static, Radar> {
+    let draw = |ui: &mut Ui, radar: &mut Radar| {
+        let selected = Some(Selected { name: "point 1".to_owned(), place_metres: [0.0, 10.0], reflectivity: 1.0 });
+        for command in show(ui, Input { radar, measured: None, selected }) {
+            match command {
+                Command::Radar(RadarCommand::Set(changed)) => *radar = *changed,
+                other => panic!("{other:?}"),
+            }
+        }
+    };
+    Harness::builder().with_size(size).build_ui_state(draw, Radar::default())
+}
+
+#[test]
+fn the_group_is_folded_and_the_thesis_convention_is_the_default() {
+    let mut panel = with_budget([600.0, 1400.0]);
+    assert!(panel.query_by_label("Use a link budget").is_none());
+    panel.get_by_label(BUDGET).click();
+    panel.run();
+    assert!(panel.query_by_label_contains("the thesis' convention. A sample's").is_some());
+    panel.get_by_label("Use a link budget").click();
+    panel.run();
+    assert_eq!(panel.state().budget, Some(crate::radar::LinkBudget::default()));
+    // 12 + 20 - 48.2 - 33.0 - 40 dBm, over -174 + 73 + 12 dBm of noise; 512 samples under a Hann window gain 25.3 dB.
+    let told = "received with -89.2 dBm. SNR -0.2 dB in a sample, 25.1 dB in its range bin";
+    assert!(panel.query_by_label_contains(told).is_some(), "{:?}", seen::texts(panel.output()));
+    let chart = panel.get_by_label("SNR against range").rect();
+    assert!(chart.width() > 200.0 && chart.height() > 80.0, "{chart:?}");
+    panel.get_by_label("Use a link budget").click();
+    panel.run();
+    assert_eq!(panel.state(), &Radar::default());
+}
+
+#[test]
+fn its_numbers_can_be_read_in_a_narrow_panel() {
+    for width in [342.0, 438.0, 600.0] {
+        let mut panel = with_budget([width, 1600.0]);
+        panel.get_by_label(BUDGET).click();
+        panel.run();
+        panel.get_by_label("Use a link budget").click();
+        panel.run();
+        seen::assert_readable(panel.output());
+        for label in ["noise of", "MHz of noise", "there and back"] {
+            assert!(panel.get_by_label_contains(label).rect().right() <= width, "{label} at {width}");
+        }
+    }
 }

@@ -1,0 +1,215 @@
+//! The link budget in the panel of the radar: its numbers, SNR against range, and the SNR of what is selected.
+
+use super::table::{GAP, Number, Table, number};
+use crate::app::widgets::axes::Axis;
+use crate::app::widgets::chart::Chart;
+use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::theme::Inks;
+use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
+use crate::radar::{LinkBudget, Radar};
+use eframe::egui::{CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
+
+/// An object whose SNR the link budget tells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selected {
+    /// What people call it.
+    pub name: String,
+    /// Where it stands, (x, y) in metres.
+    pub place_metres: [f64; 2],
+    /// Reflectivity of each of its reflectors.
+    pub reflectivity: f64,
+}
+
+/// The group's heading.
+pub(super) const HEADING: &str = "Link budget";
+
+/// Height and largest width of the chart, points.
+const CHART: [f32; 2] = [170.0, 560.0];
+
+/// Cross section for which SNR is drawn at first, dBsm: about that of a car from behind.
+const CAR_DBSM: f64 = 10.0;
+
+/// Least SNR that is drawn, dB.
+const LEAST_DB: f64 = -30.0;
+
+/// Points of a curve.
+const POINTS: u32 = 120;
+
+/// Width of an element's pattern where one is chosen, degrees.
+const USUAL_WIDTH_DEGREES: f64 = 80.0;
+
+/// What holds without a budget.
+const WITHOUT: &str = "None: the thesis' convention. A sample's amplitude is P σ / R², levels in dBm are those of samples, and elements are \
+                       isotropic. The floor Receiver takes the usual budget: 12 dBm, 10 dBi, 12 dB.";
+
+/// What the figures leave out.
+const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. What is lost between two cells is left out.";
+
+const TRANSMIT_POWER: Number = Number {
+    name: "transmit power",
+    tooltip: "What a transmitter sends. No sample depends on it: it says how strong the noise beneath them is",
+    unit: " dBm",
+    speed: 0.2,
+    low: -100.0,
+    high: 150.0,
+    decimals: 1,
+};
+const ANTENNA_GAIN: Number = Number {
+    name: "antenna gain",
+    tooltip: "Of one element straight ahead, for sending and for hearing",
+    unit: " dBi",
+    speed: 0.1,
+    low: -50.0,
+    high: 100.0,
+    decimals: 1,
+};
+const NOISE_FIGURE: Number = Number {
+    name: "noise figure",
+    tooltip: "What a receiver adds to the noise that it is given. Below 0 dB it would take some away",
+    unit: " dB",
+    speed: 0.1,
+    low: 0.0,
+    high: 100.0,
+    decimals: 1,
+};
+const CHIRP: Number = Number {
+    name: "chirp",
+    tooltip: "Time that the samples span. The receiver's bandwidth is the rate at which they are taken",
+    unit: " µs",
+    speed: 0.1,
+    low: 0.1,
+    high: 1e5,
+    decimals: 2,
+};
+
+/// Draws the group.
+pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&Selected>) {
+    CollapsingHeader::new(HEADING).id_salt(HEADING).show_unindented(ui, |ui| {
+        let mut has = radar.budget.is_some();
+        let tooltip = "Noise and SNR by the radar equation. Reflectivity 1 is a radar cross section of 1 m²: 0 dBsm";
+        if ui.checkbox(&mut has, "Use a link budget").on_hover_text(tooltip).changed() {
+            radar.budget = has.then(LinkBudget::default);
+        }
+        let Some(budget) = radar.budget else {
+            ui.add(Label::new(WITHOUT).wrap());
+            return;
+        };
+        match table.consequence_width {
+            Some(_) => {
+                _ = Grid::new(HEADING).num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
+                    numbers(ui, table, radar, budget);
+                });
+            }
+            None => numbers(ui, table, radar, budget),
+        }
+        curve(ui, radar);
+        if let Some(selected) = selected {
+            ui.add(Label::new(told(radar, selected)).wrap());
+        }
+        ui.weak(LEFT_OUT);
+    });
+}
+
+fn numbers(ui: &mut Ui, table: Table, radar: &mut Radar, mut budget: LinkBudget) {
+    let text = format!("1 m² at 10 m is received with {:.1} dBm", radar.received(0.0, 10.0).0);
+    if let Some(dbm) = number(ui, table, &TRANSMIT_POWER, budget.transmit_power_dbm, &text, true) {
+        budget.transmit_power_dbm = dbm;
+    }
+    let text = format!("{:.1} dB on the way there and back", 2.0 * budget.antenna_gain_dbi);
+    if let Some(dbi) = number(ui, table, &ANTENNA_GAIN, budget.antenna_gain_dbi, &text, true) {
+        budget.antenna_gain_dbi = dbi;
+    }
+    pattern(ui, table, &mut budget);
+    let text = format!("noise of {:.1} dBm in a sample", radar.receiver_noise().0);
+    if let Some(db) = number(ui, table, &NOISE_FIGURE, budget.noise_figure_db, &text, true) {
+        budget.noise_figure_db = db;
+    }
+    let text = format!("{:.2} MHz of noise: samples a second", radar.sample_rate_hz() * 1e-6);
+    if let Some(microseconds) = number(ui, table, &CHIRP, radar.chirp_seconds * 1e6, &text, true) {
+        radar.chirp_seconds = microseconds * 1e-6;
+    }
+    radar.budget = Some(budget);
+}
+
+/// Isotropic elements, or the width of their pattern.
+fn pattern(ui: &mut Ui, table: Table, budget: &mut LinkBudget) {
+    let tooltip = "Half-power width of an element: what it sends and hears falls as a power of the cosine of the angle off broadside. It changes \
+                   the samples";
+    let text = match budget.pattern() {
+        None => "alike in all directions".to_owned(),
+        Some(pattern) => {
+            let lost = -40.0 * pattern.amplitude(0.5).log10();
+            format!("cos^{:.1} of the angle; {lost:.1} dB are lost there and back at 60°", pattern.exponent())
+        }
+    };
+    table.row(ui, ("element's width", tooltip), &text, |ui, label| {
+        ui.horizontal(|ui| {
+            let mut has = budget.half_power_width_degrees.is_some();
+            if ui.checkbox(&mut has, "").labelled_by(label).on_hover_text("Elements with a pattern").changed() {
+                budget.half_power_width_degrees = has.then_some(USUAL_WIDTH_DEGREES);
+            }
+            match &mut budget.half_power_width_degrees {
+                Some(degrees) => {
+                    let field = NumberField::new(degrees).range(1.0..=179.0).speed(0.5).max_decimals(1).suffix("°");
+                    ui.add(field).labelled_by(label).on_hover_text(tooltip);
+                }
+                None => _ = ui.weak("isotropic"),
+            }
+        });
+    });
+}
+
+/// SNR against range of an object of a cross section that is chosen beside it.
+fn curve(ui: &mut Ui, radar: &Radar) {
+    let id = ui.scope_id().with("cross section");
+    let mut dbsm = ui.data(|d| d.get_temp(id)).unwrap_or(CAR_DBSM);
+    ui.horizontal(|ui| {
+        let tooltip =
+            "Radar cross section of the object whose SNR is drawn. A car has about 10 dBsm, a person 0, a post -10";
+        let label = ui.label("cross section").on_hover_text(tooltip);
+        let field = NumberField::new(&mut dbsm).range(-100.0..=100.0).speed(0.2).max_decimals(1).suffix(" dBsm");
+        if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
+            ui.data_mut(|d| d.insert_temp(id, dbsm));
+        }
+    });
+    let at_one_metre = radar.link(dbsm, 1.0, 1.0);
+    let falls = range_of_snr_metres(DETECTION_SNR, at_one_metre.array, 1.0);
+    ui.label(format!("By the whole array its SNR falls to {:.0} dB at {falls:.1} m.", DETECTION_SNR.0));
+    let most = 1.25 * falls.max(radar.max_range_metres());
+    let at = |range: f64, of: f64| of - 40.0 * range.log10();
+    let [sample, array] = [at_one_metre.sample.0, at_one_metre.array.0];
+    let high = at(most / 20.0, array).max(LEAST_DB + 10.0);
+    let size = vec2(ui.available_width().min(CHART[1]), CHART[0]);
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let (x, y) = (Axis::new(0.0, most, "range, m"), Axis::new(LEAST_DB, high, "SNR, dB"));
+    let drawn = Chart { name: "SNR against range", x, y }.show(ui, area, Sense::hover());
+    let inks = Inks::of(ui.visuals());
+    let points = |of: f64| {
+        (1..=POINTS).map(move |i| f64::from(i) / f64::from(POINTS) * most).map(move |range| [range, at(range, of)])
+    };
+    drawn.line([[0.0, DETECTION_SNR.0], [most, DETECTION_SNR.0]], Stroke::new(1.0, inks.grid_text), Some([4.0, 4.0]));
+    drawn.upright(radar.max_range_metres(), Stroke::new(1.0, inks.ends[0].gamma_multiply(0.6)));
+    drawn.line(points(sample), Stroke::new(1.5, inks.ends[1]), Some([6.0, 3.0]));
+    drawn.line(points(array), Stroke::new(2.0, inks.selected), None);
+    drawn.dot([falls, DETECTION_SNR.0], 4.0, inks.selected);
+    if let Some(pos) = drawn.response.hover_pos() {
+        let range = drawn.x_at(pos).max(most * 1e-3);
+        let [received, sample, array] = [at_one_metre.received.0, sample, array].map(|of| at(range, of));
+        let told = format!("{range:.1} m: {received:.1} dBm\n{sample:.1} dB a sample, {array:.1} dB by the array");
+        drawn.response.on_hover_text_at_pointer(told);
+    }
+    ui.weak("Line: by the whole array. Dashes: in a sample. Upright: where ranges wrap around.");
+}
+
+/// The SNR of what is selected.
+fn told(radar: &Radar, selected: &Selected) -> String {
+    let Selected { name, place_metres: [x, y], reflectivity } = selected;
+    let range = x.hypot(*y).max(1e-3);
+    let dbsm = cross_section_dbsm(*reflectivity);
+    let link = radar.link(dbsm, range, y / range);
+    format!(
+        "{name}, {dbsm:.1} dBsm at {range:.1} m: received with {:.1} dBm. SNR {:.1} dB in a sample, {:.1} dB in its range bin, {:.1} dB by one \
+         end, {:.1} dB by the whole array.",
+        link.received.0, link.sample.0, link.range.0, link.end.0, link.array.0
+    )
+}

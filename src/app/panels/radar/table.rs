@@ -1,0 +1,96 @@
+//! The rows of the panel of the radar: a name, a value, and what follows from it.
+
+use crate::app::widgets::number_field::NumberField;
+use eframe::egui::{Color32, Id, Label, TextStyle, Ui};
+
+/// Between two columns, points.
+pub(super) const GAP: f32 = 12.0;
+
+/// Width of the widest value, two names of windows beside each other, points.
+const VALUE_WIDTH: f32 = 170.0;
+
+/// The least width of a column of consequences, points: in less, a sentence is torn into single words.
+const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
+
+/// How the constants stand in the panel.
+#[derive(Clone, Copy)]
+pub(super) struct Table {
+    /// Width of the longest name of a constant, points.
+    pub name_width: f32,
+    /// Width of the column of consequences; `None` where there is no room for one: then each stands below its constant.
+    pub consequence_width: Option<f32>,
+}
+
+impl Table {
+    /// The table whose constants have these names.
+    pub fn that_fits<const N: usize>(ui: &Ui, names: [&str; N]) -> Table {
+        let font = TextStyle::Body.resolve(ui.style());
+        let width =
+            |name: &str| ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
+        let name_width = names.into_iter().map(width).fold(0.0, f32::max);
+        let left = ui.available_width() - name_width - VALUE_WIDTH - 2.0 * GAP;
+        Table { name_width, consequence_width: Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH) }
+    }
+
+    /// A row: the name, what `value` draws, what follows.
+    pub fn row<T>(
+        self,
+        ui: &mut Ui,
+        (name, tooltip): (&str, &str),
+        consequence: &str,
+        value: impl FnOnce(&mut Ui, Id) -> T,
+    ) -> T {
+        let consequence = Label::new(consequence).wrap();
+        let Some(width) = self.consequence_width else {
+            let value = ui.horizontal(|ui| {
+                let label = ui.label(name).on_hover_text(tooltip);
+                ui.add_space((self.name_width - label.rect.width()).max(0.0) + GAP);
+                value(ui, label.id)
+            });
+            ui.indent(("consequence", name), |ui| ui.add(consequence));
+            return value.inner;
+        };
+        let label = ui.label(name).on_hover_text(tooltip);
+        let value = value(ui, label.id);
+        ui.vertical(|ui| {
+            ui.set_max_width(width);
+            ui.add(consequence);
+        });
+        ui.end_row();
+        value
+    }
+}
+
+/// A number of the radar.
+pub(super) struct Number {
+    pub name: &'static str,
+    pub tooltip: &'static str,
+    pub unit: &'static str,
+    pub speed: f64,
+    pub low: f64,
+    pub high: f64,
+    pub decimals: usize,
+}
+
+/// A row: name, the number in its unit, what follows. The number as it is after an edit, where there was one.
+pub(super) fn number(
+    ui: &mut Ui,
+    table: Table,
+    field: &Number,
+    value: f64,
+    consequence: &str,
+    is_free: bool,
+) -> Option<f64> {
+    let mut edited = value;
+    let changed = table.row(ui, (field.name, field.tooltip), consequence, |ui, label| {
+        let number = NumberField::new(&mut edited)
+            .range(field.low..=field.high)
+            .clamp_existing_to_range(false)
+            .speed(field.speed)
+            .max_decimals(field.decimals)
+            .suffix(field.unit);
+        ui.add_enabled(is_free, number).labelled_by(label).on_hover_text(field.tooltip).changed()
+    });
+    let step = 10f64.powi(-(field.decimals as i32));
+    (changed && (edited - value).abs() >= 0.5 * step).then_some(edited)
+}

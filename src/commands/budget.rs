@@ -1,0 +1,161 @@
+//! `apertura budget`: SNR by the radar equation.
+
+use super::{CommandError, print};
+use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
+use crate::radar::{Decibels, LinkBudget, LinkFigures, Radar};
+use crate::scene::Object;
+use crate::scene::file::{SceneFile, load};
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Print the link budget of a radar: how strong an object is received by the radar equation, and over how much noise
+///
+/// The numbers are those of [radar.budget] in the scene: transmit_power_dbm, antenna_gain_dbi, noise_figure_db, and half_power_width_degrees
+/// where elements have a pattern. Without that table they are the usual ones: 12 dBm, 10 dBi, 12 dB, isotropic. Noise is kTBF at 290 K in the
+/// bandwidth samples / chirp_seconds. The SNR of each object of the scene that is made of points follows, where it stands. Ends
+/// and array add their elements in phase, as a map does beyond the far field. What is lost between two cells is left out.
+///
+/// --json prints one object: budget, sample_rate_hz, object and objects (name, cross_section_dbsm, range_metres, angle_degrees, received_dbm,
+/// noise_dbm, and SNR as sample_snr_db, range_snr_db in a range bin, end_snr_db and array_snr_db by one end and by the whole array), and
+/// detected_to_metres (the range at which array_snr_db falls to 13 dB).
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene (.toml) whose radar and objects are taken [default: table 3.1, no object]
+    scene: Option<PathBuf>,
+
+    /// Radar cross section of the object, dBsm
+    #[arg(long, value_name = "DBSM", default_value = "10", value_parser = decibels, allow_hyphen_values = true)]
+    cross_section_dbsm: Decibels,
+
+    /// Its range, metres
+    #[arg(long, value_name = "METRES", default_value = "50", value_parser = metres, allow_hyphen_values = true)]
+    range: f64,
+
+    /// Its angle off broadside, degrees
+    #[arg(long, value_name = "DEGREES", default_value = "0", value_parser = degrees, allow_hyphen_values = true)]
+    angle: f64,
+
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+fn number(text: &str, is_usable: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|number| is_usable(*number)).ok_or_else(|| expected.to_owned())
+}
+
+fn decibels(text: &str) -> Result<Decibels, String> {
+    number(text, |db| (-200.0..=200.0).contains(&db), "expected decibels between -200 and 200").map(Decibels)
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    number(text, |m| (1e-3..=1e9).contains(&m), "expected metres from 0.001 to 1e9")
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    number(text, |a| (-90.0..=90.0).contains(&a), "expected degrees off broadside, -90 to 90")
+}
+
+/// One object.
+#[derive(Debug, Serialize)]
+struct Row {
+    name: String,
+    cross_section_dbsm: f64,
+    range_metres: f64,
+    angle_degrees: f64,
+    received_dbm: f64,
+    noise_dbm: f64,
+    sample_snr_db: f64,
+    range_snr_db: f64,
+    end_snr_db: f64,
+    array_snr_db: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    budget: LinkBudget,
+    sample_rate_hz: f64,
+    object: Row,
+    detected_to_metres: f64,
+    objects: Vec<Row>,
+}
+
+impl Row {
+    fn new(radar: &Radar, name: String, dbsm: f64, range_metres: f64, angle_degrees: f64) -> Row {
+        let LinkFigures { received, noise, sample, range, end, array } =
+            radar.link(dbsm, range_metres, angle_degrees.to_radians().cos());
+        Row {
+            name,
+            cross_section_dbsm: dbsm,
+            range_metres,
+            angle_degrees,
+            received_dbm: received.0,
+            noise_dbm: noise.0,
+            sample_snr_db: sample.0,
+            range_snr_db: range.0,
+            end_snr_db: end.0,
+            array_snr_db: array.0,
+        }
+    }
+
+    /// An object of a scene; `None` for a body, and for one that reflects nothing.
+    fn of(radar: &Radar, (index, object): (usize, &Object)) -> Option<Row> {
+        if object.body().is_some() || object.reflectivity() == 0.0 {
+            return None;
+        }
+        let [x, y] = object.centre_metres();
+        let name = format!("{} {}", object.noun(), index + 1);
+        let dbsm = cross_section_dbsm(object.reflectivity());
+        Some(Row::new(radar, name, dbsm, x.hypot(y).max(1e-3), x.atan2(y).to_degrees()))
+    }
+}
+
+impl Args {
+    /// Computes and prints.
+    pub fn run(self) -> Result<(), CommandError> {
+        let file = match &self.scene {
+            Some(path) => load(path).map_err(CommandError::failed)?,
+            None => SceneFile::default(),
+        };
+        let radar = &file.radar;
+        let object = Row::new(radar, "object".to_owned(), self.cross_section_dbsm.0, self.range, self.angle);
+        let report = Report {
+            budget: radar.budget_or_usual(),
+            sample_rate_hz: radar.sample_rate_hz(),
+            detected_to_metres: range_of_snr_metres(DETECTION_SNR, Decibels(object.array_snr_db), self.range),
+            object,
+            objects: file.scene.objects.iter().enumerate().filter_map(|o| Row::of(radar, o)).collect(),
+        };
+        match self.json {
+            true => print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?),
+            false => print(&report.text(radar.budget.is_some())),
+        }
+    }
+}
+
+impl Report {
+    fn text(&self, is_own: bool) -> String {
+        let LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees } =
+            self.budget;
+        let whose = if is_own { "" } else { " (the usual ones: the radar has no budget)" };
+        let elements = half_power_width_degrees.map_or("isotropic".to_owned(), |width| format!("of {width} degrees"));
+        let mut text = format!(
+            "transmit power {transmit_power_dbm} dBm, antenna gain {antenna_gain_dbi} dBi, elements {elements}, noise figure {noise_figure_db} \
+             dB{whose}\nbandwidth of the noise {:.3} MHz: {:.2} dBm in a sample\n\n",
+            self.sample_rate_hz * 1e-6,
+            self.object.noise_dbm
+        );
+        let head = ["dBsm", "range m", "angle", "dBm", "sample dB", "range dB", "end dB", "array dB"];
+        _ = write!(text, "{:<14}", "");
+        head.iter().for_each(|name| _ = write!(text, "{name:>10}"));
+        for row in std::iter::once(&self.object).chain(&self.objects) {
+            _ = write!(text, "\n{:<14}{:>10.1}{:>10.2}", row.name, row.cross_section_dbsm, row.range_metres);
+            _ = write!(text, "{:>10.1}{:>10.1}{:>10.1}", row.angle_degrees, row.received_dbm, row.sample_snr_db);
+            _ = write!(text, "{:>10.1}{:>10.1}{:>10.1}", row.range_snr_db, row.end_snr_db, row.array_snr_db);
+        }
+        let (least, to) = (DETECTION_SNR.0, self.detected_to_metres);
+        _ = write!(text, "\n\nSNR by the whole array falls to {least:.0} dB at {to:.1} m");
+        text
+    }
+}
