@@ -432,26 +432,6 @@ mod tests {
             (point, 1, vec!["object 1", "y_metres"]),
             (&format!("{point}y_metres = \"two\"\n"), 4, vec!["object 1", "string", "f64"]),
             (&format!("{point}y_metres = 2\ncolour = 1\n"), 5, vec!["object 1", "colour", "reflectivity"]),
-            (
-                &format!("{point}y_metres = 2\ncross_section_dbsm = nan\n"),
-                5,
-                vec!["object 1", "is NaN", "-2000 to 2000"],
-            ),
-            (
-                &format!("{point}y_metres = 2\nreflectivity = 1\ncross_section_dbsm = 0\n"),
-                6,
-                vec!["object 1", "beside reflectivity", "one of the two"],
-            ),
-            (
-                "[[object]]\nkind = \"wall\"\ncross_section_dbsm = 3\n",
-                3,
-                vec!["object 1", "a wall has no cross_section_dbsm", "shape"],
-            ),
-            (
-                "[radar.budget]\nnoise_figure_db = -1",
-                1,
-                vec!["radar.budget.noise_figure_db is -1", "0 to 100 dB", "take some away"],
-            ),
             (&format!("{point}y_metres = nan\n"), 4, vec!["object 1", "y_metres", "NaN", "finite"]),
             (&format!("{point}y_metres = 2\n{point}y_metres = 1e13\n"), 8, vec!["object 2", "1e12"]),
             (
@@ -481,6 +461,37 @@ mod tests {
             ("a = 1\na = 2", 2, vec!["duplicate"]),
         ] {
             let error = from_toml(text).unwrap_err();
+            assert_eq!(error.line, line, "{text}\n{error}");
+            assert!(parts.iter().all(|p| error.message.contains(p)), "{text}\n{error}");
+        }
+    }
+
+    #[test]
+    fn faults_of_the_link_budget_name_what_is_allowed() {
+        let point = "[[object]]\nkind = \"point\"\nx_metres = 1\n";
+        for (text, line, parts) in [
+            (
+                format!("{point}y_metres = 2\ncross_section_dbsm = nan\n"),
+                5,
+                vec!["object 1", "is NaN", "-2000 to 2000"],
+            ),
+            (
+                format!("{point}y_metres = 2\nreflectivity = 1\ncross_section_dbsm = 0\n"),
+                6,
+                vec!["object 1", "beside reflectivity", "one of the two"],
+            ),
+            (
+                "[[object]]\nkind = \"wall\"\ncross_section_dbsm = 3\n".to_owned(),
+                3,
+                vec!["object 1", "a wall has no cross_section_dbsm", "shape"],
+            ),
+            (
+                "[radar.budget]\nnoise_figure_db = -1".to_owned(),
+                1,
+                vec!["radar.budget.noise_figure_db is -1", "0 to 100 dB", "take some away"],
+            ),
+        ] {
+            let error = from_toml(&text).unwrap_err();
             assert_eq!(error.line, line, "{text}\n{error}");
             assert!(parts.iter().all(|p| error.message.contains(p)), "{text}\n{error}");
         }

@@ -60,6 +60,13 @@ pub fn look(field: Field) -> Look {
         },
         Field::VelocityX => velocity("velocity in x", "Along the array, to the right; metres a second"),
         Field::VelocityY => velocity("velocity in y", "Away from the array; metres a second"),
+        Field::CrossSection | Field::Reflectivity => look_of_strength(field, plain),
+    }
+}
+
+/// The same for how much is reflected.
+fn look_of_strength(field: Field, plain: impl Fn(&'static str, &'static str) -> Look) -> Look {
+    match field {
         Field::CrossSection => Look {
             unit: " dBsm",
             speed: 0.1,
@@ -68,7 +75,7 @@ pub fn look(field: Field) -> Look {
             digits: 1,
             ..plain("cross section", "The reflectivity as radar cross section of each reflector: σ 1 is 1 m², 0 dBsm")
         },
-        Field::Reflectivity => Look {
+        _ => Look {
             speed: 0.01,
             low: -1e6,
             high: 1e6,
