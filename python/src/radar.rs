@@ -26,7 +26,7 @@ use pyo3::types::{PyDict, PyType};
 ///     convention: "thesis" or "physical" in place of carrier. Without element_spacing_metres the elements are filled for it.
 ///     window: "hann", "hamming", "blackman" or "rectangular".
 ///     transmitter_x_metres: Places of transmitters that stand apart from receivers. Each pair is an element halfway between both, and the
-///         pairs must make one line without gaps: they say elements and element_spacing_metres.
+///         pairs must stand at even places: they say elements and element_spacing_metres.
 ///     receiver_x_metres: Places of the receivers.
 ///     chirps: Chirps that are sent one after another; `range_doppler` sees all of them, everything else the first.
 ///     chirp_interval_seconds: From the beginning of a chirp to that of the next: at least chirp_seconds where there are several.

@@ -124,7 +124,7 @@ impl Engine {
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
     pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
         let begin = Instant::now();
-        if !scene.disturbances.is_none() {
+        if !scene.disturbances.is_none_to(&self.radar) {
             return self.settle_for(task, scene, wanted);
         }
         scene.validate(&self.radar)?;

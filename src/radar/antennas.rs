@@ -14,18 +14,25 @@ const MOST: usize = 65536;
 /// How far the elements that pairs make may stand off an even line, as a part of the spacing.
 const MOST_OFF: f64 = 0.01;
 
+/// Midpoints nearer to each other than this stand at one place, as a part of their mean distance.
+const ONE_PLACE: f64 = 0.02;
+
+/// Into how many spacings the smallest distance of midpoints may be divided: distances of 2 and 3 spacings alone need 2.
+const MOST_DIVISIONS: usize = 4;
+
 /// How far the middle of the line may lie off x = 0 without being moved there, as a part of the spacing.
 const CENTRED: f64 = 1e-6;
 
-/// Transmitters and receivers on the x axis whose pairs make a line of elements without gaps.
+/// Transmitters and receivers on the x axis whose pairs make a line of elements at even places.
 ///
-/// x = 0 is the middle of that line. Pairs are numbered from the leftmost element to the rightmost.
+/// x = 0 is the middle of that line. Elements are numbered from the left. A place that no pair makes is a gap: its element hears nothing. Of
+/// pairs at one place the first counts, by number of transmitter.
 #[derive(Clone, PartialEq)]
 pub struct Antennas {
     transmitter_x_metres: Arc<[f64]>,
     receiver_x_metres: Arc<[f64]>,
-    /// Numbers of transmitter and receiver of each pair.
-    pairs: Arc<[[usize; 2]]>,
+    /// Numbers of transmitter and receiver of each element; nothing at a gap.
+    pairs: Arc<[Option<[usize; 2]>]>,
 }
 
 impl fmt::Debug for Antennas {
@@ -53,54 +60,107 @@ pub enum AntennasError {
         /// Receivers.
         receivers: usize,
     },
-    /// The pairs make no even line.
+    /// The pairs don't stand on one even line.
     #[error(
-        "the midpoints of pairs {} and {} stand {:.3} mm apart, those of all pairs {:.3} mm on average; expected one line of midpoints \
-         without gaps: this program knows no other arrays of pairs",
-        after + 1, after + 2, apart_metres * 1e3, spacing_metres * 1e3
+        "the midpoint of transmitter {} and receiver {} stands {:.3} mm off the even line of the others, {:.3} mm apart; expected at most {:.3} mm",
+        transmitter + 1, receiver + 1, off_metres * 1e3, spacing_metres * 1e3, MOST_OFF * spacing_metres * 1e3
     )]
-    Gap {
-        /// Number of the pair on the left.
-        after: usize,
-        /// Distance to the next.
-        apart_metres: f64,
-        /// Mean distance.
+    Uneven {
+        /// Number of the transmitter.
+        transmitter: usize,
+        /// Number of the receiver.
+        receiver: usize,
+        /// How far it stands off.
+        off_metres: f64,
+        /// Distance between neighbouring places.
         spacing_metres: f64,
     },
+    /// All pairs stand at one place.
+    #[error("all pairs have one midpoint; expected a line of them")]
+    OnePlace,
+    /// The places that pairs leave free make the line too long.
+    #[error("the pairs stand on a line of {elements} places; expected {FEWEST} to {MOST}")]
+    Line {
+        /// Places of the line, gaps too.
+        elements: usize,
+    },
+}
+
+/// The pairs from left to right, and where the midpoint of each stands.
+struct Midpoints {
+    pairs: Vec<[usize; 2]>,
+    x_metres: Vec<f64>,
+}
+
+impl Midpoints {
+    fn of(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Self {
+        let midpoint = |[t, r]: [usize; 2]| (transmitter_x_metres[t] + receiver_x_metres[r]) / 2.0;
+        let receivers = receiver_x_metres.len();
+        let mut pairs: Vec<[usize; 2]> =
+            (0..transmitter_x_metres.len()).flat_map(|t| (0..receivers).map(move |r| [t, r])).collect();
+        pairs.sort_by(|a, b| midpoint(*a).total_cmp(&midpoint(*b)));
+        Midpoints { x_metres: pairs.iter().map(|pair| midpoint(*pair)).collect(), pairs }
+    }
+
+    fn length_metres(&self) -> f64 {
+        self.x_metres[self.x_metres.len() - 1] - self.x_metres[0]
+    }
+
+    /// The place of each on the line whose neighbouring places stand `spacing_metres` apart, from 0.
+    fn places(&self, spacing_metres: f64) -> impl Iterator<Item = f64> {
+        self.x_metres.iter().map(move |x| ((x - self.x_metres[0]) / spacing_metres).round())
+    }
+
+    /// The largest spacing of a line that all stand on.
+    fn spacing_metres(&self) -> Result<f64, AntennasError> {
+        let mean = self.length_metres() / (self.x_metres.len() - 1) as f64;
+        let apart = self.x_metres.windows(2).map(|two| two[1] - two[0]).filter(|apart| *apart > ONE_PLACE * mean);
+        let smallest = apart.fold(f64::INFINITY, f64::min);
+        if !(smallest.is_finite() && mean > 0.0) {
+            return Err(AntennasError::OnePlace);
+        }
+        let even = |divisions: usize| self.even(smallest / divisions as f64);
+        (2..=MOST_DIVISIONS).fold(even(1), |found, divisions| found.or_else(|first| even(divisions).or(Err(first))))
+    }
+
+    /// `about_metres`, made to fit the whole line, or which pair stands off it.
+    fn even(&self, about_metres: f64) -> Result<f64, AntennasError> {
+        let spacing_metres = self.length_metres() / (self.length_metres() / about_metres).round();
+        for (i, place) in self.places(spacing_metres).enumerate() {
+            let off_metres = (self.x_metres[i] - self.x_metres[0] - place * spacing_metres).abs();
+            if off_metres > MOST_OFF * spacing_metres {
+                let [transmitter, receiver] = self.pairs[i];
+                return Err(AntennasError::Uneven { transmitter, receiver, off_metres, spacing_metres });
+            }
+        }
+        Ok(spacing_metres)
+    }
 }
 
 impl Antennas {
     /// Antennas at these places, metres along x. The middle of the line that their pairs make is moved to x = 0.
     ///
     /// # Errors
-    /// [`AntennasError`] where their pairs make no line of 6 to 65536 elements without gaps.
+    /// [`AntennasError`] where their pairs make no line of 6 to 65536 even places.
     pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, AntennasError> {
-        for (list, places) in [("transmitter_x_metres", transmitter_x_metres), ("receiver_x_metres", receiver_x_metres)]
-        {
-            let found = match places.iter().find(|x| !x.is_finite()) {
-                Some(x) => x.to_string(),
-                None if places.is_empty() => "no numbers".to_owned(),
-                None => continue,
-            };
-            return Err(AntennasError::Places { list, found });
-        }
+        check_places("transmitter_x_metres", transmitter_x_metres)?;
+        check_places("receiver_x_metres", receiver_x_metres)?;
         let (transmitters, receivers) = (transmitter_x_metres.len(), receiver_x_metres.len());
         if !(FEWEST..=MOST).contains(&transmitters.saturating_mul(receivers)) {
             return Err(AntennasError::Count { transmitters, receivers });
         }
-        let midpoint = |[t, r]: [usize; 2]| (transmitter_x_metres[t] + receiver_x_metres[r]) / 2.0;
-        let mut pairs: Vec<[usize; 2]> = (0..transmitters).flat_map(|t| (0..receivers).map(move |r| [t, r])).collect();
-        pairs.sort_by(|a, b| midpoint(*a).total_cmp(&midpoint(*b)));
-        let (first, last) = (midpoint(pairs[0]), midpoint(pairs[pairs.len() - 1]));
-        let spacing_metres = (last - first) / (pairs.len() - 1) as f64;
-        for (after, two) in pairs.windows(2).enumerate() {
-            let apart_metres = midpoint(two[1]) - midpoint(two[0]);
-            let is_even = (apart_metres - spacing_metres).abs() <= MOST_OFF * spacing_metres;
-            if !(is_even && spacing_metres > 0.0) {
-                return Err(AntennasError::Gap { after, apart_metres, spacing_metres });
-            }
+        let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
+        let spacing_metres = midpoints.spacing_metres()?;
+        let elements = (midpoints.length_metres() / spacing_metres).round() + 1.0;
+        if !(FEWEST as f64..=MOST as f64).contains(&elements) {
+            return Err(AntennasError::Line { elements: elements as usize });
         }
-        let middle = (first + last) / 2.0;
+        let mut pairs = vec![None; elements as usize];
+        for (pair, place) in midpoints.pairs.iter().zip(midpoints.places(spacing_metres)) {
+            let at: &mut Option<[usize; 2]> = &mut pairs[place as usize];
+            *at = at.map_or(Some(*pair), |first| Some(first.min(*pair)));
+        }
+        let middle = (midpoints.x_metres[0] + midpoints.x_metres[midpoints.x_metres.len() - 1]) / 2.0;
         let shift = if middle.abs() <= CENTRED * spacing_metres { 0.0 } else { middle };
         let moved = |places: &[f64]| places.iter().map(|x| x - shift).collect();
         Ok(Antennas {
@@ -133,22 +193,33 @@ impl Antennas {
         &self.receiver_x_metres
     }
 
-    /// Numbers of transmitter and receiver of each element, the leftmost element first.
-    pub fn pairs(&self) -> &[[usize; 2]] {
+    /// Numbers of transmitter and receiver of each element, the leftmost element first; nothing at a gap.
+    pub fn pairs(&self) -> &[Option<[usize; 2]>] {
         &self.pairs
     }
 
-    /// The antennas of element `n`; `None` beyond the last.
+    /// Places that no pair makes.
+    pub fn gaps(&self) -> usize {
+        self.pairs.iter().filter(|pair| pair.is_none()).count()
+    }
+
+    /// Pairs at the place of another, which are left out.
+    pub fn left_out(&self) -> usize {
+        self.transmitter_x_metres.len() * self.receiver_x_metres.len() - (self.pairs.len() - self.gaps())
+    }
+
+    /// The antennas of element `n`; `None` at a gap and beyond the last element.
     pub fn pair(&self, n: usize) -> Option<Pair> {
-        let [t, r] = *self.pairs.get(n)?;
+        let [t, r] = (*self.pairs.get(n)?)?;
         Some(Pair { transmitter_x_metres: self.transmitter_x_metres[t], receiver_x_metres: self.receiver_x_metres[r] })
     }
 
     /// Distance between neighbouring elements, metres.
     pub fn spacing_metres(&self) -> f64 {
+        let mut made = self.pairs.iter().flatten();
         let midpoint = |[t, r]: [usize; 2]| (self.transmitter_x_metres[t] + self.receiver_x_metres[r]) / 2.0;
-        let last = self.pairs.len() - 1;
-        (midpoint(self.pairs[last]) - midpoint(self.pairs[0])) / last as f64
+        let [first, last] = [made.next(), made.next_back()].map(|pair| pair.map_or(0.0, |pair| midpoint(*pair)));
+        (last - first) / (self.pairs.len() - 1) as f64
     }
 
     /// The leftmost and the rightmost antenna, metres.
@@ -166,6 +237,15 @@ impl Antennas {
             pairs: self.pairs.clone(),
         }
     }
+}
+
+fn check_places(list: &'static str, places: &[f64]) -> Result<(), AntennasError> {
+    let found = match places.iter().find(|x| !x.is_finite()) {
+        Some(x) => x.to_string(),
+        None if places.is_empty() => "no numbers".to_owned(),
+        None => return Ok(()),
+    };
+    Err(AntennasError::Places { list, found })
 }
 
 impl Radar {
@@ -186,6 +266,16 @@ impl Radar {
             }
             _ => Radar { element_spacing_metres, ..self },
         }
+    }
+
+    /// Whether no pair of antennas makes element `n`: it hears nothing.
+    pub fn is_gap(&self, n: usize) -> bool {
+        self.antennas.as_ref().and_then(|antennas| antennas.pairs.get(n)).is_some_and(Option::is_none)
+    }
+
+    /// Elements that no pair of antennas makes.
+    pub fn gaps(&self) -> usize {
+        self.antennas.as_ref().map_or(0, Antennas::gaps)
     }
 
     /// Whether every element sends and hears by itself.
@@ -226,7 +316,8 @@ mod tests {
             let midpoint = (pair.transmitter_x_metres + pair.receiver_x_metres) / 2.0;
             assert!((midpoint - radar.element_x_metres(n)).abs() < 1e-15, "element {n}: {pair:?}");
         }
-        assert_eq!(radar.antennas.as_ref().unwrap().pairs()[5], [1, 1]);
+        assert_eq!(radar.antennas.as_ref().unwrap().pairs()[5], Some([1, 1]));
+        assert_eq!((radar.gaps(), radar.antennas.as_ref().unwrap().left_out()), (0, 0));
         assert!((radar.element_spacing_metres / radar.filled_spacing_metres() - 1.0).abs() < 1e-12);
     }
 
@@ -244,9 +335,36 @@ mod tests {
         assert!(told(&[], &[1.0]).contains("transmitter_x_metres has no numbers"));
         assert!(told(&[0.0], &[f64::NAN]).contains("receiver_x_metres has NaN"));
         assert!(told(&[0.0, 1.0], &[0.0, 0.5]).contains("make 4 elements; expected 6 to 65536"));
-        let gap = told(&[0.0, 1.0], &[0.0, 0.2, 0.4]);
-        assert!(gap.contains("pairs 1 and 2 stand 100.000 mm apart") && gap.contains("without gaps"), "{gap}");
-        assert!(told(&[0.0, 0.0], &[0.0, 0.2, 0.4]).contains("0.000 mm apart"));
+        let uneven = told(&[0.0, 1.0], &[0.0, 0.2, 0.437]);
+        assert!(uneven.contains("off the even line of the others"), "{uneven}");
+        assert!(told(&[1.0, 1.0], &[2.0; 3]).contains("one midpoint"));
+        let far = told(&[0.0, 1e3], &[0.0, 1e-3, 2e-3, 3e-3]);
+        assert!(far.contains("off the even line") || far.contains("expected 6 to 65536"), "{far}");
+    }
+
+    #[test]
+    fn a_place_that_no_pair_makes_is_a_gap() {
+        let antennas = Antennas::new(&[0.0, 1.0], &[0.0, 0.2, 0.4]).unwrap();
+        assert_eq!((antennas.pairs().len(), antennas.gaps(), antennas.left_out()), (8, 2, 0));
+        assert!((antennas.spacing_metres() - 0.1).abs() < 1e-12);
+        let radar = Radar::default().with_antennas(antennas);
+        radar.validate().unwrap();
+        assert_eq!([2, 3, 4, 5, 8].map(|n| radar.is_gap(n)), [false, true, true, false, false]);
+        assert_eq!(radar.pair(3), Pair::at(radar.element_x_metres(3)));
+    }
+
+    #[test]
+    fn distances_of_two_with_three_spacings_make_one_line() {
+        let antennas = Antennas::new(&[0.0, 10.0], &[0.0, 4.0, 10.0]).unwrap();
+        assert_eq!((antennas.spacing_metres(), antennas.pairs().len()), (1.0, 11));
+        assert_eq!(antennas.pairs().iter().flatten().count() + antennas.left_out(), 6);
+    }
+
+    #[test]
+    fn of_pairs_at_one_place_the_first_counts() {
+        let antennas = Antennas::new(&[0.0, 0.4], &[0.0, 0.2, 0.4, 0.6]).unwrap();
+        assert_eq!((antennas.pairs().len(), antennas.gaps(), antennas.left_out()), (6, 0, 2));
+        assert_eq!(antennas.pairs()[2], Some([0, 2]));
     }
 
     #[test]

@@ -62,8 +62,9 @@ impl Layout {
         Ok(Layout::of_elements(radar, chosen))
     }
 
+    /// Of these elements those that hear.
     fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
-        let elements: Vec<usize> = elements.into_iter().collect();
+        let elements: Vec<usize> = elements.into_iter().filter(|n| !radar.is_gap(*n)).collect();
         let pairs = (!radar.is_monostatic()).then(|| elements.iter().map(|n| radar.pair(*n)).collect());
         Layout { x_metres: elements.iter().map(|n| radar.element_x_metres(*n)).collect(), pairs }
     }

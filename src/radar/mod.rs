@@ -252,10 +252,9 @@ impl Radar {
     ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
-    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array, 1 to 4096 chirps), elements or a spacing other than those
-    /// that the pairs of antennas make, or counts that together ask for more than [`MAX_MEMORY_BYTES`].
-    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array), elements or a spacing other than those
-    /// that the pairs of antennas make, a budget that can't be, or counts that together ask for more than [`MAX_MEMORY_BYTES`].
+    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array, 1 to 4096 chirps), elements or a spacing
+    /// other than those that the pairs of antennas make, a budget that can't be, or counts that together ask for more than
+    /// [`MAX_MEMORY_BYTES`].
     pub fn validate(&self) -> Result<(), RadarError> {
         for (field, value) in [
             ("transmit_power_watts", self.transmit_power_watts),

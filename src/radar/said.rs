@@ -123,7 +123,7 @@ impl Said {
         let (pairs, spacing) = (antennas.pairs().len(), antennas.spacing_metres());
         if let Some(elements) = self.elements.filter(|n| *n != pairs) {
             return Err(format!(
-                "radar.elements is {elements}; the antennas make {pairs} pairs: expected that, or no such key"
+                "radar.elements is {elements}; the antennas make {pairs} places: expected that, or no such key"
             ));
         }
         let is_alike = |said: &f64| (said / spacing - 1.0).abs() < SAME_SPACING;
@@ -183,7 +183,7 @@ mod tests {
         assert!((radar.element_spacing_metres - 0.001).abs() < 1e-12);
         assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
         for (beside, told) in [
-            ("elements = 13", "elements is 13; the antennas make 12 pairs"),
+            ("elements = 13", "elements is 13; the antennas make 12 places"),
             ("element_spacing_metres = 0.002", "stand 0.00"),
         ] {
             let error = read(&format!("{antennas}{beside}")).unwrap_err();
@@ -191,8 +191,10 @@ mod tests {
         }
         let alone = read("transmitter_x_metres = [0.0]").unwrap_err();
         assert!(alone.contains("receiver_x_metres is missing"), "{alone}");
-        let gap = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.1, 0.2]").unwrap_err();
-        assert!(gap.contains("without gaps"), "{gap}");
+        let gaps = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.2, 0.4]").unwrap();
+        assert_eq!((gaps.elements, gaps.gaps()), (8, 2));
+        let uneven = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.1, 0.237]").unwrap_err();
+        assert!(uneven.contains("off the even line"), "{uneven}");
     }
 
     #[test]

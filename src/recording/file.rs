@@ -221,7 +221,9 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     let rows = table.in_element_order(&radar, rows).map_err(place)?;
     let samples = table.sorted(&radar, rows).map_err(place)?;
     let Table { mut missing, range_metres, .. } = table;
+    missing.extend((0..radar.elements).filter(|n| radar.is_gap(*n)));
     missing.sort_unstable();
+    missing.dedup();
     let doubts = doubts(&radar, &samples, document.format > oldest());
     Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres, doubts })
 }
@@ -308,7 +310,8 @@ impl Table {
         Ok(rows)
     }
 
-    /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand.
+    /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand;
+    /// zeros at gaps.
     fn in_element_order(&self, radar: &Radar, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
         let counts_pairs = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
         let Some(antennas) = &radar.antennas else { return Ok(rows) };
@@ -321,8 +324,13 @@ impl Table {
             let (found, shape) = (rows.nrows(), rows.dim());
             return Err(Fault::Count { what: "pairs of antennas", found, expected, shape });
         }
-        let order: Vec<usize> = antennas.pairs().iter().map(|[t, r]| t * receivers + r).collect();
-        Ok(rows.select(Axis(0), &order))
+        let mut ordered = Array2::zeros((radar.elements, rows.ncols()));
+        for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
+            if let Some([t, r]) = pair {
+                element.assign(&rows.row(t * receivers + r));
+            }
+        }
+        Ok(ordered)
     }
 
     fn read_capture(

@@ -1,8 +1,9 @@
 //! Disturbances that the formulas leave out: element errors, an interfering radar, a mirror.
 
 use super::{MIN_ELEMENT_DISTANCE_METRES, Reflector, SceneError};
-use crate::radar::{BuiltArray, Radar};
+use crate::radar::{BuiltArray, ElementError, Radar};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Everything that disturbs a scene; nothing by default.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -131,6 +132,23 @@ impl Disturbances {
     /// Whether there is nothing of the kind.
     pub fn is_none(&self) -> bool {
         self.elements.is_ideal() && self.interferer.is_none() && self.mirror.is_none()
+    }
+
+    /// Whether `radar` hears the scene as it is: nothing of the kind, and every place of its line has an element.
+    pub fn is_none_to(&self, radar: &Radar) -> bool {
+        self.is_none() && radar.gaps() == 0
+    }
+
+    /// The elements as `radar` has them: those at the gaps of its line are dead.
+    pub fn elements_of(&self, radar: &Radar) -> Cow<'_, BuiltArray> {
+        if radar.gaps() == 0 {
+            return Cow::Borrowed(&self.elements);
+        }
+        let of = |n| {
+            let own = self.elements.element(n);
+            ElementError { dead: own.dead || radar.is_gap(n), ..own }
+        };
+        Cow::Owned(BuiltArray { elements: (0..radar.elements).map(of).collect() })
     }
 
     /// Checks that every number is usable and that the elements are those of `radar`.

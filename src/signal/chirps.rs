@@ -70,8 +70,8 @@ pub fn simulate_chirps_for(
     floor: Floor,
     seed: u64,
 ) -> Result<ChirpSamples, Unfinished> {
-    let array = &scene.disturbances.elements;
     scene.validate(radar)?;
+    let array = &*scene.disturbances.elements_of(radar);
     array.validate(radar).map_err(SceneError::from)?;
     let moving = Moving::of(scene);
     if moving != Moving::Nothing {
@@ -168,11 +168,11 @@ fn at_rest(
 ) -> Array2<Complex64> {
     let plan = Plan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
     let of = |range: Range<usize>| samples_of(radar, rest.into(), &plan, range, task);
-    let [first, last] = if scene.disturbances.is_none() {
+    let [first, last] = if scene.disturbances.is_none_to(radar) {
         ranges.clone().map(of)
     } else {
         let mut signal = BeatSignal { samples: of(0..radar.elements) };
-        hear(task, radar, scene, &scene.disturbances.elements, rest, &mut signal);
+        hear(task, radar, scene, &scene.disturbances.elements_of(radar), rest, &mut signal);
         ranges.clone().map(|range| signal.samples.slice(s![range, ..]).to_owned())
     };
     let empty = || Array2::zeros((first.nrows() + last.nrows(), radar.samples));

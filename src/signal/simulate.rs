@@ -36,8 +36,9 @@ pub fn simulate_for(
     floor: Floor,
     seed: u64,
 ) -> Result<BeatSignal, Unfinished> {
-    if !scene.disturbances.is_none() {
-        return simulate_built_for(task, radar, scene, &scene.disturbances.elements, floor, seed);
+    if !scene.disturbances.is_none_to(radar) {
+        scene.validate(radar)?;
+        return simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed);
     }
     scene.validate(radar)?;
     let signal = simulate_echoes(radar, &Echoing::of(radar, scene), floor, seed, |_| {}, task);
@@ -64,7 +65,7 @@ pub fn simulate_ends_for(
     floor: Floor,
     seed: u64,
 ) -> Result<TwoEnds, Unfinished> {
-    if !scene.disturbances.is_none() {
+    if !scene.disturbances.is_none_to(radar) {
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }
     scene.validate(radar)?;

@@ -1,6 +1,7 @@
 //! Transmitters apart from receivers, held to sums of their own: samples, maps, bounds, recordings, methods.
 
 use apertura::bounds::cramer_rao;
+use apertura::engine::{Engine, Wanted};
 use apertura::files::npz::write_npz;
 use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
@@ -9,6 +10,7 @@ use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{Detection, NoisePrior, ReconstructError, Request};
 use apertura::recording::{Recording, file};
 use apertura::scene::{Block, Object, Point, Reflector, Scene, Wall};
+use apertura::signal::chirps::{chirp_elements, simulate_chirps};
 use apertura::signal::{BeatSignal, Floor, judge, simulate};
 use ndarray::Array3;
 use num_complex::Complex64;
@@ -45,14 +47,65 @@ fn largest_difference(a: &BeatSignal, b: &BeatSignal) -> f64 {
     off / a.peak()
 }
 
+/// Three by eight pairs of which some stand at the place of another, and whose last transmitter leaves gaps.
+fn with_gaps() -> Radar {
+    let radar = small(3, 8);
+    let antennas = radar.antennas.clone().unwrap();
+    let step = 2.0 * radar.element_spacing_metres;
+    let mut transmitters = antennas.transmitter_x_metres().to_vec();
+    transmitters[1] -= 2.0 * step;
+    transmitters[2] += 3.0 * step;
+    let radar = radar.with_antennas(Antennas::new(&transmitters, antennas.receiver_x_metres()).unwrap());
+    assert_eq!((radar.gaps(), radar.antennas.as_ref().unwrap().left_out(), radar.elements), (5, 2, 27));
+    radar
+}
+
+#[test]
+fn gaps_are_alike_in_every_computation() {
+    let radar = with_gaps();
+    let scene = Scene::of_points([(0.6, 4.4), (-2.0, 6.0)]);
+    let mut engine = Engine::new(radar.clone());
+    let wanted = Wanted { floor: Floor::Exact, ..Wanted::default() };
+    let [followed, settled] = [engine.update(&scene, &wanted).unwrap(), engine.settle(&scene, &wanted).unwrap()];
+    assert_eq!(followed.full.unwrap().lambda.lambda, settled.full.unwrap().lambda.lambda);
+    let chirps = Radar { chirps: 4, ..radar.clone() };
+    let rows = simulate_chirps(&chirps, &scene, Floor::Exact, 0).unwrap().samples;
+    let silent = |row: usize| rows.slice(ndarray::s![.., row, ..]).iter().all(|v| v.norm_sqr() == 0.0);
+    let elements: Vec<usize> = chirp_elements(&chirps).into_iter().flatten().collect();
+    for (row, n) in elements.into_iter().enumerate() {
+        assert_eq!(silent(row), radar.is_gap(n), "element {n}");
+    }
+    assert_eq!(Layout::uniform(&radar).len(), 22);
+}
+
+#[test]
+fn the_search_finds_points_beside_gaps() {
+    let radar = Radar { end_elements: 13, ..with_gaps() };
+    let scene = Scene::of_points([(0.6, 4.4), (-2.0, 6.0)]);
+    let signal = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 0).unwrap();
+    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
+    let method = methods::by_name("nomp").unwrap();
+    let found = reconstruct_and_find(method.as_ref(), &radar, &signal.two_ends(&radar), &request).unwrap().1;
+    for point in scene.reflectors() {
+        let (range, cos) =
+            (point.x_metres.hypot(point.y_metres), point.x_metres / point.x_metres.hypot(point.y_metres));
+        let near = |d: &&Detection| (d.range_metres - range).abs() < 0.03 && (d.cos_theta - cos).abs() < 0.02;
+        assert_eq!(found.iter().filter(near).count(), 1, "{point:?} in {found:?}");
+    }
+}
+
 #[test]
 fn samples_of_pairs_are_a_direct_sum() {
     let points = [(0.6, 1.4), (-2.0, 5.0), (1.0, 9.0), (0.1, 3.0), (-4.0, 7.0)];
-    for radar in [small(3, 4), small(12, 16), small(2, 31)] {
+    for radar in [small(3, 4), small(12, 16), small(2, 31), with_gaps()] {
         let antennas = radar.antennas.clone().unwrap();
         let signal = simulate(&radar, &Scene::of_points(points), Floor::Exact, 0).unwrap();
-        for (n, [t, r]) in antennas.pairs().iter().enumerate() {
-            let (transmitter, receiver) = (antennas.transmitter_x_metres()[*t], antennas.receiver_x_metres()[*r]);
+        for (n, pair) in antennas.pairs().iter().enumerate() {
+            let Some([t, r]) = *pair else {
+                assert!(signal.samples.row(n).iter().all(|v| v.norm_sqr() == 0.0), "element {n} is a gap");
+                continue;
+            };
+            let (transmitter, receiver) = (antennas.transmitter_x_metres()[t], antennas.receiver_x_metres()[r]);
             for sample_number in [0, 1, 50, 95] {
                 let direct = sample(&radar, transmitter, receiver, &points, sample_number) * radar.transmit_power_watts;
                 let off = (signal.samples[[n, sample_number]] - direct).norm() / signal.peak();

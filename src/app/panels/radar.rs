@@ -2,6 +2,8 @@
 
 mod antennas;
 mod budget;
+mod places;
+mod strip;
 mod table;
 
 use crate::app::state::{Command, RadarCommand};
@@ -72,7 +74,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                 }
                 None => rows(ui, table, &mut radar, &follows, free),
             }
-            antennas::drawing(ui, &radar);
+            strip::show(ui, &mut radar, free.constants);
+            places::show(ui, &mut radar, free.constants);
             budget::show(ui, table, &mut radar, input.selected.as_ref());
             radar.end_elements = radar.end_elements.min(radar.elements / 2);
             if radar != *input.radar {

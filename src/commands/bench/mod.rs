@@ -2,6 +2,7 @@
 
 mod bodies;
 mod chart;
+mod doppler;
 mod following;
 mod growth;
 mod instructions;
@@ -104,6 +105,8 @@ struct Report<'a> {
     front: &'a Front,
     /// One reflector dragged, from the pointer's move to three maps.
     mouse: Vec<mouse::MouseRow>,
+    /// The same with a range-Doppler map besides.
+    doppler: Vec<doppler::DopplerRow>,
     /// The same tasks by other tools; none if nobody asked.
     others: Option<Equal>,
 }
@@ -138,7 +141,12 @@ impl Args {
         }
         let front = measured(&request)?;
         let others = self.others.as_ref().map(|script| others::measure(script, &request.reflectors, repeats));
-        let report = Report { front: &front, mouse: mouse::measure()?, others: others.transpose()? };
+        let report = Report {
+            front: &front,
+            mouse: mouse::measure()?,
+            doppler: doppler::measure()?,
+            others: others.transpose()?,
+        };
         let json = serde_json::to_string_pretty(&report).map_err(CommandError::failed)?;
         if let Some(folder) = &self.output {
             chart::draw(folder, &front)?;
@@ -155,6 +163,9 @@ impl Args {
         }
         for row in &report.mouse {
             print(&row.line(report.front.bare_fft_ms))?;
+        }
+        for row in &report.doppler {
+            print(&row.line())?;
         }
         report.others.as_ref().map_or(Ok(()), Equal::print)
     }

@@ -1,15 +1,11 @@
 //! Transmitters and receivers in the panel of the radar: how many there are, where they stand, and the elements that their pairs make.
 
 use crate::app::widgets::number_field::NumberField;
-use crate::radar::{Antennas, Radar};
-use eframe::egui;
-use eframe::egui::{Id, Rect, Sense, Stroke, Ui, pos2, vec2};
+use crate::radar::{Antennas, Radar, counted};
+use eframe::egui::{Id, Ui};
 
 /// Name of the row.
 pub(super) const NAME: &str = "antennas";
-
-/// Height of the drawing, points.
-const HEIGHT: f32 = 46.0;
 
 /// Most transmitters, and most receivers, that the panel offers.
 const MOST: usize = 64;
@@ -19,7 +15,7 @@ const NEAR_METRES: f64 = 2.0;
 
 /// What the row is about.
 pub(super) const TOOLTIP: &str = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element \
-                                  halfway between both. Pairs make one line without gaps";
+                                  halfway between both. A place of the line that no pair makes is a gap and hears nothing";
 
 /// What follows from the antennas.
 pub(super) fn follows(radar: &Radar) -> String {
@@ -47,14 +43,17 @@ pub(super) fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
 /// What follows from antennas that stand apart.
 fn consequence(radar: &Radar, antennas: &Antennas) -> String {
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
-    let pairs = (0..radar.elements).map(|n| radar.pair(n));
+    let pairs = (0..radar.elements).filter(|n| !radar.is_gap(*n)).map(|n| radar.pair(n));
     let apart = pairs.map(|p| (p.transmitter_x_metres - p.receiver_x_metres).abs()).fold(0.0, f64::max);
     let turns = 2.0 * apart * apart / (8.0 * NEAR_METRES) / radar.wavelength_metres();
-    format!(
-        "{transmitters} × {receivers} pairs are {} elements; at {NEAR_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of \
-         their midpoints",
-        transmitters * receivers
-    )
+    let mut made = format!("{transmitters} × {receivers} pairs are {} elements", transmitters * receivers);
+    if antennas.left_out() > 0 {
+        made += &format!(", {} of them at the place of another", antennas.left_out());
+    }
+    if antennas.gaps() > 0 {
+        made += &format!(", with {} that hear nothing between them", counted(antennas.gaps() as u32, "gap", "gaps"));
+    }
+    format!("{made}; at {NEAR_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of their midpoints")
 }
 
 /// How many transmitters and receivers there are, where they stand apart.
@@ -90,40 +89,6 @@ fn set(radar: &mut Radar, transmitters: usize, receivers: usize) {
 /// The largest number up to the root of `elements` that divides it: as many transmitters as keep the antennas fewest.
 fn divisor(elements: usize) -> usize {
     (1..=MOST).take_while(|n| n * n <= elements).filter(|n| elements.is_multiple_of(*n)).last().unwrap_or(1)
-}
-
-/// Transmitters, receivers and the elements that they make, one row each, to one scale.
-pub(super) fn drawing(ui: &mut Ui, radar: &Radar) {
-    let Some(antennas) = &radar.antennas else {
-        return;
-    };
-    let elements: Vec<f64> = (0..radar.elements).map(|n| radar.element_x_metres(n)).collect();
-    let rows: [(&str, &[f64]); 3] = [
-        ("transmitters", antennas.transmitter_x_metres()),
-        ("receivers", antennas.receiver_x_metres()),
-        ("elements", &elements),
-    ];
-    let (response, painter) = ui.allocate_painter(vec2(ui.available_width().min(560.0), HEIGHT), Sense::hover());
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    let ink = ui.visuals().text_color();
-    let names = 84.0;
-    let [low, high] = radar.antenna_span_metres();
-    let strip = Rect::from_min_max(response.rect.min + vec2(names, 0.0), response.rect.max - vec2(6.0, 0.0));
-    let at = |x: f64| strip.left() + strip.width() * ((x - low) / (high - low)) as f32;
-    for (row, (name, places)) in rows.into_iter().enumerate() {
-        let y = strip.top() + HEIGHT * (row as f32 + 0.5) / 3.0;
-        painter.text(pos2(response.rect.left(), y), egui::Align2::LEFT_CENTER, name, font.clone(), ink);
-        for x in places {
-            painter.line_segment([pos2(at(*x), y - 5.0), pos2(at(*x), y + 5.0)], Stroke::new(1.2, ink));
-        }
-    }
-    let span = format!(
-        "From {:.1} to {:.1} mm along x: {} antennas.",
-        low * 1e3,
-        high * 1e3,
-        rows[0].1.len() + rows[1].1.len()
-    );
-    response.on_hover_text(span);
 }
 
 #[cfg(test)]

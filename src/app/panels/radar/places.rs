@@ -1,0 +1,128 @@
+//! Places of transmitters and receivers as lists of numbers, to be typed or pasted from a spreadsheet.
+
+use crate::radar::{Antennas, Radar};
+use eframe::egui::{Id, TextEdit, Ui};
+
+/// Names of the two lists.
+const NAMES: [&str; 2] = ["transmitters at, mm", "receivers at, mm"];
+
+/// Digits of a place after the point, millimetres.
+const DECIMALS: usize = 4;
+
+/// Most letters that a list may have.
+const MOST_LETTERS: usize = 100_000;
+
+/// What is typed into one of the lists, and why it is not taken.
+#[derive(Clone, Default)]
+struct Typed {
+    text: String,
+    problem: Option<String>,
+}
+
+/// Draws both lists, if `radar` has antennas, and takes over what is typed.
+pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
+    let Some(antennas) = radar.antennas.clone() else {
+        return;
+    };
+    let own = [antennas.transmitter_x_metres(), antennas.receiver_x_metres()];
+    for (list, name) in NAMES.into_iter().enumerate() {
+        let id = ui.scope_id().with(name);
+        if let Some(places) = field(ui, id, name, own[list], is_free) {
+            let taken = match list {
+                0 => Antennas::new(&places, own[1]),
+                _ => Antennas::new(own[0], &places),
+            };
+            match taken {
+                Ok(antennas) => {
+                    *radar = radar.clone().with_antennas(antennas);
+                    ui.data_mut(|d| d.remove::<Typed>(id));
+                }
+                Err(error) => ui.data_mut(|d| d.get_temp_mut_or_default::<Typed>(id).problem = Some(error.to_string())),
+            }
+        }
+    }
+}
+
+/// One list; the places that are typed into it, metres, when they are complete.
+fn field(ui: &mut Ui, id: Id, name: &str, own: &[f64], is_free: bool) -> Option<Vec<f64>> {
+    let typed = ui.data(|d| d.get_temp::<Typed>(id));
+    let mut text = typed.as_ref().map_or_else(|| listed(own), |typed| typed.text.clone());
+    let label = ui
+        .label(name)
+        .on_hover_text("Places along x with commas, spaces or tabs between them, as a spreadsheet copies them");
+    let edit = TextEdit::singleline(&mut text).char_limit(MOST_LETTERS).desired_width(ui.available_width().min(560.0));
+    let response = ui.add_enabled(is_free, edit).labelled_by(label.id);
+    if let Some(problem) = typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
+        ui.colored_label(ui.visuals().error_fg_color, problem);
+    }
+    if response.changed() {
+        ui.data_mut(|d| d.insert_temp(id, Typed { text: text.clone(), problem: None }));
+    }
+    if !(response.lost_focus() && (typed.is_some() || response.changed())) {
+        return None;
+    }
+    match places(&text) {
+        Ok(places) => Some(places),
+        Err(problem) => {
+            ui.data_mut(|d| d.insert_temp(id, Typed { text, problem: Some(problem) }));
+            None
+        }
+    }
+}
+
+/// Places in metres as a list in millimetres.
+fn listed(x_metres: &[f64]) -> String {
+    let one = |x: &f64| {
+        let text = format!("{:.DECIMALS$}", x * 1e3);
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    x_metres.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// Places in metres that a list in millimetres says.
+fn places(text: &str) -> Result<Vec<f64>, String> {
+    let cells = text.split([',', ';', ' ', '\t', '\n', '\r']).filter(|cell| !cell.is_empty());
+    let place = |(i, cell): (usize, &str)| match cell.parse::<f64>().ok().filter(|v| v.is_finite()) {
+        Some(millimetres) => Ok(millimetres * 1e-3),
+        None => Err(format!("number {}: \"{}\" is no number", i + 1, cell.chars().take(20).collect::<String>())),
+    };
+    cells.enumerate().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::Key;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn a_list_is_read_as_it_is_written() {
+        assert_eq!(listed(&[-0.008, 0.0, 0.00195]), "-8, 0, 1.95");
+        assert_eq!(places("-8, 0;1.5\t2\n").unwrap(), [-0.008, 0.0, 0.0015, 0.002]);
+        assert_eq!(places("1, zwei").unwrap_err(), "number 2: \"zwei\" is no number");
+    }
+
+    #[test]
+    fn places_are_typed_and_bad_ones_are_told() {
+        let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
+        let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
+        let mut panel = Harness::builder().with_size([600.0, 200.0]).build_ui_state(draw, radar);
+        panel.run();
+        let mut typed = |text: &str| {
+            let field = panel.get_by_label(NAMES[0]);
+            field.focus();
+            panel.run();
+            panel.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
+            panel.run();
+            panel.get_by_label(NAMES[0]).type_text(text);
+            panel.run();
+            panel.key_press(Key::Enter);
+            panel.run();
+            let told = panel.query_by_label_contains("is no number").is_some();
+            (panel.state().antennas.as_ref().unwrap().transmitter_x_metres().len(), told)
+        };
+        assert_eq!(typed("0, viel"), (3, true));
+        assert_eq!(typed("0, 7.78674, 15.57348, 23.36022"), (4, false));
+    }
+}

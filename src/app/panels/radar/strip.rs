@@ -1,0 +1,283 @@
+//! Transmitters, receivers and the elements that their pairs make, drawn to one scale. An antenna is dragged by the mouse, or chosen by the arrow
+//! keys and moved by Shift and them.
+
+use crate::app::widgets::theme::Inks;
+use crate::radar::{Antennas, Radar};
+use eframe::egui::{
+    self, Align2, Color32, CursorIcon, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Sense,
+    Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+};
+
+/// Height of the drawing, points.
+const HEIGHT: f32 = 54.0;
+
+/// Room for the names of the rows, points.
+const NAMES: f32 = 84.0;
+
+/// Room beside the antennas, as a part of the line they stand on: they can be dragged there.
+const BESIDE: f64 = 0.15;
+
+/// How near the pointer must be to an antenna, points.
+const REACH: f32 = 8.0;
+
+/// Names of the rows.
+const ROWS: [&str; 3] = ["transmitters", "receivers", "elements"];
+
+/// One antenna: a row, 0 the transmitters and 1 the receivers, and its number there.
+type One = (usize, usize);
+
+/// Places of the antennas in metres, and how the drawing shows them.
+#[derive(Clone)]
+struct Drawn {
+    /// Transmitters and receivers.
+    x_metres: [Vec<f64>; 2],
+    /// Left and right edge of the drawing.
+    span_metres: [f64; 2],
+}
+
+/// A drag under way: what was drawn when it began, what is dragged, and from where.
+#[derive(Clone)]
+struct Drag {
+    drawn: Drawn,
+    one: One,
+    from: f32,
+}
+
+impl Drawn {
+    fn of(antennas: &Antennas) -> Self {
+        let [low, high] = antennas.span_metres();
+        let beside = BESIDE * (high - low);
+        let x_metres = [antennas.transmitter_x_metres().to_vec(), antennas.receiver_x_metres().to_vec()];
+        Drawn { x_metres, span_metres: [low - beside, high + beside] }
+    }
+
+    /// The same where one antenna stands `metres` farther to the right.
+    fn moved(&self, (row, number): One, metres: f64) -> Self {
+        let mut moved = self.clone();
+        if let Some(x) = moved.x_metres[row].get_mut(number) {
+            *x += metres;
+        }
+        moved
+    }
+
+    fn antennas(&self) -> Option<Antennas> {
+        Antennas::new(&self.x_metres[0], &self.x_metres[1]).ok()
+    }
+}
+
+/// How far an antenna goes at a step, metres: elements stay at the even places of the array's line, or of the filled one where they stand
+/// on it.
+fn step_metres(radar: &Radar) -> f64 {
+    let times = radar.element_spacing_metres / radar.filled_spacing_metres();
+    let on_filled = times > 0.5 && (times - times.round()).abs() < 1e-6 * times;
+    2.0 * if on_filled { radar.filled_spacing_metres() } else { radar.element_spacing_metres }
+}
+
+/// Draws the antennas of `radar`, if it has some, and moves one where it is dragged.
+pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
+    let Some(antennas) = radar.antennas.clone() else {
+        return;
+    };
+    let sense = if is_free { Sense::click_and_drag() } else { Sense::hover() };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width().min(560.0), HEIGHT), sense);
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, is_free, "Antennas"));
+    let strip = Strip { rect: Rect::from_min_max(rect.min + vec2(NAMES, 0.0), rect.max - vec2(6.0, 0.0)) };
+    let id = response.id;
+    let chosen = ui.data(|d| d.get_temp::<One>(id.with("chosen")));
+    let mut drawn = Drawn::of(&antennas);
+    let mut asked = None;
+    if is_free {
+        let (dragged, moved) = dragged(ui, &strip, &response, &drawn, step_metres(radar));
+        drawn = dragged.unwrap_or(drawn);
+        asked = moved.or_else(|| by_keys(ui, &response, &drawn, step_metres(radar)));
+    }
+    let made = drawn.antennas().unwrap_or(antennas);
+    strip.draw(ui, &drawn, &made, chosen.filter(|_| is_free));
+    let [low, high] = made.span_metres();
+    let span = format!("From {:.1} to {:.1} mm along x.", low * 1e3, high * 1e3);
+    if ui.data(|d| d.get_temp::<Drag>(id.with("drag"))).is_none() {
+        let how = if is_free { " Drag a transmitter or a receiver; undo brings it back." } else { "" };
+        response.on_hover_text(span + how);
+    }
+    if let Some(antennas) = asked.and_then(|drawn| drawn.antennas()) {
+        *radar = radar.clone().with_antennas(antennas);
+    }
+}
+
+/// The antennas as a drag under way shows them, and as it asks them to stand.
+fn dragged(
+    ui: &Ui,
+    strip: &Strip,
+    response: &Response,
+    drawn: &Drawn,
+    step_metres: f64,
+) -> (Option<Drawn>, Option<Drawn>) {
+    let id = response.id.with("drag");
+    let under = |pos: Pos2| strip.nearest(drawn, pos);
+    if response.hover_pos().and_then(under).is_some() {
+        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    if let Some(one) = response.interact_pointer_pos().filter(|_| response.clicked()).and_then(under) {
+        ui.data_mut(|d| d.insert_temp(response.id.with("chosen"), one));
+        response.request_focus();
+    }
+    if response.drag_started() {
+        let from = ui.input(|i| i.pointer.press_origin());
+        if let Some((from, one)) = from.and_then(|from| Some((from.x, under(from)?))) {
+            ui.data_mut(|d| {
+                d.insert_temp(id, Drag { drawn: drawn.clone(), one, from });
+                d.insert_temp(response.id.with("chosen"), one);
+            });
+        }
+    }
+    let Some(drag) = ui.data(|d| d.get_temp::<Drag>(id)) else { return (None, None) };
+    if !response.dragged() {
+        ui.data_mut(|d| d.remove::<Drag>(id));
+        return (None, None);
+    }
+    let Some(at) = response.interact_pointer_pos() else { return (None, None) };
+    let metres = f64::from(at.x - drag.from) * strip.metres_per_point(&drag.drawn);
+    let moved = drag.drawn.moved(drag.one, (metres / step_metres).round() * step_metres);
+    match moved.antennas() {
+        // Antennas that make no array stay where they are.
+        None => (Some(drag.drawn), None),
+        Some(_) => (Some(moved.clone()), Some(moved)),
+    }
+}
+
+/// What the arrow keys ask for: alone they choose an antenna, with Shift they move it.
+fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Option<Drawn> {
+    if !response.has_focus() {
+        return None;
+    }
+    let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    let id: Id = response.id.with("chosen");
+    let (row, number) = ui.data(|d| d.get_temp::<One>(id)).unwrap_or_default();
+    let pressed = |with, key| ui.input_mut(|i| i.count_and_consume_key(with, key)) as f64;
+    let steps = pressed(Modifiers::SHIFT, Key::ArrowRight) - pressed(Modifiers::SHIFT, Key::ArrowLeft);
+    let along = pressed(Modifiers::NONE, Key::ArrowRight) - pressed(Modifiers::NONE, Key::ArrowLeft);
+    let row = match pressed(Modifiers::NONE, Key::ArrowDown) - pressed(Modifiers::NONE, Key::ArrowUp) {
+        0.0 => row,
+        down => usize::from(down > 0.0),
+    };
+    let last = drawn.x_metres[row].len().saturating_sub(1) as f64;
+    let one = (row, (number as f64 + along).clamp(0.0, last) as usize);
+    ui.data_mut(|d| d.insert_temp(id, one));
+    (steps != 0.0).then(|| drawn.moved(one, steps * step_metres))
+}
+
+/// Where the drawing stands.
+struct Strip {
+    rect: Rect,
+}
+
+impl Strip {
+    fn metres_per_point(&self, drawn: &Drawn) -> f64 {
+        (drawn.span_metres[1] - drawn.span_metres[0]) / f64::from(self.rect.width().max(1.0))
+    }
+
+    fn at(&self, drawn: &Drawn, row: usize, x_metres: f64) -> Pos2 {
+        let along = (x_metres - drawn.span_metres[0]) / self.metres_per_point(drawn);
+        pos2(self.rect.left() + along as f32, self.rect.top() + HEIGHT * (row as f32 + 0.5) / ROWS.len() as f32)
+    }
+
+    /// The antenna under the pointer.
+    fn nearest(&self, drawn: &Drawn, pos: Pos2) -> Option<One> {
+        let row = ((pos.y - self.rect.top()) / HEIGHT * ROWS.len() as f32).floor().max(0.0) as usize;
+        let distances = drawn.x_metres.get(row)?.iter().map(|x| (self.at(drawn, row, *x).x - pos.x).abs());
+        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, distance)| *distance <= REACH).map(|(number, _)| (row, number))
+    }
+
+    fn draw(&self, ui: &Ui, drawn: &Drawn, made: &Antennas, chosen: Option<One>) {
+        let painter = ui.painter();
+        let font = TextStyle::Small.resolve(ui.style());
+        let (ink, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
+        for (row, name) in ROWS.iter().enumerate() {
+            self.name(painter, row, name, &font, ink);
+        }
+        for (row, places) in drawn.x_metres.iter().enumerate() {
+            for (number, x) in places.iter().enumerate() {
+                let is_chosen = chosen == Some((row, number));
+                let colour = if is_chosen { Inks::of(ui.visuals()).selected } else { ink };
+                let (at, half) = (self.at(drawn, row, *x), vec2(0.0, if is_chosen { 8.0 } else { 6.0 }));
+                painter.line_segment([at - half, at + half], Stroke::new(if is_chosen { 3.0 } else { 1.4 }, colour));
+            }
+        }
+        // The array's middle is at x = 0; the drawing stays where it was when a drag began.
+        let shift = drawn.x_metres[0].first().zip(made.transmitter_x_metres().first()).map_or(0.0, |(a, b)| a - b);
+        let middle = (made.pairs().len() as f64 - 1.0) / 2.0;
+        for (n, pair) in made.pairs().iter().enumerate() {
+            let at = self.at(drawn, 2, (n as f64 - middle) * made.spacing_metres() + shift);
+            match pair {
+                Some(_) => _ = painter.line_segment([at - vec2(0.0, 5.0), at + vec2(0.0, 5.0)], Stroke::new(1.2, ink)),
+                None => _ = painter.circle_filled(at, 1.0, weak),
+            }
+        }
+    }
+
+    fn name(&self, painter: &Painter, row: usize, name: &str, font: &FontId, ink: Color32) {
+        let at = pos2(self.rect.left() - NAMES, self.rect.top() + HEIGHT * (row as f32 + 0.5) / ROWS.len() as f32);
+        painter.text(at, Align2::LEFT_CENTER, name, font.clone(), ink);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn panel() -> Harness<'static, Radar> {
+        let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
+        let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
+        Harness::builder().with_size([600.0, 80.0]).build_ui_state(draw, radar)
+    }
+
+    fn at(panel: &Harness<'_, Radar>, (row, number): One) -> Pos2 {
+        let rect = panel.get_by_label("Antennas").rect();
+        let strip = Strip { rect: Rect::from_min_max(rect.min + vec2(NAMES, 0.0), rect.max - vec2(6.0, 0.0)) };
+        let drawn = Drawn::of(panel.state().antennas.as_ref().unwrap());
+        strip.at(&drawn, row, drawn.x_metres[row][number])
+    }
+
+    #[test]
+    fn a_transmitter_that_is_dragged_leaves_a_gap() {
+        let mut panel = panel();
+        panel.run();
+        let last = at(&panel, (0, 2));
+        panel.drag_at(last);
+        panel.run();
+        panel.hover_at(last + vec2(30.0, 0.0));
+        panel.run();
+        let steps = (panel.state().antennas.as_ref().unwrap().gaps(), panel.state().elements);
+        assert!(steps.0 > 0 && steps.1 > 12, "{steps:?}");
+        panel.hover_at(last);
+        panel.run();
+        panel.drop_at(last);
+        panel.run();
+        assert_eq!((panel.state().gaps(), panel.state().elements), (0, 12), "it goes back where it came from");
+        seen::assert_readable(panel.output());
+    }
+
+    #[test]
+    fn shift_with_an_arrow_moves_the_chosen_receiver() {
+        let mut panel = panel();
+        panel.run();
+        panel.get_by_label("Antennas").focus();
+        panel.run();
+        for key in [Key::ArrowDown, Key::ArrowRight, Key::ArrowRight, Key::ArrowRight] {
+            panel.key_press(key);
+            panel.run();
+        }
+        let before = panel.state().antennas.clone().unwrap();
+        panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowRight);
+        panel.run();
+        let after = panel.state().antennas.clone().unwrap();
+        let apart = |a: &Antennas| a.receiver_x_metres()[3] - a.receiver_x_metres()[2];
+        let moved = apart(&after) - apart(&before);
+        assert!((moved / (2.0 * panel.state().filled_spacing_metres()) - 1.0).abs() < 1e-9, "{moved}");
+    }
+}
