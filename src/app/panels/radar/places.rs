@@ -106,6 +106,7 @@ mod tests {
     #[test]
     fn places_are_typed_and_bad_ones_are_told() {
         let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
+        let apart = 8.0 * radar.element_spacing_metres;
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
         let mut panel = Harness::builder().with_size([600.0, 200.0]).build_ui_state(draw, radar);
         panel.run();
@@ -123,6 +124,6 @@ mod tests {
             (panel.state().antennas.as_ref().unwrap().transmitter_x_metres().len(), told)
         };
         assert_eq!(typed("0, viel"), (3, true));
-        assert_eq!(typed("0, 7.78674, 15.57348, 23.36022"), (4, false));
+        assert_eq!(typed(&listed(&[0.0, apart, 2.0 * apart, 3.0 * apart])), (4, false));
     }
 }
