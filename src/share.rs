@@ -301,13 +301,14 @@ mod tests {
             prop_assert_eq!(Shared::from_text(&text), Ok(shared));
         }
 
-        /// A letter that was changed, lost or doubled is told.
+        /// A letter that was changed, lost or doubled is told, unless it is one of the head of the compressed bytes, where some bits change
+        /// nothing.
         #[test]
         fn a_damaged_letter_is_told(at in 11..10_000usize, letter in "[A-Za-z0-9_-]") {
             let text = shared().to_text().unwrap();
             let at = 11 + at % (text.len() - 11);
             let changed = format!("{}{letter}{}", &text[..at], &text[at + 1..]);
-            prop_assert!(changed == text || Shared::from_text(&changed).is_err());
+            prop_assert!(Shared::from_text(&changed).is_ok_and(|read| read == shared()) || Shared::from_text(&changed).is_err());
             let lost = [&text[..at], &text[at + 1..]].concat();
             prop_assert!(Shared::from_text(&lost).is_err());
             prop_assert!(Shared::from_text(&text[..at]).is_err());

@@ -6,6 +6,28 @@ import { launch, PATIENCE_MILLISECONDS, address } from "./browser.mjs";
 
 const MOST = 1.4;
 
+const MOST_UNTIL_MAPS_MILLISECONDS = 3000;
+
+// Where the target's map is in a window of 1440 x 900. Its picture compresses to many more bytes than the empty plot does.
+const TARGET = { x: 560, y: 340, width: 340, height: 200 };
+const BYTES_OF_A_MAP = 20000;
+
+test("the first maps are there soon after the page is opened", { skip: !process.env.NATIVE }, async () => {
+  const browser = await launch();
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
+  const page = await context.newPage();
+  const began = performance.now();
+  await page.goto(address);
+  let bytes = 0;
+  while (bytes < BYTES_OF_A_MAP && performance.now() - began < PATIENCE_MILLISECONDS) {
+    bytes = (await page.screenshot({ clip: TARGET })).length;
+  }
+  const milliseconds = performance.now() - began;
+  console.log(`first maps ${milliseconds.toFixed(0)} ms after the address was opened`);
+  await browser.close();
+  assert.ok(milliseconds < MOST_UNTIL_MAPS_MILLISECONDS, `${milliseconds} ms`);
+});
+
 test("the page takes little longer on one thread than the native program", { skip: !process.env.NATIVE }, async () => {
   const browser = await launch();
   const page = await browser.newPage();

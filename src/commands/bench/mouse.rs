@@ -22,9 +22,16 @@ const WARM_UP: usize = 4;
 /// Metres of scene beneath a point of the view, as in a canvas of some 600 points.
 const METRES_PER_POINT: f64 = 0.1;
 
+/// Transmitters and receivers of the radar of pairs.
+const PAIRS: [usize; 2] = [12, 16];
+
 /// One scene.
 #[derive(Debug, Serialize)]
 pub struct MouseRow {
+    /// Elements of the radar.
+    elements: usize,
+    /// Whether they are pairs of a transmitter and a receiver.
+    of_pairs: bool,
     reflectors: usize,
     #[serde(flatten)]
     convention: Convention,
@@ -36,8 +43,10 @@ pub struct MouseRow {
 impl MouseRow {
     /// A line of the table, times also as multiples of `bare_fft_ms`.
     pub fn line(&self, bare_fft_ms: f64) -> String {
+        let [transmitters, receivers] = PAIRS;
+        let radar = if self.of_pairs { format!(", {transmitters} x {receivers} pairs") } else { String::new() };
         format!(
-            "dragging one of {:>3} by mouse, {}: {:.2} ms from the move to three maps ({:.1} x bare), {:.2} ms at worst of {}",
+            "dragging one of {:>3} by mouse{radar}, {}: {:.2} ms from the move to three maps ({:.1} x bare), {:.2} ms at worst of {}",
             self.reflectors,
             self.convention,
             self.median_ms,
@@ -51,12 +60,21 @@ impl MouseRow {
 type Asked = (Arc<Scene>, Wanted);
 type Answer = Result<Frame, SceneError>;
 
-/// Drags in small and large scenes, over no floor and over the thesis'.
+/// Drags in small and large scenes, over no floor and over the thesis', with the thesis' radar and with one of pairs.
 pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
+    let [transmitters, receivers] = PAIRS;
+    let pairs = Radar::default().of_pairs(transmitters, receivers).map_err(CommandError::failed)?;
+    let mut rows = drags(&Radar::default())?;
+    rows.extend(drags(&pairs)?);
+    Ok(rows)
+}
+
+fn drags(radar: &Radar) -> Result<Vec<MouseRow>, CommandError> {
     let (wake, woken) = channel();
+    let own = radar.clone();
     let worker: Worker<Asked, Answer> = Worker::spawn(
         "maps",
-        || Engine::new(Radar::default()),
+        move || Engine::new(own.clone()),
         |engine, (scene, wanted): Asked, _| engine.update(&scene, &wanted),
         // Nobody listens any more once all is measured.
         move || wake.send(()).unwrap_or_default(),
@@ -65,18 +83,21 @@ pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
     let mut rows = Vec::new();
     for reflectors in REFLECTORS {
         for convention in Convention::BOTH {
-            rows.push(drag(&worker, &woken, reflectors, convention)?);
+            let [median_ms, worst_ms] = drag(&worker, &woken, reflectors, convention)?;
+            let (elements, of_pairs) = (radar.elements, !radar.is_monostatic());
+            rows.push(MouseRow { elements, of_pairs, reflectors, convention, moves: MOVES, median_ms, worst_ms });
         }
     }
     Ok(rows)
 }
 
+/// Median and longest time of a move, milliseconds.
 fn drag(
     worker: &Worker<Asked, Answer>,
     woken: &Receiver<()>,
     reflectors: usize,
     convention: Convention,
-) -> Result<MouseRow, CommandError> {
+) -> Result<[f64; 2], CommandError> {
     let wanted =
         Wanted { floor: convention.floor, normalisation: convention.normalisation, ends: false, ..Wanted::default() };
     let mut editor = Editor::new(scattered(reflectors));
@@ -108,7 +129,7 @@ fn drag(
         }
     }
     times.sort_by(f64::total_cmp);
-    Ok(MouseRow { reflectors, convention, moves: MOVES, median_ms: times[MOVES / 2], worst_ms: times[MOVES - 1] })
+    Ok([times[MOVES / 2], times[MOVES - 1]])
 }
 
 #[cfg(test)]
@@ -118,7 +139,8 @@ mod tests {
     #[test]
     fn every_drag_is_timed() {
         let rows = measure().unwrap();
-        assert_eq!(rows.len(), 4);
+        assert_eq!(rows.len(), 8);
+        assert_eq!(rows.iter().filter(|row| row.of_pairs && row.elements == 192).count(), 4);
         for row in rows {
             assert!(row.median_ms > 0.0 && row.median_ms <= row.worst_ms, "{row:?}");
             assert!(row.line(1.0).contains(&format!("one of {:>3}", row.reflectors)));
