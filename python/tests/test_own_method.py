@@ -158,6 +158,8 @@ def test_ctrl_c_stops_a_start_that_hangs(tmp_path):
     import signal
     import threading
 
+    # A shell starts what runs in the background with Ctrl-C ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(1.0, signal.raise_signal, [signal.SIGINT])
     timer.start()
     with pytest.raises(KeyboardInterrupt):

@@ -55,7 +55,10 @@ def test_the_number_of_threads_changes_no_bit():
 def test_ctrl_c_stops_long_work():
     script = textwrap.dedent(
         """
+        import signal
         import apertura as ap
+        # A shell starts what runs in the background with Ctrl-C ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         try:
             ap.evaluate(["baseline"], ["3"], count=100000, on_row=lambda row: print(row["index"], flush=True))
         except KeyboardInterrupt:

@@ -32,8 +32,11 @@ use std::ops::Range;
 /// Most elements of each end whose chirps are evaluated: those farthest out.
 pub const MAX_END_ELEMENTS: usize = 4;
 
-/// Samples after which a running phasor is taken afresh.
-const RESTART: usize = 32;
+/// Samples after which running phasors are taken afresh.
+const RESTART: usize = 128;
+
+/// Neighbouring samples whose phasors run side by side: none waits for the one before.
+const LANES: usize = 8;
 
 /// Noise streams of one chirp: no array has more elements.
 const STREAMS: usize = 65536;
@@ -239,16 +242,28 @@ impl Motion<'_> {
         let carrier = self.radar.carrier_turns_per_metre() * per_sample;
         let beat = self.radar.beat_turns_per_metre(1.0) * per_sample;
         let step = echo.turns_at(1) - echo.turns_at(0) + carrier;
-        let bend = Complex64::cis(TAU * 2.0 * beat);
+        let lanes = LANES as f64;
+        // How much more the phase turns from one sample, lane or vector to the next.
+        let [bend, leap_over_lane, leap_over_vector] =
+            [1.0, lanes, lanes * lanes].map(|times| Complex64::cis(TAU * 2.0 * beat * times));
         for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
             let n = (block * RESTART) as f64;
             let turns = echo.turns_at(block * RESTART) + (carrier + beat * n) * n;
-            let mut phasor = gain * Complex64::from_polar(echo.amplitude, TAU * turns);
             let mut turn = Complex64::cis(TAU * (step + beat * (2.0 * n + 1.0)));
-            for sample in samples {
-                *sample += phasor;
-                phasor *= turn;
+            let mut phasors = [gain * Complex64::from_polar(echo.amplitude, TAU * turns); LANES];
+            // From each sample to that of its lane in the next vector.
+            let mut leaps = [Complex64::cis(TAU * lanes * (step + beat * (2.0 * n + lanes))); LANES];
+            for lane in 1..LANES {
+                phasors[lane] = phasors[lane - 1] * turn;
                 turn *= bend;
+                leaps[lane] = leaps[lane - 1] * leap_over_lane;
+            }
+            for vector in samples.chunks_mut(LANES) {
+                for (lane, sample) in vector.iter_mut().enumerate() {
+                    *sample += phasors[lane];
+                    phasors[lane] *= leaps[lane];
+                    leaps[lane] *= leap_over_vector;
+                }
             }
         }
     }

@@ -113,15 +113,19 @@ fn choices(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Comma
         if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
             changed.set_chirp_seconds(1e-6 * microseconds);
         }
-        ui.add_enabled_ui(!input.is_recorded, |ui| {
+        ask(input, settings, changed, asked);
+    });
+    ui.add_enabled_ui(!input.is_recorded, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let mut changed = input.radar.clone();
             let label = ui.label("Samples").on_hover_text("Samples of the beat, and range bins of its spectrum");
             ui.add(NumberField::new(&mut changed.samples).range(1..=65536)).labelled_by(label.id);
             let label = ui.label("Bandwidth").on_hover_text("Drag the end of the chirp up or down");
             gigahertz(ui, &mut changed.bandwidth_hz, label.id);
             let label = ui.label("Carrier").on_hover_text("Drag the beginning of the chirp up or down");
             gigahertz(ui, &mut changed.carrier_hz, label.id);
+            ask(input, input.settings, changed, asked);
         });
-        ask(input, settings, changed, asked);
     });
 }
 

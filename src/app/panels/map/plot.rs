@@ -66,6 +66,14 @@ fn direction_titles(radar: &Radar) -> &'static [&'static str] {
     if radar.fold_period_cos() < LEAST_PERIOD_COS {
         return &["cos θ, folded: each column stands for two directions", "cos θ, folded"];
     }
+    if radar.cos_of_column(0.0) > 0.0 {
+        // The two-way carrier turns the other way: what stands on the right comes first.
+        return &[
+            "cos θ, mirrored: 1 is +90° (right in the scene), −1 is −90°",
+            "cos θ, mirrored (1 at 90° right)",
+            "cos θ, mirrored",
+        ];
+    }
     &[
         "cos θ: −1 is −90° (left), 0 straight ahead, 1 is +90° (right)",
         "cos θ (0 straight ahead, 1 at 90° right)",
