@@ -76,7 +76,7 @@ def up2(x):
 
 def circulant(log_kernel, n):
     """Matrix [n, n] of the even circular kernel whose log10 at distances 0..n/2 is `log_kernel`."""
-    i = torch.arange(n)
+    i = torch.arange(n, device=log_kernel.device)
     d = (i[:, None] - i[None, :]) % n
     d = torch.minimum(d, n - d)
     return torch.exp(LN10 * log_kernel)[d]
@@ -149,7 +149,7 @@ class Live(nn.Module):
         y0 = F.relu(self.dec0(x0 + up2(self.up0(y1))))
         f = torch.cat([shuffle_cols(self.widen(y0), 4), fine_n], 1)
         f = self.fine2(F.relu(self.fine1(f)))
-        with torch.autocast("cpu", enabled=False):
+        with torch.autocast(fine.device.type, enabled=False):
             return *self.sources(scalars, scalars_n, x3.float(), y0.float(), f.float()), y0
 
     def sources(self, scalars, scalars_n, x3, y0, f):

@@ -10,12 +10,12 @@ on a CPU. The shipped weights come from here.
         --export ../assets/weights/live.safetensors                  # write the averaged weights and their figures, and stop
     python3 train_live.py --validation 24 --judge FILE               # figures of any weights on the validation scenes, and stop
 
-Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new. A third
-lies over thermal noise from 60 to 10 dB. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
+Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new; with `--pool`
+each is drawn `--uses` times. A third lies over thermal noise from 60 to 10 dB. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
 any number of processes.
 
-The learning rate rises over 200 steps and then falls with the square root of the steps of this run; so a run needs no end, and a moving average of the
-weights is what is validated and written. Several processes average their gradients, so that a step sees `--batch` scenes of each. A checkpoint holds
+The learning rate rises over 200 steps and then falls with the square root of the steps of this run; so a run needs no end. With `--cool M` it falls to
+zero over the last M minutes. A moving average of the weights is what is validated and written. Several processes average their gradients, so that a step sees `--batch` scenes of each. A checkpoint holds
 weights, their moving average, optimizer, the number of scenes drawn and the record of every part of the run, and is replaced in one step. When a process
 is killed, torchrun starts all of them again from it.
 
@@ -38,12 +38,13 @@ import apertura as ap
 import provenance
 from common import export, figures, save, unit, validation_scenes
 from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, normalise, parted, widened
+from pool import Pool
 from team import Log, Team, batches
 
 WARM_UP = 200
 #: Share of each kind of scene.
-MIXTURE = {"1": 4, "2": 12, "3": 14, "clusters": 9, "walls": 12, "spacings": 6, "corner": 10, "crowd": 15, "dynamic": 5, "near": 5,
-           "bodies": 8, "street": 9, "rails": 10, "occlusion": 6, "rough": 4, "fences": 12, "rain": 8}
+MIXTURE = {"1": 6, "2": 16, "3": 18, "clusters": 9, "walls": 10, "spacings": 8, "corner": 10, "crowd": 13, "dynamic": 5, "near": 5,
+           "bodies": 6, "street": 12, "rails": 16, "occlusion": 8, "rough": 4, "fences": 10, "rain": 16}
 #: Share of the scenes whose elements are off, and the largest tolerances: gain in decibels, phase in degrees, place in millimetres.
 ELEMENTS = (0.2, 1.0, 20.0, 0.1)
 #: What the validation figures are given for: the kinds over the thesis' floor, and three sets over thermal noise.
@@ -168,8 +169,7 @@ class Run:
         self.step += 1
         decay = min(0.998, self.step / (9 + self.step))
         with torch.no_grad():
-            for a, p in zip(self.average.parameters(), self.model.parameters()):
-                a.lerp_(p, 1 - decay)
+            torch._foreach_lerp_(list(self.average.parameters()), list(self.model.parameters()), 1 - decay)
 
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
@@ -177,13 +177,34 @@ class Run:
                          "step": self.step, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
+def scenes_of(args, first, team):
+    """Batches of training scenes from number `first` on."""
+    if args.pool:
+        return Pool(training_scenes(args), first, args.batch, team.device, args.pool, args.uses, first)
+    return batches(training_scenes(args), first, args.batch, team, args.loaders)
+
+
+def cooled(args, seconds):
+    """What is left of the learning rate this long after the start: it falls to zero over the last `--cool` minutes."""
+    return min(1.0, max(0.0, args.minutes - seconds / 60) / args.cool) if args.cool else 1.0
+
+
+def finite(losses, run, args):
+    """The mean of the last losses; 0 of none. One that is not finite ends the program."""
+    mean = torch.stack(losses).mean().item() if losses else 0.0
+    if not mean < float("inf"):
+        raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
+    return mean
+
+
 def train(run, args, team):
     sets = validation_sets(args) if team.is_first and args.validation else None
     log = Log(args.out, run.step) if team.is_first else None
     model = team.share(Doubting(run.model, run.doubt))
-    scenes = batches(training_scenes(args), run.drawn, args.batch, team, args.loaders)
+    scenes = scenes_of(args, run.drawn, team)
     began = time.time()
     saved, validated = began, 0.0
+    losses = []
     while True:
         done = run.step >= args.steps if args.steps is not None else time.time() - began > 60 * args.minutes
         done = team.agreed(done)
@@ -197,26 +218,29 @@ def train(run, args, team):
                 team.say(line)
                 validated = time.time()
             if done or time.time() - saved >= 60 * args.save_every:
+                finite(losses, run, args)
                 run.save()
                 saved = time.time()
         if done:
             return
         batch = {name: t.to(team.device) for name, t in next(scenes).items() if name != "ends"}
-        rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5)
+        rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5) * cooled(args, time.time() - began)
         with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16):
             output, minimum, doubt = model(*(batch[name] for name in INPUTS))
         loss = loss_of(output, minimum, batch["target"], args.edge_weight)
         of_doubt = doubt_loss_of(doubt, error_of(normalise(output, minimum), batch["target"]).detach())
         run.optimizer.zero_grad(set_to_none=True)
         (loss + of_doubt).backward()
-        mean = team.mean(loss.item())
-        if not mean < float("inf"):
-            raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
+        losses.append(loss.detach())
         run.advance(rate)
-        run.drawn += args.batch * team.size
+        run.drawn = scenes.drawn if args.pool else run.drawn + args.batch * team.size
         run.maps += args.batch * team.size
-        if log:
-            log.line(run.step, run.maps, time.time() - began, rate, mean)
+        # Reading a loss waits for the GPU.
+        if len(losses) == args.log_every:
+            mean = team.mean(finite(losses, run, args))
+            losses.clear()
+            if log:
+                log.line(run.step, run.maps, time.time() - began, rate, mean)
 
 
 def main(args):

@@ -1,0 +1,79 @@
+"""Scenes kept on the GPU, each drawn several times: for a GPU that trains faster than the processors beside it make scenes."""
+import queue
+import random
+import threading
+
+import torch
+
+#: Threads that ask for scenes. Each call makes its scenes on all processors; a second call fills the gap while the first hands over.
+MAKERS = 3
+#: Scenes of one call.
+CHUNK = 32
+
+
+class Pool:
+    """An endless iterator of batches.
+
+    The last `size` scenes stay on `device`, large tensors as 16-bit floats. A batch is drawn from them at random. On average a scene is drawn
+    `uses` times at most: the iterator waits for new scenes where training is faster.
+    """
+
+    def __init__(self, data, first, batch, device, size, uses, seed):
+        self.first, self.batch, self.device, self.size, self.uses = first, batch, device, size, uses
+        self.arrived, self.used, self.kept = 0, 0, {}
+        self.random = random.Random(seed)
+        self.made = queue.Queue(maxsize=2 * MAKERS)
+        self.on_gpu = device.type == "cuda"
+        self.numbers, self.lock = iter(range(first, len(data), CHUNK)), threading.Lock()
+        for _ in range(MAKERS):
+            threading.Thread(target=self._make, args=(data,), daemon=True).start()
+
+    @property
+    def drawn(self):
+        """Number of the first scene that no batch can hold."""
+        return self.first + self.arrived
+
+    def _make(self, data):
+        """Makes scenes until the program ends. An error ends the thread, and reaches `__next__`."""
+        # On a stream of its own a copy to the GPU doesn't wait for the training.
+        stream = torch.cuda.Stream(self.device) if self.on_gpu else None
+        try:
+            while True:
+                with self.lock:
+                    start = next(self.numbers)
+                examples = data.__getitems__(range(start, start + CHUNK))
+                with torch.cuda.stream(stream):
+                    scenes = [self._moved(example) for example in examples]
+                if stream:
+                    stream.synchronize()
+                self.made.put((start, scenes))
+        except Exception as error:  # whatever it is, the training must end with it
+            self.made.put((None, error))
+
+    def _moved(self, example):
+        moved = {name: t.to(self.device) for name, t in example.items() if name != "ends"}
+        return {name: t.half() if t.ndim > 1 else t for name, t in moved.items()}
+
+    def _keep(self, scenes):
+        for scene in scenes:
+            place = self.arrived % self.size
+            for name, tensor in scene.items():
+                if name not in self.kept:
+                    self.kept[name] = tensor.new_empty(self.size, *tensor.shape)
+                self.kept[name][place] = tensor
+                if self.on_gpu:
+                    tensor.record_stream(torch.cuda.current_stream())  # its memory is free once this stream has read it
+            self.arrived += 1
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        while self.arrived < self.batch or self.used + self.batch > self.uses * self.arrived or not self.made.empty():
+            start, scenes = self.made.get()
+            if start is None:
+                raise scenes
+            self._keep(scenes)
+        self.used += self.batch
+        places = torch.tensor(self.random.sample(range(min(self.arrived, self.size)), self.batch), device=self.device)
+        return {name: kept[places].float() for name, kept in self.kept.items()}
