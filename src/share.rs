@@ -301,8 +301,8 @@ mod tests {
             prop_assert_eq!(Shared::from_text(&text), Ok(shared));
         }
 
-        /// A letter that was changed, lost or doubled is told, unless it is one of the head of the compressed bytes, where some bits change
-        /// nothing.
+        /// A changed, lost or doubled letter is reported. The compressed bytes begin with some bits that change nothing: a letter that differs in
+        /// those alone is accepted.
         #[test]
         fn a_damaged_letter_is_told(at in 11..10_000usize, letter in "[A-Za-z0-9_-]") {
             let text = shared().to_text().unwrap();

@@ -82,7 +82,8 @@ impl LinkBudget {
     }
 
     fn __repr__(&self) -> String {
-        let radar::LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees } = self.0;
+        let radar::LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees } =
+            self.0;
         let width = half_power_width_degrees.map_or("None".to_owned(), |width| format!("{width:?}"));
         format!(
             "LinkBudget(transmit_power_dbm={transmit_power_dbm:?}, antenna_gain_dbi={antenna_gain_dbi:?}, \
@@ -91,7 +92,11 @@ impl LinkBudget {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (f64, f64, f64, Option<f64>)) {
-        let radar::LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees } = self.0;
-        (PyType::new::<LinkBudget>(py), (transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees))
+        let radar::LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees } =
+            self.0;
+        (
+            PyType::new::<LinkBudget>(py),
+            (transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees),
+        )
     }
 }

@@ -3,6 +3,7 @@
 mod arrays;
 mod bounds;
 mod budget;
+mod doppler;
 mod errors;
 mod evaluate;
 mod examples;
@@ -33,7 +34,7 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(examples::dataset, module)?)?;
     module.add_function(wrap_pyfunction!(examples::live_input, module)?)?;
     module.add_function(wrap_pyfunction!(maps::maps, module)?)?;
-    module.add_function(wrap_pyfunction!(maps::range_doppler, module)?)?;
+    module.add_function(wrap_pyfunction!(doppler::range_doppler, module)?)?;
     module.add_function(wrap_pyfunction!(methods::method, module)?)?;
     module.add_function(wrap_pyfunction!(methods::methods, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::metrics, module)?)?;

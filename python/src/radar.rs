@@ -260,7 +260,9 @@ impl Radar {
     ) -> PyResult<Bound<'py, PyDict>> {
         let are_finite = range_metres.is_finite() && cross_section_dbsm.is_finite() && angle_degrees.is_finite();
         if !(are_finite && range_metres > 0.0) {
-            let said = format!("range_metres is {range_metres}, cross_section_dbsm {cross_section_dbsm}, angle_degrees {angle_degrees}");
+            let said = format!(
+                "range_metres is {range_metres}, cross_section_dbsm {cross_section_dbsm}, angle_degrees {angle_degrees}"
+            );
             return Err(value(format!("{said}; expected finite numbers and a range above 0")));
         }
         let link = self.0.link(cross_section_dbsm, range_metres, angle_degrees.to_radians().cos());

@@ -62,7 +62,7 @@ pub enum AntennasError {
     },
     /// The pairs don't stand on one even line.
     #[error(
-        "the midpoint of transmitter {} and receiver {} stands {:.3} mm off the even line of the others, {:.3} mm apart; expected at most {:.3} mm",
+        "the midpoint of transmitter {} and receiver {} stands {:.3} mm off the even line, whose places are {:.3} mm apart; expected at most {:.3} mm",
         transmitter + 1, receiver + 1, off_metres * 1e3, spacing_metres * 1e3, MOST_OFF * spacing_metres * 1e3
     )]
     Uneven {
@@ -336,7 +336,7 @@ mod tests {
         assert!(told(&[0.0], &[f64::NAN]).contains("receiver_x_metres has NaN"));
         assert!(told(&[0.0, 1.0], &[0.0, 0.5]).contains("make 4 elements; expected 6 to 65536"));
         let uneven = told(&[0.0, 1.0], &[0.0, 0.2, 0.437]);
-        assert!(uneven.contains("off the even line of the others"), "{uneven}");
+        assert!(uneven.contains("off the even line"), "{uneven}");
         assert!(told(&[1.0, 1.0], &[2.0; 3]).contains("one midpoint"));
         let far = told(&[0.0, 1e3], &[0.0, 1e-3, 2e-3, 3e-3]);
         assert!(far.contains("off the even line") || far.contains("expected 6 to 65536"), "{far}");

@@ -134,21 +134,21 @@ impl Disturbances {
         self.elements.is_ideal() && self.interferer.is_none() && self.mirror.is_none()
     }
 
-    /// Whether `radar` hears the scene as it is: nothing of the kind, and every place of its line has an element.
+    /// Whether `radar` hears every echo undisturbed: there are no disturbances, and no gaps in its line.
     pub fn is_none_to(&self, radar: &Radar) -> bool {
         self.is_none() && radar.gaps() == 0
     }
 
     /// The elements as `radar` has them: those at the gaps of its line are dead.
     pub fn elements_of(&self, radar: &Radar) -> Cow<'_, BuiltArray> {
-        if radar.gaps() == 0 {
+        let Some(antennas) = radar.antennas.as_ref().filter(|antennas| antennas.gaps() > 0) else {
             return Cow::Borrowed(&self.elements);
-        }
-        let of = |n| {
-            let own = self.elements.element(n);
-            ElementError { dead: own.dead || radar.is_gap(n), ..own }
         };
-        Cow::Owned(BuiltArray { elements: (0..radar.elements).map(of).collect() })
+        let of = |(n, pair): (usize, &Option<[usize; 2]>)| {
+            let own = self.elements.element(n);
+            ElementError { dead: own.dead || pair.is_none(), ..own }
+        };
+        Cow::Owned(BuiltArray { elements: antennas.pairs().iter().enumerate().map(of).collect() })
     }
 
     /// Checks that every number is usable and that the elements are those of `radar`.

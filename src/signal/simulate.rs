@@ -37,7 +37,6 @@ pub fn simulate_for(
     seed: u64,
 ) -> Result<BeatSignal, Unfinished> {
     if !scene.disturbances.is_none_to(radar) {
-        scene.validate(radar)?;
         return simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed);
     }
     scene.validate(radar)?;

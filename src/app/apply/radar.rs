@@ -38,7 +38,10 @@ fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)
 
 /// What differs first: edits of one field merge into one step, those of another begin another.
 fn changed_field(before: &Radar, after: &Radar) -> &'static str {
+    // A drag of one antenna changes the number of elements and their spacing, too.
+    let has_moved = before.antennas.is_some() && after.antennas.is_some() && before.antennas != after.antennas;
     let changes = [
+        ("antennas", has_moved),
         (
             "convention",
             before.carrier != after.carrier && after.element_spacing_metres == after.filled_spacing_metres(),

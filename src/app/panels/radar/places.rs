@@ -12,10 +12,13 @@ const DECIMALS: usize = 4;
 /// Most letters that a list may have.
 const MOST_LETTERS: usize = 100_000;
 
-/// What is typed into one of the lists, and why it is not taken.
+/// What is typed into one of the lists.
 #[derive(Clone, Default)]
 struct Typed {
+    /// The places over which it was typed, metres: it is dropped once there are others.
+    over: Vec<f64>,
     text: String,
+    /// Why it is not taken.
     problem: Option<String>,
 }
 
@@ -43,9 +46,9 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     }
 }
 
-/// One list; the places that are typed into it, metres, when they are complete.
+/// Draws one list. Returns its places in metres once a whole list was typed.
 fn field(ui: &mut Ui, id: Id, name: &str, own: &[f64], is_free: bool) -> Option<Vec<f64>> {
-    let typed = ui.data(|d| d.get_temp::<Typed>(id));
+    let typed = ui.data(|d| d.get_temp::<Typed>(id)).filter(|typed| typed.over == own);
     let mut text = typed.as_ref().map_or_else(|| listed(own), |typed| typed.text.clone());
     let label = ui
         .label(name)
@@ -56,7 +59,7 @@ fn field(ui: &mut Ui, id: Id, name: &str, own: &[f64], is_free: bool) -> Option<
         ui.colored_label(ui.visuals().error_fg_color, problem);
     }
     if response.changed() {
-        ui.data_mut(|d| d.insert_temp(id, Typed { text: text.clone(), problem: None }));
+        ui.data_mut(|d| d.insert_temp(id, Typed { over: own.to_vec(), text: text.clone(), problem: None }));
     }
     if !(response.lost_focus() && (typed.is_some() || response.changed())) {
         return None;
@@ -64,7 +67,7 @@ fn field(ui: &mut Ui, id: Id, name: &str, own: &[f64], is_free: bool) -> Option<
     match places(&text) {
         Ok(places) => Some(places),
         Err(problem) => {
-            ui.data_mut(|d| d.insert_temp(id, Typed { text, problem: Some(problem) }));
+            ui.data_mut(|d| d.insert_temp(id, Typed { over: own.to_vec(), text, problem: Some(problem) }));
             None
         }
     }

@@ -1,0 +1,46 @@
+//! Range-Doppler maps of scenes whose objects move.
+
+use crate::arrays::owned;
+use crate::errors::{named, value};
+use crate::radar::Radar;
+use crate::scene::Scene;
+use crate::work;
+use apertura::maps::doppler;
+use apertura::signal::{Floor, Unfinished};
+use numpy::PyArray2;
+use pyo3::prelude::*;
+
+/// Power over range and radial velocity, float64 `[samples, chirps]`, mean over up to 4 elements of each end. Row k is range
+/// `radar.range_metres[k]`, column k velocity `radar.velocity_metres_per_second[k]`.
+///
+/// Args:
+///     scene: The scene; its objects move by their velocities.
+///     radar: The radar; that of the scene where none is given. It sends `radar.chirps` chirps.
+///     floor: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL"; every chirp has noise of its own.
+///     seed: Picks the noise; that of the scene where none is given.
+///     seconds: Time at which the scene is looked at.
+///     progress: Called with the part that is done, 0 to 1.
+///
+/// Raises:
+///     ValueError: A name is unknown, or the radar can't see the scene.
+#[pyfunction]
+#[pyo3(signature = (scene, radar=None, *, floor="thesis", seed=None, seconds=0.0, progress=None))]
+pub fn range_doppler<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    radar: Option<&Radar>,
+    floor: &str,
+    seed: Option<u64>,
+    seconds: f64,
+    progress: work::Progress<'_, '_>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    if !seconds.is_finite() {
+        return Err(value(format!("seconds is {seconds}; expected a finite number")));
+    }
+    let floor: Floor = named(floor)?;
+    let radar = radar.map_or_else(|| scene.0.radar.clone(), |r| r.0.clone());
+    let seed = seed.unwrap_or(scene.0.scene.noise_seed);
+    let then = scene.0.scene.at(seconds);
+    let map = work::run(py, progress, |task| doppler::range_doppler_for(task, &radar, &then, floor, seed))?;
+    Ok(owned(py, map.map_err(|error: Unfinished| value(error))?.power))
+}
