@@ -25,8 +25,10 @@ class Pool:
         self.made = queue.Queue(maxsize=2 * MAKERS)
         self.on_gpu = device.type == "cuda"
         self.numbers, self.lock = iter(range(first, len(data), CHUNK)), threading.Lock()
-        for _ in range(MAKERS):
-            threading.Thread(target=self._make, args=(data,), daemon=True).start()
+        self.is_over = False
+        self.makers = [threading.Thread(target=self._make, args=(data,), daemon=True) for _ in range(MAKERS)]
+        for maker in self.makers:
+            maker.start()
 
     @property
     def drawn(self):
@@ -34,11 +36,11 @@ class Pool:
         return self.first + self.arrived
 
     def _make(self, data):
-        """Makes scenes until the program ends. An error ends the thread, and reaches `__next__`."""
+        """Makes scenes until `close`. An error ends the thread, and reaches `__next__`."""
         # On a stream of its own a copy to the GPU doesn't wait for the training.
         stream = torch.cuda.Stream(self.device) if self.on_gpu else None
         try:
-            while True:
+            while not self.is_over:
                 with self.lock:
                     start = next(self.numbers)
                 examples = data.__getitems__(range(start, start + CHUNK))
@@ -64,6 +66,15 @@ class Pool:
                 if self.on_gpu:
                     tensor.record_stream(torch.cuda.current_stream())  # its memory is free once this stream has read it
             self.arrived += 1
+
+    def close(self):
+        """Ends the threads: one that computes while Python ends would abort the program."""
+        self.is_over = True
+        while any(maker.is_alive() for maker in self.makers):
+            try:
+                self.made.get(timeout=0.1)
+            except queue.Empty:
+                pass
 
     def __iter__(self):
         return self

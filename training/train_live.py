@@ -222,6 +222,8 @@ def train(run, args, team):
                 run.save()
                 saved = time.time()
         if done:
+            if args.pool:
+                scenes.close()
             return
         batch = {name: t.to(team.device) for name, t in next(scenes).items() if name != "ends"}
         rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5) * cooled(args, time.time() - began)

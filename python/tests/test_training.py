@@ -92,6 +92,17 @@ def environment(pid):
     return dict(entry.split("=", 1) for entry in Path(f"/proc/{pid}/environ").read_text().split("\0") if "=" in entry)
 
 
+def test_scenes_of_a_pool_are_drawn_several_times(tmp_path):
+    found = alone(tmp_path, "train_live.py", "--batch", "2", "--validation", "0", "--steps", "16", "--pool", "32", "--uses", "1", "--log-every", "8")
+    assert found.returncode == 0, found.stderr
+    # A chunk of 32 scenes is used up by 16 batches of two.
+    assert steps(tmp_path) == [8, 16]
+    state = weights(tmp_path)
+    assert state["maps"] == 32 and state["drawn"] >= 32 and state["drawn"] % 32 == 0
+    found = alone(tmp_path, "train_live.py", "--batch", "8", "--pool", "4", "--steps", "1")
+    assert found.returncode != 0 and "at least --batch (8) scenes" in found.stderr
+
+
 def test_weights_are_exported(tmp_path):
     assert alone(tmp_path, *LIVE, "--steps", "1").returncode == 0
     path = tmp_path / "live.safetensors"

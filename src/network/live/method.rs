@@ -117,6 +117,11 @@ const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 /// which no threshold in Lambda has (`choose_eta live`).
 const BELOW_PEAK_DECADES: f64 = 2.6;
 
+/// A threshold to three decimals, as people read it: a thousandth of Lambda is about a hundredth of a decade.
+fn rounded(eta: f64) -> f32 {
+    ((eta * 1e3).round() / 1e3) as f32
+}
+
 /// One cell in so many is looked at for the median.
 const CELLS_A_LOOK: usize = 17;
 
@@ -175,7 +180,7 @@ impl Reconstructor for LiveMethod {
         map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
-        let eta = scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES) as f32;
+        let eta = rounded(scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES));
         Ok(Reconstruction {
             lambda: RangeAngleMap { lambda },
             eta: Some(eta),
