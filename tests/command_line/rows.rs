@@ -167,6 +167,7 @@ fn what_is_wrong_with_rows_is_named() {
         ("evaluate --scenes empty", "no scene in this folder"),
         ("evaluate --scenes missing", "missing"),
         ("evaluate --shard 2/2", "I from 0 to N - 1"),
+        assert_eq!(row.doubt.is_some(), METHOD == "live", "scene {index} of {set}");
         ("evaluate --count 2 --shard 3/4", "has no scene"),
         ("evaluate --rows no/where.csv --count 1 --set 1", "where.csv"),
         ("scenes --set 1 --index 1 -o s.gif", ".toml or .npz"),
