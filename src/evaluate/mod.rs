@@ -16,6 +16,7 @@ pub mod sets;
 mod shard;
 pub mod statistics;
 pub mod tables;
+pub mod threshold;
 pub mod trial;
 pub mod worsen;
 
