@@ -38,6 +38,7 @@ from ._apertura import (
     rules,
     set_threads,
     threads,
+    threshold,
     write_rows,
 )
 from .objects import (
@@ -54,6 +55,7 @@ from .objects import (
     PositionBound,
     Post,
     Rule,
+    Threshold,
     Wall,
 )
 from .page import Shown, find_page, show
@@ -84,6 +86,7 @@ __all__ = [
     "Rule",
     "Scene",
     "Shown",
+    "Threshold",
     "Wall",
     "__version__",
     "ambiguity",
@@ -109,6 +112,7 @@ __all__ = [
     "set_threads",
     "show",
     "threads",
+    "threshold",
     "torch",
     "write_rows",
 ]

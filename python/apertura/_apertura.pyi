@@ -20,6 +20,7 @@ from .objects import (
     PositionBound,
     Post,
     Rule,
+    Threshold,
     Wall,
 )
 
@@ -59,6 +60,7 @@ __all__ = [
     "rules",
     "set_threads",
     "threads",
+    "threshold",
     "write_rows",
 ]
 __version__: str
@@ -386,6 +388,18 @@ def evaluate(
     only: Sequence[tuple[str, int, str]] | None = None,
     cfar: str | None = None,
 ) -> list[dict[str, Any]]: ...
+def threshold(
+    method: str = "live",
+    *,
+    false_alarm_percent: float = 1.0,
+    sets: Sequence[str | int] | None = None,
+    count: int = 100,
+    seed: int = 0,
+    floor: str = "thesis",
+    normalisation: str = "min-max",
+    radar: Radar | None = None,
+    progress: _Progress | None = None,
+) -> Threshold: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...
 def paired(rows: Sequence[dict[str, Any]], first: str, second: str) -> Paired: ...
 def rules(rows: Sequence[dict[str, Any]], bad: str = ...) -> list[Rule]: ...

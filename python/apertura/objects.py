@@ -201,6 +201,15 @@ class Rule(NamedTuple):
     p_value: float
 
 
+class Threshold(NamedTuple):
+    """A threshold that keeps a rate of false alarms, and means over the scenes that chose it; rates are fractions."""
+
+    eta: float
+    scenes: int
+    false_alarm: float
+    detection: float
+
+
 class PositionBound(NamedTuple):
     """Standard deviations that no unbiased estimate of one reflector can stay below.
 

@@ -15,6 +15,7 @@ mod radar;
 mod recording;
 mod scene;
 mod statistics;
+mod threshold;
 mod work;
 
 use pyo3::prelude::*;
@@ -42,6 +43,7 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(evaluate::cfar, module)?)?;
     module.add_function(wrap_pyfunction!(statistics::paired, module)?)?;
     module.add_function(wrap_pyfunction!(statistics::rules_of, module)?)?;
+    module.add_function(wrap_pyfunction!(threshold::threshold, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::read_rows, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::write_rows_to, module)?)?;

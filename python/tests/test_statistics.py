@@ -27,3 +27,11 @@ def test_what_is_made_bad_by_a_column_is_found():
     assert ap.rules(rows, bad="missed > 5") == []
     with pytest.raises(ValueError, match="bad: "):
         ap.rules(rows, bad="missed >")
+
+
+def test_rows_say_the_doubt_of_a_method(tmp_path):
+    live, baseline = ap.evaluate(["live", "baseline"], ["1"], count=1, path=tmp_path / "rows.csv")
+    found = ap.method("live").reconstruct(ap.Scene.random("1").simulate().ends)
+    expected = float((found.doubt.astype(float) ** 2).sum())
+    assert baseline["doubt"] is None and math.isclose(live["doubt"], expected, rel_tol=1e-9)
+    assert [row["doubt"] for row in ap.read_rows(tmp_path / "rows.csv")] == [live["doubt"], None]

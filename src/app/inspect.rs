@@ -210,6 +210,7 @@ impl App {
     pub fn is_at_work(&self) -> bool {
         let jobs = &self.jobs;
         jobs.evaluation.progress().is_some()
+            || jobs.thresholds.progress().is_some()
             || jobs.failures.progress().is_some()
             || jobs.failures.search.progress().is_some()
             || jobs.run_time.progress().is_some()

@@ -33,8 +33,8 @@ pub use application::{APP_ID, App, Options};
 pub use state::{
     Arrangement, BoundsSettings, Brightness, ChirpSettings, Command, Compare, Cursor, DifferenceView, DocumentCommand,
     EditCommand, Elements, EvaluationChoice, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind, NewObject,
-    Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings, Units, ViewCommand, WindowCommand,
-    WorkCommand,
+    Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings, ThresholdChoice, Units, ViewCommand,
+    WindowCommand, WorkCommand,
 };
 
 /// Why the app did not open.

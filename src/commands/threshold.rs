@@ -3,12 +3,12 @@
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
-use crate::evaluate::trial::Trial;
-use crate::evaluate::{Roc, RocPoint, detection_rates};
+use crate::evaluate::threshold::{KeptThreshold, ThresholdSearch, Tried};
 use crate::methods;
-use crate::radar::{Radar, counted};
-use crate::reconstruct::{Reconstructor, Request};
-use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::radar::counted;
+use crate::scene::generate::Kind;
+use crate::task::Task;
+use indicatif::ProgressBar;
 use serde::Serialize;
 
 /// Find the threshold at which a method's false alarms stay below a rate on further scenes like those that it was tried on
@@ -67,102 +67,65 @@ struct Report {
     wanted: f64,
     eta: f32,
     #[serde(flatten)]
-    tried: Tried,
-    check: Option<Tried>,
+    tried: Rates,
+    check: Option<Rates>,
 }
 
 /// Means over scenes.
 #[derive(Debug, Serialize)]
-struct Tried {
+struct Rates {
     scenes: usize,
     false_alarm: f64,
     detection: f64,
+}
+
+impl From<Tried> for Rates {
+    fn from(Tried { scenes, false_alarm, detection }: Tried) -> Rates {
+        Rates { scenes, false_alarm, detection }
+    }
 }
 
 impl Args {
     /// Tries the method, and prints the threshold.
     pub fn run(self) -> Result<(), CommandError> {
         self.own.start()?;
-        if self.set.contains(&Kind::Noise) {
-            return Err(CommandError::failed(
-                "scenes of the kind \"noise\" have no echoes, and so no P_D to set against P_FA",
-            ));
-        }
         let method = methods::by_name(self.method.trim()).map_err(CommandError::failed)?;
-        let wanted = self.false_alarm / 100.0;
-        let scenes = self.count as usize * self.set.len();
-        let fewest = Roc::fewest_scenes(wanted);
-        if (scenes as f64) < fewest {
-            let had = counted(scenes, "scene", "scenes");
-            let told = format!("{had} can't keep a rate of {} %; take {fewest} scenes or more", self.false_alarm);
-            return Err(CommandError::failed(told));
-        }
-        let mut roc = Roc::default();
-        self.each(&*method, 0, self.count, |target, output| roc.add(target, output))?;
-        let RocPoint { eta, detection, false_alarm } = roc.keeping_false_alarm(wanted).ok_or_else(|| {
-            CommandError::failed(format!("no threshold keeps {} % on these scenes", self.false_alarm))
-        })?;
+        let search = ThresholdSearch {
+            floor: self.floor.floor,
+            kinds: self.set.clone(),
+            count: self.count,
+            seed: self.seed,
+            false_alarm_percent: self.false_alarm,
+            ..ThresholdSearch::default()
+        };
+        let (task, scenes) = (Task::default(), |count: u32| u64::from(count) * self.set.len() as u64);
+        let bar = ProgressBar::new(scenes(self.count));
+        let step = |_| bar.inc(1);
+        let KeptThreshold { eta, tried } = search.run(&*method, &task, step).map_err(CommandError::failed)?;
+        bar.set_length(scenes(self.count) + scenes(self.check));
+        let further = || search.try_further(&*method, eta, self.check, &task, step);
+        let check = (self.check > 0).then(further).transpose().map_err(CommandError::failed)?;
+        bar.finish_and_clear();
         let report = Report {
             method: method.name().to_owned(),
             sets: self.set.iter().map(Kind::to_string).collect(),
             floor: self.floor.floor.to_string(),
             seed: self.seed,
-            wanted,
+            wanted: self.false_alarm / 100.0,
             eta,
-            tried: Tried { scenes: roc.scenes(), false_alarm, detection },
-            check: if self.check > 0 { Some(self.checked(&*method, eta)?) } else { None },
+            tried: tried.into(),
+            check: check.map(Rates::from),
         };
         match self.json {
             true => print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?),
             false => print(&report.text()),
         }
     }
-
-    /// Tries `method` on the scenes of every kind from number `first` on, and hands target and output over.
-    fn each(
-        &self,
-        method: &dyn Reconstructor,
-        first: u32,
-        count: u32,
-        mut judge: impl FnMut(&crate::maps::RangeAngleMap, &crate::maps::RangeAngleMap),
-    ) -> Result<(), CommandError> {
-        let radar = Radar::default();
-        let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, self.seed);
-        let request = Request { noise: self.floor.floor.into(), ..Request::default() };
-        let bar = indicatif::ProgressBar::new(u64::from(count) * self.set.len() as u64);
-        for kind in &self.set {
-            for number in first..first + count {
-                let scene = generator.scene(*kind, number);
-                let trial = Trial::new(&radar, &scene, self.floor.floor, request.normalisation)
-                    .map_err(CommandError::failed)?;
-                let answer = trial.ask(method, &request).map_err(CommandError::failed)?;
-                judge(&trial.target, &answer.found.lambda);
-                bar.inc(1);
-            }
-        }
-        bar.finish_and_clear();
-        Ok(())
-    }
-
-    /// The rates at `eta` on scenes that did not choose it.
-    fn checked(&self, method: &dyn Reconstructor, eta: f32) -> Result<Tried, CommandError> {
-        let mut sums = Tried { scenes: 0, false_alarm: 0.0, detection: 0.0 };
-        self.each(method, self.count, self.check, |target, output| {
-            let (detection, false_alarm) = detection_rates(target, output, eta);
-            if let Some(detection) = detection {
-                sums.scenes += 1;
-                sums.detection += detection;
-                sums.false_alarm += false_alarm;
-            }
-        })?;
-        let scenes = sums.scenes.max(1) as f64;
-        Ok(Tried { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
-    }
 }
 
 impl Report {
     fn text(&self) -> String {
-        let tried = |what: &str, tried: &Tried| {
+        let tried = |what: &str, tried: &Rates| {
             let scenes = counted(tried.scenes, "scene", "scenes");
             format!("{what} {scenes}: P_FA {:.3} %, P_D {:.2} %", 100.0 * tried.false_alarm, 100.0 * tried.detection)
         };

@@ -16,12 +16,13 @@ pub mod sets;
 mod shard;
 pub mod statistics;
 pub mod tables;
+pub mod threshold;
 pub mod trial;
 pub mod worsen;
 
 pub use blobs::{Blobs, blobs};
 pub use estimate::Estimate;
-pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, squared_error};
+pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, squared_doubt, squared_error};
 pub use placement::{Placement, placement};
 pub use robustness::{Robustness, RobustnessRow};
 pub use roc::{Roc, RocPoint};

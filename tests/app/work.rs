@@ -2,14 +2,17 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
+    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ThresholdChoice, ViewCommand,
+    WindowCommand, WorkCommand,
 };
 use apertura::engine::{Outcome, StageReport};
+use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
 use apertura::radar::{Carrier, Radar};
 use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
+use apertura::task::Task;
 use eframe::egui::{self, vec2};
 use egui_kittest::kittest::Queryable;
 use ndarray::IxDyn;
@@ -32,6 +35,32 @@ fn an_evaluation_runs_beside_the_app() {
     s.settle();
     assert!(s.state().evaluation_csv().starts_with("set,method,"));
     assert!(s.app.query_by_label_contains("cancelled").is_some());
+}
+
+#[test]
+fn a_threshold_by_false_alarms_is_found_and_set() {
+    let mut s = Session::start();
+    let choice = |count| ThresholdChoice { false_alarm_percent: 40.0, kinds: vec![Kind::Set1, Kind::Set2], count };
+    s.ask_and_wait(WorkCommand::FindThreshold(choice(2)));
+    let search = ThresholdSearch {
+        radar: s.state().radar().clone(),
+        floor: s.state().settings().floor,
+        normalisation: s.state().settings().normalisation,
+        kinds: choice(2).kinds,
+        count: 2,
+        false_alarm_percent: 40.0,
+        ..ThresholdSearch::default()
+    };
+    let expected = search.run(&Baseline, &Task::default(), |_| ()).unwrap();
+    let set = |s: &Session| s.state().settings().method_eta.get("baseline").copied();
+    assert_eq!(set(&s), Some(expected.eta));
+    assert!(s.app.query_by_label_contains("at most 40 % false alarms on average").is_some());
+    s.app.state_mut().ask(WorkCommand::FindThreshold(choice(100_000)));
+    step_until(&mut s, "it starts", |s| s.state().is_at_work());
+    s.app.state_mut().ask(WorkCommand::CancelThreshold);
+    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
+    s.settle();
+    assert_eq!(set(&s), Some(expected.eta), "a search that was stopped sets nothing");
 }
 
 #[test]

@@ -112,6 +112,40 @@ fn echoes_of_bodies_stand_in_rows_tables_and_json() {
         .stdout(contains("echoes found").and(contains(weakest)));
 }
 
+/// Twenty scenes of a set by `live`, each with the next larger error and the doubt that `doubt` says.
+fn made_up_rows(set: u32, error: impl Fn(u32) -> f64, doubt: impl Fn(u32) -> f64) -> String {
+    let row = |i: u32| format!("{set},{i},0,live,0.8,{},0.9,0.01,,5,3,3,0,0,,,5,0,{}\n", error(i), doubt(i));
+    (0..20).map(row).collect()
+}
+
+#[test]
+fn doubt_finds_failures_as_often_as_the_rows_say() {
+    let folder = folder();
+    let names = "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,reflectors,\
+                 missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,doubt\n";
+    // Of set 1's two failures one has more doubt than all 18 others, one than 9 of them, and as much as one more.
+    let first = made_up_rows(1, f64::from, |i| f64::from(if i == 18 { 9 } else { i }));
+    let second = made_up_rows(2, |i| f64::from(100 + i), |i| f64::from(100 + i));
+    std::fs::write(folder.path().join("rows.csv"), format!("{names}{first}{second}")).unwrap();
+    let report = json(&folder, "evaluate --merge rows.csv --json");
+    let doubt = |set: usize| &report["sets"][set]["methods"][0]["doubt"];
+    assert!(same(&doubt(0)["area"], 27.5 / 36.0), "{}", doubt(0));
+    assert_eq!((&doubt(0)["failures"], &doubt(0)["rows"]), (&Value::from(2), &Value::from(20)));
+    assert!(same(&doubt(0)["least_squared_error"], 18.0) && same(&doubt(1)["area"], 1.0));
+    let all = &report["doubt"][0];
+    assert_eq!((&all["method"], &all["failures"]), (&Value::from("live"), &Value::from(4)));
+    assert!(same(&all["least_squared_error"], 116.0) && same(&all["area"], 1.0));
+    let limited = json(&folder, "evaluate --merge rows.csv --failures-from 19 --json");
+    let doubt = |set: usize| &limited["sets"][set]["methods"][0]["doubt"];
+    assert_eq!((&doubt(0)["failures"], &doubt(0)["standard_error"]), (&Value::from(1), &Value::Null));
+    assert!(same(&doubt(0)["area"], 1.0) && doubt(1)["area"].is_null(), "every row of set 2 fails");
+    apertura(&folder, "evaluate --merge rows.csv").assert().success().stdout(
+        contains("doubt of live against failures: area under the ROC curve 0.764 \u{b1} 0.")
+            .and(contains("(2 failures in 20 rows, SE from 18.0 on)"))
+            .and(contains("All sets together\ndoubt of live against failures: area under the ROC curve 1.000")),
+    );
+}
+
 /// The SE of what `reconstruct` wrote against what `maps` wrote.
 fn error_by_hand(folder: &Path) -> f64 {
     let open = |name: &str| Npz::open(&folder.join(name)).unwrap();
@@ -133,6 +167,7 @@ fn a_row_can_be_reproduced_by_hand_to_the_last_digit() {
         apertura(&folder, "maps s.toml -o maps.npz").assert().success();
         apertura(&folder, &format!("reconstruct maps.npz --method {METHOD} -o out.npz")).assert().success();
         assert_eq!(error_by_hand(folder.path()), row.squared_error, "scene {index} of {set}");
+        assert_eq!(row.doubt.is_some(), METHOD == "live", "scene {index} of {set}");
     }
     // The last one alone in a folder is a test set with the same figures.
     std::fs::create_dir(folder.path().join("own")).unwrap();

@@ -17,6 +17,8 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
         WorkCommand::CancelSecond => jobs.pipeline.cancel_method(MethodSlot::Second),
         WorkCommand::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
         WorkCommand::CancelEvaluation => jobs.evaluation.cancel(),
+        WorkCommand::FindThreshold(choice) => jobs.thresholds.begin(state, choice),
+        WorkCommand::CancelThreshold => jobs.thresholds.cancel(),
         WorkCommand::Measure { thorough } => jobs.run_time.begin(state.radar().clone(), thorough),
         WorkCommand::CancelMeasurement => jobs.run_time.cancel(),
         WorkCommand::OpenLog => jobs.choose_file(state, Purpose::OpenLog),

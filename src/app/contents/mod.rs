@@ -13,8 +13,8 @@ pub use bars::{menu_input, status_input};
 use super::chrome::tiles::Draw;
 use super::jobs::{Jobs, Pipeline};
 use super::panels::{
-    bounds, cuts, doppler, elements, evaluation, failures as failures_panel, guide, lesson, map, objects, phasors,
-    run_time, several, training,
+    bounds, controls, cuts, doppler, elements, evaluation, failures as failures_panel, guide, lesson, map, objects,
+    phasors, run_time, several, training,
 };
 use super::state::{Command, MapKind, Panel, State};
 use super::widgets::method_menu::Offered;
@@ -30,6 +30,7 @@ pub struct Memory {
     textures: BTreeMap<MapKind, Texture>,
     reflectors: Reflectors,
     bounds: bounds::Memory,
+    controls: controls::Memory,
     phasors: phasors::Memory,
     doppler: doppler::Memory,
     cuts: cuts::Memory,

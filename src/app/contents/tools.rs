@@ -19,6 +19,7 @@ impl Contents<'_> {
             outdated: pipeline.output_is_outdated(),
             wanted: pipeline.wants_output(),
             detector_error: pipeline.detector_error(),
+            search: controls::Search { progress: self.jobs.thresholds.progress(), note: self.jobs.thresholds.note() },
         };
         let input = controls::Input {
             is_recorded: state.editor.document().recording().is_some(),
@@ -32,7 +33,7 @@ impl Contents<'_> {
             run,
             uses: state.uses(),
         };
-        controls::show(ui, input)
+        controls::show(ui, input, &mut self.memory.controls)
     }
 
     pub(super) fn found(&mut self, ui: &mut Ui) -> Vec<Command> {

@@ -29,6 +29,7 @@ mod sentence;
 mod several;
 mod subject;
 mod theory;
+mod thresholds;
 mod training;
 
 #[cfg(test)]
@@ -59,9 +60,10 @@ pub use run_time::RunTime;
 pub use scene_maps::Scores;
 pub use several::{SeveralMaps, Small};
 pub use theory::{Theory, TheoryResult};
+pub use thresholds::Thresholds;
 pub use training::{Log, Training};
 
-use crate::app::state::{Command, Panel, RowsCommand, State};
+use crate::app::state::{Command, Panel, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
 use crate::platform::{self, Instant};
 use eframe::egui::{Context, DroppedFile};
@@ -88,6 +90,8 @@ pub struct Jobs {
     pub calibration: Calibration,
     /// Methods on test sets.
     pub evaluation: Evaluation,
+    /// Thresholds that keep a rate of false alarms.
+    pub thresholds: Thresholds,
     /// Methods on many scenes, row by row.
     pub failures: Failures,
     /// Run time against error.
@@ -134,6 +138,7 @@ impl Jobs {
             dopplers: Dopplers::start(wake.clone())?,
             calibration: Calibration::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
+            thresholds: Thresholds::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
             run_time: RunTime::start(wake.clone())?,
             method_times: MeasuredMethods::start(wake.clone())?,
@@ -166,6 +171,8 @@ impl Jobs {
         errors.extend(self.failures.poll());
         let (found, failed) = self.failures.search.poll();
         errors.extend(failed);
+        let (thresholds, failed) = self.thresholds.poll();
+        errors.extend(failed);
         errors.extend(self.run_time.poll());
         errors.extend(self.method_times.poll(state));
         errors.extend(self.training.poll());
@@ -184,6 +191,10 @@ impl Jobs {
         }
         let mut chosen = self.chosen(state);
         chosen.extend(begun);
+        for kept in thresholds {
+            state.notices.info(kept.told);
+            chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());
+        }
         // What was found takes the place of what it was looked for near, but not of what somebody made of that meanwhile.
         if found && self.failures.search.is_about(state.editor.scene()) {
             chosen.push(RowsCommand::TakeFinding.into());

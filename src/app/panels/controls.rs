@@ -1,6 +1,9 @@
 //! Settings: radar and floor, display, reconstruction with its live figures.
 
 mod detector;
+mod false_alarms;
+
+pub use false_alarms::{Memory, Search};
 
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{
@@ -71,18 +74,20 @@ pub struct Run<'a> {
     pub wanted: bool,
     /// Why the detector in use finds nothing.
     pub detector_error: Option<&'a str>,
+    /// How the search for a threshold goes.
+    pub search: Search<'a>,
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
     let mut asked = Vec::new();
     let settings = input.settings;
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             if input.uses.output {
-                group(ui, "Reconstruction", |ui| reconstruction(ui, &input, &mut asked));
+                group(ui, "Reconstruction", |ui| reconstruction(ui, &input, memory, &mut asked));
             } else if input.uses.threshold {
-                group(ui, "Threshold", |ui| thresholds(ui, &input, None, &mut asked));
+                group(ui, "Threshold", |ui| thresholds(ui, &input, None, memory, &mut asked));
             }
             group(ui, "Maps", |ui| maps(ui, &input, &mut asked));
             group(ui, "Display", |ui| display(ui, settings, input.uses, &mut asked));
@@ -126,7 +131,7 @@ fn choices<T: PartialEq + Copy, C: Into<Command>>(
     }
 }
 
-fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     let Some(method) = input.method else {
         ui.weak("This build has no reconstruction method.");
         return;
@@ -139,13 +144,19 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         listed.response
     });
     if input.uses.threshold {
-        thresholds(ui, input, Some(method), asked);
+        thresholds(ui, input, Some(method), memory, asked);
     }
     figures(ui, method, &input.run, asked);
 }
 
 /// What says which cells are detections: thresholds for the whole map, or a detector.
-fn thresholds(ui: &mut Ui, input: &Input<'_>, method: Option<&dyn Reconstructor>, asked: &mut Vec<Command>) {
+fn thresholds(
+    ui: &mut Ui,
+    input: &Input<'_>,
+    method: Option<&dyn Reconstructor>,
+    memory: &mut Memory,
+    asked: &mut Vec<Command>,
+) {
     detector::choice(ui, input.settings, asked);
     match &input.settings.cfar {
         Some(cfar) => detector::cells(ui, cfar, input.run.detector_error, asked),
@@ -154,6 +165,9 @@ fn thresholds(ui: &mut Ui, input: &Input<'_>, method: Option<&dyn Reconstructor>
                 output_eta(ui, input, method, asked);
             }
             target_eta(ui, input, asked);
+            if let Some(method) = method {
+                false_alarms::show(ui, method.name(), &input.run.search, memory, asked);
+            }
         }
     }
 }

@@ -33,7 +33,7 @@ pub use bounds_settings::{BoundsSettings, Elements};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
-    RowsCommand, ViewCommand, WindowCommand, WorkCommand,
+    RowsCommand, ThresholdChoice, ViewCommand, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, shortcuts};
 pub use compare::{Compare, Layout};

@@ -1,5 +1,5 @@
 //! What panels draw with: axes, charts, directions and levels as texts, colours of the interface, buttons of commands, small drawn
-//! buttons, fields for numbers, bars of progress, the ring around what has the focus, pictures on the graphics card.
+//! buttons, kinds of scenes to tick, fields for numbers, bars of progress, the ring around what has the focus, pictures on the graphics card.
 
 pub mod axes;
 pub mod chart;
@@ -9,6 +9,7 @@ pub mod entry;
 pub mod focus_ring;
 pub mod icons;
 pub mod inline;
+pub mod kind_boxes;
 pub mod legend;
 pub mod levels;
 pub mod list_rows;

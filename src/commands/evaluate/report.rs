@@ -1,6 +1,7 @@
 //! The tables of an evaluation, from its rows.
 
 use super::against::{self, Against};
+use super::by_doubt::{self, DoubtReport};
 use super::by_echo::{self, EchoReport};
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
@@ -25,6 +26,8 @@ pub struct Report {
     radar: Option<String>,
     missing: Vec<Lack>,
     sets: Vec<SetReport>,
+    /// Of the rows of all sets, a method that says its doubt each; empty for one set.
+    doubt: Vec<DoubtReport>,
 }
 
 #[derive(Debug, Serialize)]
@@ -63,6 +66,8 @@ struct MethodReport {
     ghosts: Estimate,
     /// `None` where no scene has a body, and in older rows.
     echoes: Option<EchoReport>,
+    /// `None` where the rows say no doubt, and where they are too few.
+    doubt: Option<DoubtReport>,
     /// `None` where no detector of constant false-alarm rate was tried.
     cfar: Option<CfarReport>,
     median_milliseconds: f64,
@@ -121,13 +126,19 @@ fn names<'a>(rows: &[&'a Row], name: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str
     seen
 }
 
+/// How well the doubt of every method that says it finds failures.
+fn of_methods(rows: &[&Row], limit: Option<f64>) -> Vec<DoubtReport> {
+    names(rows, |row| &row.method).into_iter().filter_map(|name| DoubtReport::of(name, rows, limit)).collect()
+}
+
 impl Report {
-    /// The tables of `rows`, of whose whole run `missing` lacks.
-    pub fn of(rows: &[Row], missing: Vec<Lack>) -> Report {
+    /// The tables of `rows`, of whose whole run `missing` lacks. `limit` is the least squared error of a failure that doubt is to find; failures
+    /// are the worst tenth without it.
+    pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> Report {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)
             .into_iter()
-            .map(|set| SetReport::of(set, &all.iter().copied().filter(|r| r.set == set).collect::<Vec<_>>()))
+            .map(|set| SetReport::of(set, &all.iter().copied().filter(|r| r.set == set).collect::<Vec<_>>(), limit))
             .collect();
         let seed = rows.first().map(|row| row.seed).filter(|seed| rows.iter().all(|row| row.seed == *seed));
         // Merged rows are alike, and generated scenes come from one generator.
@@ -147,6 +158,7 @@ impl Report {
             reading: generated.as_ref().map(|(_, reading, _)| *reading),
             radar: generated.map(|(_, _, radar)| radar),
             missing,
+            doubt: if sets.len() > 1 { of_methods(&all, limit) } else { Vec::new() },
             sets,
         }
     }
@@ -181,13 +193,17 @@ impl Report {
         for set in &self.sets {
             set.write(self.count, &mut text);
         }
+        if !self.doubt.is_empty() {
+            text.push_str("\nAll sets together\n");
+            by_doubt::write(&self.doubt, &mut text);
+        }
         text.truncate(text.trim_end().len());
         text
     }
 }
 
 impl SetReport {
-    fn of(set: &str, rows: &[&Row]) -> SetReport {
+    fn of(set: &str, rows: &[&Row], limit: Option<f64>) -> SetReport {
         let test_set = set.parse::<Kind>().ok().and_then(Kind::test_set);
         let printed = test_set.map(|number| PrintedColumns {
             baseline: PRINTED_BASELINE[number - 1],
@@ -195,7 +211,7 @@ impl SetReport {
             experiment_2: PRINTED_EXPERIMENT_2[number - 1],
         });
         let false_alarm = false_alarm(test_set);
-        let method = |name: &&str| MethodReport::of(name, rows, false_alarm);
+        let method = |name: &&str| MethodReport::of(name, rows, false_alarm, limit);
         let names = names(rows, |row| &row.method);
         let (methods, against) = (names.iter().map(method).collect(), Against::of(&names, rows));
         SetReport { set: set.to_owned(), printed, false_alarm, methods, against }
@@ -236,6 +252,7 @@ impl SetReport {
         }
         let counted = self.methods.iter().filter_map(|m| Some((m.name.as_str(), m.echoes.as_ref()?)));
         by_echo::write(&counted.collect::<Vec<_>>(), width, text);
+        by_doubt::write(self.methods.iter().filter_map(|m| m.doubt.as_ref()), text);
         self.write_cfar(width, text);
         against::write(&self.against, text);
     }
@@ -276,7 +293,7 @@ impl PrintedColumns {
 }
 
 impl MethodReport {
-    fn of(name: &str, rows: &[&Row], false_alarm: f64) -> Self {
+    fn of(name: &str, rows: &[&Row], false_alarm: f64, limit: Option<f64>) -> Self {
         let tally = Tally::of(rows.iter().copied().filter(|row| row.method == name));
         let at = tally.detection_at_printed();
         MethodReport {
@@ -300,6 +317,7 @@ impl MethodReport {
             ghosts: tally.ghosts(),
             cfar: CfarReport::of(rows, &tally),
             echoes: tally.echoes().as_ref().map(EchoReport::of),
+            doubt: DoubtReport::of(name, rows, limit),
             median_milliseconds: tally.median_milliseconds(),
             near_best: part_near_best(rows, name),
         }

@@ -60,6 +60,7 @@ mod tests {
             squared_error: 500.0 + 300.0 * f64::from(index) + if method == "live" { 0.0 } else { f64::from(index) },
             objects: 3 + index as usize,
             detection: (index != 2).then_some(0.5),
+            doubt: (method == "live").then_some(700.0),
             ..row(["1", "3", "walls"][index as usize], index, method)
         };
         (0..3).flat_map(|i| METHODS.map(|m| of(i, m))).collect()
@@ -82,6 +83,8 @@ mod tests {
             ("set != 1", &[2, 3, 4, 5]),
             ("set < 3", &[0, 1]),
             ("detection = 0.5", &[0, 1, 2, 3]),
+            ("squared_error > live.doubt", &[2, 3, 4, 5]),
+            ("doubt > 0", &[0, 2, 4]),
             ("detection != 0.5", &[]),
             ("! detection = 0.5", &[4, 5]),
             ("objects * 2 + 1 > 1e1", &[4, 5]),

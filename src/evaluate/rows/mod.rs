@@ -66,6 +66,9 @@ pub struct Row {
     /// Echoes that stand out in the target by their strength, and how many of them the method shows; `None` for scenes without bodies, and
     /// in tables that were written before echoes were counted.
     pub echoes: Option<EchoTally>,
+    /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods that say no doubt, and in tables
+    /// that were written before it was kept.
+    pub doubt: Option<f64>,
     /// P_D and P_FA by the detector of its origin; `None` where none was asked for.
     pub cfar: Option<CfarRates>,
     /// What made the row; `None` in tables that were written before this was kept.
@@ -123,6 +126,7 @@ pub enum Column {
     WrongTooth,
     Echoes,
     EchoesFound,
+    Doubt,
     CfarDetection,
     CfarFalseAlarm,
 }
@@ -140,7 +144,7 @@ pub enum Value<'a> {
 
 impl Column {
     /// Every column, in the file's order.
-    pub const ALL: [Column; 25] = [
+    pub const ALL: [Column; 26] = [
         Column::Set,
         Column::Index,
         Column::Seed,
@@ -164,6 +168,7 @@ impl Column {
         Column::WrongTooth,
         Column::Echoes,
         Column::EchoesFound,
+        Column::Doubt,
         Column::CfarDetection,
         Column::CfarFalseAlarm,
     ];
@@ -194,6 +199,7 @@ impl Column {
             Column::WrongTooth => "wrong_tooth",
             Column::Echoes => "echoes",
             Column::EchoesFound => "echoes_found",
+            Column::Doubt => "doubt",
             Column::CfarDetection => "cfar_detection",
             Column::CfarFalseAlarm => "cfar_false_alarm",
         }
@@ -201,8 +207,8 @@ impl Column {
 
     /// Whether a table may lack it: older ones do.
     pub fn is_optional(self) -> bool {
-        use Column::{Echoes, EchoesFound, Found, Merged, WrongTooth};
-        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound) || self.is_of_cfar()
+        use Column::{Doubt, Echoes, EchoesFound, Found, Merged, WrongTooth};
+        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound | Doubt) || self.is_of_cfar()
     }
 
     /// Whether only rows with a detector of constant false-alarm rate have it.
@@ -243,6 +249,7 @@ impl Column {
             Column::WrongTooth => count(row.wrong_tooth),
             Column::Echoes => count(row.echoes.map(|echoes| echoes.there.iter().sum())),
             Column::EchoesFound => count(row.echoes.map(|echoes| echoes.found.iter().sum())),
+            Column::Doubt => maybe(row.doubt),
             Column::CfarDetection => maybe(row.cfar.and_then(|rates| rates.detection)),
             Column::CfarFalseAlarm => maybe(row.cfar.map(|rates| rates.false_alarm)),
         }
@@ -278,6 +285,7 @@ pub(super) mod tests {
             merged: Some(0),
             wrong_tooth: None,
             echoes: Some(EchoTally { there: [1, 0, 0, 2, 0, 4], found: [1, 0, 0, 1, 0, 0] }),
+            doubt: Some(200.0 / 7.0),
             cfar: None,
             origin: None,
         }

@@ -1,8 +1,11 @@
-//! What rows of an evaluation allow to say: whether one method is better than another, and what the bad rows have in common.
+//! What rows of an evaluation allow to say: whether one method is better than another, what the bad rows have in common, and whether doubt
+//! finds them.
 
 mod chance;
+mod doubt;
 mod paired;
 mod shared;
 
+pub use doubt::{DoubtArea, ONE_OF, RocArea};
 pub use paired::{MOST_RESAMPLED, Paired, RESAMPLES};
 pub use shared::{DISCOVERY_RATE, Rule, Shared, USUALLY_BAD, rules};

@@ -260,6 +260,7 @@ fn tables_of_rows() -> Reader {
         merged: None,
         wrong_tooth: figure.map(|_| 1),
         echoes: None,
+        doubt: figure,
         cfar: None,
         origin: None,
     };

@@ -119,6 +119,7 @@ pub fn some_row(index: u32, method: &str) -> Row {
         merged: Some(0),
         wrong_tooth: Some(0),
         echoes: None,
+        doubt: (method == "live").then_some(90.0 + f64::from(index)),
         cfar: None,
         origin: None,
     }

@@ -17,7 +17,7 @@ pub fn number(column: Column, value: f64) -> String {
     let digits = match column {
         Column::Eta => return eta_text(value as f32),
         Column::Detection | Column::FalseAlarm | Column::DetectionAtPrinted => 4,
-        Column::SquaredError | Column::Milliseconds | Column::StrongestOverWeakestDb => 1,
+        Column::SquaredError | Column::Doubt | Column::Milliseconds | Column::StrongestOverWeakestDb => 1,
         Column::NearestPairColumns | Column::NearestPairBins => 1,
         Column::MinRangeMetres => 2,
         _ => 0,
@@ -56,6 +56,7 @@ pub fn title(column: Column) -> [&'static str; 2] {
         Column::WrongTooth => ["Wrong", "tooth"],
         Column::Echoes => ["Echoes of", "bodies"],
         Column::EchoesFound => ["Echoes", "found"],
+        Column::Doubt => ["Doubt", "as SE"],
         Column::CfarDetection => ["P_D", "by CFAR"],
         Column::CfarFalseAlarm => ["P_FA", "by CFAR"],
     }
@@ -74,7 +75,7 @@ pub fn width(column: Column) -> f32 {
         Column::Method => 130.0,
         Column::Index | Column::Seed => 52.0,
         Column::StrongestOverWeakestDb => 110.0,
-        Column::NearestPairColumns | Column::NearestPairBins => 90.0,
+        Column::NearestPairColumns | Column::NearestPairBins | Column::Doubt => 90.0,
         _ => 78.0,
     }
 }
@@ -104,8 +105,8 @@ mod tests {
         }
         assert_eq!(heading(Column::SquaredError), "Squared error");
         assert_eq!(
-            [Column::Set, Column::DetectionAtPrinted, Column::Found].map(|c| text(&row, c)),
-            ["scenes", "–", "1"]
+            [Column::Set, Column::DetectionAtPrinted, Column::Found, Column::Doubt].map(|c| text(&row, c)),
+            ["scenes", "–", "1", "93.0"]
         );
         assert_eq!(name(&row), "set scenes, scene 3, live");
     }

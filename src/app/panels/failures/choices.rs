@@ -2,6 +2,7 @@
 
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
+use crate::app::widgets::kind_boxes::{kind_boxes, kind_names};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
@@ -49,16 +50,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec
 fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
     let menu = ui.menu_button(format!("Scenes: {}", sets(memory)), |ui| {
-        for kind in Kind::all() {
-            let mut chosen = memory.kinds.contains(&kind);
-            let name = if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() };
-            if ui.checkbox(&mut chosen, name).on_hover_text(kind.description()).changed() {
-                match chosen {
-                    true => memory.kinds.insert(kind),
-                    false => memory.kinds.remove(&kind),
-                };
-            }
-        }
+        kind_boxes(ui, Kind::all(), &mut memory.kinds);
         ui.separator();
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
         ui.checkbox(&mut memory.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));
@@ -97,9 +89,7 @@ fn start(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Comman
 }
 
 fn sets(memory: &Memory) -> String {
-    let kinds = memory.kinds.iter().map(Kind::to_string);
-    let names: Vec<String> = kinds.chain(memory.own.then(|| "own".to_owned())).collect();
-    if names.len() > 4 { format!("{} kinds", names.len()) } else { names.join(", ") }
+    kind_names(&memory.kinds, memory.own.then_some("own"))
 }
 
 fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {

@@ -213,3 +213,24 @@ fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
     click(&mut panel, "nearest_pair_columns < 3");
     assert_eq!(panel.state().memory.order.shown().len(), 48);
 }
+
+#[test]
+fn doubt_is_a_column_a_filter_and_an_axis() {
+    let rows = (0..6).flat_map(|i| ["capon", "live"].map(|method| some_row(i, method))).collect();
+    let mut panel = panel_of(rows, vec2(3000.0, 700.0));
+    click(&mut panel, "Doubt as SE");
+    let in_sight = panel.state().memory.in_sight().to_vec();
+    let methods = in_sight.iter().map(|row| panel.state().table.rows()[*row].method.clone()).collect::<Vec<_>>();
+    assert_eq!(methods[..6], ["live"; 6], "those that say none come last");
+    assert_eq!(in_sight[0], 11, "the largest comes first");
+    assert!(seen::texts(panel.output()).iter().any(|t| t.text == "95.0"), "and is shown");
+    panel.state_mut().memory.filter.set("squared_error > doubt".to_owned());
+    panel.run_steps(3);
+    let rows = panel.state().table.rows().clone();
+    let shown = panel.state().memory.order.shown().to_vec();
+    assert!(!shown.is_empty() && shown.iter().all(|row| rows[*row].method == "live"));
+    let all: Vec<usize> = (0..rows.len()).collect();
+    let axes = points::Subject::Columns(Column::Doubt, Column::SquaredError);
+    let dots = points::Points::of(&panel.state().table, &all, &axes).dots;
+    assert_eq!(dots.iter().map(|dot| dot.at[0]).collect::<Vec<_>>(), [90.0, 91.0, 92.0, 93.0, 94.0, 95.0]);
+}

@@ -21,6 +21,8 @@ pub use view::ViewCommand;
 pub use window::WindowCommand;
 pub use work::WorkCommand;
 
+use crate::scene::generate::Kind;
+
 /// A kind of object to add.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NewObject {
@@ -64,6 +66,17 @@ pub struct EvaluationChoice {
     pub count: u32,
     /// Seed of the scenes.
     pub seed: u64,
+}
+
+/// Which rate of false alarms the threshold of the method in use is to keep, and on which scenes that is tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ThresholdChoice {
+    /// The rate, percent of the target's dark cells.
+    pub false_alarm_percent: f64,
+    /// Kinds of validation scenes.
+    pub kinds: Vec<Kind>,
+    /// Scenes of each kind.
+    pub count: u32,
 }
 
 /// Something the app can do.

@@ -1,6 +1,6 @@
 //! Commands that start long work, or stop it.
 
-use super::EvaluationChoice;
+use super::{EvaluationChoice, ThresholdChoice};
 use std::path::PathBuf;
 
 /// Commands that start long work, or stop it.
@@ -18,6 +18,10 @@ pub enum WorkCommand {
     Evaluate(EvaluationChoice),
     /// Stop the evaluation.
     CancelEvaluation,
+    /// Look for the threshold at which the method in use keeps a rate of false alarms, and set it.
+    FindThreshold(ThresholdChoice),
+    /// Stop that; the threshold stays as it is.
+    CancelThreshold,
     /// Measure run time against error.
     Measure {
         /// Every algorithm and more reflectors, for about a minute.

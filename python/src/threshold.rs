@@ -1,0 +1,70 @@
+//! The threshold at which a method keeps a rate of false alarms.
+
+use crate::errors::{named, value};
+use crate::methods;
+use crate::radar::{Radar, or_default};
+use crate::scene::set_name;
+use crate::work::{self, Progress};
+use apertura::evaluate::threshold::{KeptThreshold, ThresholdSearch};
+use apertura::scene::generate::Kind;
+use pyo3::prelude::*;
+
+/// Finds the threshold at which a method's false alarms stay below a rate on further scenes like those that it is tried on.
+///
+/// The method is tried on random validation scenes. The threshold is the lowest with (n P_FA + 1) / (n + 1) at most the rate, P_FA being the
+/// mean over the n scenes (conformal risk control; Angelopoulos et al., ICLR 2024, theorem 1). On a further scene that is exchangeable with
+/// these, P_FA is then at most the rate on average. This holds for no other kinds of scenes, floors or radars, and not for each single scene.
+///
+/// Args:
+///     method: Name of a method.
+///     false_alarm_percent: Part of the cells that are dark in the target which may exceed the threshold, percent. 1 % takes 99 scenes or more.
+///     sets: Names of kinds of scenes with echoes, as `Scene.random` takes them, each once.
+///     count: Scenes of each kind.
+///     seed: Seed of the scenes.
+///     floor: What lies beneath the reflectors.
+///     normalisation: How every map is normalised.
+///     radar: The radar; that of table 3.1 where none is given.
+///     progress: Called with the part that is done, 0 to 1.
+///
+/// Returns:
+///     `eta`, the threshold of Lambda, and what it does on the scenes that chose it: `scenes`, and the means `false_alarm` and `detection`,
+///     fractions.
+///
+/// Raises:
+///     ValueError: A name is unknown or given twice, the scenes are too few for the rate, or the method can't work on a scene.
+#[pyfunction]
+#[pyo3(signature = (method="live", *, false_alarm_percent=1.0, sets=None, count=100, seed=0, floor="thesis", normalisation="min-max",
+                    radar=None, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "named in Python")]
+pub fn threshold<'py>(
+    py: Python<'py>,
+    method: &str,
+    false_alarm_percent: f64,
+    sets: Option<Vec<Bound<'py, PyAny>>>,
+    count: u32,
+    seed: u64,
+    floor: &str,
+    normalisation: &str,
+    radar: Option<&Radar>,
+    progress: Progress<'_, 'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let usual = ThresholdSearch::default();
+    let kinds = match sets {
+        Some(sets) => sets.iter().map(|set| named::<Kind>(&set_name(set)?)).collect::<PyResult<_>>()?,
+        None => usual.kinds,
+    };
+    let search = ThresholdSearch {
+        radar: or_default(radar),
+        floor: named(floor)?,
+        normalisation: named(normalisation)?,
+        kinds,
+        count,
+        seed,
+        false_alarm_percent,
+    };
+    let method = methods::method(method)?.0;
+    let found = work::run(py, progress, |task| search.run(&*method, task, |part| task.set_progress(part)))?;
+    let KeptThreshold { eta, tried } = found.map_err(value)?;
+    let figures = (eta, tried.scenes, tried.false_alarm, tried.detection);
+    py.import("apertura.objects")?.getattr("Threshold")?.call1(figures)
+}

@@ -1,0 +1,176 @@
+//! The threshold of the method's output by the false alarms that it lets through.
+
+use crate::app::state::{Command, ThresholdChoice, WorkCommand};
+use crate::app::widgets::kind_boxes::{kind_boxes, kind_names};
+use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
+use crate::app::widgets::setting_row::{rarely, row, row_of};
+use crate::evaluate::threshold::ThresholdSearch;
+use crate::radar::counted;
+use crate::scene::generate::Kind;
+use eframe::egui::{Label, RichText, Ui};
+use std::collections::BTreeSet;
+
+/// How the search goes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Search<'a> {
+    /// The part that is done, while it runs.
+    pub progress: Option<f32>,
+    /// How the last one ended, if not well.
+    pub note: Option<&'a str>,
+}
+
+/// What is chosen.
+pub struct Memory {
+    percent: f64,
+    kinds: BTreeSet<Kind>,
+    count: u32,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        let ThresholdSearch { false_alarm_percent, kinds, count, .. } = ThresholdSearch::default();
+        Memory { percent: false_alarm_percent, kinds: kinds.into_iter().collect(), count }
+    }
+}
+
+/// What the rate means, and on which condition it is kept.
+const KEEP: &str = "Part of the target's dark cells that may exceed η, on average over further scenes. Condition: these scenes are exchangeable \
+    with the validation scenes that η was tried on, that is, drawn alike, of the same kinds, with the same radar, floor and normalisation. In a \
+    single scene P_FA may be higher.";
+
+impl Memory {
+    /// Why no search can begin, if none can.
+    fn problem(&self) -> Option<String> {
+        if self.kinds.is_empty() {
+            return Some("Choose scenes first.".to_owned());
+        }
+        let (false_alarm_percent, kinds) = (self.percent, self.kinds.iter().copied().collect());
+        let search = ThresholdSearch { false_alarm_percent, kinds, count: self.count, ..ThresholdSearch::default() };
+        search.check().err().map(|error| error.to_string())
+    }
+}
+
+/// Draws the fields and the button, folded away at first.
+pub fn show(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+    rarely(ui, "η by false alarms", |ui| {
+        ui.add_enabled_ui(search.progress.is_none(), |ui| choose(ui, memory));
+        row_of(ui, "", "", |ui| start(ui, method, search, memory, asked));
+        let told = match (search.progress, memory.problem()) {
+            (None, Some(problem)) => Some(problem),
+            (None, None) => search.note.map(str::to_owned),
+            (Some(_), _) => None,
+        };
+        if let Some(told) = told {
+            ui.add(Label::new(RichText::new(told).color(ui.visuals().warn_fg_color)).wrap());
+        }
+    });
+}
+
+fn choose(ui: &mut Ui, memory: &mut Memory) {
+    row(ui, "Keep below", KEEP, |ui| {
+        ui.add(NumberField::new(&mut memory.percent).range(0.01..=50.0).speed(0.02).suffix(" %"))
+    });
+    row_of(ui, "Tried on", "Validation scenes, which no figure is reported of", |ui| {
+        let menu = ui.menu_button(format!("Kinds: {}", kind_names(&memory.kinds, None)), |ui| {
+            kind_boxes(ui, Kind::all().filter(|kind| *kind != Kind::Noise), &mut memory.kinds);
+        });
+        menu.response
+            .on_hover_text("Kinds of scenes that the method is tried on: choose those that it is to be used on");
+        let label = ui.label("of each");
+        let field = NumberField::new(&mut memory.count).range(1..=100_000);
+        let tip = "Scenes of each kind. 1 % takes 99 scenes in all or more; more scenes give a lower η";
+        ui.add(field).labelled_by(label.id).on_hover_text(tip);
+    });
+}
+
+/// Find η, or in its place Cancel.
+fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+    let problem = memory.problem();
+    let scenes = counted(memory.count as usize * memory.kinds.len(), "validation scene", "validation scenes");
+    let tip = format!(
+        "Try {method} on {scenes} in the background, with the radar, floor and normalisation in use, and set its η to the lowest that keeps \
+         the rate (conformal risk control). {KEEP}"
+    );
+    let tips = [problem.as_deref().unwrap_or(&tip), "Stop the search; η stays as it is"];
+    match start_or_cancel(ui, "Find η", search.progress.is_some(), problem.is_none(), tips) {
+        Some(Pressed::Start) => {
+            let (false_alarm_percent, kinds) = (memory.percent, memory.kinds.iter().copied().collect());
+            let choice = ThresholdChoice { false_alarm_percent, kinds, count: memory.count };
+            asked.push(WorkCommand::FindThreshold(choice).into());
+        }
+        Some(Pressed::Cancel) => asked.push(WorkCommand::CancelThreshold.into()),
+        None => {}
+    }
+    if let Some(part) = search.progress {
+        bar(ui, part, 100.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use eframe::egui::Vec2;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// What is drawn, and what was asked for.
+    struct Drawn {
+        search: Search<'static>,
+        memory: Memory,
+        asked: Vec<Command>,
+    }
+
+    fn fields(memory: Memory) -> Harness<'static, Drawn> {
+        let draw = |ui: &mut Ui, drawn: &mut Drawn| {
+            show(ui, "capon", &drawn.search, &mut drawn.memory, &mut drawn.asked);
+        };
+        let drawn = Drawn { search: Search::default(), memory, asked: Vec::new() };
+        let mut fields = Harness::builder().with_size(Vec2::new(300.0, 400.0)).build_ui_state(draw, drawn);
+        fields.get_by_label("η by false alarms").click();
+        fields.run();
+        fields
+    }
+
+    #[test]
+    fn the_search_is_one_command_and_its_cancel_another() {
+        let mut fields = fields(Memory { percent: 0.5, count: 80, ..Memory::default() });
+        seen::assert_readable(fields.output());
+        fields.get_by_label("Find η").click();
+        fields.run();
+        let kinds = vec![Kind::Set1, Kind::Set2, Kind::Set3];
+        let choice = ThresholdChoice { false_alarm_percent: 0.5, kinds, count: 80 };
+        assert_eq!(fields.state().asked, [WorkCommand::FindThreshold(choice).into()]);
+        fields.state_mut().search.progress = Some(0.4);
+        fields.step();
+        fields.get_by_label("Cancel").click();
+        fields.step();
+        assert_eq!(fields.state().asked.last(), Some(&WorkCommand::CancelThreshold.into()));
+    }
+
+    #[test]
+    fn the_condition_stands_beside_the_rate() {
+        let mut fields = fields(Memory::default());
+        fields.get_by_label("Keep below").hover();
+        fields.run_steps(40);
+        let told = fields.query_by_label_contains("exchangeable with the validation scenes");
+        assert!(told.is_some());
+    }
+
+    #[test]
+    fn too_few_scenes_are_told_and_no_search_begins() {
+        let mut fields = fields(Memory { count: 20, ..Memory::default() });
+        let _told = fields.get_by_label("60 scenes can't keep a rate of 1 %; take 99 scenes or more");
+        fields.get_by_label("Find η").click();
+        fields.run();
+        assert!(fields.state().asked.is_empty());
+        fields.state_mut().memory.count = 33;
+        fields.state_mut().search.note = Some("no threshold keeps 1 % on these scenes");
+        fields.run();
+        let _told = fields.get_by_label("no threshold keeps 1 % on these scenes");
+        fields.state_mut().memory.kinds.clear();
+        fields.run();
+        let _told = fields.get_by_label("Choose scenes first.");
+    }
+}

@@ -1,0 +1,47 @@
+//! Whether the doubt of a method finds its failures.
+
+use crate::evaluate::rows::Row;
+use crate::evaluate::statistics::DoubtArea;
+use crate::radar::counted;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// How well the doubt of one method finds its failures.
+#[derive(Debug, Serialize)]
+pub struct DoubtReport {
+    method: String,
+    rows: usize,
+    failures: usize,
+    least_squared_error: f64,
+    /// `None` where every row is a failure, or none.
+    area: Option<f64>,
+    /// `None` for fewer than two failures or two other rows.
+    standard_error: Option<f64>,
+}
+
+impl DoubtReport {
+    /// Of the rows of `method`; `None` where they say no doubt or are too few. `limit` is the least squared error of a failure; the worst tenth
+    /// of these rows are failures without it.
+    pub fn of(method: &str, rows: &[&Row], limit: Option<f64>) -> Option<DoubtReport> {
+        let own = rows.iter().copied().filter(|row| row.method == method);
+        let DoubtArea { rows, failures, least_squared_error, area } = DoubtArea::of(own, limit)?;
+        let standard_error = area.and_then(|area| area.standard_error);
+        let area = area.map(|area| area.area);
+        Some(DoubtReport { method: method.to_owned(), rows, failures, least_squared_error, area, standard_error })
+    }
+}
+
+/// Adds a line a method to a table.
+pub fn write<'a>(reports: impl IntoIterator<Item = &'a DoubtReport>, text: &mut String) {
+    for DoubtReport { method, rows, failures, least_squared_error, area, standard_error } in reports {
+        let area = area.map_or("-".to_owned(), |area| format!("{area:.3}"));
+        let error = standard_error.map_or_else(String::new, |error| format!(" \u{b1} {error:.3}"));
+        let failures = counted(*failures, "failure", "failures");
+        // Writing to a string can't fail.
+        let _ = writeln!(
+            text,
+            "doubt of {method} against failures: area under the ROC curve {area}{error} ({failures} in {rows} rows, SE from \
+             {least_squared_error:.1} on)"
+        );
+    }
+}

@@ -1,0 +1,278 @@
+//! The threshold at which a method keeps a rate of false alarms on further scenes like those that it was tried on.
+
+use super::trial::Trial;
+use super::{Roc, RocPoint, detection_rates};
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::{Radar, counted};
+use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::scene::SceneError;
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::signal::Floor;
+use crate::task::Task;
+
+/// What is tried: validation scenes of some kinds, after the author's program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ThresholdSearch {
+    /// The radar of the scenes.
+    pub radar: Radar,
+    /// Noise of the scenes.
+    pub floor: Floor,
+    /// How every map is normalised.
+    pub normalisation: Normalisation,
+    /// Kinds of scenes, each once.
+    pub kinds: Vec<Kind>,
+    /// Scenes of each kind.
+    pub count: u32,
+    /// Seed of the scenes.
+    pub seed: u64,
+    /// The rate of false alarms to keep, percent of the cells that are dark in the target; above 0 and below 100.
+    pub false_alarm_percent: f64,
+}
+
+impl Default for ThresholdSearch {
+    /// 1 % on a hundred scenes of each of the thesis' sets, with the thesis' conventions.
+    fn default() -> Self {
+        ThresholdSearch {
+            radar: Radar::default(),
+            floor: Floor::Thesis,
+            normalisation: Normalisation::MinMax,
+            kinds: vec![Kind::Set1, Kind::Set2, Kind::Set3],
+            count: 100,
+            seed: 0,
+            false_alarm_percent: 1.0,
+        }
+    }
+}
+
+/// A threshold, and what it does on the scenes that chose it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptThreshold {
+    /// The threshold of Lambda.
+    pub eta: f32,
+    /// P_FA and P_D there.
+    pub tried: Tried,
+}
+
+/// Means over scenes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tried {
+    /// Scenes with target cells.
+    pub scenes: usize,
+    /// P_FA, 0 to 1.
+    pub false_alarm: f64,
+    /// P_D, 0 to 1.
+    pub detection: f64,
+}
+
+/// Why there is no threshold.
+#[derive(Debug, thiserror::Error)]
+pub enum ThresholdError {
+    /// The rate is no rate.
+    #[error("a rate of {0} % of false alarms can't be kept; expected more than 0 and less than 100")]
+    Rate(f64),
+    /// Scenes of a kind have no echoes.
+    #[error("scenes of the kind \"{0}\" have no echoes, and so no P_D to set against P_FA")]
+    NoEchoes(Kind),
+    /// Scenes of a kind would count twice, and would not be exchangeable with further ones.
+    #[error("the kind \"{0}\" is given twice; expected each kind once")]
+    GivenTwice(Kind),
+    /// So few scenes keep no such rate.
+    #[error("{} can't keep a rate of {percent} %; take {fewest} scenes or more", counted(*scenes, "scene", "scenes"))]
+    TooFew {
+        /// All scenes.
+        scenes: usize,
+        /// The rate, percent.
+        percent: f64,
+        /// With so many scenes it can.
+        fewest: f64,
+    },
+    /// No threshold of Lambda keeps the rate.
+    #[error("no threshold keeps {0} % on these scenes")]
+    Unreached(f64),
+    /// A scene can't be simulated.
+    #[error("scene {index} of {kind}: {source}")]
+    Scene {
+        /// Its kind.
+        kind: Kind,
+        /// Its number.
+        index: u32,
+        /// Why.
+        source: SceneError,
+    },
+    /// The method failed.
+    #[error("{method} on scene {index} of {kind}: {source}")]
+    Method {
+        /// Name of the method.
+        method: &'static str,
+        /// Kind of the scene.
+        kind: Kind,
+        /// Number of the scene.
+        index: u32,
+        /// Why.
+        source: ReconstructError,
+    },
+}
+
+impl ThresholdError {
+    /// Whether somebody asked it to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, ThresholdError::Method { source: ReconstructError::Cancelled, .. })
+    }
+}
+
+impl ThresholdSearch {
+    /// Tries `method` on every scene, and gives the lowest threshold that keeps the rate ([`Roc::keeping_false_alarm`]): the mean of P_FA over
+    /// further scenes that are exchangeable with these is at most the rate. `on_part` is told the part that is done, 0 to 1.
+    ///
+    /// # Errors
+    /// [`ThresholdError`]; it names the scene that failed, and [`ThresholdError::is_cancelled`] after `task` was cancelled.
+    pub fn run(
+        &self,
+        method: &dyn Reconstructor,
+        task: &Task,
+        on_part: impl FnMut(f32),
+    ) -> Result<KeptThreshold, ThresholdError> {
+        self.check()?;
+        let mut roc = Roc::default();
+        self.each(method, [0, self.count], task, on_part, |target, output| roc.add(target, output))?;
+        let found = roc.keeping_false_alarm(self.rate());
+        let RocPoint { eta, detection, false_alarm } =
+            found.ok_or(ThresholdError::Unreached(self.false_alarm_percent))?;
+        Ok(KeptThreshold { eta, tried: Tried { scenes: roc.scenes(), false_alarm, detection } })
+    }
+
+    /// The rates at `eta` on `count` further scenes of each kind, which did not choose it.
+    ///
+    /// # Errors
+    /// As [`ThresholdSearch::run`].
+    pub fn try_further(
+        &self,
+        method: &dyn Reconstructor,
+        eta: f32,
+        count: u32,
+        task: &Task,
+        on_part: impl FnMut(f32),
+    ) -> Result<Tried, ThresholdError> {
+        let mut sums = Tried { scenes: 0, false_alarm: 0.0, detection: 0.0 };
+        self.each(method, [self.count, count], task, on_part, |target, output| {
+            let (detection, false_alarm) = detection_rates(target, output, eta);
+            if let Some(detection) = detection {
+                sums.scenes += 1;
+                sums.detection += detection;
+                sums.false_alarm += false_alarm;
+            }
+        })?;
+        let scenes = sums.scenes.max(1) as f64;
+        Ok(Tried { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
+    }
+
+    /// The rate as a fraction.
+    fn rate(&self) -> f64 {
+        self.false_alarm_percent / 100.0
+    }
+
+    /// What can be said before anything is tried.
+    ///
+    /// # Errors
+    /// [`ThresholdError`] says what can't be.
+    pub fn check(&self) -> Result<(), ThresholdError> {
+        let percent = self.false_alarm_percent;
+        if !(percent > 0.0 && percent < 100.0) {
+            return Err(ThresholdError::Rate(percent));
+        }
+        if self.kinds.contains(&Kind::Noise) {
+            return Err(ThresholdError::NoEchoes(Kind::Noise));
+        }
+        let twice = self.kinds.iter().enumerate().find(|(i, kind)| self.kinds[..*i].contains(kind));
+        if let Some((_, kind)) = twice {
+            return Err(ThresholdError::GivenTwice(*kind));
+        }
+        let (scenes, fewest) = (self.count as usize * self.kinds.len(), Roc::fewest_scenes(self.rate()));
+        if (scenes as f64) < fewest {
+            return Err(ThresholdError::TooFew { scenes, percent, fewest });
+        }
+        Ok(())
+    }
+
+    /// Tries `method` on `count` scenes of every kind from number `first` on, and hands target and output over.
+    fn each(
+        &self,
+        method: &dyn Reconstructor,
+        [first, count]: [u32; 2],
+        task: &Task,
+        mut on_part: impl FnMut(f32),
+        mut judge: impl FnMut(&RangeAngleMap, &RangeAngleMap),
+    ) -> Result<(), ThresholdError> {
+        let generator = Generator::new(&self.radar, Reading::Program, Purpose::Validation, self.seed);
+        let (noise, normalisation) = (self.floor.into(), self.normalisation);
+        // The progress of a single map is not that of the search.
+        let request = Request { noise, normalisation, task: task.quiet(), ..Request::default() };
+        let total = count as f32 * self.kinds.len() as f32;
+        let mut done = 0.0;
+        for &kind in &self.kinds {
+            for index in first..first.saturating_add(count) {
+                let scene = generator.scene(kind, index);
+                let trial = Trial::new(&self.radar, &scene, self.floor, self.normalisation)
+                    .map_err(|source| ThresholdError::Scene { kind, index, source })?;
+                let answer = trial.ask(method, &request);
+                let answer = answer.map_err(|source| {
+                    let method = method.name();
+                    ThresholdError::Method { method, kind, index, source }
+                })?;
+                judge(&trial.target, &answer.found.lambda);
+                done += 1.0;
+                on_part(done / total);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reconstruct::Baseline;
+
+    fn search() -> ThresholdSearch {
+        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let kinds = vec![Kind::Set1, Kind::Set2];
+        ThresholdSearch { radar, kinds, count: 3, false_alarm_percent: 40.0, ..ThresholdSearch::default() }
+    }
+
+    #[test]
+    fn the_threshold_keeps_the_rate_on_the_scenes_that_chose_it() {
+        let (search, task, mut parts) = (search(), Task::default(), Vec::new());
+        let found = search.run(&Baseline, &task, |part| parts.push(part)).unwrap();
+        assert_eq!((found.tried.scenes, parts.len(), parts.last()), (6, 6, Some(&1.0)));
+        assert!((6.0 * found.tried.false_alarm + 1.0) / 7.0 <= 0.4, "{found:?}");
+        let again = search.run(&Baseline, &task, |_| ()).unwrap();
+        assert_eq!(found, again);
+        let further = search.try_further(&Baseline, found.eta, 2, &task, |_| ()).unwrap();
+        assert_eq!(further.scenes, 4);
+        assert_ne!(further.false_alarm, found.tried.false_alarm, "other scenes");
+    }
+
+    #[test]
+    fn what_cannot_be_kept_is_said_before_anything_is_tried() {
+        let says = |search: ThresholdSearch, expected: &str| {
+            let error = search.run(&Baseline, &Task::default(), |_| panic!("nothing is tried")).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+        };
+        let percent = |false_alarm_percent| ThresholdSearch { false_alarm_percent, ..search() };
+        says(percent(1.0), "6 scenes can't keep a rate of 1 %; take 99 scenes or more");
+        says(percent(0.0), "a rate of 0 % of false alarms can't be kept");
+        says(percent(100.0), "less than 100");
+        says(percent(f64::NAN), "NaN");
+        says(ThresholdSearch { kinds: Vec::new(), ..search() }, "0 scenes can't keep");
+        says(ThresholdSearch { kinds: vec![Kind::Noise], ..search() }, "\"noise\" have no echoes");
+        says(ThresholdSearch { kinds: vec![Kind::Set2, Kind::Set1, Kind::Set2], ..search() }, "\"2\" is given twice");
+    }
+
+    #[test]
+    fn a_search_can_be_cancelled() {
+        let task = Task::default();
+        let cancel = |_| task.cancel();
+        let stopped = search().run(&Baseline, &task, cancel).unwrap_err();
+        assert!(stopped.is_cancelled(), "{stopped}");
+    }
+}
