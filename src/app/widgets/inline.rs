@@ -1,19 +1,45 @@
-//! Text with names of methods and commands in it, written between backticks.
+//! Text with names of methods and commands in it, written between backticks, and of panels, between asterisks.
 
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{FontId, TextFormat, TextStyle, Ui};
 
-/// The text, so many times as large as others, what stands between backticks in the font of code, without them.
+/// The text, so many times as large as others, without line breaks inside paragraphs. What stands between backticks is in the font of code, what stands
+/// between asterisks in the colour of strong text, both without them.
 pub fn inline(ui: &Ui, text: &str, times: f32) -> LayoutJob {
     let (visuals, size) = (ui.visuals(), times * TextStyle::Body.resolve(ui.style()).size);
     let plain = TextFormat::simple(FontId::proportional(size), visuals.text_color());
+    let strong = TextFormat::simple(FontId::proportional(size), visuals.strong_text_color());
     let mut code = TextFormat::simple(FontId::monospace(0.93 * size), visuals.text_color());
     code.background = visuals.code_bg_color;
     let mut job = LayoutJob::default();
-    for (i, piece) in text.split('`').enumerate() {
-        job.append(piece, 0.0, if i % 2 == 1 { code.clone() } else { plain.clone() });
+    for (i, piece) in text.trim().split('`').enumerate() {
+        if i % 2 == 1 {
+            job.append(piece, 0.0, code.clone());
+            continue;
+        }
+        let mut rest = unwrapped(piece);
+        while let Some((before, words, after)) = emphasis(&rest) {
+            job.append(before, 0.0, plain.clone());
+            job.append(words, 0.0, strong.clone());
+            rest = after.to_owned();
+        }
+        job.append(&rest, 0.0, plain.clone());
     }
     job
+}
+
+/// The text with each paragraph on one line: a line of the file ends where its author's editor ended it.
+fn unwrapped(text: &str) -> String {
+    text.split("\n\n").map(|paragraph| paragraph.replace('\n', " ")).collect::<Vec<_>>().join("\n\n")
+}
+
+/// The text before the first words between asterisks, the words, and the text behind them. `2 * 3` has none.
+fn emphasis(text: &str) -> Option<(&str, &str, &str)> {
+    let mut stars = text.match_indices('*').map(|(at, _)| at);
+    let opens = |at: &usize| text[at + 1..].starts_with(|c: char| !c.is_whitespace() && c != '*');
+    let begin = stars.find(opens)?;
+    let end = stars.find(|at| !text[..*at].ends_with(char::is_whitespace))?;
+    Some((&text[..begin], &text[begin + 1..end], &text[end + 1..]))
 }
 
 #[cfg(test)]
@@ -32,5 +58,18 @@ mod tests {
             ui.label(job);
         });
         assert_eq!(seen::texts(text.output())[0].text, "The method live draws it, nomp searches.");
+    }
+
+    #[test]
+    fn words_between_asterisks_stand_out_and_paragraphs_have_no_line_breaks() {
+        let text = Harness::builder().build_ui(|ui| {
+            let job = inline(ui, "\nThe panel *Range-Doppler*\n(Y) shows 2 * 3 cells.\n\nChoose *OS*.\n", 1.15);
+            let strong = job.sections.iter().filter(|s| s.format.color == ui.visuals().strong_text_color());
+            let strong: Vec<&str> = strong.map(|s| &job.text[s.byte_range.start.0..s.byte_range.end.0]).collect();
+            assert_eq!(strong, ["Range-Doppler", "OS"]);
+            ui.label(job);
+        });
+        let expected = "The panel Range-Doppler (Y) shows 2 * 3 cells.\n\nChoose OS.";
+        assert_eq!(seen::texts(text.output())[0].text, expected);
     }
 }

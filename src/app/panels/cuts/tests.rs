@@ -1,6 +1,7 @@
 use super::*;
 use crate::app::widgets::seen;
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::Convention;
 use eframe::egui::{Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -163,4 +164,16 @@ fn lines_differ_by_dash() {
     for (i, dash) in dashes.iter().enumerate() {
         assert!(!dashes[i + 1..].contains(dash), "{dashes:?}");
     }
+}
+
+#[test]
+fn the_angle_cut_of_a_physical_radar_rises_along_its_axis_too() {
+    let radar = Radar::default().in_convention(Convention::Physical);
+    let whole = Cut::Angle.whole(&radar);
+    assert!(whole.low < -0.99 && whole.high > 0.99, "{whole:?}");
+    let cursor = Cursor::at_cell(&radar, 300.0, 700.0);
+    let trace = Trace::of(&radar, &cursor, &lobe(MapKind::Target, &radar), Cut::Angle, None).unwrap();
+    assert!(trace.lambda.windows(2).all(|pair| pair[0][0] < pair[1][0]));
+    let brightest = trace.lambda.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
+    assert_eq!(brightest[0], radar.cos_of_column(700.0));
 }

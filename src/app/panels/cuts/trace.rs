@@ -39,8 +39,9 @@ impl Cut {
     pub fn whole(self, radar: &Radar) -> Span {
         match self {
             Cut::Angle => {
-                let columns = radar.elements as f64;
-                Span { low: radar.cos_of_column(-0.5), high: radar.cos_of_column(columns - 0.5) }
+                let edges = [-0.5, radar.elements as f64 - 0.5].map(|column| radar.cos_of_column(column));
+                // In the physical convention cos θ falls from column to column.
+                Span { low: edges[0].min(edges[1]), high: edges[0].max(edges[1]) }
             }
             Cut::Range => Span { low: 0.0, high: radar.max_range_metres() },
         }
@@ -72,7 +73,7 @@ pub struct Trace {
     pub kind: MapKind,
     /// Of which pinned cut; of the cut at the cursor where `None`.
     pub pin: Option<usize>,
-    /// Place on the axis and Lambda, cell by cell.
+    /// Place on the axis, rising, and Lambda, cell by cell.
     pub lambda: Vec<[f64; 2]>,
     scale: Option<LambdaScale>,
 }
@@ -82,7 +83,7 @@ impl Trace {
     pub fn of(radar: &Radar, cursor: &Cursor, map: &CutMap, cut: Cut, pin: Option<usize>) -> Option<Trace> {
         let (bin, column) = cursor.cell(radar)?;
         let (rows, columns) = map.map.lambda.dim();
-        let lambda = match cut {
+        let mut lambda: Vec<_> = match cut {
             Cut::Angle if bin < rows => {
                 let cells = map.map.lambda.row(bin);
                 cells.iter().enumerate().map(|(k, v)| [radar.cos_of_column(k as f64), f64::from(*v)]).collect()
@@ -93,6 +94,7 @@ impl Trace {
             }
             _ => return None,
         };
+        lambda.sort_by(|a: &[f64; 2], b| a[0].total_cmp(&b[0]));
         Some(Trace { kind: map.kind, pin, lambda, scale: map.scale })
     }
 

@@ -40,7 +40,7 @@ pub fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<
 pub fn veil(painter: &Painter, rect: Rect, is_clicked: bool, visuals: &egui::Visuals) {
     let (text, ink, size) = match is_clicked {
         true => ("Click where you expect it", Inks::of(visuals).selected, 16.0),
-        false => ("Hidden until you have predicted", visuals.weak_text_color(), 13.0),
+        false => ("Hidden until you have predicted.", visuals.weak_text_color(), 13.0),
     };
     let at = rect.center_top() + vec2(0.0, 10.0);
     painter.text(at, Align2::CENTER_TOP, text, egui::FontId::proportional(size), ink);
