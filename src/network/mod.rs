@@ -3,8 +3,10 @@
 //! | file | what |
 //! |---|---|
 //! | [`live`] | the live network: features, examples to train on, burn module, an engine without a framework |
+//! | [`kernels`] | convolutions that both engines without a framework are made of |
 //! | [`floors`] | floors of training scenes |
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
+//! | [`thesis_engine`] | its forward pass without a framework |
 //! | [`unet`] | the thesis' failing U-Net |
 //! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |
 //! | [`run`], [`train`], [`checkpoint`] | what a run is and what it was made of, how it goes, and going on with it |
@@ -17,6 +19,7 @@ pub mod backend;
 #[cfg(feature = "network")]
 pub mod checkpoint;
 pub mod floors;
+pub mod kernels;
 #[cfg(feature = "network")]
 mod lesson;
 pub mod live;
@@ -32,6 +35,8 @@ pub mod run;
 pub mod students;
 #[cfg(feature = "network")]
 pub mod thesis;
+#[cfg(feature = "network")]
+pub mod thesis_engine;
 #[cfg(feature = "network")]
 pub mod thesis_method;
 #[cfg(feature = "network")]

@@ -155,10 +155,22 @@ impl Thesis {
     /// [`WeightsError`] when they don't fit.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
         let mut network = Thesis::new(config, device);
-        let renamed = file.renamed(from_pytorch)?;
-        WeightFile::parse(file.name(), &renamed)?
-            .load_into(&mut network, |name| name.ends_with("num_batches_tracked"))?;
+        let renamed = Thesis::in_our_names(file)?;
+        WeightFile::parse(file.name(), &renamed)?.load_into(&mut network, Thesis::ignores)?;
         Ok(network)
+    }
+
+    /// The bytes of `file` with our tensor names in place of the author's, if it has those.
+    ///
+    /// # Errors
+    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
+    pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
+        file.renamed(from_pytorch)
+    }
+
+    /// Whether a tensor of this name may lie in a weight file unused: PyTorch's batch norms count what they saw.
+    pub(super) fn ignores(name: &str) -> bool {
+        name.ends_with("num_batches_tracked")
     }
 
     /// Estimates Lambda of a batch.

@@ -3,6 +3,7 @@
 use super::backend::Backend;
 use super::students::{Student, ThesisInput, UnetTables};
 use super::thesis::{Thesis, ThesisConfig};
+use super::thesis_engine::{Buffers, ThesisEngine};
 use super::trained_for::check_radar;
 use super::unet::{Unet, UnetConfig};
 use super::weights::{Provenance, WeightFile, WeightsError};
@@ -15,6 +16,7 @@ use crate::reconstruct::{
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
 use ndarray::{Array2, Array3};
+use std::sync::{Mutex, PoisonError};
 
 /// The thesis' own threshold, for weights that name none.
 const THESIS_ETA: f32 = 0.7;
@@ -27,9 +29,8 @@ const TOLD: &str =
 /// squared error of. Its threshold is one for the output stretched to [0, 1], as the thesis' is.
 #[derive(Debug)]
 pub struct ThesisMethod {
-    network: Thesis,
+    network: Network,
     config: ThesisConfig,
-    device: Device,
     eta: f32,
     name: &'static str,
     description: &'static str,
@@ -39,8 +40,49 @@ pub struct ThesisMethod {
     pub provenance: Provenance,
 }
 
+/// Who computes the network.
+#[derive(Debug)]
+enum Network {
+    /// The engine without a framework, with buffers that nobody uses. They are taken out for a pass and not locked while it runs: another thread
+    /// makes its own.
+    Engine { engine: Box<ThesisEngine>, idle: Mutex<Option<Buffers>> },
+    /// burn, on a backend that was asked for.
+    Burn { network: Box<Thesis>, device: Device },
+}
+
+impl Network {
+    /// # Errors
+    /// [`WeightsError`] when `file` doesn't fit `config`.
+    fn new(file: &WeightFile, config: &ThesisConfig, backend: Backend) -> Result<Self, WeightsError> {
+        if backend == Backend::default() {
+            let engine = Box::new(ThesisEngine::new(file, config)?);
+            return Ok(Network::Engine { engine, idle: Mutex::default() });
+        }
+        let device = backend.device();
+        Ok(Network::Burn { network: Box::new(Thesis::load(file, config, &device)?.folded()), device })
+    }
+
+    /// The answer to one scene.
+    fn estimate(&self, method: &'static str, input: ThesisInput) -> Result<Array2<f32>, ReconstructError> {
+        let size = input.size;
+        match self {
+            Network::Engine { engine, idle } => {
+                // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
+                let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+                let taken = idle().take();
+                let mut buffers = taken.unwrap_or_default();
+                let map = engine.forward(&input.values, size, &mut buffers);
+                *idle() = Some(buffers);
+                in_rows(method, size, map)
+            }
+            Network::Burn { network, device } => estimate(&**network, method, input, size, device),
+        }
+    }
+}
+
 impl ThesisMethod {
-    /// The network with the weights of `file`, whose tensors decide its width and depth, computed by `backend`.
+    /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
+    /// `backend` is not the default one.
     ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
@@ -50,12 +92,10 @@ impl ThesisMethod {
         file: WeightFile,
         backend: Backend,
     ) -> Result<Self, WeightsError> {
-        let device = backend.device();
         let config = Thesis::config_of(&file)?;
         Ok(ThesisMethod {
-            network: Thesis::load(&file, &config, &device)?.folded(),
+            network: Network::new(&file, &config, backend)?,
             config,
-            device,
             eta: file.provenance.eta().unwrap_or(THESIS_ETA),
             name,
             description,
@@ -66,8 +106,8 @@ impl ThesisMethod {
     }
 
     /// The network's answer with the threshold that means the method's own once the answer is stretched.
-    fn answer(&self, input: ThesisInput, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
-        let map = estimate(&self.network, self.name, input, [radar.samples, radar.elements], &self.device)?;
+    fn answer(&self, input: ThesisInput) -> Result<Reconstruction, ReconstructError> {
+        let map = self.network.estimate(self.name, input)?;
         let eta = unstretched(&map, self.eta);
         Ok(Reconstruction {
             lambda: Thesis::finish(map),
@@ -113,7 +153,7 @@ impl Reconstructor for ThesisMethod {
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let tables = Thesis::tables(&self.config, radar)?;
         let input = Thesis::input(&tables, ends)?;
-        self.answer(input, radar)
+        self.answer(input)
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
@@ -126,7 +166,7 @@ impl Reconstructor for ThesisMethod {
         }
         Thesis::tables(&self.config, radar)?;
         let input = ThesisInput { values: input.iter().map(|v| *v as f32).collect(), size };
-        self.answer(input, radar)
+        self.answer(input)
     }
 }
 
@@ -210,13 +250,22 @@ fn estimate<S: Student>(
     network: &S,
     method: &'static str,
     input: S::Input,
-    [rows, columns]: [usize; 2],
+    size: [usize; 2],
     device: &Device,
 ) -> Result<Array2<f32>, ReconstructError> {
-    let unusable = |reason: String| ReconstructError::Unusable { method, reason };
     let values = network.estimate(&[input], device).into_data().try_into_vec::<f32>();
-    let values = values.map_err(|e| unusable(format!("its output can't be read: {e:?}")))?;
-    Array2::from_shape_vec((rows, columns), values).map_err(|e| unusable(e.to_string()))
+    let unusable = |e| ReconstructError::Unusable { method, reason: format!("its output can't be read: {e:?}") };
+    in_rows(method, size, values.map_err(unusable)?)
+}
+
+/// The cells of a map, row-major, as an array.
+fn in_rows(
+    method: &'static str,
+    [rows, columns]: [usize; 2],
+    values: Vec<f32>,
+) -> Result<Array2<f32>, ReconstructError> {
+    Array2::from_shape_vec((rows, columns), values)
+        .map_err(|e| ReconstructError::Unusable { method, reason: e.to_string() })
 }
 
 /// The value that `eta` is of, once `map` is stretched to [0, 1].

@@ -236,6 +236,17 @@ impl<'a> WeightFile<'a> {
         self.tensors.get(name).map(|tensor| tensor.shape.as_slice())
     }
 
+    /// Checks that every tensor of the file is one that `known` accepts.
+    ///
+    /// # Errors
+    /// [`WeightsError::Tensor`] names the first that is none.
+    #[cfg(feature = "network")]
+    pub(super) fn expect_only(&self, known: impl Fn(&str) -> bool) -> Result<(), WeightsError> {
+        let Some(tensor) = self.tensors.keys().find(|name| !known(name)) else { return Ok(()) };
+        let (file, problem) = (self.name.clone(), "is not part of this network".to_owned());
+        Err(WeightsError::Tensor { file, tensor: tensor.clone(), problem })
+    }
+
     /// Name of the network that the weights belong to, as recorded in the file; "" where nothing is.
     pub fn network(&self) -> &str {
         self.provenance.get("network")

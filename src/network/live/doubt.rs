@@ -1,11 +1,11 @@
 //! How far off the live network expects its map to be: a small head on its picture that learned from its errors.
 
 use super::grid::{COARSE, COLUMNS, FINE, ROWS};
-use super::kernel::{Packed, padded};
 use super::planes::{Plane, rectified};
 use super::reading::Layers;
 use super::winograd::{Conv3x3, Results};
 use crate::maps::RangeAngleMap;
+use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::weights::{WeightFile, WeightsError};
 use crate::signal::simd::Simd;
 use crate::signal::simd::powers::{each, power_of_ten};

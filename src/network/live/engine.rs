@@ -6,12 +6,12 @@ use super::config::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::kernel::{PRODUCT_COLUMNS, Packed, convolve, product};
 use super::planes::{Block, Plane, rectified};
 use super::range_lobes::{RangeLobes, UNSEEN};
 use super::reading::{CELLS, Layers, circulant};
 use super::winograd::{Conv3x3, Results};
 use crate::maps::RangeAngleMap;
+use crate::network::kernels::convolution::{PRODUCT_COLUMNS, Packed, convolve, product};
 use crate::network::weights::{WeightFile, WeightsError};
 use crate::signal::simd::Simd;
 use crate::signal::simd::powers::{each, logarithm, power_of_ten};
@@ -34,7 +34,7 @@ pub struct Decades {
     pub computed: f32,
 }
 
-/// The live network's weights, packed for [`super::kernel`].
+/// The live network's weights, packed for [`kernels`](crate::network::kernels).
 #[derive(Debug)]
 pub struct LiveEngine {
     stem: Conv3x3,

@@ -1,7 +1,7 @@
 //! What minimal filtering makes of its inputs before the products, and of the products after them: four neighbouring outputs of three taps
 //! cost six products (F(4, 3) of Lavin and Gray 2016).
 
-use super::vector::{LANES, Loop, Vector};
+use crate::network::kernels::vector::{LANES, Loop, Vector};
 
 /// Neighbouring outputs of one filter.
 pub(super) const OUTPUTS: usize = 4;

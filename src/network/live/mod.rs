@@ -17,7 +17,7 @@
 //! | [`dataset`] | the same as files |
 //! | `config` | how large the network is |
 //! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
-//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes`, [`kernel`], `vector` | the same without a framework: what runs while somebody drags a reflector |
+//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs while somebody drags a reflector |
 //! | [`doubt`] | how far off the network expects to be |
 //! | [`method`] | the network as a reconstruction method |
 
@@ -33,7 +33,6 @@ pub mod features;
 mod filter;
 mod floors;
 pub mod grid;
-pub mod kernel;
 #[cfg(feature = "network")]
 mod layers;
 pub mod method;
@@ -43,7 +42,6 @@ mod planes;
 mod range_lobes;
 mod reading;
 mod registration;
-mod vector;
 mod winograd;
 
 pub use config::LiveConfig;

@@ -1,8 +1,8 @@
 //! Channels-last pictures and what the live network's engine does with them again and again.
 
-use super::kernel::{Packed, convolve};
-use super::vector::LANES;
 use super::winograd::{Conv3x3, Results};
+use crate::network::kernels::convolution::{Packed, convolve};
+use crate::network::kernels::vector::LANES;
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 

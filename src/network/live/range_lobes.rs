@@ -4,9 +4,9 @@
 //! strong source's side lobe. So the product is taken apart into tiles, and those that don't show are left out.
 
 use super::grid::{COLUMNS, ROWS};
-use super::kernel::{PRODUCT_COLUMNS as BLOCK, product};
 use super::reading::circulant;
-use super::vector::LANES;
+use crate::network::kernels::convolution::{PRODUCT_COLUMNS as BLOCK, product};
+use crate::network::kernels::vector::LANES;
 use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;

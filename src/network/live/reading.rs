@@ -1,8 +1,8 @@
 //! The layers of a weight file, packed for the engine.
 
-use super::kernel::{Packed, padded};
 use super::planes::{Block, Context};
 use super::winograd::Conv3x3;
+use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::weights::{WeightFile, WeightsError};
 
 /// Cells that one becomes in the layers that spread it.

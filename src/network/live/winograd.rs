@@ -6,8 +6,8 @@
 //! a single tap each; their results are gathered into lines, and those into lines of the output.
 
 use super::filter::{Gather, Groups, OF_BIAS, OF_TAPS, OUTPUTS, PRODUCTS, Spread};
-use super::kernel::{Packed, padded};
-use super::vector::{LANES, run};
+use crate::network::kernels::convolution::{Packed, padded};
+use crate::network::kernels::vector::{LANES, run};
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
 use std::cell::RefCell;

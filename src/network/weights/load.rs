@@ -11,11 +11,6 @@ impl WeightFile<'_> {
     /// # Errors
     /// [`WeightsError`] names the first tensor that is missing, unknown, of another shape or type, or not finite.
     pub fn load_into<M: Module>(&self, module: &mut M, ignored: fn(&str) -> bool) -> Result<(), WeightsError> {
-        let bad = |tensor: &str, problem: String| WeightsError::Tensor {
-            file: self.name.clone(),
-            tensor: tensor.into(),
-            problem,
-        };
         let wanted: BTreeMap<String, Vec<usize>> = module
             .collect(None, Some(Box::new(BurnToPyTorchAdapter)), false)
             .into_iter()
@@ -24,9 +19,7 @@ impl WeightFile<'_> {
         for (name, shape) in &wanted {
             self.tensor(name, shape)?;
         }
-        if let Some(name) = self.tensors.keys().find(|n| !wanted.contains_key(*n) && !ignored(n)) {
-            return Err(bad(name, "is not part of this network".into()));
-        }
+        self.expect_only(|name| wanted.contains_key(name) || ignored(name))?;
         let mut store =
             SafetensorsStore::from_bytes(Some(self.in_single_precision()?)).with_from_adapter(PyTorchToBurnAdapter);
         let store_error = |reason: String| WeightsError::Store { file: self.name.clone(), reason };

@@ -1,4 +1,4 @@
-//! The one hot loop of the live network: a direct convolution over channels-last data, vectorised over output channels.
+//! The one hot loop of the networks: a direct convolution over channels-last data, vectorised over output channels.
 //!
 //! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; which one
 //! runs is [`Simd::chosen`]'s decision, as for every other kernel.
@@ -65,6 +65,19 @@ impl Packed {
 
     /// Convolves what one line of `width` output cells sees of `input`, which lies as rows of `row_cells` cells, on this thread.
     pub fn line(&self, simd: Simd, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
+        self.line_beside(simd, input, row_cells, width, [self.output, 0], out);
+    }
+
+    /// The same where a cell of `out` has `channels` channels, of which the results are those from channel `first` on: others stay as they are.
+    pub fn line_beside(
+        &self,
+        simd: Simd,
+        input: &[f32],
+        row_cells: usize,
+        width: usize,
+        [channels, first]: [usize; 2],
+        out: &mut [f32],
+    ) {
         let [rows, columns] = self.kernel;
         // The channels of the kernel's columns lie side by side.
         let many = columns * self.input;
@@ -75,7 +88,7 @@ impl Packed {
         for (start, lanes) in blocks(self.output) {
             let size = rows * many * lanes;
             let (weights, bias) = (&self.weights[at..at + size], &self.bias[start..start + lanes]);
-            dispatch(simd, &job, Block { weights, bias, start, lanes: self.output }, out);
+            dispatch(simd, &job, Block { weights, bias, start: first + start, lanes: channels }, out);
             at += size;
         }
     }

@@ -6,7 +6,7 @@ use crate::signal::simd::Simd;
 pub const LANES: usize = 16;
 
 /// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
-pub(super) trait Vector: Copy {
+pub(in crate::network) trait Vector: Copy {
     /// # Safety
     /// `from` must hold 16 values, and the CPU must have the features.
     unsafe fn load(from: *const f32) -> Self;
@@ -24,10 +24,15 @@ pub(super) trait Vector: Copy {
     /// # Safety
     /// The CPU must have the features.
     unsafe fn minus(self, other: Self) -> Self;
+    /// The larger of each two; `other` where one is no number.
+    ///
+    /// # Safety
+    /// The CPU must have the features.
+    unsafe fn larger(self, other: Self) -> Self;
 }
 
 /// A loop over vectors, compiled for each of them.
-pub(super) trait Loop {
+pub(in crate::network) trait Loop {
     /// Must be inlined.
     ///
     /// # Safety
@@ -38,7 +43,7 @@ pub(super) trait Loop {
 /// Runs `of` with these instructions, or the best there are if this machine lacks them.
 #[inline]
 #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
-pub(super) fn run<L: Loop>(simd: Simd, of: L) {
+pub(in crate::network) fn run<L: Loop>(simd: Simd, of: L) {
     #[cfg(target_arch = "x86_64")]
     match simd.min(Simd::best()) {
         // SAFETY: `Simd::best` has found the features on this machine.
@@ -53,7 +58,7 @@ pub(super) fn run<L: Loop>(simd: Simd, of: L) {
 
 /// Works everywhere; multiplies and adds apart.
 #[derive(Clone, Copy)]
-pub(super) struct Portable([f32; LANES]);
+pub(in crate::network) struct Portable([f32; LANES]);
 
 impl Vector for Portable {
     #[inline(always)]
@@ -78,10 +83,14 @@ impl Vector for Portable {
     unsafe fn minus(self, other: Self) -> Self {
         Portable(std::array::from_fn(|l| self.0[l] - other.0[l]))
     }
+    #[inline(always)]
+    unsafe fn larger(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|l| if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] }))
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) mod x86 {
+pub(in crate::network) mod x86 {
     use super::{Loop, Vector};
     use std::arch::x86_64::*;
 
@@ -109,6 +118,10 @@ pub(super) mod x86 {
         #[inline(always)]
         unsafe fn minus(self, other: Self) -> Self {
             Avx512(unsafe { _mm512_sub_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn larger(self, other: Self) -> Self {
+            Avx512(unsafe { _mm512_max_ps(self.0, other.0) })
         }
     }
 
@@ -141,6 +154,10 @@ pub(super) mod x86 {
         #[inline(always)]
         unsafe fn minus(self, other: Self) -> Self {
             unsafe { Avx2(_mm256_sub_ps(self.0, other.0), _mm256_sub_ps(self.1, other.1)) }
+        }
+        #[inline(always)]
+        unsafe fn larger(self, other: Self) -> Self {
+            unsafe { Avx2(_mm256_max_ps(self.0, other.0), _mm256_max_ps(self.1, other.1)) }
         }
     }
 

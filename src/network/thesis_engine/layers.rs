@@ -1,0 +1,46 @@
+//! The layers of a weight file with each batch norm folded into its convolution.
+
+use crate::network::weights::{WeightFile, WeightsError};
+
+/// What batch norms add to a variance before its root: burn's and PyTorch's default, which the author's program keeps.
+const EPSILON: f32 = 1e-5;
+
+/// Where layers come from, under the names of [`Thesis`](super::super::thesis::Thesis). Their errors name the tensor that is missing or of another
+/// shape.
+#[derive(Clone, Copy)]
+pub(super) struct Layers<'a> {
+    pub(super) file: &'a WeightFile<'a>,
+}
+
+impl Layers<'_> {
+    /// Weights `[output, input, size, size]` and bias `[output]` of stage `name`, a convolution.
+    pub(super) fn conv(&self, name: &str, shape: [usize; 4]) -> Result<[Vec<f32>; 2], WeightsError> {
+        let mut weights = self.file.tensor(&format!("{name}.conv.weight"), &shape)?;
+        let [scale, shift] = self.scale_and_shift(name, shape[0])?;
+        let each = shape[1] * shape[2] * shape[3];
+        for (of_output, scale) in weights.chunks_exact_mut(each).zip(&scale) {
+            of_output.iter_mut().for_each(|w| *w *= scale);
+        }
+        Ok([weights, shift])
+    }
+
+    /// Weights `[input, output, size, size]` and bias `[output]` of stage `name`, a transposed convolution.
+    pub(super) fn transposed(&self, name: &str, shape: [usize; 4]) -> Result<[Vec<f32>; 2], WeightsError> {
+        let mut weights = self.file.tensor(&format!("{name}.conv.weight"), &shape)?;
+        let [scale, shift] = self.scale_and_shift(name, shape[1])?;
+        for (of_output, scale) in weights.chunks_exact_mut(shape[2] * shape[3]).zip(scale.iter().cycle()) {
+            of_output.iter_mut().for_each(|w| *w *= scale);
+        }
+        Ok([weights, shift])
+    }
+
+    /// What the batch norm of stage `name` does at inference: `x * scale + shift` for each channel.
+    fn scale_and_shift(&self, name: &str, channels: usize) -> Result<[Vec<f32>; 2], WeightsError> {
+        let tensor = |part: &str| self.file.tensor(&format!("{name}.norm.{part}"), &[channels]);
+        let (gamma, beta, mean, variance) =
+            (tensor("weight")?, tensor("bias")?, tensor("running_mean")?, tensor("running_var")?);
+        let scale: Vec<f32> = gamma.iter().zip(&variance).map(|(g, v)| g / (v + EPSILON).sqrt()).collect();
+        let shift = beta.iter().zip(&mean).zip(&scale).map(|((b, m), s)| b - m * s).collect();
+        Ok([scale, shift])
+    }
+}

@@ -1,0 +1,149 @@
+//! Channels-last pictures with a margin, so that a kernel reads beyond their edges without asking where it is.
+
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Cells of a [`Parted`] picture's margin, in each of its parts: what the larger kernel, of five by five cells, sees beside its middle.
+const MARGIN: usize = 2;
+
+/// A picture that goes on circularly beyond all four edges. In a line all even cells lie side by side, and after them all odd ones. A kernel of
+/// dilation 2 that stands on an even cell sees even cells alone, and so does one on an odd cell; likewise for rows. So the dilated convolution is
+/// an ordinary one of each of four parts, and the four outputs at the same place of the parts are those that a 2x2 max-pool takes the largest of.
+///
+/// `[h + 4 MARGIN, 2, w / 2 + 2 MARGIN, c]`; height and width must be even.
+#[derive(Debug, Default)]
+pub(super) struct Parted {
+    pub(super) h: usize,
+    pub(super) w: usize,
+    pub(super) c: usize,
+    data: Vec<f32>,
+}
+
+impl Parted {
+    /// Makes room for a picture of `h` rows, `w` cells a row and `c` channels. What it held is left to be overwritten.
+    pub(super) fn reset(&mut self, h: usize, w: usize, c: usize) {
+        (self.h, self.w, self.c) = (h, w, c);
+        self.data.resize((h + 2 * Self::MARGIN_ROWS) * self.line(), 0.0);
+    }
+
+    /// Rows above and below the picture: half of them belong to each part.
+    const MARGIN_ROWS: usize = 2 * MARGIN;
+
+    /// Cells of a row in each part.
+    fn part(&self) -> usize {
+        self.w / 2 + 2 * MARGIN
+    }
+
+    /// Values of a line.
+    fn line(&self) -> usize {
+        2 * self.part() * self.c
+    }
+
+    /// Cells from a row of a part to its next one.
+    pub(super) fn row_cells(&self) -> usize {
+        4 * self.part()
+    }
+
+    /// What a kernel of `size` by `size` cells sees from the row `y` of the picture and the first cell of the part `odd` on.
+    pub(super) fn seen(&self, y: usize, odd: usize, size: usize) -> &[f32] {
+        let before = size / 2;
+        let row = y + Self::MARGIN_ROWS - 2 * before;
+        &self.data[row * self.line() + (odd * self.part() + MARGIN - before) * self.c..]
+    }
+
+    /// Fills the picture and its margin: `write` gets the number of each row and a [`Line`] to put it into, and a buffer of its thread.
+    pub(super) fn fill(&mut self, write: impl Fn(usize, &mut Line<'_>, &mut Vec<f32>) + Sync) {
+        let (size, part, c) = (self.line(), self.part(), self.c);
+        let inside = Self::MARGIN_ROWS * size..(Self::MARGIN_ROWS + self.h) * size;
+        self.data[inside].par_chunks_mut(size).enumerate().for_each_init(Vec::new, |buffer, (y, cells)| {
+            let mut line = Line { cells, part, c };
+            write(y, &mut line, buffer);
+            line.close();
+        });
+        for row in (0..Self::MARGIN_ROWS).chain(Self::MARGIN_ROWS + self.h..2 * Self::MARGIN_ROWS + self.h) {
+            // A picture may have fewer rows than its margin; it is repeated then.
+            let from = Self::MARGIN_ROWS + beyond(row, Self::MARGIN_ROWS, self.h);
+            self.data.copy_within(from * size..(from + 1) * size, row * size);
+        }
+    }
+}
+
+/// The place within `0..size` that lies where place `at`, counted from `margin` before the first, is beyond the edge.
+fn beyond(at: usize, margin: usize, size: usize) -> usize {
+    (at + margin * (size - 1)) % size
+}
+
+/// A line of a [`Parted`] picture.
+pub(super) struct Line<'a> {
+    cells: &'a mut [f32],
+    part: usize,
+    c: usize,
+}
+
+impl Line<'_> {
+    /// The channels of cell `x`.
+    pub(super) fn cell(&mut self, x: usize) -> &mut [f32] {
+        &mut self.cells[(x % 2 * self.part + MARGIN + x / 2) * self.c..][..self.c]
+    }
+
+    /// Fills the margin at both ends of both parts.
+    fn close(&mut self) {
+        let (c, inside) = (self.c, self.part - 2 * MARGIN);
+        for cells in self.cells.chunks_exact_mut(self.part * c) {
+            for at in (0..MARGIN).chain(MARGIN + inside..self.part) {
+                let from = MARGIN + beyond(at, MARGIN, inside);
+                cells.copy_within(from * c..(from + 1) * c, at * c);
+            }
+        }
+    }
+}
+
+/// A picture with one cell of zeros around it, `[h + 2, w + 2, c]`.
+#[derive(Debug, Default)]
+pub(super) struct Bordered {
+    pub(super) h: usize,
+    pub(super) w: usize,
+    pub(super) c: usize,
+    data: Vec<f32>,
+}
+
+impl Bordered {
+    /// Makes room for a picture of `h` rows, `w` cells a row and `c` channels; what it held is left to be overwritten, and its border is zeros.
+    pub(super) fn reset(&mut self, h: usize, w: usize, c: usize) {
+        if (self.h, self.w, self.c) != (h, w, c) {
+            (self.h, self.w, self.c) = (h, w, c);
+            self.data.clear();
+            self.data.resize((h + 2) * self.line(), 0.0);
+        }
+    }
+
+    /// Values of a line.
+    fn line(&self) -> usize {
+        (self.w + 2) * self.c
+    }
+
+    /// Cells from one row to the next.
+    pub(super) fn row_cells(&self) -> usize {
+        self.w + 2
+    }
+
+    /// Everything from cell `x` of row `y` on, both counted from the border.
+    pub(super) fn seen(&self, y: usize, x: usize) -> &[f32] {
+        &self.data[y * self.line() + x * self.c..]
+    }
+
+    /// Row `y`, without its border.
+    pub(super) fn row(&self, y: usize) -> &[f32] {
+        &self.seen(y + 1, 1)[..self.w * self.c]
+    }
+
+    /// Fills the picture: `write` gets the number of each row and its cells, and a buffer of its thread.
+    pub(super) fn fill(&mut self, write: impl Fn(usize, &mut [f32], &mut Vec<f32>) + Sync) {
+        let (size, c) = (self.line(), self.c);
+        let inside: Range<usize> = size..(1 + self.h) * size;
+        self.data[inside].par_chunks_mut(size).enumerate().for_each_init(Vec::new, |buffer, (y, line)| {
+            let cells = c..line.len() - c;
+            write(y, &mut line[cells], buffer);
+        });
+    }
+}
