@@ -6,7 +6,7 @@ use crate::signal::simd::Simd;
 pub const LANES: usize = 16;
 
 /// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
-pub(in crate::network) trait Vector: Copy {
+pub trait Vector: Copy {
     /// # Safety
     /// `from` must hold 16 values, and the CPU must have the features.
     unsafe fn load(from: *const f32) -> Self;
@@ -32,7 +32,7 @@ pub(in crate::network) trait Vector: Copy {
 }
 
 /// A loop over vectors, compiled for each of them.
-pub(in crate::network) trait Loop {
+pub trait Loop {
     /// Must be inlined.
     ///
     /// # Safety
@@ -43,7 +43,7 @@ pub(in crate::network) trait Loop {
 /// Runs `of` with these instructions, or the best there are if this machine lacks them.
 #[inline]
 #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
-pub(in crate::network) fn run<L: Loop>(simd: Simd, of: L) {
+pub fn run<L: Loop>(simd: Simd, of: L) {
     #[cfg(target_arch = "x86_64")]
     match simd.min(Simd::best()) {
         // SAFETY: `Simd::best` has found the features on this machine.
@@ -58,7 +58,7 @@ pub(in crate::network) fn run<L: Loop>(simd: Simd, of: L) {
 
 /// Works everywhere; multiplies and adds apart.
 #[derive(Clone, Copy)]
-pub(in crate::network) struct Portable([f32; LANES]);
+pub struct Portable([f32; LANES]);
 
 impl Vector for Portable {
     #[inline(always)]
@@ -90,7 +90,7 @@ impl Vector for Portable {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(in crate::network) mod x86 {
+pub mod x86 {
     use super::{Loop, Vector};
     use std::arch::x86_64::*;
 

@@ -18,9 +18,7 @@ use super::thesis::{Thesis, ThesisConfig};
 use super::weights::{WeightFile, WeightsError};
 use layers::Layers;
 use pictures::{Bordered, Parted};
-
-/// Channels of the input: magnitude and phase of both ends.
-const CHANNELS: usize = 4;
+use towers::CHANNELS;
 
 /// Names of the towers with the sizes of their kernels.
 const TOWERS: [(&str, usize); 2] = [("layer3x3", 3), ("layer5x5", 5)];

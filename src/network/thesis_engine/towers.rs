@@ -7,6 +7,9 @@ use crate::network::kernels::vector::{LANES, Loop, Vector, run};
 use crate::network::weights::WeightsError;
 use crate::signal::simd::Simd;
 
+/// Channels of the input: magnitude and phase of both ends.
+pub const CHANNELS: usize = 4;
+
 /// Outputs that a max-pool takes the largest of: one of each part of a [`Parted`] picture.
 const POOLED: usize = 4;
 
@@ -28,7 +31,7 @@ impl Stage {
         [filters, levels]: [usize; 2],
     ) -> Result<Vec<Stage>, WeightsError> {
         let stage = |level: usize| {
-            let input = if level == 0 { super::CHANNELS } else { filters };
+            let input = if level == 0 { CHANNELS } else { filters };
             let [weights, bias] = layers.conv(&format!("down.{name}.{level}"), [filters, input, size, size])?;
             Ok(Stage { kernel: Packed::new(&weights, &bias, [input; 2], [size; 2], 1), size, output: filters })
         };
