@@ -28,6 +28,7 @@ pub trait Vector: Copy {
     ///
     /// # Safety
     /// The CPU must have the features.
+    #[cfg(feature = "network")]
     unsafe fn larger(self, other: Self) -> Self;
 }
 
@@ -84,6 +85,7 @@ impl Vector for Portable {
         Portable(std::array::from_fn(|l| self.0[l] - other.0[l]))
     }
     #[inline(always)]
+    #[cfg(feature = "network")]
     unsafe fn larger(self, other: Self) -> Self {
         Portable(std::array::from_fn(|l| if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] }))
     }
@@ -120,6 +122,7 @@ pub mod x86 {
             Avx512(unsafe { _mm512_sub_ps(self.0, other.0) })
         }
         #[inline(always)]
+        #[cfg(feature = "network")]
         unsafe fn larger(self, other: Self) -> Self {
             Avx512(unsafe { _mm512_max_ps(self.0, other.0) })
         }
@@ -156,6 +159,7 @@ pub mod x86 {
             unsafe { Avx2(_mm256_sub_ps(self.0, other.0), _mm256_sub_ps(self.1, other.1)) }
         }
         #[inline(always)]
+        #[cfg(feature = "network")]
         unsafe fn larger(self, other: Self) -> Self {
             unsafe { Avx2(_mm256_max_ps(self.0, other.0), _mm256_max_ps(self.1, other.1)) }
         }
