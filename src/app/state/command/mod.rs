@@ -68,7 +68,7 @@ pub struct EvaluationChoice {
     pub seed: u64,
 }
 
-/// Which rate of false alarms the threshold of the method in use is to keep, and on which scenes that is tried.
+/// The rate of false alarms that a threshold is to keep, and the scenes to try the method on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThresholdChoice {
     /// The rate, percent of the target's dark cells.
