@@ -1,7 +1,7 @@
 //! The thesis' encoder-decoder: two towers of dilated circular convolutions, joined, and transposed convolutions back up.
 //!
 //! Five levels of 64 filters a tower in the thesis: 1.62 M parameters, 40.5 GMAC. Width and depth are configurable; two cores can
-//! train 16 filters (2.5 GMAC). Follows the author's published program: dilation 2, circular padding on both axes, no bias.
+//! train 16 filters (3.4 GMAC). Follows the author's published program: dilation 2, circular padding on both axes, no bias.
 
 use super::weights::{WeightFile, WeightsError};
 use burn::module::{Module, Param};
