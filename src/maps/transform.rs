@@ -4,7 +4,7 @@ use super::log_map::{LOG_GUARD, LogMap, guard};
 use crate::radar::{End, Radar};
 use crate::signal::BeatSignal;
 use crate::signal::simd::Simd;
-use ndarray::{Array2, ArrayView2, s};
+use ndarray::{Array2, ArrayView2, Zip, s};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -103,6 +103,6 @@ impl ComplexMap {
         let largest = self.cells.iter().map(Complex64::norm_sqr).filter(|v| v.is_finite()).fold(0.0, f64::max);
         // Squares of what is smaller than 1e-160 are zero.
         let guard = if largest > 0.0 { guard(largest.sqrt()) } else { LOG_GUARD };
-        LogMap::new(self.cells.mapv(|v| (v.norm() + guard).log10()))
+        LogMap::new(Zip::from(&self.cells).par_map_collect(|v| (v.norm() + guard).log10()))
     }
 }

@@ -277,6 +277,52 @@ fn unstretched(map: &Array2<f32>, eta: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+    use std::hint::black_box;
+    use std::time::Instant;
+
+    /// The median of eleven times of `work` after one that is not counted, milliseconds.
+    fn milliseconds(mut work: impl FnMut()) -> f64 {
+        work();
+        let mut times = [(); 11].map(|()| {
+            let start = Instant::now();
+            work();
+            1e3 * start.elapsed().as_secs_f64()
+        });
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    }
+
+    #[test]
+    #[ignore = "prints times for docs/speed.md; nothing else may run beside it"]
+    fn times_beside_burn_and_live() {
+        let radar = Radar::default();
+        let scene = Scene::of_points((0..10).map(|i| (f64::from(i - 5), 5.0 + 3.0 * f64::from(i))));
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let bytes = include_bytes!("../../assets/weights/thesis.safetensors");
+        let file = || WeightFile::parse("thesis", bytes).unwrap();
+        let method = ThesisMethod::new("thesis", "", file(), Backend::default()).unwrap();
+        let (config, device) = (method.config, Backend::default().device());
+        let burn = Thesis::load(&file(), &config, &device).unwrap().folded();
+        let input = Thesis::input(&radar, &ends).unwrap();
+        let live = crate::network::live().unwrap();
+        let request = Request::default();
+        println!("{}, milliseconds a map:", crate::signal::simd::Simd::chosen());
+        let print = |what: &str, work: &mut dyn FnMut()| println!("{what}: {:.1}", milliseconds(work));
+        print("burn's forward pass", &mut || drop(black_box(burn.estimate(&[input.clone()], &device).into_data())));
+        print("the engine's", &mut || drop(black_box(method.network.estimate("thesis", input.clone()).unwrap())));
+        print("the network's input", &mut || drop(black_box(Thesis::input(&radar, &ends).unwrap())));
+        print("thesis", &mut || drop(black_box(method.estimate(&radar, &ends, &request).unwrap())));
+        print("live", &mut || drop(black_box(live.estimate(&radar, &ends, &request).unwrap())));
+        let full = ThesisConfig::default();
+        let bytes = crate::network::thesis_engine::tests::random(full.filters, full.levels);
+        let wide = ThesisEngine::new(&WeightFile::parse("random", &bytes).unwrap(), &full).unwrap();
+        let mut buffers = Buffers::default();
+        print("the engine's with 64 filters", &mut || {
+            drop(black_box(wide.forward(&input.values, input.size, &mut buffers)))
+        });
+    }
 
     #[test]
     fn a_threshold_keeps_the_cells_that_it_keeps_once_the_map_is_stretched() {

@@ -121,7 +121,7 @@ impl ThesisEngine {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
     use burn::tensor::{Device, Tensor, TensorData};
@@ -138,7 +138,7 @@ mod tests {
     }
 
     /// A weight file of a network with random weights and random statistics of its batch norms, whose output is well above zero.
-    fn random(filters: usize, levels: usize) -> Vec<u8> {
+    pub(in crate::network) fn random(filters: usize, levels: usize) -> Vec<u8> {
         let device = Device::flex();
         device.seed(1);
         let network = Thesis::new(&ThesisConfig { filters, levels, alive_output: true }, &device);
