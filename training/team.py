@@ -25,7 +25,10 @@ class Team:
         self.device = torch.device("cuda", local) if beside <= torch.cuda.device_count() else torch.device("cpu")
         torch.set_num_threads(threads)
         if self.size > 1:
-            dist.init_process_group("nccl" if self.device.type == "cuda" else "gloo", timeout=PATIENCE)
+            backend = "nccl" if self.device.type == "cuda" else "gloo"
+            # torchrun's store outlives a restart, and with it the addresses of processes that are gone: every start has keys of its own.
+            store, rank, size = next(dist.rendezvous("env://"))
+            dist.init_process_group(backend, store=dist.PrefixStore(f"start-{self.restarts}", store), rank=rank, world_size=size, timeout=PATIENCE)
 
     @property
     def is_first(self):

@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -28,9 +27,9 @@ def alone(folder, program, *arguments):
     return subprocess.run(command, capture_output=True, text=True, timeout=600)
 
 
-def torchrun(folder, program, *arguments):
-    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", "--max-restarts", "3", "--monitor-interval", "0.1"]
-    command += [str(TRAINING / program), "--out", str(folder), *arguments]
+def torchrun(folder, *command, restarts=0):
+    options = ["--standalone", "--nproc-per-node", "2", "--max-restarts", str(restarts), "--monitor-interval", "0.1"]
+    command = [sys.executable, "-m", "torch.distributed.run", *options, *map(str, command), "--out", str(folder)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
@@ -53,7 +52,7 @@ def test_a_run_goes_on_from_its_checkpoint(tmp_path, program):
 
 
 def test_two_processes_take_the_steps_of_one(tmp_path):
-    process = torchrun(tmp_path / "two", *LIVE, "--steps", "2")
+    process = torchrun(tmp_path / "two", TRAINING / LIVE[0], *LIVE[1:], "--steps", "2")
     _, errors = process.communicate(timeout=600)
     assert process.returncode == 0, errors
     found = alone(tmp_path / "one", "train_live.py", "--batch", "2", "--validation", "0", "--steps", "2")
@@ -65,22 +64,59 @@ def test_two_processes_take_the_steps_of_one(tmp_path):
     assert max(off) < 2e-5 and sum(off) / len(off) < 2e-6
 
 
-@pytest.mark.parametrize("program", [LIVE, THESIS], ids=["live", "thesis"])
-def test_a_killed_process_costs_the_steps_behind_the_checkpoint(tmp_path, program):
-    process = torchrun(tmp_path, *program, "--steps", "6", "--save-every", "0")
+#: Starts a training program and writes down which examples each start of it asks for.
+COUNTED = """
+import os, runpy, sys
+import apertura as ap
+
+make = ap.torch.Scenes.__getitems__
+
+def counted(data, indices):
+    with open(os.environ["EXAMPLES"], "a") as file:
+        file.write("".join(f"{os.environ['TORCHELASTIC_RESTART_COUNT']} {index}\\n" for index in indices))
+    return make(data, indices)
+
+ap.torch.Scenes.__getitems__ = counted
+del sys.argv[0]
+sys.path.insert(0, os.path.dirname(sys.argv[0]))
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize(("program", "rank"), [(LIVE, "1"), (THESIS, "0")], ids=["live", "thesis"])
+def test_a_killed_process_costs_the_steps_behind_the_checkpoint(tmp_path, monkeypatch, program, rank):
+    folder, examples = tmp_path / "run", tmp_path / "examples"
+    found = alone(folder, *program, "--steps", "2")
+    assert found.returncode == 0, found.stderr
+    first = drawn(folder)
+    monkeypatch.setenv("EXAMPLES", str(examples))
+    (tmp_path / "counted.py").write_text(COUNTED)
+    # Two processes go on from step 2, and keep nothing before the end.
+    process = torchrun(folder, tmp_path / "counted.py", TRAINING / program[0], *program[1:], "--steps", "6", "--save-every", "60", restarts=1)
     deadline = time.monotonic() + 300
-    while time.monotonic() < deadline and not ((tmp_path / "checkpoint.pt").exists() and (tmp_path / "log.csv").exists() and len(steps(tmp_path)) >= 2):
+    while time.monotonic() < deadline and steps(folder)[-1] < 4:
         assert process.poll() is None, process.communicate()
         time.sleep(0.05)
-    [second] = [pid for pid in children(process.pid) if environment(pid).get("RANK") == "1"]
-    os.kill(second, signal.SIGKILL)
+    assert weights(folder)["step"] == 2
+    [killed] = [pid for pid in children(process.pid) if environment(pid).get("RANK") == rank]
+    os.kill(killed, signal.SIGKILL)
     out, errors = process.communicate(timeout=600)
     assert process.returncode == 0, errors
-    found = re.search(r"restart [1-3] of 2 processes: going on from step (\d+) of", out)
-    assert found and 1 <= int(found[1]) <= 6, out
-    assert steps(tmp_path) == [1, 2, 3, 4, 5, 6]
-    last = json.loads(weights(tmp_path)["parts"])[-1]
-    assert last["restarts"] >= 1 and last["processes"] == 2
+    assert f"restart 1 of 2 processes: going on from step 2 of {folder / 'checkpoint.pt'}" in out
+    assert steps(folder) == [1, 2, 3, 4, 5, 6] and weights(folder)["step"] == 6
+    last = json.loads(weights(folder)["parts"])[-1]
+    assert last["restarts"] == 1 and last["processes"] == 2
+    asked = [tuple(map(int, line.split())) for line in examples.read_text().splitlines()]
+    lost, kept = ([index for restart, index in asked if restart == number] for number in (0, 1))
+    # The steps behind the checkpoint are taken again, with their examples. No other example comes twice.
+    assert sorted(kept) == [*range(first, drawn(folder))]
+    assert len(lost) == len({*lost}) and {*lost} <= {*kept} and max(lost) > first
+
+
+def drawn(folder):
+    """How many examples the run of this folder has drawn."""
+    state = weights(folder)
+    return state["drawn"] if "drawn" in state else state["scenes"]
 
 
 def children(pid):
