@@ -164,6 +164,11 @@ def entry(method: _apertura.Method, *, weights: str = "", scenes: int = SCENES, 
     }
 
 
+def weights_of(method: str | None) -> str:
+    """Digits that tell the weights of a method of this package from others, as rows of an evaluation hold them; none without weights."""
+    return str(_apertura.evaluate([method], ["1"], count=1)[0]["weights"] or "") if method else ""
+
+
 def _scored(method: _apertura.Method, suite: Suite, seed: int, scenes: int) -> dict[str, Any]:
     print(f"{suite.name}, seed {seed}", file=sys.stderr, flush=True)
     return score(method, suite, seed, scenes)
@@ -258,7 +263,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     which.add_argument("--method", help="name of a method")
     which.add_argument("--method-command", metavar="COMMAND", help="a program of your own (docs/own-network.md)")
     which.add_argument("--freeze", action="store_true", help="print the hashes of the frozen scenes, and stop")
-    parser.add_argument("--weights", default="", help="digits that tell these weights from others, for the entry")
+    parser.add_argument("--weights", default="", help="digits that tell these weights from others, for the entry; those of a method of this package are known")
     parser.add_argument("-o", "--output", type=Path, help="the entry to write")
     parser.add_argument("--check", type=Path, metavar="ENTRY", help="score again and compare with this entry")
     parser.add_argument("--scenes", type=int, default=SCENES, help="scenes of a suite; fewer make no entry")
@@ -277,7 +282,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if given.check:
             _check(given.check, method)
             return
-        found = entry(method, weights=given.weights, scenes=given.scenes)
+        found = entry(method, weights=given.weights or weights_of(given.method), scenes=given.scenes)
         print(table(found))
         if given.output:
             part = given.output.with_name(given.output.name + ".part")

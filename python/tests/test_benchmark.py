@@ -3,12 +3,15 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import apertura as ap
 from apertura import benchmark
 
+#: Entries of the package's own methods.
+ENTRIES = sorted((Path(__file__).parents[2] / "docs" / "benchmark").glob("*.json"))
 SUITES = tuple(suite for suite in benchmark.SUITES if suite.name in ("set 1", "set 2, imperfect elements", "noise alone"))
 
 
@@ -69,6 +72,24 @@ def test_worse_figures_are_told(entry):
     assert benchmark.differences(entry, entry) == []
     [told] = benchmark.differences(entry, worse)
     assert "second draw, set 1: squared_error" in told
+
+
+@pytest.mark.skipif(not ENTRIES, reason="the entries are in the repository alone")
+@pytest.mark.parametrize("path", ENTRIES, ids=lambda path: path.stem)
+def test_the_entries_are_those_of_this_package(path):
+    found = benchmark.read_entry(path)
+    method = ap.method(path.stem)
+    assert found["is_whole"] and found["method"]["name"] == method.name and found["method"]["eta"] == pytest.approx(method.eta, abs=1e-6)
+    assert found["method"]["weights"] == benchmark.weights_of(method.name)
+    [suite] = [suite for suite in benchmark.SUITES if suite.name == "set 1"]
+    [entered] = [row for row in found["first"]["suites"] if row["suite"] == suite.name]
+    again = benchmark.score(method, suite, benchmark.SEED, benchmark.SCENES)
+    halves = lambda row: {half: {"suites": [row]} for half in ("first", "second")}
+    assert benchmark.differences(halves(entered), halves(again)) == []
+    # A method that was tuned on the first draw is worse on the second.
+    means = lambda half: [row["squared_error"] for row in found[half]["suites"]]
+    worse = [b["mean"] - a["mean"] > 4 * (a["standard_error"] + b["standard_error"]) for a, b in zip(means("first"), means("second"), strict=True)]
+    assert not any(worse)
 
 
 def test_the_command_tells_what_is_wrong(tmp_path):
