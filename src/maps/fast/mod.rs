@@ -7,8 +7,10 @@
 mod log;
 mod normalise;
 mod pruned;
+mod whole;
 
 pub use normalise::normalise_into;
+pub use whole::whole_map;
 
 use super::lambda::{LambdaScale, Normalisation};
 use super::log_map::LOG_GUARD;

@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use super::features::{FeatureExtractor, LiveInput};
 use crate::evaluate::sets::SceneSet;
-use crate::maps::{Aperture, angle_transform, range_transform};
+use crate::maps::{fast::whole_map, range_transform};
 use crate::network::floors::Floors;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
@@ -100,9 +100,8 @@ impl Examples {
             simulated(&scene)?.two_ends(&self.radar)
         };
         let input = self.extractor.extract(&ends).map_err(|source| ExampleError::Input { index, source })?;
-        let profiles = range_transform(&self.radar, &signal);
-        let map = angle_transform(&self.radar, &profiles, Aperture::Full).log_magnitude();
-        let decades = map.decades().mapv(|v| (v - input.gain) as f32);
+        let map = whole_map(&self.radar, &range_transform(&self.radar, &signal));
+        let decades = map.mapv_into(|v| (f64::from(v) - input.gain) as f32);
         Ok(Example { kind, floor, ends, input, decades })
     }
 }
