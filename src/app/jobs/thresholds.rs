@@ -84,8 +84,14 @@ fn run(plan: &Plan, teller: &Teller<'_, KeptEta>) -> Result<(), Stopped> {
     // Unlike rows, half a search has found nothing that could stay.
     let why = |cancelled: bool, said: String| if cancelled { "Cancelled; η stays as it is.".to_owned() } else { said };
     let found = found.map_err(|error| Stopped::Failed(why(error.is_cancelled(), error.to_string())))?;
+    let found = KeptThreshold { eta: rounded_up(found.eta), ..found };
     teller.row(KeptEta { method: method.name(), eta: found.eta, told: told(search, method.name(), &found) });
     Ok(())
+}
+
+/// A threshold to three decimals, as fields show it. Rounded up, it has no more false alarms than before.
+fn rounded_up(eta: f32) -> f32 {
+    (eta * 1000.0).ceil() / 1000.0
 }
 
 /// What is known of a threshold, and on which condition.
@@ -93,7 +99,7 @@ fn told(search: &ThresholdSearch, method: &str, found: &KeptThreshold) -> String
     let KeptThreshold { eta, tried } = found;
     let kinds: Vec<String> = search.kinds.iter().map(Kind::to_string).collect();
     format!(
-        "η of {method} is {eta:.4}: at most {} % false alarms on average over further scenes like the {} it was tried on (kinds {}; P_FA \
+        "η of {method} is {eta:.3}: at most {} % false alarms on average over further scenes like the {} it was tried on (kinds {}; P_FA \
          {:.2} %, P_D {:.1} % there)",
         search.false_alarm_percent,
         counted(tried.scenes, "validation scene", "validation scenes"),

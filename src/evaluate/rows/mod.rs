@@ -5,11 +5,13 @@ mod lacks;
 mod lines;
 mod order;
 mod origin;
+mod read;
 
-pub use file::{RowError, RowWriter, Table, header, read_rows, read_table, write_rows};
+pub use file::{RowWriter, header, write_rows};
 pub use lacks::{Lack, lacks};
 pub use order::{Histogram, MergeError, estimate, merge, sorted_by};
 pub use origin::{FORMAT, GivenTwice, Origin, Part, Scenes, Whole, radar_text};
+pub use read::{RowError, Table, read_rows, read_table};
 
 use super::echoes::EchoTally;
 use crate::scene::generate::Kind;

@@ -131,3 +131,8 @@ impl SceneTextError {
         }
     }
 }
+
+/// A message of the TOML reader as one line, with straight quotes.
+pub(super) fn one_line(message: &str) -> String {
+    message.lines().collect::<Vec<_>>().join(", ").replace('`', "\"")
+}

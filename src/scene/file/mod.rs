@@ -54,6 +54,7 @@
 mod content;
 mod disk;
 mod losses;
+mod objects;
 mod text;
 
 pub use content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError, SceneTextError};

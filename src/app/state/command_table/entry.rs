@@ -1,0 +1,47 @@
+//! One line of the list of commands, and the keys it may have.
+
+use super::super::command::Command;
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use std::borrow::Cow;
+
+/// A command that needs nothing more than to be chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// What it is.
+    pub command: Command,
+    /// Name in menus and the palette.
+    pub name: Cow<'static, str>,
+    /// One sentence for tooltips.
+    pub tooltip: &'static str,
+    /// The key that runs it, if one does.
+    pub key: Option<KeyboardShortcut>,
+}
+
+pub(super) const fn entry(
+    command: Command,
+    name: &'static str,
+    tooltip: &'static str,
+    key: Option<KeyboardShortcut>,
+) -> Entry {
+    Entry { command, name: Cow::Borrowed(name), tooltip, key }
+}
+
+pub(super) const fn key(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+pub(super) const fn shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::SHIFT, key))
+}
+
+pub(super) const fn command(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
+}
+
+pub(super) const fn command_shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
+}
+
+pub(super) fn named(command: Command, name: String, tooltip: &'static str, key: Option<KeyboardShortcut>) -> Entry {
+    Entry { command, name: name.into(), tooltip, key }
+}

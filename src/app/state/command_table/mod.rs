@@ -1,0 +1,213 @@
+//! The one list of commands: what each is called, what it does, and its key. Menus, tooltips, shortcuts and the palette read it.
+
+mod entry;
+mod scenes;
+mod views;
+
+pub use entry::Entry;
+
+use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, RadarCommand, WindowCommand};
+use super::help::HelpPage;
+use super::page_commands::{on_a_desktop, on_a_page};
+use super::panel::{MapKind, Panel};
+use super::task_layouts::Task;
+use crate::platform;
+use crate::radar::presets::{self as radar_presets, RadarPreset};
+use crate::recording::presets as recordings;
+use crate::scene::generate::Kind;
+use crate::scene::presets;
+use eframe::egui::{Key, KeyboardShortcut};
+use entry::{command, key, named};
+use std::sync::OnceLock;
+
+/// Keys that show or hide a panel.
+const PANEL_KEYS: &[(Panel, Key)] = &[
+    (Panel::Guide, Key::F1),
+    (Panel::Controls, Key::F2),
+    (Panel::Inspector, Key::F3),
+    (Panel::Cuts, Key::F4),
+    (Panel::Lesson, Key::F5),
+    (Panel::Roc, Key::F6),
+    (Panel::Timing, Key::F7),
+    (Panel::Bounds, Key::F8),
+    (Panel::Evaluation, Key::F9),
+    (Panel::Failures, Key::E),
+    (Panel::RunTime, Key::F10),
+    (Panel::Several, Key::S),
+    (Panel::Compare, Key::J),
+    (Panel::Values, Key::I),
+    (Panel::Phasors, Key::A),
+    (Panel::Chirp, Key::U),
+    (Panel::RangeDoppler, Key::Y),
+    (Panel::Radar, Key::W),
+    (Panel::Training, Key::F12),
+];
+
+/// Keys of [`Task::ALL`].
+const TASK_KEYS: [Key; 4] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
+
+fn arrange(task: Task, digit: Key) -> Entry {
+    let name = format!("Arrange for: {}", task.name());
+    named(Command::Window(WindowCommand::ArrangeFor(task)), name, task.describe(), key(digit))
+}
+
+fn random(kind: Kind) -> Entry {
+    let keys = [Key::Num1, Key::Num2, Key::Num3];
+    let (tooltip, key) = match kind.test_set() {
+        Some(set) => ("A scene of this test set of the thesis", command(keys[set - 1])),
+        None if kind == Kind::Noise => ("An empty scene over thermal noise of a level of its own", None),
+        None => ("A scene of a kind that the thesis' sets leave out", None),
+    };
+    let name = format!("Random scene: {}", kind.description());
+    named(Command::Document(DocumentCommand::RandomScene(kind)), name, tooltip, key)
+}
+
+/// What shows and hides each panel, pages of help, what lets a panel fill the window, and what copies a map.
+fn of_panels() -> Vec<Entry> {
+    let panel_key = |panel| PANEL_KEYS.iter().find(|(p, _)| *p == panel).and_then(|(_, k)| key(*k));
+    let toggle = |panel: Panel| {
+        let name = format!("Show or hide: {}", panel.title());
+        named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel_key(panel))
+    };
+    let maximise = |panel: Panel| {
+        let name = format!("Maximise: {}", panel.title());
+        named(Command::Window(WindowCommand::Maximise(panel)), name, panel.describe(), None)
+    };
+    let help = |page: HelpPage| {
+        named(Command::Window(WindowCommand::Help(page)), page.title().to_owned(), page.describe(), None)
+    };
+    let copy = |kind: MapKind| {
+        let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
+        named(Command::Export(ExportCommand::CopyMap(kind)), format!("Copy picture: {}", kind.title()), tooltip, None)
+    };
+    let panels = || Panel::all().into_iter();
+    let listed = panels().map(toggle).chain(HelpPage::ALL.map(help)).chain(panels().map(maximise));
+    listed.chain(MapKind::ALL.map(copy)).collect()
+}
+
+fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
+    let name = format!("Preset: {}", preset.id.replace('-', " "));
+    let tooltip = match preset.is_failure() {
+        true => "Open a scene on which a method fails, with the reason in its notes",
+        false => "Open a scene the thesis talks about",
+    };
+    named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
+}
+
+/// Every command of the table, of every panel, of every kind of random scene and of every preset, in the order the palette lists them, as far as
+/// there are such here. The methods are not among them: they are the app's.
+pub fn listed() -> &'static [Entry] {
+    static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
+    LISTED.get_or_init(|| listed_where(if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop }))
+}
+
+/// What there is of [`everything`] where `keys` says, with the keys that it says.
+fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>>) -> Vec<Entry> {
+    everything()
+        .into_iter()
+        .filter_map(|entry| Some(Entry { key: keys(&entry.command, entry.key)?, ..entry }))
+        .collect()
+}
+
+/// Every command, whether a desktop has it or a page.
+fn everything() -> Vec<Entry> {
+    let radar = |(index, preset): (usize, &RadarPreset)| {
+        named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
+    };
+    let recording = |(index, preset): (usize, &recordings::Preset)| {
+        let name = format!("Recording: {}", preset.id.replace('-', " "));
+        let tooltip = "Open samples that a radar measured";
+        named(Command::Document(DocumentCommand::Recording(index)), name, tooltip, None)
+    };
+    let mut all = [scenes::COMMANDS, views::COMMANDS].concat();
+    all.extend(Kind::all().map(random));
+    all.extend(Task::ALL.into_iter().zip(TASK_KEYS).map(|(task, digit)| arrange(task, digit)));
+    all.extend(of_panels());
+    all.extend(presets::ALL.iter().enumerate().map(preset));
+    all.extend(recordings::ALL.iter().enumerate().map(recording));
+    all.extend(radar_presets::ALL.iter().enumerate().map(radar));
+    all
+}
+
+/// The commands that have a key, longer shortcuts first: Ctrl+Shift+Z would also match Ctrl+Z.
+pub fn shortcuts() -> &'static [(KeyboardShortcut, Command)] {
+    static SHORTCUTS: OnceLock<Vec<(KeyboardShortcut, Command)>> = OnceLock::new();
+    SHORTCUTS.get_or_init(|| {
+        let mut all: Vec<_> = listed().iter().filter_map(|e| Some((e.key?, e.command.clone()))).collect();
+        all.sort_by_key(|(key, _)| !(key.modifiers.shift || key.modifiers.alt));
+        all
+    })
+}
+
+impl Command {
+    /// Its line of the list, where it has one: what is added or closed somewhere in particular is called as anywhere.
+    pub fn entry(&self) -> Option<&'static Entry> {
+        let like = match self {
+            Command::Edit(EditCommand::Add(kind, _)) => Command::Edit(EditCommand::Add(*kind, None)),
+            Command::Window(WindowCommand::OpenPanel(panel) | WindowCommand::ClosePanel(panel)) => {
+                Command::Window(WindowCommand::TogglePanel(*panel))
+            }
+            other => other.clone(),
+        };
+        listed().iter().find(|e| e.command == like)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::command::ViewCommand;
+    use super::*;
+    use crate::picture::ColourMap;
+    use crate::radar::WindowFunction;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn no_two_commands_share_a_key_or_a_name() {
+        let (mut keys, mut names) = (BTreeMap::new(), BTreeMap::new());
+        for entry in listed() {
+            assert!(names.insert(entry.name.clone(), ()).is_none(), "{} twice", entry.name);
+            assert!(!entry.tooltip.is_empty());
+            if let Some(key) = entry.key {
+                let text = format!("{key:?}");
+                assert!(keys.insert(text, entry.name.clone()).is_none(), "{} shares its key", entry.name);
+            }
+        }
+    }
+
+    #[test]
+    fn no_command_of_a_page_has_a_key_of_the_browser() {
+        let mut keys = BTreeMap::new();
+        for entry in listed_where(on_a_page) {
+            let Some(KeyboardShortcut { modifiers, logical_key: key }) = entry.key else { continue };
+            let of_the_browser = matches!(key, Key::F5 | Key::F11 | Key::F12)
+                || modifiers.command && !modifiers.shift && matches!(key, Key::T | Key::W | Key::N);
+            assert!(!of_the_browser, "{}", entry.name);
+            let before = keys.insert(format!("{modifiers:?} {key:?}"), entry.name.clone());
+            assert!(before.is_none(), "{} shares its key with {before:?}", entry.name);
+        }
+    }
+
+    #[test]
+    fn a_page_offers_a_link_in_place_of_closing_the_window() {
+        let [link, quit] = [Command::Export(ExportCommand::CopyLink), Command::Window(WindowCommand::Quit)];
+        let offers = |list: &[Entry], command: &Command| list.iter().any(|entry| entry.command == *command);
+        let (page, desktop) = (listed_where(on_a_page), listed_where(on_a_desktop));
+        assert!(offers(&page, &link) && !offers(&page, &quit));
+        assert!(!offers(&desktop, &link) && offers(&desktop, &quit));
+    }
+
+    #[test]
+    fn every_choice_of_a_window_and_of_colours_is_listed() {
+        for window in WindowFunction::ALL {
+            assert!(Command::Radar(RadarCommand::SetWindow(window)).entry().is_some(), "{window:?}");
+        }
+        for colours in ColourMap::ALL {
+            assert!(Command::View(ViewCommand::Colours(colours)).entry().is_some(), "{colours:?}");
+        }
+        let map = Panel::Map(MapKind::Target);
+        assert_eq!(
+            Command::Window(WindowCommand::ClosePanel(map)).entry(),
+            Command::Window(WindowCommand::TogglePanel(map)).entry()
+        );
+    }
+}
