@@ -11,7 +11,7 @@ from common import ROOT, SYSTEM, Fault, run, target_folder, version
 from formats import packed_zip, wheel
 
 TRIPLE = "x86_64-pc-windows-gnu"
-PROFILE = "packages-windows"
+PROFILE = "packages"
 #: Debian's package of the compiler, and its programs as they are called there and on Windows.
 COMPILER_PACKAGE = "gcc-mingw-w64-x86-64"
 PREFIX = "" if SYSTEM == "windows" else "x86_64-w64-mingw32-"

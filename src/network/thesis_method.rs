@@ -310,7 +310,9 @@ mod tests {
         let request = Request::default();
         println!("{}, milliseconds a map:", crate::signal::simd::Simd::chosen());
         let print = |what: &str, work: &mut dyn FnMut()| println!("{what}: {:.1}", milliseconds(work));
-        print("burn's forward pass", &mut || drop(black_box(burn.estimate(&[input.clone()], &device).into_data())));
+        print("burn's forward pass", &mut || {
+            drop(black_box(burn.estimate(std::slice::from_ref(&input), &device).into_data()))
+        });
         print("the engine's", &mut || drop(black_box(method.network.estimate("thesis", input.clone()).unwrap())));
         print("the network's input", &mut || drop(black_box(Thesis::input(&radar, &ends).unwrap())));
         print("thesis", &mut || drop(black_box(method.estimate(&radar, &ends, &request).unwrap())));
