@@ -109,7 +109,7 @@ impl Recording {
     fn maps(&self, normalisation: &str) -> PyResult<Maps> {
         let normalisation = named(normalisation)?;
         let signal = self.0.signal().ok_or_else(|| errors::value("the two ends alone were recorded; use ends"))?;
-        Ok(Maps::new(self.0.radar.clone(), signal.clone(), normalisation))
+        Ok(Maps::new(self.0.radar.clone(), BuiltArray::default(), signal.clone(), normalisation))
     }
 
     fn __repr__(&self) -> String {

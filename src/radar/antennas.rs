@@ -266,6 +266,17 @@ impl Antennas {
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
     }
 
+    /// The same antennas seen from the other side: what was leftmost is rightmost.
+    pub fn mirrored(&self) -> Self {
+        let mirrored = |places: &[f64]| places.iter().map(|x| -x).collect();
+        Antennas {
+            transmitter_x_metres: mirrored(&self.transmitter_x_metres),
+            receiver_x_metres: mirrored(&self.receiver_x_metres),
+            pairs: self.pairs.iter().rev().copied().collect(),
+            ..self.clone()
+        }
+    }
+
     /// The same antennas, all distances along the line `factor` times as large.
     fn scaled(&self, factor: f64) -> Self {
         let scaled = |places: &[f64]| places.iter().map(|x| x * factor).collect();
@@ -357,6 +368,18 @@ mod tests {
         assert_eq!(radar.antennas.as_ref().unwrap().pairs()[5], Some([1, 1]));
         assert_eq!((radar.gaps(), radar.antennas.as_ref().unwrap().left_out()), (0, 0));
         assert!((radar.element_spacing_metres / radar.filled_spacing_metres() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_mirrored_array_is_the_one_of_mirrored_places() {
+        let (transmitters, receivers) = ([-0.9, 0.0, 0.8], [0.1, 0.3, 0.5, 0.7]);
+        let own = Antennas::new(&transmitters, &receivers).unwrap().off_line(&[0.0, -0.01, 0.0], &[0.0; 4]).unwrap();
+        let other = Antennas::new(&transmitters.map(|x| -x), &receivers.map(|x| -x)).unwrap();
+        let mirrored = own.mirrored();
+        assert_eq!((mirrored.pairs(), mirrored.gaps()), (other.pairs(), own.gaps()));
+        let off = mirrored.receiver_x_metres().iter().zip(other.receiver_x_metres()).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-12 && mirrored.transmitter_y_metres() == own.transmitter_y_metres());
+        assert_eq!(mirrored.mirrored(), own);
     }
 
     #[test]

@@ -28,10 +28,7 @@ impl Pair {
 
     /// Places (x, y) of the transmitter and of the receiver, metres.
     pub fn places_metres(&self) -> [[f64; 2]; 2] {
-        [
-            [self.transmitter_x_metres, self.transmitter_y_metres],
-            [self.receiver_x_metres, self.receiver_y_metres],
-        ]
+        [[self.transmitter_x_metres, self.transmitter_y_metres], [self.receiver_x_metres, self.receiver_y_metres]]
     }
 
     /// Whether both antennas stand on the array's line.

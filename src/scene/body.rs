@@ -367,9 +367,8 @@ impl Body<'_> {
             return None;
         }
         (0..radar.elements).find(|n| {
-            let covers = |[x, y]: [f64; 2]| {
-                x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, y]) < near
-            };
+            let covers =
+                |[x, y]: [f64; 2]| x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, y]) < near;
             radar.pair(*n).places_metres().into_iter().any(covers)
         })
     }

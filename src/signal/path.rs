@@ -274,7 +274,9 @@ impl Change {
             of_y / (y_metres - antenna_y)
         };
         // Change::amplitude is the change of minus the logarithms of both legs.
-        let of_log_cos = of_log_y(pair.transmitter_y_metres) + of_log_y(pair.receiver_y_metres) + Change::of_point(pair, [x_metres, y_metres], by).amplitude;
+        let of_log_cos = of_log_y(pair.transmitter_y_metres)
+            + of_log_y(pair.receiver_y_metres)
+            + Change::of_point(pair, [x_metres, y_metres], by).amplitude;
         Change { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
     }
 
@@ -294,8 +296,12 @@ mod tests {
     const APART: Pair = Pair::on_line(-0.4, 0.7);
 
     /// Antennas on a bumper that is bent.
-    const BENT: Pair =
-        Pair { transmitter_y_metres: -0.06, receiver_y_metres: 0.11, transmitter_x_metres: -0.4, receiver_x_metres: 0.7 };
+    const BENT: Pair = Pair {
+        transmitter_y_metres: -0.06,
+        receiver_y_metres: 0.11,
+        transmitter_x_metres: -0.4,
+        receiver_x_metres: 0.7,
+    };
 
     fn radars() -> [Radar; 2] {
         [Carrier::OneWay, Carrier::TwoWay].map(|carrier| Radar { carrier, ..Radar::default() })

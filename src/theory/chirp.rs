@@ -82,7 +82,8 @@ pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<Heard> {
             let ways = pair.places_metres().map(|[x, y]| ((r.x_metres - x).hypot(r.y_metres - y), r.y_metres - y));
             let left = |(way, ahead): (f64, f64)| radar.pattern().map_or(1.0, |p| p.amplitude(ahead / way));
             let [(there, _), (back, _)] = ways;
-            let amplitude = left(ways[0]) * left(ways[1]) * radar.transmit_power_watts * r.reflectivity / (there * back);
+            let amplitude =
+                left(ways[0]) * left(ways[1]) * radar.transmit_power_watts * r.reflectivity / (there * back);
             Heard { object, range_metres: (there + back) / 2.0, amplitude }
         })
         .collect();
