@@ -73,6 +73,24 @@ pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
     radar.map(|r| r.0.clone()).unwrap_or_default()
 }
 
+/// Transmitters and receivers by their places along the line and off it.
+fn antennas_of(along: [Option<Vec<f64>>; 2], off: [Option<Vec<f64>>; 2]) -> PyResult<Option<radar::Antennas>> {
+    let (transmitters, receivers) = match along {
+        [Some(transmitters), Some(receivers)] => (transmitters, receivers),
+        [None, None] if off.iter().any(Option::is_some) => {
+            let expected = "transmitter_y_metres and receiver_y_metres belong to lists of x; expected those beside them";
+            return Err(value(expected));
+        }
+        [None, None] => return Ok(None),
+        _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
+    };
+    let [of_transmitters, of_receivers] = off;
+    let of_transmitters = of_transmitters.unwrap_or_else(|| vec![0.0; transmitters.len()]);
+    let of_receivers = of_receivers.unwrap_or_else(|| vec![0.0; receivers.len()]);
+    let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
+    antennas.off_line(&of_transmitters, &of_receivers).map(Some).map_err(value)
+}
+
 #[pymethods]
 impl Radar {
     #[new]
@@ -132,26 +150,16 @@ impl Radar {
             chirp_interval_seconds: chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
             budget: budget.map(budget_of).transpose()?,
         };
-        let radar = match (transmitter_x_metres, receiver_x_metres) {
-            (None, None) if transmitter_y_metres.is_some() || receiver_y_metres.is_some() => {
-                return Err(value("transmitter_y_metres and receiver_y_metres belong to lists of x; expected those beside them"));
+        let along = [transmitter_x_metres, receiver_x_metres];
+        let radar = match antennas_of(along, [transmitter_y_metres, receiver_y_metres])? {
+            None => radar,
+            Some(_) if elements.is_some() || element_spacing_metres.is_some() => {
+                return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
             }
-            (None, None) => radar,
-            (Some(transmitters), Some(receivers)) => {
-                if elements.is_some() || element_spacing_metres.is_some() {
-                    return Err(value(
-                        "elements and element_spacing_metres are those of the antennas' pairs; expected neither",
-                    ));
-                }
-                let on_line = |y: Option<Vec<f64>>, count: usize| y.unwrap_or_else(|| vec![0.0; count]);
-                let forward = on_line(transmitter_y_metres, transmitters.len());
-                let heard_at = on_line(receiver_y_metres, receivers.len());
-                let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
-                let antennas = antennas.off_line(&forward, &heard_at).map_err(value)?;
+            Some(antennas) => {
                 let radar = radar.with_antennas(antennas);
                 radar::Radar { end_elements: end_elements.unwrap_or(radar.end_elements), ..radar }
             }
-            _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
         };
         radar.validate().map_err(value)?;
         Ok(Radar(radar))

@@ -5,6 +5,7 @@ use crate::errors;
 use crate::errors::named;
 use crate::maps::Maps;
 use crate::radar::Radar;
+use apertura::radar::BuiltArray;
 use apertura::reconstruct::NoisePrior;
 use apertura::recording::presets::{ALL, Preset};
 use apertura::recording::{self, file::load};
