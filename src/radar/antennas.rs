@@ -6,7 +6,6 @@
 mod off_line;
 
 use super::{Convention, Pair, Radar};
-use off_line::MOST_Y_METRES;
 use std::fmt;
 use std::sync::Arc;
 
@@ -25,6 +24,9 @@ const MOST_DIVISIONS: usize = 4;
 
 /// How far the middle of the line may lie off x = 0 without being moved there, as a part of the spacing.
 const CENTRED: f64 = 1e-6;
+
+/// Farthest that an antenna may stand off the line, metres either way.
+const MOST_Y_METRES: f64 = 1.0;
 
 /// Transmitters and receivers whose pairs make a line of elements at even places along x.
 ///

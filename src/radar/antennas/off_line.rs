@@ -2,11 +2,8 @@
 //!
 //! Where an element stands along the line follows from x alone. y changes the ways of the pairs that an antenna takes part in.
 
-use super::{Antennas, AntennasError};
+use super::{Antennas, AntennasError, MOST_Y_METRES};
 use crate::radar::Radar;
-
-/// Farthest that an antenna may stand off the line, metres either way.
-pub(super) const MOST_Y_METRES: f64 = 1.0;
 
 impl Antennas {
     /// The same antennas, off the line by these distances towards the scene, metres.
