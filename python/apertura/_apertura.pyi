@@ -105,6 +105,9 @@ class Radar:
         convention: _Convention | None = None,
         transmitter_x_metres: Sequence[float] | None = None,
         receiver_x_metres: Sequence[float] | None = None,
+        transmitter_y_metres: Sequence[float] | None = None,
+        receiver_y_metres: Sequence[float] | None = None,
+        focus_off_line: bool | None = None,
         chirp_seconds: float | None = None,
         chirps: int | None = None,
         chirp_interval_seconds: float | None = None,
@@ -142,6 +145,12 @@ class Radar:
     def transmitter_x_metres(self) -> npt.NDArray[np.float64] | None: ...
     @property
     def receiver_x_metres(self) -> npt.NDArray[np.float64] | None: ...
+    @property
+    def transmitter_y_metres(self) -> npt.NDArray[np.float64] | None: ...
+    @property
+    def receiver_y_metres(self) -> npt.NDArray[np.float64] | None: ...
+    @property
+    def focus_off_line(self) -> bool: ...
     @property
     def window(self) -> _Window: ...
     @property

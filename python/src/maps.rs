@@ -5,8 +5,9 @@ use crate::errors::named;
 use crate::errors::value;
 use crate::radar::{Radar, or_default};
 use crate::work;
-use apertura::maps::{Aperture, LogMap, Normalisation, RangeAngleMap, angle_transform, channels_map, range_transform};
-use apertura::radar::{self, End};
+use apertura::maps::focus::map_of;
+use apertura::maps::{Aperture, LogMap, Normalisation, RangeAngleMap};
+use apertura::radar::{self, BuiltArray, End};
 use apertura::signal::BeatSignal;
 use ndarray::{Array2, Array3, Axis};
 use num_complex::Complex64;
@@ -22,14 +23,16 @@ use std::sync::OnceLock;
 pub struct Maps {
     radar: radar::Radar,
     normalisation: Normalisation,
+    /// Where the elements stand that heard the samples.
+    elements: BuiltArray,
     signal: BeatSignal,
     full: OnceLock<LogMap>,
     target: OnceLock<RangeAngleMap>,
 }
 
 impl Maps {
-    pub fn new(radar: radar::Radar, signal: BeatSignal, normalisation: Normalisation) -> Self {
-        Maps { radar, normalisation, signal, full: OnceLock::new(), target: OnceLock::new() }
+    pub fn new(radar: radar::Radar, elements: BuiltArray, signal: BeatSignal, normalisation: Normalisation) -> Self {
+        Maps { radar, normalisation, elements, signal, full: OnceLock::new(), target: OnceLock::new() }
     }
 
     /// The whole array's map. Two threads that ask at once may both compute it: a lock held across the computation could hold the interpreter up.
@@ -37,10 +40,8 @@ impl Maps {
         if let Some(full) = self.full.get() {
             return Ok(full);
         }
-        let (radar, signal) = (&self.radar, &self.signal);
-        let full = work::run(py, None, |_| {
-            angle_transform(radar, &range_transform(radar, signal), Aperture::Full).log_magnitude()
-        })?;
+        let (radar, elements, signal) = (&self.radar, &self.elements, &self.signal);
+        let full = work::run(py, None, |_| map_of(radar, elements, signal, Aperture::Full).log_magnitude())?;
         Ok(self.full.get_or_init(|| full))
     }
 }
@@ -94,10 +95,10 @@ impl Maps {
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let (radar, normalisation) = (&self.radar, self.normalisation);
-        let ends = self.signal.two_ends(radar);
+        let (elements, signal) = (&self.elements, &self.signal);
         let [first, last] = work::run(py, None, |_| {
-            End::BOTH
-                .map(|end| channels_map(radar, ends.end(end).view()).log_magnitude().normalise(normalisation).lambda)
+            let map = |end| map_of(radar, elements, signal, Aperture::End(end)).log_magnitude();
+            End::BOTH.map(|end| map(end).normalise(normalisation).lambda)
         })?;
         let mut both = Array3::zeros((2, radar.samples, radar.elements));
         both.index_axis_mut(Axis(0), 0).assign(&first);
@@ -132,5 +133,5 @@ pub fn maps(samples: &Bound<'_, PyAny>, radar: Option<&Radar>, normalisation: &s
     {
         return Err(value(format!("sample {sample} of element {element} is not finite")));
     }
-    Ok(Maps::new(radar, BeatSignal { samples }, named(normalisation)?))
+    Ok(Maps::new(radar, BuiltArray::default(), BeatSignal { samples }, named(normalisation)?))
 }

@@ -28,6 +28,10 @@ use pyo3::types::{PyDict, PyType};
 ///     transmitter_x_metres: Places of transmitters that stand apart from receivers. Each pair is an element halfway between both, and the
 ///         pairs must stand at even places: they say elements and element_spacing_metres.
 ///     receiver_x_metres: Places of the receivers.
+///     transmitter_y_metres: How far each transmitter stands off the array's line, towards the scene. All stand on it where nothing is said.
+///     receiver_y_metres: The same of each receiver.
+///     focus_off_line: Whether maps bring elements that stand off the line into phase towards the direction of each column. Else each counts as
+///         the nearest place on the line.
 ///     chirps: Chirps that are sent one after another; `range_doppler` sees all of them, everything else the first.
 ///     chirp_interval_seconds: From the beginning of a chirp to that of the next: at least chirp_seconds where there are several.
 ///
@@ -69,12 +73,30 @@ pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
     radar.map(|r| r.0.clone()).unwrap_or_default()
 }
 
+/// Transmitters and receivers by their places along the line and off it.
+fn antennas_of(along: [Option<Vec<f64>>; 2], off: [Option<Vec<f64>>; 2]) -> PyResult<Option<radar::Antennas>> {
+    let (transmitters, receivers) = match along {
+        [Some(transmitters), Some(receivers)] => (transmitters, receivers),
+        [None, None] if off.iter().any(Option::is_some) => {
+            let expected = "transmitter_y_metres and receiver_y_metres belong to lists of x; expected those beside them";
+            return Err(value(expected));
+        }
+        [None, None] => return Ok(None),
+        _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
+    };
+    let [of_transmitters, of_receivers] = off;
+    let of_transmitters = of_transmitters.unwrap_or_else(|| vec![0.0; transmitters.len()]);
+    let of_receivers = of_receivers.unwrap_or_else(|| vec![0.0; receivers.len()]);
+    let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
+    antennas.off_line(&of_transmitters, &of_receivers).map(Some).map_err(value)
+}
+
 #[pymethods]
 impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
                         end_elements=None, samples=None, carrier=None, window=None, convention=None, transmitter_x_metres=None,
-                        receiver_x_metres=None, chirp_seconds=None, chirps=None, chirp_interval_seconds=None, budget=None))]
+                        receiver_x_metres=None, transmitter_y_metres=None, receiver_y_metres=None, focus_off_line=None, chirp_seconds=None, chirps=None, chirp_interval_seconds=None, budget=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,
@@ -89,6 +111,9 @@ impl Radar {
         convention: Option<&str>,
         transmitter_x_metres: Option<Vec<f64>>,
         receiver_x_metres: Option<Vec<f64>>,
+        transmitter_y_metres: Option<Vec<f64>>,
+        receiver_y_metres: Option<Vec<f64>>,
+        focus_off_line: Option<bool>,
         chirp_seconds: Option<f64>,
         chirps: Option<usize>,
         chirp_interval_seconds: Option<f64>,
@@ -120,23 +145,21 @@ impl Radar {
             carrier: carrier.map_or(Ok(usual.carrier), carrier_of)?,
             window: window.map_or(Ok(usual.window), window_of)?,
             antennas: None,
+            focus_off_line: focus_off_line.unwrap_or(usual.focus_off_line),
             chirps: chirps.unwrap_or(usual.chirps),
             chirp_interval_seconds: chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
             budget: budget.map(budget_of).transpose()?,
         };
-        let radar = match (transmitter_x_metres, receiver_x_metres) {
-            (None, None) => radar,
-            (Some(transmitters), Some(receivers)) => {
-                if elements.is_some() || element_spacing_metres.is_some() {
-                    return Err(value(
-                        "elements and element_spacing_metres are those of the antennas' pairs; expected neither",
-                    ));
-                }
-                let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
+        let along = [transmitter_x_metres, receiver_x_metres];
+        let radar = match antennas_of(along, [transmitter_y_metres, receiver_y_metres])? {
+            None => radar,
+            Some(_) if elements.is_some() || element_spacing_metres.is_some() => {
+                return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
+            }
+            Some(antennas) => {
                 let radar = radar.with_antennas(antennas);
                 radar::Radar { end_elements: end_elements.unwrap_or(radar.end_elements), ..radar }
             }
-            _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
         };
         radar.validate().map_err(value)?;
         Ok(Radar(radar))
@@ -172,7 +195,7 @@ impl Radar {
                 }
             }
             if is_said("transmitter_x_metres")? || is_said("receiver_x_metres")? {
-                for key in ["elements", "element_spacing_metres"] {
+                for key in ["elements", "element_spacing_metres", "transmitter_y_metres", "receiver_y_metres"] {
                     if all.contains(key)? {
                         all.del_item(key)?;
                     }
@@ -304,6 +327,26 @@ impl Radar {
         self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.receiver_x_metres().to_vec())))
     }
 
+    /// How far each transmitter stands off the array's line, towards the scene, metres, float64 `[transmitters]`; None where every element
+    /// sends and hears by itself.
+    #[getter]
+    fn transmitter_y_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.transmitter_y_metres().to_vec())))
+    }
+
+    /// How far each receiver stands off the array's line, towards the scene, metres, float64 `[receivers]`; None where every element sends and
+    /// hears by itself.
+    #[getter]
+    fn receiver_y_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.receiver_y_metres().to_vec())))
+    }
+
+    /// Whether maps focus elements that stand off the array's line.
+    #[getter]
+    fn focus_off_line(&self) -> bool {
+        self.0.focus_off_line
+    }
+
     /// Name of the window.
     #[getter]
     fn window(&self) -> &'static str {
@@ -414,6 +457,10 @@ impl Radar {
             Some(antennas) => {
                 fields.set_item("transmitter_x_metres", antennas.transmitter_x_metres().to_vec())?;
                 fields.set_item("receiver_x_metres", antennas.receiver_x_metres().to_vec())?;
+                if !antennas.is_on_line() {
+                    fields.set_item("transmitter_y_metres", antennas.transmitter_y_metres().to_vec())?;
+                    fields.set_item("receiver_y_metres", antennas.receiver_y_metres().to_vec())?;
+                }
             }
             None => {
                 fields.set_item("element_spacing_metres", self.0.element_spacing_metres)?;
@@ -425,6 +472,9 @@ impl Radar {
         fields.set_item("chirp_seconds", self.0.chirp_seconds)?;
         fields.set_item("chirps", self.0.chirps)?;
         fields.set_item("chirp_interval_seconds", self.0.chirp_interval_seconds)?;
+        if self.0.focus_off_line {
+            fields.set_item("focus_off_line", true)?;
+        }
         if let Some(budget) = self.0.budget {
             fields.set_item("budget", LinkBudget(budget).into_pyobject(fields.py())?)?;
         }

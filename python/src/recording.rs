@@ -5,6 +5,7 @@ use crate::errors;
 use crate::errors::named;
 use crate::maps::Maps;
 use crate::radar::Radar;
+use apertura::radar::BuiltArray;
 use apertura::reconstruct::NoisePrior;
 use apertura::recording::presets::{ALL, Preset};
 use apertura::recording::{self, file::load};
@@ -109,7 +110,7 @@ impl Recording {
     fn maps(&self, normalisation: &str) -> PyResult<Maps> {
         let normalisation = named(normalisation)?;
         let signal = self.0.signal().ok_or_else(|| errors::value("the two ends alone were recorded; use ends"))?;
-        Ok(Maps::new(self.0.radar.clone(), signal.clone(), normalisation))
+        Ok(Maps::new(self.0.radar.clone(), BuiltArray::default(), signal.clone(), normalisation))
     }
 
     fn __repr__(&self) -> String {

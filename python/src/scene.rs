@@ -339,7 +339,7 @@ impl Scene {
         let (scene, seed) = (&self.0.scene, seed.unwrap_or(self.0.scene.noise_seed));
         let signal = work::run(py, progress, |task| simulate_for(task, &radar, scene, floor, seed))?;
         let signal = signal.map_err(|error: Unfinished| value(error))?;
-        Ok(Maps::new(radar, signal, normalisation))
+        Ok(Maps::new(radar, scene.disturbances.elements.clone(), signal, normalisation))
     }
 
     fn __len__(&self) -> usize {

@@ -146,6 +146,11 @@ def test_any_layout_of_memory_gives_the_same_answer():
         (lambda: ap.Radar(transmitter_x_metres=[0.0]), "expected both or neither"),
         (lambda: ap.Radar(transmitter_x_metres=[0.0, 1.0], receiver_x_metres=[0.0, 0.1, 0.237]), "off the even line"),
         (lambda: ap.Radar(transmitter_x_metres=[0.0, 1.0], receiver_x_metres=[0.0, 0.1], elements=4), "expected neither"),
+        (lambda: ap.Radar(transmitter_y_metres=[0.0]), "belong to lists of x"),
+        (
+            lambda: ap.Radar(transmitter_x_metres=[0, 0.008], receiver_x_metres=[0, 0.002, 0.004, 0.006], receiver_y_metres=[0.1]),
+            "receiver_y_metres has 1 numbers; expected 4",
+        ),
         (lambda: ap.Radar(convention="sideways"), "expected thesis or physical"),
         (lambda: ap.Radar(convention="physical", carrier="one-way"), "two-way"),
         (lambda: ap.Scene([ap.Point(float("nan"), 1.0)]), "object 1 (point): x_metres is NaN"),

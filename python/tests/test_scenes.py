@@ -97,6 +97,20 @@ def test_antennas_say_elements_with_spacing():
     assert np.abs(signal - heard).max() < 1e-11 * np.abs(signal).max()
 
 
+def test_antennas_stand_off_the_line():
+    x = {"transmitter_x_metres": [-0.008, 0, 0.008], "receiver_x_metres": [0, 0.002, 0.004, 0.006]}
+    radar = ap.Radar(**x, transmitter_y_metres=[-0.01, 0, -0.01], focus_off_line=True, convention="physical", samples=64)
+    assert radar.transmitter_y_metres.tolist() == [-0.01, 0, -0.01] and not radar.receiver_y_metres.any()
+    assert eval(repr(radar).replace("Radar", "ap.Radar")) == radar == pickle.loads(pickle.dumps(radar))
+    straight = radar.replace(transmitter_y_metres=[0, 0, 0])
+    assert straight.element_spacing_metres == radar.element_spacing_metres and ap.Radar().transmitter_y_metres is None
+    maps = [ap.Scene.of_points([[1.0, 3.0]], r).simulate(floor="exact") for r in (radar, radar.replace(focus_off_line=False), straight)]
+    assert np.array_equal(maps[0].samples, maps[1].samples) and not np.array_equal(maps[0].samples, maps[2].samples)
+    focused, nearest, line = (m.decades - m.decades.max() for m in maps)
+    strong = line > -1
+    assert np.abs(focused - line)[strong].max() < 0.2 * np.abs(nearest - line)[strong].max()
+
+
 def test_random_scenes_repeat():
     scene = ap.Scene.random(3, seed=7, index=2)
     assert scene == ap.Scene.random("3", 7, 2) != ap.Scene.random("3", 7, 3)

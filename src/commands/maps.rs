@@ -48,6 +48,10 @@ pub struct Args {
     #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way")]
     carrier: Option<Carrier>,
 
+    /// Focus elements that stand off the array's line towards the direction of each column; else each counts as the nearest place on the line
+    #[arg(long)]
+    focus_off_line: bool,
+
     /// Picture and output: scale of Lambda, min-max (the thesis) or db=RANGE (below the peak)
     #[arg(long, value_name = "min-max|db=RANGE", default_value_t = Normalisation::MinMax)]
     normalisation: Normalisation,
@@ -91,6 +95,7 @@ impl Args {
 
     fn of_scene(&self, SceneFile { scene, mut radar }: SceneFile, output: Output) -> Result<(), CommandError> {
         radar.carrier = self.carrier.unwrap_or(radar.carrier);
+        radar.focus_off_line |= self.focus_off_line;
         let signal = signal::simulate(&radar, &scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed))
             .map_err(CommandError::on(&self.input))?;
         match output {
@@ -113,6 +118,7 @@ impl Args {
 
     fn of_recording(&self, mut recording: Recording, output: Output) -> Result<(), CommandError> {
         recording.radar.carrier = self.carrier.unwrap_or(recording.radar.carrier);
+        recording.radar.focus_off_line |= self.focus_off_line;
         if let Some(path) = &self.explain {
             let scene = file::load(path).map_err(CommandError::failed)?.scene;
             let found = explain(&recording, &scene).map_err(CommandError::on(path))?;

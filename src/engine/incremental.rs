@@ -110,7 +110,7 @@ impl Engine {
     }
 
     /// Computes what is wanted of `scene`; what did not change since the last call is the same `Arc` as then. A scene that was settled
-    /// stays so. A disturbed one is settled at once: what it is made of isn't the sum of its objects.
+    /// stays so. A disturbed one is settled at once: what it is made of isn't the sum of its objects. So is one whose maps are focused.
     ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
@@ -124,7 +124,8 @@ impl Engine {
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
     pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
         let begin = Instant::now();
-        if !scene.disturbances.is_none_to(&self.radar) {
+        let is_focused = self.radar.focus_off_line && !self.radar.is_on_line();
+        if is_focused || !scene.disturbances.is_none_to(&self.radar) {
             return self.settle_for(task, scene, wanted);
         }
         scene.validate(&self.radar)?;

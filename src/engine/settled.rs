@@ -2,6 +2,7 @@
 
 use super::frame::{Frame, ReadyMap, Wanted};
 use super::report::{Report, Stage};
+use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
 use crate::platform::Instant;
 use crate::radar::{End, Radar, counted};
@@ -40,13 +41,18 @@ impl Settled {
         let start = Instant::now();
         let signal = signal::simulate_for(task, radar, scene, wanted.floor, wanted.seed)?;
         let ends = Arc::new(signal.two_ends(radar));
-        let profiles = range_transform(radar, &signal);
+        // Plain maps share their range profiles; focused ones have none in common.
+        let profiles = (!radar.focus_off_line).then(|| range_transform(radar, &signal));
         report.computed(Stage::Signal, start.elapsed(), "from scratch in f64, as every command does");
         let mut logs = [None, None, None];
         for (i, log) in logs.iter_mut().enumerate().filter(|(i, _)| wanted.visible()[*i]) {
             task.check()?;
             let start = Instant::now();
-            *log = Some(angle_transform(radar, &profiles, APERTURES[i]).log_magnitude());
+            let map = match &profiles {
+                Some(profiles) => angle_transform(radar, profiles, APERTURES[i]),
+                None => map_of(radar, &scene.disturbances.elements, &signal, APERTURES[i]),
+            };
+            *log = Some(map.log_magnitude());
             report.computed(Stage::MAPS[i], start.elapsed(), "all rows in f64");
         }
         let (objects, shadows, disturbances) = (scene.objects.clone(), scene.shadows, scene.disturbances.clone());

@@ -7,8 +7,9 @@
 
 use super::TARGET_ETA;
 use super::blobs::Blobs;
+use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, Seen};
 use crate::scene::Scene;
 use crate::signal::plan::amplitude_bound;
@@ -222,7 +223,12 @@ fn footprint(radar: &Radar, seen: &Seen, level: f64) -> Vec<Cell> {
     let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
     let plan = Plan::cheapest(echoing.len(), amplitude, TOLERANCE);
-    let profiles = range_transform(radar, &beat_signal(radar, &echoing, &plan)).profiles;
+    let signal = beat_signal(radar, &echoing, &plan);
+    if radar.focus_off_line && !radar.is_on_line() {
+        let map = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).cells;
+        return map.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((bin, column), _)| [bin, column]).collect();
+    }
+    let profiles = range_transform(radar, &signal).profiles;
     // No cell of a row can exceed what its profiles add up to.
     let scale = (radar.elements as f64).sqrt().recip();
     let window = radar.window.weights(radar.elements);

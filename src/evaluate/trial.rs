@@ -58,8 +58,7 @@ impl Trial {
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
         let signal = signal::simulate(radar, scene, floor, scene.noise_seed)?;
-        let profiles = maps::range_transform(radar, &signal);
-        let full = maps::angle_transform(radar, &profiles, Aperture::Full).log_magnitude();
+        let full = maps::focus::map_of(radar, &scene.disturbances.elements, &signal, Aperture::Full).log_magnitude();
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));

@@ -1,6 +1,7 @@
 //! A scene's samples and maps as a NumPy archive with the keys of the thesis author's program, the axes and the radar's constants.
 
-use super::{Aperture, LogMap, RangeAngleMap, angle_transform, channels_map, network_input, range_transform};
+use super::focus::map_of;
+use super::{Aperture, LogMap, RangeAngleMap, channels_map, network_input};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, LinkBudget, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
@@ -16,6 +17,10 @@ const MONOSTATIC_VERSION: i64 = 2;
 
 /// Keys of the antennas, in the order of [`Antennas::new`].
 const ANTENNA_KEYS: [&str; 2] = ["transmitter_x_metres", "receiver_x_metres"];
+/// Keys of how far they stand off the line, in the order of [`Antennas::off_line`].
+const OFF_LINE_KEYS: [&str; 2] = ["transmitter_y_metres", "receiver_y_metres"];
+/// Key of whether `polar_full` is focused: 1, or not there.
+const FOCUS_KEY: &str = "focus_off_line";
 
 /// Keys of a link budget, and that of its elements' pattern.
 const BUDGET_KEYS: [&str; 3] = ["transmit_power_dbm", "antenna_gain_dbi", "noise_figure_db"];
@@ -35,7 +40,8 @@ const VERSION_KEY: &str = "format_version";
 /// `transmit_power_watts` (f64), `chirp_seconds` (f64, where it is another than [`CHIRP_SECONDS`]), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
 /// and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the weights of the
 /// two transforms. Where transmitters stand apart from receivers, `transmitter_x_metres` and `receiver_x_metres` (f64) are their places;
-/// an element stands halfway between its two antennas. A link budget is `transmit_power_dbm`, `antenna_gain_dbi`, `noise_figure_db` and, where
+/// an element stands halfway between its two antennas. Where some stand off the line, `transmitter_y_metres` and `receiver_y_metres` say how
+/// far; `focus_off_line` (i64) is 1 where `polar_full` is focused ([`super::focus`]). A link budget is `transmit_power_dbm`, `antenna_gain_dbi`, `noise_figure_db` and, where
 /// elements have a pattern, `half_power_width_degrees` (f64). `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
 ///
 /// # Errors
@@ -47,8 +53,7 @@ pub fn write_maps(
     signal: &BeatSignal,
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
-    let profiles = range_transform(radar, signal);
-    let full = angle_transform(radar, &profiles, Aperture::Full).log_magnitude();
+    let full = map_of(radar, &scene.disturbances.elements, signal, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
         add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
@@ -104,6 +109,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
         window: WindowFunction::default(),
         antennas: read_antennas(archive)?,
+        focus_off_line: archive.has(FOCUS_KEY) && number(archive, FOCUS_KEY)? != 0.0,
         budget: read_budget(archive)?,
         ..Radar::default()
     };
@@ -140,7 +146,14 @@ fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
     let mut places = |key: &str| Ok::<_, NpzError>(archive.reals::<ndarray::Ix1>(key)?.to_vec());
     let (transmitters, receivers) = (places(ANTENNA_KEYS[0])?, places(ANTENNA_KEYS[1])?);
     let damaged = |e: AntennasError| NpzError::Damaged { key: ANTENNA_KEYS[0].to_owned(), reason: e.to_string() };
-    Antennas::new(&transmitters, &receivers).map(Some).map_err(damaged)
+    let antennas = Antennas::new(&transmitters, &receivers).map_err(damaged)?;
+    if !archive.has(OFF_LINE_KEYS[0]) {
+        return Ok(Some(antennas));
+    }
+    let mut places = |key: &str| Ok::<_, NpzError>(archive.reals::<ndarray::Ix1>(key)?.to_vec());
+    let (transmitters, receivers) = (places(OFF_LINE_KEYS[0])?, places(OFF_LINE_KEYS[1])?);
+    let damaged = |e: AntennasError| NpzError::Damaged { key: OFF_LINE_KEYS[0].to_owned(), reason: e.to_string() };
+    antennas.off_line(&transmitters, &receivers).map(Some).map_err(damaged)
 }
 
 fn number(archive: &mut Npz, key: &str) -> Result<f64, NpzError> {
@@ -162,6 +175,13 @@ fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
         {
             out.add(key, &Array1::from(places.to_vec()))?;
         }
+        let off_line = [antennas.transmitter_y_metres(), antennas.receiver_y_metres()];
+        for (key, places) in OFF_LINE_KEYS.into_iter().zip(off_line).filter(|_| !antennas.is_on_line()) {
+            out.add(key, &Array1::from(places.to_vec()))?;
+        }
+    }
+    if radar.focus_off_line {
+        out.add(FOCUS_KEY, &arr0(1i64))?;
     }
     out.add("range_metres", &axis(radar.samples, &|bin| radar.range_of_bin_metres(bin as f64)))?;
     out.add("cos_theta", &axis(radar.elements, &|column| radar.cos_of_column(column as f64)))?;
@@ -255,8 +275,11 @@ mod tests {
 
     #[test]
     fn the_radar_is_read_back_as_it_was() {
-        for radar in [Radar::default(), small()] {
-            let radar = Radar { elements: 32, end_elements: 6, samples: 16, ..radar };
+        let pairs = Radar { end_elements: 6, samples: 16, ..Radar::default() }.of_pairs(4, 8).unwrap();
+        let antennas = pairs.antennas.clone().unwrap().off_line(&[-0.01, 0.0, 0.0, -0.01], &[0.002; 8]).unwrap();
+        let bent = Radar { focus_off_line: true, ..pairs.clone().with_antennas(antennas) };
+        let own = |radar: Radar| Radar { elements: 32, end_elements: 6, samples: 16, ..radar };
+        for radar in [own(Radar::default()), own(small()), pairs, bent] {
             let (_folder, mut archive) = archive(&radar);
             assert_eq!(read_radar(&mut archive).unwrap(), Some(radar));
         }

@@ -8,6 +8,7 @@ pub mod cartesian;
 pub mod cfar;
 pub mod doppler;
 pub mod fast;
+pub mod focus;
 mod lambda;
 mod log_map;
 pub mod network_input;
@@ -24,7 +25,7 @@ pub use transform::{
     windowed_range_transform,
 };
 
-use crate::radar::{End, Radar};
+use crate::radar::{BuiltArray, End, Radar};
 use crate::signal::BeatSignal;
 
 /// Log-magnitude maps of both ends and of the whole array.
@@ -39,8 +40,25 @@ pub struct LogMaps {
 }
 
 impl LogMaps {
-    /// All three maps of a beat signal.
+    /// All three maps of a beat signal that `elements` of `radar` heard, focused where the radar asks for it ([`focus`]).
+    pub fn heard_by(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal) -> LogMaps {
+        if !radar.focus_off_line {
+            return LogMaps::plain(radar, signal);
+        }
+        let map = |aperture| focus::map_of(radar, elements, signal, aperture).log_magnitude();
+        LogMaps {
+            first: map(Aperture::End(End::First)),
+            last: map(Aperture::End(End::Last)),
+            full: map(Aperture::Full),
+        }
+    }
+
+    /// All three maps of a beat signal; of elements off the array's line it knows what `radar` says of its antennas.
     pub fn of_signal(radar: &Radar, signal: &BeatSignal) -> LogMaps {
+        LogMaps::heard_by(radar, &BuiltArray::default(), signal)
+    }
+
+    fn plain(radar: &Radar, signal: &BeatSignal) -> LogMaps {
         let profiles = range_transform(radar, signal);
         let map = |aperture| angle_transform(radar, &profiles, aperture).log_magnitude();
         LogMaps {

@@ -7,6 +7,7 @@ use crate::signal::simd::Simd;
 use ndarray::{Array2, ArrayView2, Zip, s};
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Which elements a map is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -15,6 +16,16 @@ pub enum Aperture {
     Full,
     /// The elements of one end.
     End(End),
+}
+
+impl Aperture {
+    /// The elements of `radar` that it is.
+    pub(super) fn channels(self, radar: &Radar) -> Range<usize> {
+        match self {
+            Aperture::Full => 0..radar.elements,
+            Aperture::End(end) => radar.end_range(end),
+        }
+    }
 }
 
 /// Windowed range transform of every channel: complex, `[channels, range bins]`.
@@ -61,11 +72,7 @@ pub fn windowed_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64
 
 /// Range-angle map of the whole array's `profiles` seen through `aperture`.
 pub fn angle_transform(radar: &Radar, profiles: &RangeProfiles, aperture: Aperture) -> ComplexMap {
-    let channels = match aperture {
-        Aperture::Full => 0..radar.elements,
-        Aperture::End(end) => radar.end_range(end),
-    };
-    angle_transform_of(radar, profiles.profiles.slice(s![channels, ..]))
+    angle_transform_of(radar, profiles.profiles.slice(s![aperture.channels(radar), ..]))
 }
 
 /// Range-angle map of the raw samples of a few neighbouring channels, `[channels, samples]`.
@@ -76,7 +83,7 @@ pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> Comple
 }
 
 /// Windows the channels, pads them with zeros to N_a, transforms, and rolls by N_a / 2 so that cos(theta) rises with the column.
-fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> ComplexMap {
+pub(super) fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> ComplexMap {
     let columns = radar.elements;
     let fft = Simd::chosen().forward_fft(columns);
     let scale = (columns as f64).sqrt().recip();

@@ -22,6 +22,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<[String; 2]> {
         carrier,
         window,
         antennas,
+        focus_off_line: _,
         // Networks see one chirp.
         chirps: _,
         chirp_interval_seconds: _,

@@ -65,7 +65,7 @@ pub fn compose(
     format: Format,
 ) -> Result<Vec<u8>, ComposeError> {
     let Style { floor, normalisation, colours, eta } = *style;
-    let maps = LogMaps::of_signal(radar, signal);
+    let maps = LogMaps::heard_by(radar, &scene.disturbances.elements, signal);
     let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
     let carrier = match radar.carrier {

@@ -3,6 +3,8 @@
 //! The element that a pair makes stands halfway between both (the convention is [`Pair`]'s: a range is half the way there and back). Far
 //! away a pair hears what one antenna there would; near by its way is longer by up to `a^2 / 4R`, where `a` is their distance.
 
+mod off_line;
+
 use super::{Convention, Pair, Radar};
 use std::fmt;
 use std::sync::Arc;
@@ -23,21 +25,32 @@ const MOST_DIVISIONS: usize = 4;
 /// How far the middle of the line may lie off x = 0 without being moved there, as a part of the spacing.
 const CENTRED: f64 = 1e-6;
 
-/// Transmitters and receivers on the x axis whose pairs make a line of elements at even places.
+/// Farthest that an antenna may stand off the line, metres either way.
+const MOST_Y_METRES: f64 = 1.0;
+
+/// Transmitters and receivers whose pairs make a line of elements at even places along x.
 ///
 /// x = 0 is the middle of that line. Elements are numbered from the left. A place that no pair makes is a gap: its element hears nothing. Of
-/// pairs at one place the first counts, by number of transmitter.
+/// pairs at one place the first counts, by number of transmitter. Antennas may stand off the line, at y of their own; no place along x
+/// depends on it.
 #[derive(Clone, PartialEq)]
 pub struct Antennas {
     transmitter_x_metres: Arc<[f64]>,
     receiver_x_metres: Arc<[f64]>,
+    /// As long as the list of x.
+    transmitter_y_metres: Arc<[f64]>,
+    receiver_y_metres: Arc<[f64]>,
     /// Numbers of transmitter and receiver of each element; nothing at a gap.
     pairs: Arc<[Option<[usize; 2]>]>,
 }
 
 impl fmt::Debug for Antennas {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Antennas({:?}, {:?})", self.transmitter_x_metres, self.receiver_x_metres)
+        write!(f, "Antennas({:?}, {:?}", self.transmitter_x_metres, self.receiver_x_metres)?;
+        if !self.is_on_line() {
+            write!(f, ", y {:?}, {:?}", self.transmitter_y_metres, self.receiver_y_metres)?;
+        }
+        write!(f, ")")
     }
 }
 
@@ -51,6 +64,26 @@ pub enum AntennasError {
         list: &'static str,
         /// What was found.
         found: String,
+    },
+    /// A list of y is not as long as that of x.
+    #[error("{list} has {found} numbers; expected {expected}, one for each antenna")]
+    Length {
+        /// Which list.
+        list: &'static str,
+        /// How many it has.
+        found: usize,
+        /// How many antennas there are.
+        expected: usize,
+    },
+    /// An antenna stands too far off the line.
+    #[error("number {} of {list} is {found}; expected at most {MOST_Y_METRES} m off the line, either way", index + 1)]
+    OffLine {
+        /// Which list.
+        list: &'static str,
+        /// Which number of it, from 0.
+        index: usize,
+        /// The number.
+        found: f64,
     },
     /// Too few or too many pairs.
     #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {FEWEST} to {MOST}", transmitters.saturating_mul(*receivers))]
@@ -166,6 +199,8 @@ impl Antennas {
         Ok(Antennas {
             transmitter_x_metres: moved(transmitter_x_metres),
             receiver_x_metres: moved(receiver_x_metres),
+            transmitter_y_metres: vec![0.0; transmitters].into(),
+            receiver_y_metres: vec![0.0; receivers].into(),
             pairs: pairs.into(),
         })
     }
@@ -211,7 +246,12 @@ impl Antennas {
     /// The antennas of element `n`; `None` at a gap and beyond the last element.
     pub fn pair(&self, n: usize) -> Option<Pair> {
         let [t, r] = (*self.pairs.get(n)?)?;
-        Some(Pair { transmitter_x_metres: self.transmitter_x_metres[t], receiver_x_metres: self.receiver_x_metres[r] })
+        Some(Pair {
+            transmitter_x_metres: self.transmitter_x_metres[t],
+            receiver_x_metres: self.receiver_x_metres[r],
+            transmitter_y_metres: self.transmitter_y_metres[t],
+            receiver_y_metres: self.receiver_y_metres[r],
+        })
     }
 
     /// Distance between neighbouring elements, metres.
@@ -228,13 +268,24 @@ impl Antennas {
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
     }
 
-    /// The same antennas, all distances `factor` times as large.
+    /// The same antennas seen from the other side: what was leftmost is rightmost.
+    pub fn mirrored(&self) -> Self {
+        let mirrored = |places: &[f64]| places.iter().map(|x| -x).collect();
+        Antennas {
+            transmitter_x_metres: mirrored(&self.transmitter_x_metres),
+            receiver_x_metres: mirrored(&self.receiver_x_metres),
+            pairs: self.pairs.iter().rev().copied().collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same antennas, all distances along the line `factor` times as large.
     fn scaled(&self, factor: f64) -> Self {
         let scaled = |places: &[f64]| places.iter().map(|x| x * factor).collect();
         Antennas {
             transmitter_x_metres: scaled(&self.transmitter_x_metres),
             receiver_x_metres: scaled(&self.receiver_x_metres),
-            pairs: self.pairs.clone(),
+            ..self.clone()
         }
     }
 }
@@ -319,6 +370,18 @@ mod tests {
         assert_eq!(radar.antennas.as_ref().unwrap().pairs()[5], Some([1, 1]));
         assert_eq!((radar.gaps(), radar.antennas.as_ref().unwrap().left_out()), (0, 0));
         assert!((radar.element_spacing_metres / radar.filled_spacing_metres() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_mirrored_array_is_the_one_of_mirrored_places() {
+        let (transmitters, receivers) = ([-0.9, 0.0, 0.8], [0.1, 0.3, 0.5, 0.7]);
+        let own = Antennas::new(&transmitters, &receivers).unwrap().off_line(&[0.0, -0.01, 0.0], &[0.0; 4]).unwrap();
+        let other = Antennas::new(&transmitters.map(|x| -x), &receivers.map(|x| -x)).unwrap();
+        let mirrored = own.mirrored();
+        assert_eq!((mirrored.pairs(), mirrored.gaps()), (other.pairs(), own.gaps()));
+        let off = mirrored.receiver_x_metres().iter().zip(other.receiver_x_metres()).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-12 && mirrored.transmitter_y_metres() == own.transmitter_y_metres());
+        assert_eq!(mirrored.mirrored(), own);
     }
 
     #[test]

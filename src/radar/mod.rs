@@ -111,6 +111,9 @@ pub struct Radar {
     /// Transmitters apart from receivers; `None` where every element sends and hears by itself. Set by [`Radar::with_antennas`], which
     /// keeps elements and spacing those of the pairs.
     pub antennas: Option<Antennas>,
+    /// Whether maps bring elements that stand off the array's line into phase towards the direction of each column ([`crate::maps::focus`]);
+    /// else they take each for the nearest place on the line. No sample depends on it.
+    pub focus_off_line: bool,
     /// Chirps that are sent one after another: 1 as in the thesis. A map of ranges and directions is made of the first.
     pub chirps: usize,
     /// From the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
@@ -135,6 +138,7 @@ impl Default for Radar {
             carrier: Carrier::OneWay,
             window: WindowFunction::Hann,
             antennas: None,
+            focus_off_line: false,
             chirps: 1,
             chirp_interval_seconds: CHIRP_SECONDS,
             budget: None,

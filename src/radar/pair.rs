@@ -2,25 +2,55 @@
 
 use super::{BuiltArray, Radar};
 
-/// A transmitter and a receiver on the array's axis. One element that does both is a pair whose antennas stand at one place.
+/// A transmitter and a receiver. One element that does both is a pair whose antennas stand at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// x of the transmitter, metres.
     pub transmitter_x_metres: f64,
     /// x of the receiver, metres.
     pub receiver_x_metres: f64,
+    /// How far the transmitter stands off the array's line, towards the scene, metres.
+    pub transmitter_y_metres: f64,
+    /// How far the receiver stands off the array's line, towards the scene, metres.
+    pub receiver_y_metres: f64,
 }
 
 impl Pair {
-    /// Both antennas at `x_metres`.
+    /// Both antennas at `x_metres` of the array's line.
     pub fn at(x_metres: f64) -> Self {
-        Pair { transmitter_x_metres: x_metres, receiver_x_metres: x_metres }
+        Pair::on_line(x_metres, x_metres)
+    }
+
+    /// Antennas at these places of the array's line, metres.
+    pub const fn on_line(transmitter_x_metres: f64, receiver_x_metres: f64) -> Self {
+        Pair { transmitter_x_metres, receiver_x_metres, transmitter_y_metres: 0.0, receiver_y_metres: 0.0 }
+    }
+
+    /// Places (x, y) of the transmitter and of the receiver, metres.
+    pub fn places_metres(&self) -> [[f64; 2]; 2] {
+        [[self.transmitter_x_metres, self.transmitter_y_metres], [self.receiver_x_metres, self.receiver_y_metres]]
+    }
+
+    /// Whether both antennas stand on the array's line.
+    pub fn is_on_line(&self) -> bool {
+        self.transmitter_y_metres == 0.0 && self.receiver_y_metres == 0.0
+    }
+
+    /// Whether both antennas stand at one place.
+    pub fn is_one(&self) -> bool {
+        let [transmitter, receiver] = self.places_metres();
+        transmitter == receiver
+    }
+
+    /// How far the middle between both antennas stands off the array's line, metres.
+    pub fn forward_metres(&self) -> f64 {
+        (self.transmitter_y_metres + self.receiver_y_metres) / 2.0
     }
 
     /// Range of the point at (`x_metres`, `y_metres`): half the path from the transmitter over the point to the receiver.
     pub fn range_metres(&self, x_metres: f64, y_metres: f64) -> f64 {
-        let leg = |antenna: f64| (x_metres - antenna).hypot(y_metres);
-        (leg(self.transmitter_x_metres) + leg(self.receiver_x_metres)) / 2.0
+        let [there, back] = self.places_metres().map(|[x, y]| (x_metres - x).hypot(y_metres - y));
+        (there + back) / 2.0
     }
 }
 
@@ -40,6 +70,7 @@ impl BuiltArray {
             return Pair::at(self.element_x_metres(radar, n));
         }
         let (pair, off) = (radar.pair(n), self.element(n).position_millimetres * 1e-3);
-        Pair { transmitter_x_metres: pair.transmitter_x_metres + off, receiver_x_metres: pair.receiver_x_metres + off }
+        let [transmitter_x_metres, receiver_x_metres] = [pair.transmitter_x_metres + off, pair.receiver_x_metres + off];
+        Pair { transmitter_x_metres, receiver_x_metres, ..pair }
     }
 }

@@ -24,6 +24,7 @@ const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
 /// Table 3.1 of the thesis.
 const TABLE_3_1: Radar = Radar {
     antennas: None,
+    focus_off_line: false,
     budget: None,
     transmit_power_watts: 100.0,
     bandwidth_hz: 2e9,

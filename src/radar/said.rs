@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 /// The table `[radar]`: what is left out is that of table 3.1. `convention` says `carrier` and, where that is left out,
 /// `element_spacing_metres`. `transmitter_x_metres` with `receiver_x_metres` says `elements` and `element_spacing_metres`, and that ends are
-/// at most half of the elements.
+/// at most half of the elements. `transmitter_y_metres` and `receiver_y_metres`, each as long as the list of x, say how far the antennas stand
+/// off the line; all stand on it where nothing is said.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Said {
@@ -29,6 +30,12 @@ pub(super) struct Said {
     #[serde(skip_serializing_if = "Option::is_none")]
     receiver_x_metres: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    transmitter_y_metres: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    receiver_y_metres: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    focus_off_line: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     chirps: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     chirp_interval_seconds: Option<f64>,
@@ -41,6 +48,7 @@ const SAME_SPACING: f64 = 1e-3;
 
 impl From<Radar> for Said {
     fn from(radar: Radar) -> Self {
+        let off_line = radar.antennas.as_ref().filter(|antennas| !antennas.is_on_line());
         Said {
             transmit_power_watts: Some(radar.transmit_power_watts),
             bandwidth_hz: Some(radar.bandwidth_hz),
@@ -55,6 +63,9 @@ impl From<Radar> for Said {
             window: Some(radar.window),
             transmitter_x_metres: radar.antennas.as_ref().map(|a| a.transmitter_x_metres().to_vec()),
             receiver_x_metres: radar.antennas.as_ref().map(|a| a.receiver_x_metres().to_vec()),
+            transmitter_y_metres: off_line.map(|a| a.transmitter_y_metres().to_vec()),
+            receiver_y_metres: off_line.map(|a| a.receiver_y_metres().to_vec()),
+            focus_off_line: radar.focus_off_line.then_some(true),
             // One chirp is what a radar had before it could have more: a text that says nothing is read by older programs, too.
             chirps: Some(radar.chirps).filter(|chirps| *chirps != 1),
             chirp_interval_seconds: Some(radar.chirp_interval_seconds).filter(|s| *s != CHIRP_SECONDS),
@@ -95,6 +106,7 @@ impl TryFrom<Said> for Radar {
             carrier,
             window: said.window.unwrap_or(usual.window),
             antennas: None,
+            focus_off_line: said.focus_off_line.unwrap_or_default(),
             chirps: said.chirps.unwrap_or(usual.chirps),
             chirp_interval_seconds: said.chirp_interval_seconds.unwrap_or(usual.chirp_interval_seconds),
             budget: said.budget,
@@ -110,7 +122,17 @@ impl Said {
     /// The antennas, and whether what is said beside them agrees.
     fn antennas(&self) -> Result<Option<Antennas>, String> {
         let (transmitters, receivers) = match (&self.transmitter_x_metres, &self.receiver_x_metres) {
-            (None, None) => return Ok(None),
+            (None, None) => {
+                let off_line = [
+                    ("transmitter", self.transmitter_y_metres.is_some()),
+                    ("receiver", self.receiver_y_metres.is_some()),
+                ];
+                return off_line.into_iter().find(|(_, is_said)| *is_said).map_or(Ok(None), |(of, _)| {
+                    Err(format!(
+                        "radar.{of}_y_metres is there without radar.{of}_x_metres; expected it beside that list"
+                    ))
+                });
+            }
             (Some(transmitters), Some(receivers)) => (transmitters, receivers),
             (Some(_), None) => {
                 return Err("radar.receiver_x_metres is missing; expected it beside transmitter_x_metres".into());
@@ -119,7 +141,15 @@ impl Said {
                 return Err("radar.transmitter_x_metres is missing; expected it beside receiver_x_metres".into());
             }
         };
+        let on_line = |count: usize| vec![0.0; count];
+        let y_metres = |said: &Option<Vec<f64>>, count: usize| said.clone().unwrap_or_else(|| on_line(count));
         let antennas = Antennas::new(transmitters, receivers).map_err(|e| format!("radar: {e}"))?;
+        let antennas = antennas
+            .off_line(
+                &y_metres(&self.transmitter_y_metres, transmitters.len()),
+                &y_metres(&self.receiver_y_metres, receivers.len()),
+            )
+            .map_err(|e| format!("radar: {e}"))?;
         let (pairs, spacing) = (antennas.pairs().len(), antennas.spacing_metres());
         if let Some(elements) = self.elements.filter(|n| *n != pairs) {
             return Err(format!(
@@ -195,6 +225,35 @@ mod tests {
         assert_eq!((gaps.elements, gaps.gaps()), (8, 2));
         let uneven = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.1, 0.237]").unwrap_err();
         assert!(uneven.contains("off the even line"), "{uneven}");
+    }
+
+    #[test]
+    fn places_off_the_line_are_read_as_they_are_written() {
+        let x = "transmitter_x_metres = [-0.008, 0, 0.008]\nreceiver_x_metres = [0.0, 0.002, 0.004, 0.006]\n";
+        let bent = read(&format!("{x}transmitter_y_metres = [-0.01, 0.0, -0.01]\nfocus_off_line = true")).unwrap();
+        let antennas = bent.antennas.clone().unwrap();
+        assert_eq!(
+            (antennas.transmitter_y_metres(), antennas.receiver_y_metres()),
+            (&[-0.01, 0.0, -0.01][..], &[0.0; 4][..])
+        );
+        assert!(bent.focus_off_line);
+        assert_eq!(read(&toml::to_string(&bent).unwrap()).unwrap(), bent);
+        let straight = toml::to_string(&read(x).unwrap()).unwrap();
+        assert!(!straight.contains("_y_metres") && !straight.contains("focus"), "older programs read it: {straight}");
+        for (text, told) in [
+            (format!("{x}receiver_y_metres = [0.1]"), "radar: receiver_y_metres has 1 numbers; expected 4"),
+            (
+                format!("{x}transmitter_y_metres = [0, 0, 7]"),
+                "radar: number 3 of transmitter_y_metres is 7; expected at most 1 m",
+            ),
+            (
+                "receiver_y_metres = [0.1]".to_owned(),
+                "radar.receiver_y_metres is there without radar.receiver_x_metres",
+            ),
+        ] {
+            let error = read(&text).unwrap_err();
+            assert!(error.contains(told), "{error}");
+        }
     }
 
     #[test]

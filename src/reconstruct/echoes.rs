@@ -3,8 +3,9 @@
 use super::answer::{Reconstruction, Request};
 use super::confidence::confidences;
 use super::power::lambda_of_power;
-use crate::maps::{Aperture, angle_transform, range_transform};
-use crate::radar::Radar;
+use crate::maps::Aperture;
+use crate::maps::focus::map_of;
+use crate::radar::{BuiltArray, Radar};
 use crate::scene::Reflector;
 use crate::signal::path::Pairs;
 use crate::signal::phase::EchoModel;
@@ -45,7 +46,7 @@ pub(super) fn of_echoes(
             }
         }
     });
-    let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full);
+    let map = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full);
     let power = map.cells.mapv(|v| v.norm_sqr());
     let reflectors: Vec<Reflector> =
         found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();

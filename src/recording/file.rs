@@ -13,7 +13,8 @@
 //! elements = 8
 //! end_elements = 3
 //! samples = 128
-//! # transmitter_x_metres and receiver_x_metres, lists in the file's order, in place of spacing and elements: pairs of antennas
+//! # transmitter_x_metres and receiver_x_metres, lists in the file's order, in place of spacing and elements: pairs of antennas;
+//! # transmitter_y_metres and receiver_y_metres where they stand off the line
 //!
 //! [recording]
 //! file = "post.npz"                   # .npz, .npy, .mat or .bin, beside this file
@@ -26,7 +27,7 @@
 //! carrier_at = "first-sample"         # or "middle": where on the chirp carrier_hz lies
 //! beat_sign = "+"                     # echoes stand at positive frequencies, or "-"
 //! sweep = "up"                        # or "down"
-//! reverse_elements = false            # the file's first element is the array's last
+//! reverse_elements = false            # mirrors the array: the file's first element is its last; places of antennas change their sign
 //!
 //! [recording.calibration]             # taken off the elements of the file
 //! gain_db = []
@@ -106,6 +107,9 @@ struct Table {
     #[serde(default)]
     calibration: Calibration,
     capture: Option<Capture>,
+    /// Whether the text says places of antennas.
+    #[serde(skip)]
+    has_places: bool,
 }
 
 /// The format of a text that names none.
@@ -195,7 +199,7 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
         let start = error.span().map_or(0, |span| span.start);
         Fault::Text(SceneTextError::at(text, start, error.message().lines().collect::<Vec<_>>().join(", "))).of(path)
     })?;
-    let table = document.recording;
+    let mut table = document.recording;
     let folder = path.parent().unwrap_or(Path::new(""));
     let profile = match &table.capture {
         None => None,
@@ -207,6 +211,10 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
         }
     };
     let mut radar = said_radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
+    table.has_places = !radar.is_monostatic();
+    if table.reverse_elements {
+        radar.antennas = radar.antennas.map(|antennas| antennas.mirrored());
+    }
     table.check(&radar).map_err(|fault| fault.of(path))?;
     let signs = table.signs(document.format, &radar, profile.is_some()).map_err(|fault| fault.of(path))?;
     radar.carrier_hz = signs.carrier_hz;
@@ -245,11 +253,6 @@ impl Table {
                 let why = "it only where radar.samples is 1: several samples tell ranges";
                 return Err(Fault::key("recording.range_metres", "is there", why));
             }
-        }
-        if self.reverse_elements && !radar.is_monostatic() {
-            let why =
-                "it only without radar.transmitter_x_metres: the places of antennas say which element is the leftmost";
-            return Err(Fault::key("recording.reverse_elements", "is there", why));
         }
         let mut may_miss = vec![false; radar.elements];
         self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);
@@ -304,20 +307,22 @@ impl Table {
         if signs.reverses_samples {
             rows.invert_axis(Axis(1));
         }
-        if self.reverse_elements {
+        if self.reverse_elements && !self.counts_pairs() {
             rows.invert_axis(Axis(0));
         }
         Ok(rows)
     }
 
+    /// Whether the file counts transmitters and receivers whose places the text says: then those say which element is which.
+    fn counts_pairs(&self) -> bool {
+        let has_both = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
+        self.has_places && (self.capture.is_some() || self.axes.as_ref().is_some_and(has_both))
+    }
+
     /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand;
     /// zeros at gaps.
     fn in_element_order(&self, radar: &Radar, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
-        let counts_pairs = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
-        let Some(antennas) = &radar.antennas else { return Ok(rows) };
-        if !(self.capture.is_some() || self.axes.as_ref().is_some_and(counts_pairs)) {
-            return Ok(rows);
-        }
+        let Some(antennas) = radar.antennas.as_ref().filter(|_| self.counts_pairs()) else { return Ok(rows) };
         let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
         if rows.nrows() != transmitters * receivers {
             let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");

@@ -94,12 +94,12 @@ impl Recording {
         self.radar.samples == 1
     }
 
-    /// Whether it can be looked at with `radar`: the constants it was made with are what they were. The window is free, the
+    /// Whether it can be looked at with `radar`: the constants it was made with are what they were. The window is free and so is focusing, the
     /// duration of a chirp and the link budget are, and which elements are the ends where all were recorded.
     pub fn fits(&self, radar: &Radar) -> bool {
         let end_elements = if self.signal().is_some() { radar.end_elements } else { self.radar.end_elements };
-        let Radar { window, chirp_seconds, budget, .. } = *radar;
-        Radar { window, chirp_seconds, budget, end_elements, ..self.radar.clone() } == *radar
+        let Radar { window, chirp_seconds, budget, focus_off_line, .. } = *radar;
+        Radar { window, chirp_seconds, budget, focus_off_line, end_elements, ..self.radar.clone() } == *radar
     }
 
     /// A recording of `signal`, as if `radar` had measured it.

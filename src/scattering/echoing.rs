@@ -29,7 +29,7 @@ struct Bodies<'a> {
 
 impl<'a> Bodies<'a> {
     fn of(radar: &Radar, scene: &'a Scene) -> Self {
-        let array = Array::of(radar);
+        let array = Array::of(radar, &scene.disturbances.elements);
         let screen =
             |(index, object): (usize, &'a Object)| Some((index, object, array.screen(&object.body()?.shape())));
         let bodies = scene.objects.iter().enumerate().filter_map(screen);

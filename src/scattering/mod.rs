@@ -55,22 +55,17 @@ pub struct Antennas {
 }
 
 impl From<Pair> for Antennas {
-    /// The antennas of a pair stand on the x axis.
     fn from(pair: Pair) -> Self {
-        Antennas {
-            transmitter_metres: [pair.transmitter_x_metres, 0.0],
-            receiver_metres: [pair.receiver_x_metres, 0.0],
-        }
+        let [transmitter_metres, receiver_metres] = pair.places_metres();
+        Antennas { transmitter_metres, receiver_metres }
     }
 }
 
 impl Antennas {
-    /// The antennas of a pair that stands off the x axis, towards the scene.
+    /// The antennas of a pair that stands that much nearer to the scene than it should.
     pub fn forward_of(pair: Pair, forward_metres: f64) -> Self {
-        Antennas {
-            transmitter_metres: [pair.transmitter_x_metres, forward_metres],
-            receiver_metres: [pair.receiver_x_metres, forward_metres],
-        }
+        let [transmitter_metres, receiver_metres] = pair.places_metres().map(|[x, y]| [x, y + forward_metres]);
+        Antennas { transmitter_metres, receiver_metres }
     }
 
     /// Both antennas at one place.

@@ -7,17 +7,14 @@
 use super::Wave;
 use super::geometry::V;
 use super::shadow::FADED;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
-
-/// Elements of a built array may stand that far off their places, metres.
-const OFF_PLACE_METRES: f64 = 0.05;
 
 /// The array, as what bodies stand before.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
-    /// The outermost antennas, x in metres.
-    ends: [f64; 2],
+    /// The corners of a rectangle that no antenna stands beyond, metres.
+    corners: [V; 4],
     /// Half a detour over which everything has faded, metres.
     faded: f64,
 }
@@ -44,22 +41,26 @@ pub(super) struct Ways {
 }
 
 impl Array {
-    pub fn of(radar: &Radar) -> Self {
-        let pairs = (0..radar.elements).map(|n| radar.pair(n));
-        let antennas = pairs.flat_map(|p| [p.transmitter_x_metres, p.receiver_x_metres]);
-        let (low, high) = antennas.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    /// The array of `radar`, whose elements stand where `elements` says.
+    pub fn of(radar: &Radar, elements: &BuiltArray) -> Self {
+        let [left, right] = radar.antenna_span_metres();
+        let [hind, fore] = radar.antenna_depth_metres();
+        let displaced = (0..elements.elements.len().min(radar.elements)).filter(|n| elements.is_displaced(*n));
+        let places = displaced.flat_map(|n| {
+            let forward = elements.forward_metres(n);
+            elements.pair(radar, n).places_metres().map(|[x, y]| [x, y + forward])
+        });
+        let [left, hind, right, fore] = places.fold([left, hind, right, fore], |[left, hind, right, fore], [x, y]| {
+            [left.min(x), hind.min(y), right.max(x), fore.max(y)]
+        });
         let faded = FADED * FADED / Wave::of(radar).radians_per_metre;
-        Array { ends: [low - OFF_PLACE_METRES, high + OFF_PLACE_METRES], faded }
-    }
-
-    fn ends(&self) -> [V; 2] {
-        self.ends.map(|x| V(x, 0.0))
+        Array { corners: [V(left, hind), V(right, hind), V(right, fore), V(left, fore)], faded }
     }
 
     /// Greatest distance of any of `places` from an antenna, metres.
     fn farthest(&self, places: &[V]) -> f64 {
-        let far = |end: V| places.iter().map(move |p| (*p - end).norm());
-        self.ends().into_iter().flat_map(far).fold(0.0, f64::max)
+        let far = |corner: V| places.iter().map(move |p| (*p - corner).norm());
+        self.corners.into_iter().flat_map(far).fold(0.0, f64::max)
     }
 
     /// A body, as what may hide something.
@@ -82,7 +83,7 @@ impl Array {
             None => (object.reflectors().iter().map(|r| V(r.x_metres, r.y_metres)).collect(), 0.0, 1.0),
         };
         let longest = legs * (self.farthest(&places) + radius);
-        let hull = hull(places.into_iter().chain(self.ends()).collect());
+        let hull = hull(places.into_iter().chain(self.corners).collect());
         Ways { hull, radius, longest, faded: self.faded }
     }
 }
@@ -158,6 +159,7 @@ fn hull(mut places: Vec<V>) -> Vec<V> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::ElementError;
     use crate::scattering::{Antennas, Scatterer};
     use crate::scene::{Block, Point, Polygon, Post, Wall};
     use proptest::prelude::*;
@@ -204,7 +206,7 @@ mod tests {
         ) {
             let radar = Radar::default();
             let (object, screen) = (body(kind, x, y, angle, size), body(other, u, v, turn, width));
-            let array = Array::of(&radar);
+            let array = Array::of(&radar, &BuiltArray::default());
             let shape = screen.body().unwrap().shape();
             if !array.ways_to(&object).may_pass(&array.screen(&shape)) {
                 for n in [0, 100, 511, 800, 1023] {
@@ -217,8 +219,26 @@ mod tests {
     }
 
     #[test]
+    fn an_element_half_a_metre_off_its_place_has_ways_of_its_own() {
+        let radar = Radar { elements: 64, ..Radar::default() };
+        let mut elements = BuiltArray { elements: vec![ElementError::default(); 64] };
+        let point = Object::Point(Point::new(0.0, 12.0));
+        let post = Object::Post(Post::new(0.55, 1.0, 0.1)).body().unwrap().shape();
+        let may_hide = |elements: &BuiltArray| {
+            let array = Array::of(&radar, elements);
+            array.ways_to(&point).may_pass(&array.screen(&post))
+        };
+        assert!(!may_hide(&elements));
+        elements.elements[63].position_millimetres = 550.0;
+        assert!(may_hide(&elements), "it looks past the post");
+        elements.elements[63] = ElementError { forward_millimetres: -600.0, ..ElementError::default() };
+        let array = Array::of(&radar, &elements);
+        assert_eq!(array.corners[0].1, -0.6, "and one that stands back has longer ones");
+    }
+
+    #[test]
     fn a_body_beside_the_ways_is_left_out_though_circles_around_both_meet() {
-        let array = Array::of(&Radar::default());
+        let array = Array::of(&Radar::default(), &BuiltArray::default());
         let wall = Object::Wall(Wall::new(-8.0, 20.0, 16.0, 75.0));
         let may = |x: f64| {
             let car = Object::Box(Block::new([x, 9.0], [4.5, 1.8], 90.0));

@@ -362,14 +362,14 @@ impl Body<'_> {
         let shape = self.shape();
         let (low, high) = shape.extent();
         let near = super::MIN_ELEMENT_DISTANCE_METRES;
-        if low[1] > near || high[1] < -near {
+        let [hind, fore] = radar.antenna_depth_metres();
+        if low[1] > fore + near || high[1] < hind - near {
             return None;
         }
         (0..radar.elements).find(|n| {
-            let pair = radar.pair(*n);
-            [pair.transmitter_x_metres, pair.receiver_x_metres]
-                .into_iter()
-                .any(|x| x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, 0.0]) < near)
+            let covers =
+                |[x, y]: [f64; 2]| x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, y]) < near;
+            radar.pair(*n).places_metres().into_iter().any(covers)
         })
     }
 }

@@ -275,15 +275,13 @@ fn within_limit(count: usize, what: &'static str) -> Result<(), SceneError> {
 
 /// The element that a reflector comes too close to, if any.
 fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
-    if r.y_metres.abs() >= MIN_ELEMENT_DISTANCE_METRES {
+    let [hind, fore] = radar.antenna_depth_metres();
+    if (r.y_metres - r.y_metres.clamp(hind, fore)).abs() >= MIN_ELEMENT_DISTANCE_METRES {
         return None;
     }
     if !radar.is_monostatic() {
-        let touches = |antenna: f64| (r.x_metres - antenna).hypot(r.y_metres) < MIN_ELEMENT_DISTANCE_METRES;
-        let of_pair = |n: &usize| {
-            let pair = radar.pair(*n);
-            touches(pair.transmitter_x_metres) || touches(pair.receiver_x_metres)
-        };
+        let touches = |[x, y]: [f64; 2]| (r.x_metres - x).hypot(r.y_metres - y) < MIN_ELEMENT_DISTANCE_METRES;
+        let of_pair = |n: &usize| radar.pair(*n).places_metres().into_iter().any(touches);
         return (0..radar.elements).find(of_pair);
     }
     let middle = (radar.elements as f64 - 1.0) / 2.0;

@@ -42,15 +42,19 @@ pub fn pair_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, pair: Pai
         }
     };
     for r in sources.points {
-        let [there, back] = [pair.transmitter_x_metres, pair.receiver_x_metres].map(|antenna| {
-            let dx = TwoFloat::new_sub(antenna, r.x_metres);
-            root(dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres))
+        let [there, back] = pair.places_metres().map(|[antenna_x, antenna_y]| {
+            let dx = TwoFloat::new_sub(antenna_x, r.x_metres);
+            if antenna_y == 0.0 {
+                return root(dx * dx + TwoFloat::new_mul(r.y_metres, r.y_metres));
+            }
+            let dy = TwoFloat::new_sub(antenna_y, r.y_metres);
+            root(dx * dx + dy * dy)
         });
         let distance = (there + back) / 2.0;
         let mut amplitude = TwoFloat::new_mul(radar.transmit_power_watts, r.reflectivity) / (there * back);
         if let Some(pattern) = radar.pattern() {
-            for leg in [there, back] {
-                amplitude *= pattern.amplitude(r.y_metres / leg.hi());
+            for (leg, [_, antenna_y]) in [there, back].into_iter().zip(pair.places_metres()) {
+                amplitude *= pattern.amplitude((r.y_metres - antenna_y) / leg.hi());
             }
         }
         add(distance, Phasor { re: amplitude, im: zero });

@@ -19,6 +19,8 @@ use std::f64::consts::TAU;
 pub struct Pairs<const W: usize> {
     transmitter_x_metres: Lanes<f64, W>,
     receiver_x_metres: Lanes<f64, W>,
+    /// y of transmitters and receivers; `None` where all stand on the array's line.
+    y_metres: Option<[Lanes<f64, W>; 2]>,
     /// Whether every pair is one antenna.
     is_monostatic: bool,
 }
@@ -30,7 +32,9 @@ impl<const W: usize> Pairs<W> {
         Pairs {
             transmitter_x_metres: Lanes(pairs.map(|p| p.transmitter_x_metres)),
             receiver_x_metres: Lanes(pairs.map(|p| p.receiver_x_metres)),
-            is_monostatic: pairs.iter().all(|p| p.transmitter_x_metres == p.receiver_x_metres),
+            y_metres: (!pairs.iter().all(Pair::is_on_line))
+                .then(|| [Lanes(pairs.map(|p| p.transmitter_y_metres)), Lanes(pairs.map(|p| p.receiver_y_metres))]),
+            is_monostatic: pairs.iter().all(Pair::is_one),
         }
     }
 }
@@ -40,7 +44,15 @@ impl<const W: usize> From<Lanes<f64, W>> for Pairs<W> {
     #[inline(always)]
     fn from(element_x_metres: Lanes<f64, W>) -> Self {
         let (transmitter_x_metres, receiver_x_metres) = (element_x_metres, element_x_metres);
-        Pairs { transmitter_x_metres, receiver_x_metres, is_monostatic: true }
+        Pairs { transmitter_x_metres, receiver_x_metres, y_metres: None, is_monostatic: true }
+    }
+}
+
+impl<const W: usize> Pairs<W> {
+    /// y of transmitters and receivers, each `None` on the array's line.
+    #[inline(always)]
+    fn ahead(&self) -> [Option<Lanes<f64, W>>; 2] {
+        self.y_metres.map_or([None, None], |[transmitters, receivers]| [Some(transmitters), Some(receivers)])
     }
 }
 
@@ -80,40 +92,54 @@ impl<const W: usize> Path<W> {
         r: &Reflector,
     ) -> Self {
         let scale = power_watts * r.reflectivity;
-        let there = leg::<W, FMA>(pairs.transmitter_x_metres, r);
+        let ahead = pairs.ahead();
+        let there = leg::<W, FMA>(pairs.transmitter_x_metres, ahead[0], r);
         if pairs.is_monostatic {
             let amplitude = there.hi.map(|d| scale / (d * d));
-            let amplitude = through(pattern, amplitude, [there.hi, there.hi], r);
+            let amplitude = through(pattern, amplitude, [there.hi, there.hi], ahead, r);
             return Path { range_metres: there, amplitude, turns: None };
         }
-        let back = leg::<W, FMA>(pairs.receiver_x_metres, r);
+        let back = leg::<W, FMA>(pairs.receiver_x_metres, ahead[1], r);
         let amplitude = there.hi.zip(back.hi, |t, r| scale / (t * r));
-        let amplitude = through(pattern, amplitude, [there.hi, back.hi], r);
+        let amplitude = through(pattern, amplitude, [there.hi, back.hi], ahead, r);
         Path { range_metres: Double::mean(there, back), amplitude, turns: None }
     }
 }
 
-/// An amplitude, less what elements of a pattern take from both ways to `r`, whose lengths are `legs` in metres.
+/// An amplitude, less what elements of a pattern take from both ways to `r`, whose lengths are `legs` in metres, from antennas that stand
+/// `ahead` of the line.
 #[inline(always)]
 fn through<const W: usize>(
     pattern: Option<Pattern>,
     amplitude: Lanes<f64, W>,
     legs: [Lanes<f64, W>; 2],
+    ahead: [Option<Lanes<f64, W>>; 2],
     r: &Reflector,
 ) -> Lanes<f64, W> {
     let Some(pattern) = pattern else { return amplitude };
-    legs.into_iter().fold(amplitude, |amplitude, leg| amplitude.zip(leg, |a, d| a * pattern.amplitude(r.y_metres / d)))
+    legs.into_iter().zip(ahead).fold(amplitude, |amplitude, (leg, ahead)| {
+        let y = Lanes::splat(r.y_metres);
+        let cos = ahead.map_or(y, |ahead| y - ahead).zip(leg, |y, d| y / d);
+        amplitude.zip(cos, |a, cos| a * pattern.amplitude(cos))
+    })
 }
 
-/// Distance of `r` from antennas.
+/// Distance of `r` from antennas, whose y is that of the line where nothing is said.
 #[inline(always)]
-fn leg<const W: usize, const FMA: bool>(antenna_x_metres: Lanes<f64, W>, r: &Reflector) -> Double<Lanes<f64, W>> {
+fn leg<const W: usize, const FMA: bool>(
+    antenna_x_metres: Lanes<f64, W>,
+    antenna_y_metres: Option<Lanes<f64, W>>,
+    r: &Reflector,
+) -> Double<Lanes<f64, W>> {
     let of = Lanes::<f64, W>::splat;
     let dx = sum(antenna_x_metres, of(-r.x_metres));
     let x2 = product::<W, FMA>(dx.hi, dx.hi);
-    let y2 = product::<W, FMA>(of(r.y_metres), of(r.y_metres));
+    let dy = antenna_y_metres.map(|y| sum(y, of(-r.y_metres)));
+    let y = dy.map_or(of(r.y_metres), |dy| dy.hi);
+    let y2 = product::<W, FMA>(y, y);
     let s = sum(x2.hi, y2.hi);
     let low = s.lo + x2.lo + y2.lo + of(2.0) * dx.hi * dx.lo;
+    let low = dy.map_or(low, |dy| low + of(2.0) * dy.hi * dy.lo);
     let root = s.hi.sqrt();
     let square = product::<W, FMA>(root, root);
     let residual = (s.hi - square.hi) - square.lo + low;
@@ -129,29 +155,35 @@ pub(super) fn plain_path<const W: usize>(
 ) -> (Lanes<f64, W>, Lanes<f64, W>) {
     let scale = radar.transmit_power_watts * r.reflectivity;
     let pattern = radar.pattern();
-    let square = |antenna_x_metres: Lanes<f64, W>| {
+    let ahead = pairs.ahead();
+    let square = |antenna_x_metres: Lanes<f64, W>, ahead: Option<Lanes<f64, W>>| {
         let dx = antenna_x_metres - Lanes::splat(r.x_metres);
-        dx * dx + Lanes::splat(r.y_metres * r.y_metres)
+        let y2 = match ahead {
+            None => Lanes::splat(r.y_metres * r.y_metres),
+            Some(y) => (y - Lanes::splat(r.y_metres)) * (y - Lanes::splat(r.y_metres)),
+        };
+        dx * dx + y2
     };
-    let there = square(pairs.transmitter_x_metres);
+    let there = square(pairs.transmitter_x_metres, ahead[0]);
     if pairs.is_monostatic {
         let range = there.sqrt();
-        return (range, through(pattern, there.map(|s| scale / s), [range, range], r));
+        return (range, through(pattern, there.map(|s| scale / s), [range, range], ahead, r));
     }
-    let (there, back) = (there.sqrt(), square(pairs.receiver_x_metres).sqrt());
+    let (there, back) = (there.sqrt(), square(pairs.receiver_x_metres, ahead[1]).sqrt());
     let amplitude = there.zip(back, |t, r| scale / (t * r));
-    ((there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], r))
+    ((there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], ahead, r))
 }
 
 /// Range in metres and amplitude of a point for one pair, rounded as the thesis' program rounds them.
 pub(super) fn thesis_path(radar: &Radar, pair: Pair, r: &Reflector) -> (f64, f64) {
-    let leg = |antenna_x_metres: f64| {
-        let dx = antenna_x_metres - r.x_metres;
-        (dx * dx + r.y_metres * r.y_metres).sqrt()
+    let leg = |[antenna_x_metres, antenna_y_metres]: [f64; 2]| {
+        let (dx, dy) = (antenna_x_metres - r.x_metres, r.y_metres - antenna_y_metres);
+        (dx * dx + dy * dy).sqrt()
     };
-    let (there, back) = (leg(pair.transmitter_x_metres), leg(pair.receiver_x_metres));
+    let [there, back] = pair.places_metres().map(leg);
     let amplitude = radar.transmit_power_watts * r.reflectivity / (there * back);
-    let left = radar.pattern().map_or(1.0, |p| p.amplitude(r.y_metres / there) * p.amplitude(r.y_metres / back));
+    let [out, home] = [r.y_metres - pair.transmitter_y_metres, r.y_metres - pair.receiver_y_metres];
+    let left = radar.pattern().map_or(1.0, |p| p.amplitude(out / there) * p.amplitude(home / back));
     ((there + back) / 2.0, amplitude * left)
 }
 
@@ -163,8 +195,10 @@ pub(super) fn range_span_metres(radar: &Radar, elements: usize, r: &Reflector) -
         let [low, high] = radar.antenna_span_metres();
         (left, right) = (left.min(low), right.max(high));
     }
-    let nearest = (r.x_metres.clamp(left, right) - r.x_metres).hypot(r.y_metres);
-    let farthest = (left - r.x_metres).abs().max((right - r.x_metres).abs()).hypot(r.y_metres);
+    let [hind, fore] = radar.antenna_depth_metres();
+    let nearest = (r.x_metres.clamp(left, right) - r.x_metres).hypot(r.y_metres - r.y_metres.clamp(hind, fore));
+    let ahead = (r.y_metres - hind).abs().max((r.y_metres - fore).abs());
+    let farthest = (left - r.x_metres).abs().max((right - r.x_metres).abs()).hypot(ahead);
     (nearest, farthest)
 }
 
@@ -175,7 +209,9 @@ pub(super) fn largest_amplitude(radar: &Radar, r: &Reflector) -> f64 {
         false => radar.antenna_span_metres().into_iter().fold(0.0, |m: f64, x| m.max(x.abs())),
     };
     let beside = (r.x_metres.abs() - half).max(0.0);
-    let square = (beside * beside + r.y_metres * r.y_metres).max(MIN_ELEMENT_DISTANCE_METRES.powi(2));
+    let [hind, fore] = radar.antenna_depth_metres();
+    let ahead = r.y_metres - r.y_metres.clamp(hind, fore);
+    let square = (beside * beside + ahead * ahead).max(MIN_ELEMENT_DISTANCE_METRES.powi(2));
     radar.transmit_power_watts * r.reflectivity.abs() / square
 }
 
@@ -205,15 +241,17 @@ impl Change {
     /// How the echo of a point at (`x_metres`, `y_metres`) changes, whatever its reflectivity.
     pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let range_metres = x_metres.hypot(y_metres);
-        let [there, back] = [pair.transmitter_x_metres, pair.receiver_x_metres].map(|antenna| {
-            let leg = (x_metres - antenna).hypot(y_metres);
-            // Half the square of the leg is (range^2 - 2 range cos(theta) antenna + antenna^2) / 2.
+        let [there, back] = pair.places_metres().map(|[antenna, ahead]| {
+            let leg = (x_metres - antenna).hypot(y_metres - ahead);
+            // Half the square of the leg is (range^2 - 2 range (cos(theta) antenna + sin(theta) ahead) + antenna^2 + ahead^2) / 2.
             let half_square = match by {
                 By::X => x_metres - antenna,
-                By::Y => y_metres,
+                By::Y => y_metres - ahead,
                 By::Range if range_metres == 0.0 => 0.0,
-                By::Range => range_metres - antenna * (x_metres / range_metres),
-                By::CosTheta => -range_metres * antenna,
+                By::Range if ahead == 0.0 => range_metres - antenna * (x_metres / range_metres),
+                By::Range => range_metres - (antenna * x_metres + ahead * y_metres) / range_metres,
+                By::CosTheta if ahead == 0.0 => -range_metres * antenna,
+                By::CosTheta => range_metres * (ahead * x_metres / y_metres - antenna),
             };
             let change = half_square / leg;
             [change, -change / leg]
@@ -225,15 +263,20 @@ impl Change {
     pub fn through(self, pattern: Option<Pattern>, pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let Some(pattern) = pattern else { return self };
         let square = x_metres * x_metres + y_metres * y_metres;
-        // The logarithm of y, and of each leg: the cosine off broadside is their quotient.
-        let of_log_y = match by {
-            By::X => 0.0,
-            By::Y => 1.0 / y_metres,
-            By::Range => 1.0 / square.sqrt(),
-            By::CosTheta => -x_metres * square.sqrt() / (y_metres * y_metres),
+        // The logarithm of how far the point is ahead of each antenna, and of each leg: the cosine off broadside is their quotient.
+        let of_log_y = |antenna_y: f64| {
+            let of_y = match by {
+                By::X => 0.0,
+                By::Y => 1.0,
+                By::Range => y_metres / square.sqrt(),
+                By::CosTheta => -x_metres * square.sqrt() / y_metres,
+            };
+            of_y / (y_metres - antenna_y)
         };
         // Change::amplitude is the change of minus the logarithms of both legs.
-        let of_log_cos = 2.0 * of_log_y + Change::of_point(pair, [x_metres, y_metres], by).amplitude;
+        let of_log_cos = of_log_y(pair.transmitter_y_metres)
+            + of_log_y(pair.receiver_y_metres)
+            + Change::of_point(pair, [x_metres, y_metres], by).amplitude;
         Change { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
     }
 
@@ -250,7 +293,15 @@ mod tests {
     use super::*;
     use crate::radar::{Carrier, LinkBudget};
 
-    const APART: Pair = Pair { transmitter_x_metres: -0.4, receiver_x_metres: 0.7 };
+    const APART: Pair = Pair::on_line(-0.4, 0.7);
+
+    /// Antennas on a bumper that is bent.
+    const BENT: Pair = Pair {
+        transmitter_y_metres: -0.06,
+        receiver_y_metres: 0.11,
+        transmitter_x_metres: -0.4,
+        receiver_x_metres: 0.7,
+    };
 
     fn radars() -> [Radar; 2] {
         [Carrier::OneWay, Carrier::TwoWay].map(|carrier| Radar { carrier, ..Radar::default() })
@@ -272,9 +323,10 @@ mod tests {
         // cos^n is one half at 30 degrees.
         let exponent = 0.5f64.ln() / 30f64.to_radians().cos().ln();
         for r in [point(2.0, 11.0), point(-9.0, 5.0), point(0.0, 14.0), point(3.0, -8.0)] {
-            for pair in [APART, Pair::at(0.3)] {
-                let cos = |x: f64| r.y_metres.abs() / (r.x_metres - x).hypot(r.y_metres);
-                let power = (cos(pair.transmitter_x_metres) * cos(pair.receiver_x_metres)).powf(exponent);
+            for pair in [APART, BENT, Pair::at(0.3)] {
+                let cos = |[x, y]: [f64; 2]| (r.y_metres - y).abs() / (r.x_metres - x).hypot(r.y_metres - y);
+                let [there, back] = pair.places_metres().map(cos);
+                let power = (there * back).powf(exponent);
                 let samples = |radar: &Radar| EchoModel::new(radar).echo(pair, &r).sample(77);
                 let kept = samples(&narrow) / samples(&isotropic);
                 assert!(
@@ -291,11 +343,13 @@ mod tests {
     fn the_echo_between_antennas_apart_is_the_judges() {
         for radar in radars() {
             for r in [point(2.0, 11.0), point(-7.0, 0.3), point(0.1, 60.0)] {
-                let echo = EchoModel::new(&radar).echo(APART, &r);
-                let judged = judge::pair_signal(&radar, &[r], APART);
-                for (n1, judged) in judged.iter().enumerate() {
-                    let off = (echo.sample(n1) - judged).norm();
-                    assert!(off < 1e-14 * echo.amplitude, "{r:?}, sample {n1}: {off:e}");
+                for pair in [APART, BENT] {
+                    let echo = EchoModel::new(&radar).echo(pair, &r);
+                    let judged = judge::pair_signal(&radar, &[r], pair);
+                    for (n1, judged) in judged.iter().enumerate() {
+                        let off = (echo.sample(n1) - judged).norm();
+                        assert!(off < 1e-14 * echo.amplitude, "{r:?}, {pair:?}, sample {n1}: {off:e}");
+                    }
                 }
             }
         }
@@ -305,9 +359,16 @@ mod tests {
     fn swapping_transmitter_and_receiver_changes_nothing() {
         let radar = Radar::default();
         let model = EchoModel::new(&radar);
-        let swapped = Pair { transmitter_x_metres: 0.7, receiver_x_metres: -0.4 };
         let r = point(2.0, 11.0);
-        assert_eq!(model.echo(APART, &r), model.echo(swapped, &r));
+        for pair in [APART, BENT] {
+            let swapped = Pair {
+                transmitter_x_metres: pair.receiver_x_metres,
+                receiver_x_metres: pair.transmitter_x_metres,
+                transmitter_y_metres: pair.receiver_y_metres,
+                receiver_y_metres: pair.transmitter_y_metres,
+            };
+            assert_eq!(model.echo(pair, &r), model.echo(swapped, &r));
+        }
     }
 
     #[test]
@@ -349,7 +410,7 @@ mod tests {
         for radar in radars().into_iter().chain([narrow()]) {
             let model = EchoModel::new(&radar);
             for by in [By::X, By::Y, By::Range, By::CosTheta] {
-                for pair in [APART, Pair::at(0.3)] {
+                for pair in [APART, BENT, Pair::at(0.3)] {
                     for n1 in [0, 300] {
                         let at = |step| {
                             let [x, y] = moved(by, step);
@@ -369,7 +430,7 @@ mod tests {
     fn plain_paths_agree_with_exact_ones() {
         let r = point(2.0, 11.0);
         for (radar, pair) in
-            [Radar::default(), narrow()].into_iter().flat_map(|r| [APART, Pair::at(0.3)].map(|p| (r.clone(), p)))
+            [Radar::default(), narrow()].into_iter().flat_map(|r| [APART, BENT, Pair::at(0.3)].map(|p| (r.clone(), p)))
         {
             let echo = EchoModel::new(&radar).echo(pair, &r);
             let (range, amplitude) = plain_path(&radar, &Pairs::from(pair), &r);

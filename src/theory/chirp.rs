@@ -79,10 +79,11 @@ pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<Heard> {
         .enumerate()
         .flat_map(|(object, o)| o.marks().into_iter().map(move |r| (object, r)))
         .map(|(object, r)| {
-            let way = |antenna: f64| (r.x_metres - antenna).hypot(r.y_metres);
-            let [there, back] = [way(pair.transmitter_x_metres), way(pair.receiver_x_metres)];
-            let left = |way: f64| radar.pattern().map_or(1.0, |pattern| pattern.amplitude(r.y_metres / way));
-            let amplitude = left(there) * left(back) * radar.transmit_power_watts * r.reflectivity / (there * back);
+            let ways = pair.places_metres().map(|[x, y]| ((r.x_metres - x).hypot(r.y_metres - y), r.y_metres - y));
+            let left = |(way, ahead): (f64, f64)| radar.pattern().map_or(1.0, |p| p.amplitude(ahead / way));
+            let [(there, _), (back, _)] = ways;
+            let amplitude =
+                left(ways[0]) * left(ways[1]) * radar.transmit_power_watts * r.reflectivity / (there * back);
             Heard { object, range_metres: (there + back) / 2.0, amplitude }
         })
         .collect();

@@ -16,6 +16,7 @@ mod memory;
 mod methods;
 #[cfg(feature = "network")]
 mod noise_alone;
+mod off_line;
 mod pairs;
 mod physical_captures;
 mod physical_convention;

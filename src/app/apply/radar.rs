@@ -54,6 +54,7 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
         ("elements of an end", before.end_elements != after.end_elements),
         ("spacing", before.element_spacing_metres != after.element_spacing_metres),
         ("antennas", before.antennas != after.antennas),
+        ("focusing", before.focus_off_line != after.focus_off_line),
         ("chirps", before.chirps != after.chirps),
         ("interval of chirps", before.chirp_interval_seconds != after.chirp_interval_seconds),
         ("link budget", before.budget != after.budget),

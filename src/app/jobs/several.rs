@@ -3,7 +3,8 @@
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
 use crate::app::state::{MapKind, Panel, Projection, State, Variant};
-use crate::maps::{Aperture, Normalisation, RangeAngleMap, angle_transform, range_transform};
+use crate::maps::focus::map_of;
+use crate::maps::{Aperture, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::End;
 use crate::reconstruct::Request as MethodRequest;
@@ -183,8 +184,8 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
         }
         _ => Aperture::Full,
     };
-    let profiles = range_transform(radar, &signal);
-    Ok(angle_transform(radar, &profiles, aperture).log_magnitude().normalise(normalisation))
+    let map = map_of(radar, &request.scene.disturbances.elements, &signal, aperture);
+    Ok(map.log_magnitude().normalise(normalisation))
 }
 
 fn picture(request: &Request, variant: &Variant, map: RangeAngleMap) -> Arc<ColorImage> {

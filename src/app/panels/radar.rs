@@ -194,7 +194,7 @@ const POWER: Number = Number {
 };
 
 /// Names of the constants, as they stand in the first column.
-const NAMES: [&str; 13] = [
+const NAMES: [&str; 14] = [
     CARRIER.name,
     BANDWIDTH.name,
     SAMPLES.name,
@@ -207,6 +207,7 @@ const NAMES: [&str; 13] = [
     "convention",
     "phase",
     "windows",
+    "off the line",
     "range migration",
 ];
 
@@ -343,6 +344,15 @@ fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences,
                 });
             }
         });
+    });
+    let tooltip = "Maps bring elements that stand off the array's line into phase towards the direction of each column. Else they take each for the \
+                   nearest place on the line, and a bent array is out of focus";
+    let text = match radar.focus_off_line {
+        true => "maps focus elements that stand off the line",
+        false => "maps take each element for the nearest place on the line",
+    };
+    table.row(ui, ("off the line", tooltip), text, |ui, label| {
+        ui.checkbox(&mut radar.focus_off_line, "focus").labelled_by(label).on_hover_text(tooltip);
     });
     let tooltip = "How much a range differs between both sides of the array, at most";
     let text = format!("up to {:.1} bins from side to side; half with a common transmitter", follows.migration_bins);

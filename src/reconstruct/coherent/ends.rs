@@ -32,6 +32,8 @@ pub(super) struct PairLanes<const W: usize> {
     transmitter_x_metres: Lanes<f64, W>,
     /// `None` where every pair is one antenna.
     receiver_x_metres: Option<Lanes<f64, W>>,
+    /// y of transmitters and receivers; `None` where all stand on the array's line.
+    y_metres: Option<[Lanes<f64, W>; 2]>,
 }
 
 impl<const W: usize> PairLanes<W> {
@@ -39,10 +41,12 @@ impl<const W: usize> PairLanes<W> {
     #[inline(always)]
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
-        let is_apart = pairs.iter().any(|p| p.transmitter_x_metres != p.receiver_x_metres);
+        let is_apart = !pairs.iter().all(Pair::is_one);
         PairLanes {
             transmitter_x_metres: Lanes(pairs.map(|p| p.transmitter_x_metres)),
             receiver_x_metres: is_apart.then(|| Lanes(pairs.map(|p| p.receiver_x_metres))),
+            y_metres: (!pairs.iter().all(Pair::is_on_line))
+                .then(|| [Lanes(pairs.map(|p| p.transmitter_y_metres)), Lanes(pairs.map(|p| p.receiver_y_metres))]),
         }
     }
 }
@@ -92,17 +96,21 @@ pub(super) fn distances_metres<const W: usize, const FMA: bool>(
     range_metres: f64,
     cos_theta: Lanes<f64, W>,
 ) -> Lanes<f64, W> {
-    let there = legs_metres::<W, FMA>(pairs.transmitter_x_metres, range_metres, cos_theta);
+    let [out, home] = pairs.y_metres.map_or([None, None], |[out, home]| [Some(out), Some(home)]);
+    let there = legs_metres::<W, FMA>(pairs.transmitter_x_metres, out, range_metres, cos_theta);
     match pairs.receiver_x_metres {
         None => there,
-        Some(receivers) => (there + legs_metres::<W, FMA>(receivers, range_metres, cos_theta)) * Lanes::splat(0.5),
+        Some(receivers) => {
+            (there + legs_metres::<W, FMA>(receivers, home, range_metres, cos_theta)) * Lanes::splat(0.5)
+        }
     }
 }
 
-/// Distances between points of the array's axis and places in the centre's polar grid, metres.
+/// Distances between antennas, on the array's axis where no y is said, and places before it in the centre's polar grid, metres.
 #[inline(always)]
 fn legs_metres<const W: usize, const FMA: bool>(
     x_metres: Lanes<f64, W>,
+    y_metres: Option<Lanes<f64, W>>,
     range_metres: f64,
     cos_theta: Lanes<f64, W>,
 ) -> Lanes<f64, W> {
@@ -110,5 +118,9 @@ fn legs_metres<const W: usize, const FMA: bool>(
     let along = x_metres - range * cos_theta;
     // The place's distance from the axis, squared.
     let off_axis = (Lanes::splat(1.0) - cos_theta * cos_theta) * range * range;
+    let off_axis = y_metres.map_or(off_axis, |y| {
+        let ahead = off_axis.map(|square| square.max(0.0)).sqrt() - y;
+        ahead * ahead
+    });
     along.mul_add::<FMA>(along, off_axis).map(|square| square.max(1e-12)).sqrt()
 }

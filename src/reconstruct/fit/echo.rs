@@ -1,6 +1,7 @@
 //! Reflectors as the channels of both ends hear them: what inner products of echoes are made of.
 
-use super::sensor::{Sensor, W, kept_apart};
+use super::sensor::{NEAREST_METRES, Sensor, W, kept_apart};
+use crate::radar::Pair;
 use crate::scene::Reflector;
 use crate::signal::path::Pairs;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
@@ -81,9 +82,7 @@ fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usiz
         let by_distance = echo.distance_metres.map(f64::recip);
         Slopes { by_x: (of(r.x_metres) - x) * by_distance, by_half_square: by_distance, decay: by_distance * of(2.0) }
     } else {
-        let transmitters = Lanes(std::array::from_fn(|lane| sensor.pairs[channel(lane)].transmitter_x_metres));
-        let receivers = Lanes(std::array::from_fn(|lane| sensor.pairs[channel(lane)].receiver_x_metres));
-        Slopes::of_pairs(transmitters, receivers, r)
+        Slopes::of_pairs(std::array::from_fn(|lane| sensor.pairs[channel(lane)]), r)
     };
     Part {
         bins: echo.beat_turns * of(samples),
@@ -105,15 +104,22 @@ impl Slopes {
     /// Those of pairs. The loss of amplitude is that of both legs on average: legs of very different lengths lose otherwise, by little beside
     /// what the phase turns.
     #[inline(always)]
-    fn of_pairs(transmitters: Lanes<f64, W>, receivers: Lanes<f64, W>, r: &Reflector) -> Self {
+    fn of_pairs(pairs: [Pair; W], r: &Reflector) -> Self {
         let of = Lanes::<f64, W>::splat;
-        let leg = |antennas: Lanes<f64, W>| {
-            let dx = of(r.x_metres) - antennas;
-            let by_distance = (dx * dx + of(r.y_metres * r.y_metres)).sqrt().map(f64::recip);
-            (dx * by_distance, by_distance)
+        let leg = |antenna: usize| {
+            let dx = of(r.x_metres) - Lanes(pairs.map(|pair| pair.places_metres()[antenna][0]));
+            let ahead = of(r.y_metres) - Lanes(pairs.map(|pair| pair.places_metres()[antenna][1]));
+            let by_distance = (dx * dx + ahead * ahead).sqrt().map(f64::recip);
+            (dx * by_distance, by_distance, by_distance * ahead)
         };
-        let ((there_x, there), (back_x, back)) = (leg(transmitters), leg(receivers));
+        let ((there_x, there, out), (back_x, back, home)) = (leg(0), leg(1));
         let half = of(0.5);
-        Slopes { by_x: (there_x + back_x) * half, by_half_square: (there + back) * half, decay: there + back }
+        // Half the square of y changes by y where y does; beside the line's end, where y is nothing, the antennas count as on the line.
+        let by_half_square = if pairs.iter().all(Pair::is_on_line) || r.y_metres.abs() < NEAREST_METRES {
+            (there + back) * half
+        } else {
+            (out + home) * of(0.5 / r.y_metres)
+        };
+        Slopes { by_x: (there_x + back_x) * half, by_half_square, decay: there + back }
     }
 }

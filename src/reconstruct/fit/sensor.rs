@@ -90,12 +90,15 @@ impl Sensor {
 /// `r` moved to where its distance from every element is a number that can be divided by.
 pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
     let apart = |m: f64, x: f64| m.min((x - r.x_metres).abs());
+    let antennas = || sensor.pairs.iter().flat_map(Pair::places_metres);
+    if !sensor.pairs.iter().all(Pair::is_on_line) {
+        let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).hypot(y - r.y_metres) < NEAREST_METRES;
+        let y_metres = antennas().find(is_near).map_or(r.y_metres, |[_, y]| y + NEAREST_METRES);
+        return Reflector { y_metres, ..*r };
+    }
     let nearest = match sensor.is_monostatic {
         true => sensor.element_x.iter().fold(f64::INFINITY, |m, x| apart(m, *x)),
-        false => sensor
-            .pairs
-            .iter()
-            .fold(f64::INFINITY, |m, pair| apart(apart(m, pair.transmitter_x_metres), pair.receiver_x_metres)),
+        false => antennas().fold(f64::INFINITY, |m, [x, _]| apart(m, x)),
     };
     let y_metres = if nearest.hypot(r.y_metres) < NEAREST_METRES { NEAREST_METRES } else { r.y_metres };
     Reflector { y_metres, ..*r }

@@ -55,11 +55,12 @@ impl<'a> Cells<'a> {
             Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 };
         let radar = self.radar;
         if !radar.is_monostatic() {
-            let is_clear = |x: f64| (place.x_metres - x).hypot(place.y_metres) > MIN_ELEMENT_DISTANCE_METRES;
-            let pairs = (0..radar.elements).map(|n| radar.pair(n));
-            let is_near_the_axis = place.y_metres <= MIN_ELEMENT_DISTANCE_METRES;
-            let clear = !is_near_the_axis
-                || pairs.into_iter().all(|p| is_clear(p.transmitter_x_metres) && is_clear(p.receiver_x_metres));
+            let is_clear =
+                |[x, y]: [f64; 2]| (place.x_metres - x).hypot(place.y_metres - y) > MIN_ELEMENT_DISTANCE_METRES;
+            let mut antennas = (0..radar.elements).flat_map(|n| radar.pair(n).places_metres());
+            let [_, foremost] = radar.antenna_depth_metres();
+            let is_near_the_axis = place.y_metres <= foremost + MIN_ELEMENT_DISTANCE_METRES;
+            let clear = !is_near_the_axis || antennas.all(is_clear);
             return (range > 0.0 && clear).then_some(place);
         }
         let nearest = (place.x_metres - radar.element_x_metres(0)) / radar.element_spacing_metres;

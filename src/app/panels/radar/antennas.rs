@@ -53,6 +53,10 @@ fn consequence(radar: &Radar, antennas: &Antennas) -> String {
     if antennas.gaps() > 0 {
         made += &format!(", with {} that hear nothing between them", counted(antennas.gaps() as u32, "gap", "gaps"));
     }
+    if !antennas.is_on_line() {
+        let most = antennas.depth_metres().into_iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        made += &format!(", up to {:.1} mm off the line", most * 1e3);
+    }
     format!("{made}; at {NEAR_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of their midpoints")
 }
 

@@ -1,10 +1,17 @@
 //! Places of transmitters and receivers as lists of numbers, to be typed or pasted from a spreadsheet.
 
-use crate::radar::{Antennas, Radar};
+use crate::radar::{Antennas, AntennasError, Radar};
 use eframe::egui::{Id, TextEdit, Ui};
 
-/// Names of the two lists.
-const NAMES: [&str; 2] = ["transmitters at, mm", "receivers at, mm"];
+/// Names of the lists, places along the line and off it.
+const NAMES: [&str; 4] =
+    ["transmitters at, mm", "receivers at, mm", "transmitters forward, mm", "receivers forward, mm"];
+
+/// What they hold.
+const TOOLTIPS: [&str; 2] = [
+    "Places along x with commas, spaces or tabs between them, as a spreadsheet copies them",
+    "How far each stands off the line, towards the scene, in the order of its places along x. An empty list is a straight line",
+];
 
 /// Digits of a place after the point, millimetres.
 const DECIMALS: usize = 4;
@@ -22,20 +29,21 @@ struct Typed {
     problem: Option<String>,
 }
 
-/// Draws both lists, if `radar` has antennas, and takes over what is typed.
+/// Draws all lists, if `radar` has antennas, and takes over what is typed.
 pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     let Some(antennas) = radar.antennas.clone() else {
         return;
     };
-    let own = [antennas.transmitter_x_metres(), antennas.receiver_x_metres()];
+    let own = [
+        antennas.transmitter_x_metres(),
+        antennas.receiver_x_metres(),
+        antennas.transmitter_y_metres(),
+        antennas.receiver_y_metres(),
+    ];
     for (list, name) in NAMES.into_iter().enumerate() {
         let id = ui.scope_id().with(name);
-        if let Some(places) = field(ui, id, name, own[list], is_free) {
-            let taken = match list {
-                0 => Antennas::new(&places, own[1]),
-                _ => Antennas::new(own[0], &places),
-            };
-            match taken {
+        if let Some(places) = field(ui, id, (name, TOOLTIPS[list / 2]), own[list], is_free) {
+            match taken(own, list, places) {
                 Ok(antennas) => {
                     *radar = radar.clone().with_antennas(antennas);
                     ui.data_mut(|d| d.remove::<Typed>(id));
@@ -46,13 +54,25 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     }
 }
 
+/// The antennas once `places` is list number `list` of `own`. Antennas that come anew stand on the line.
+fn taken(own: [&[f64]; 4], list: usize, mut places: Vec<f64>) -> Result<Antennas, AntennasError> {
+    let is_off_line = list >= 2;
+    if is_off_line && places.is_empty() {
+        places = vec![0.0; own[list].len()];
+    }
+    let mut lists = own.map(<[f64]>::to_vec);
+    if !is_off_line {
+        lists[list + 2].resize(places.len(), 0.0);
+    }
+    lists[list] = places;
+    Antennas::new(&lists[0], &lists[1])?.off_line(&lists[2], &lists[3])
+}
+
 /// Draws one list. Returns its places in metres once a whole list was typed.
-fn field(ui: &mut Ui, id: Id, name: &str, own: &[f64], is_free: bool) -> Option<Vec<f64>> {
+fn field(ui: &mut Ui, id: Id, (name, tooltip): (&str, &str), own: &[f64], is_free: bool) -> Option<Vec<f64>> {
     let typed = ui.data(|d| d.get_temp::<Typed>(id)).filter(|typed| typed.over == own);
     let mut text = typed.as_ref().map_or_else(|| listed(own), |typed| typed.text.clone());
-    let label = ui
-        .label(name)
-        .on_hover_text("Places along x with commas, spaces or tabs between them, as a spreadsheet copies them");
+    let label = ui.label(name).on_hover_text(tooltip);
     let edit = TextEdit::singleline(&mut text).char_limit(MOST_LETTERS).desired_width(ui.available_width().min(560.0));
     let response = ui.add_enabled(is_free, edit).labelled_by(label.id);
     if let Some(problem) = typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
@@ -107,11 +127,31 @@ mod tests {
     }
 
     #[test]
+    fn a_list_off_the_line_is_taken_with_the_places_it_belongs_to() {
+        let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
+        let antennas = radar.antennas.unwrap();
+        let bent = antennas.off_line(&[0.0, -0.002, 0.0], &[0.0; 4]).unwrap();
+        let own = [
+            bent.transmitter_x_metres(),
+            bent.receiver_x_metres(),
+            bent.transmitter_y_metres(),
+            bent.receiver_y_metres(),
+        ];
+        let receivers = taken(own, 3, vec![0.001; 4]).unwrap();
+        assert_eq!((receivers.transmitter_y_metres()[1], receivers.receiver_y_metres()), (-0.002, &[0.001; 4][..]));
+        assert!(taken(own, 2, Vec::new()).unwrap().is_on_line());
+        let fewer = taken(own, 0, own[0][..2].to_vec()).unwrap();
+        assert_eq!(fewer.transmitter_y_metres(), [0.0, -0.002], "those that stay keep their y");
+        let told = taken(own, 3, vec![0.0; 3]).unwrap_err().to_string();
+        assert_eq!(told, "receiver_y_metres has 3 numbers; expected 4, one for each antenna");
+    }
+
+    #[test]
     fn places_are_typed_and_bad_ones_are_told() {
         let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
         let apart = 8.0 * radar.element_spacing_metres;
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
-        let mut panel = Harness::builder().with_size([600.0, 200.0]).build_ui_state(draw, radar);
+        let mut panel = Harness::builder().with_size([600.0, 300.0]).build_ui_state(draw, radar);
         panel.run();
         let mut typed = |text: &str| {
             let field = panel.get_by_label(NAMES[0]);

@@ -1,6 +1,6 @@
 //! Draws transmitters, receivers and the elements that their pairs make to one scale.
 //!
-//! The mouse drags an antenna. The arrow keys choose one, and Shift with an arrow moves it.
+//! The mouse drags an antenna along the line and off it. The arrow keys choose one, and Shift with an arrow moves it.
 
 use crate::app::widgets::theme::Inks;
 use crate::radar::{Antennas, Radar};
@@ -21,6 +21,15 @@ const BESIDE: f64 = 0.15;
 /// How near the pointer must be to an antenna, points.
 const REACH: f32 = 8.0;
 
+/// How far off the line an antenna goes at a step, metres.
+const FORWARD_STEP_METRES: f64 = 1e-3;
+
+/// How far the pointer goes for such a step, points. The first takes as much again: who drags along the line stays on it.
+const FORWARD_STEP_POINTS: f32 = 4.0;
+
+/// How far from its row's middle an antenna off the line is drawn at most, points.
+const FORWARD_POINTS: f64 = 5.0;
+
 /// Names of the rows.
 const ROWS: [&str; 3] = ["transmitters", "receivers", "elements"];
 
@@ -32,6 +41,8 @@ type One = (usize, usize);
 struct Drawn {
     /// Transmitters and receivers.
     x_metres: [Vec<f64>; 2],
+    /// How far they stand off the line.
+    y_metres: [Vec<f64>; 2],
     /// Left and right edge of the drawing.
     span_metres: [f64; 2],
 }
@@ -46,7 +57,7 @@ struct Drag {
     /// The antenna that is dragged.
     one: One,
     /// Where the pointer was when it began.
-    from: f32,
+    from: Pos2,
 }
 
 impl Drawn {
@@ -54,20 +65,33 @@ impl Drawn {
         let [low, high] = antennas.span_metres();
         let beside = BESIDE * (high - low);
         let x_metres = [antennas.transmitter_x_metres().to_vec(), antennas.receiver_x_metres().to_vec()];
-        Drawn { x_metres, span_metres: [low - beside, high + beside] }
+        let y_metres = [antennas.transmitter_y_metres().to_vec(), antennas.receiver_y_metres().to_vec()];
+        Drawn { x_metres, y_metres, span_metres: [low - beside, high + beside] }
     }
 
-    /// The same where one antenna stands `metres` farther to the right.
-    fn moved(&self, (row, number): One, metres: f64) -> Self {
+    /// The same where one antenna stands so many metres farther to the right, and so many nearer to the scene.
+    fn moved(&self, (row, number): One, [along, forward]: [f64; 2]) -> Self {
         let mut moved = self.clone();
         if let Some(x) = moved.x_metres[row].get_mut(number) {
-            *x += metres;
+            *x += along;
+        }
+        if let Some(y) = moved.y_metres[row].get_mut(number).filter(|_| forward != 0.0) {
+            // Whole steps: an antenna that is put back stands on the line again, to the bit.
+            *y = ((*y + forward) / FORWARD_STEP_METRES).round() * FORWARD_STEP_METRES;
         }
         moved
     }
 
     fn antennas(&self) -> Option<Antennas> {
-        Antennas::new(&self.x_metres[0], &self.x_metres[1]).ok()
+        let antennas = Antennas::new(&self.x_metres[0], &self.x_metres[1]).ok()?;
+        antennas.off_line(&self.y_metres[0], &self.y_metres[1]).ok()
+    }
+
+    /// How far above its row's middle an antenna is drawn, points.
+    fn above(&self, (row, number): One) -> f32 {
+        let most = self.y_metres.iter().flatten().fold(0.0, |most: f64, y| most.max(y.abs()));
+        let y = self.y_metres[row].get(number).copied().unwrap_or_default();
+        if most > 0.0 { (FORWARD_POINTS * y / most) as f32 } else { 0.0 }
     }
 }
 
@@ -110,8 +134,18 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
 /// Says over the drawing where the antennas stand and what can be done.
 fn tell(response: Response, antennas: &Antennas, is_free: bool) {
     let [low, high] = antennas.span_metres();
-    let how = if is_free { " Drag a transmitter or a receiver; undo brings it back." } else { "" };
-    response.on_hover_text(format!("From {:.1} to {:.1} mm along x.{how}", low * 1e3, high * 1e3));
+    let how = match is_free {
+        true => {
+            " Drag a transmitter or a receiver along the line, or up towards the scene and down; undo brings it back."
+        }
+        false => "",
+    };
+    let [hind, fore] = antennas.depth_metres();
+    let depth = match antennas.is_on_line() {
+        true => String::new(),
+        false => format!(", {:.1} to {:.1} mm off the line towards the scene", hind * 1e3, fore * 1e3),
+    };
+    response.on_hover_text(format!("From {:.1} to {:.1} mm along x{depth}.{how}", low * 1e3, high * 1e3));
 }
 
 /// The drag that is in progress. Begins one where an antenna is pressed; a click chooses the antenna.
@@ -119,7 +153,7 @@ fn drag(ui: &Ui, strip: &Strip, response: &Response, radar: &Radar, drawn: &Draw
     let (id, chosen) = (response.id.with("drag"), response.id.with("chosen"));
     let under = |pos: Pos2| strip.nearest(drawn, pos);
     if response.hover_pos().and_then(under).is_some() {
-        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+        ui.set_cursor_icon(CursorIcon::Move);
     }
     if let Some(one) = response.interact_pointer_pos().filter(|_| response.clicked()).and_then(under) {
         ui.data_mut(|d| d.insert_temp(chosen, one));
@@ -127,7 +161,7 @@ fn drag(ui: &Ui, strip: &Strip, response: &Response, radar: &Radar, drawn: &Draw
     }
     if response.drag_started() {
         let from = ui.input(|i| i.pointer.press_origin());
-        if let Some((from, one)) = from.and_then(|from| Some((from.x, under(from)?))) {
+        if let Some((from, one)) = from.and_then(|from| Some((from, under(from)?))) {
             let drag = Drag { radar: radar.clone(), drawn: drawn.clone(), one, from };
             ui.data_mut(|d| {
                 d.insert_temp(id, drag);
@@ -143,10 +177,12 @@ fn drag(ui: &Ui, strip: &Strip, response: &Response, radar: &Radar, drawn: &Draw
 
 /// The antennas where a drag has moved them, and the radar that they make. Antennas that make no array stay where they were.
 fn dragged_to(strip: &Strip, response: &Response, drag: Drag) -> (Drawn, Option<Radar>) {
-    let at = response.interact_pointer_pos().map_or(drag.from, |at| at.x);
-    let metres = f64::from(at - drag.from) * strip.metres_per_point(&drag.drawn);
+    let moved = response.interact_pointer_pos().map_or(vec2(0.0, 0.0), |at| at - drag.from);
+    let metres = f64::from(moved.x) * strip.metres_per_point(&drag.drawn);
     let step_metres = step_metres(&drag.radar);
-    let moved = drag.drawn.moved(drag.one, (metres / step_metres).round() * step_metres);
+    let steps = -moved.y / FORWARD_STEP_POINTS;
+    let forward = f64::from((steps - steps.clamp(-1.0, 1.0)).round()) * FORWARD_STEP_METRES;
+    let moved = drag.drawn.moved(drag.one, [(metres / step_metres).round() * step_metres, forward]);
     match moved.antennas() {
         Some(antennas) => (moved, Some(drag.radar.with_antennas(antennas))),
         None => (drag.drawn, Some(drag.radar)),
@@ -164,6 +200,7 @@ fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Opt
     let (row, number) = ui.data(|d| d.get_temp::<One>(id)).unwrap_or_default();
     let pressed = |with, key| ui.input_mut(|i| i.count_and_consume_key(with, key)) as f64;
     let steps = pressed(Modifiers::SHIFT, Key::ArrowRight) - pressed(Modifiers::SHIFT, Key::ArrowLeft);
+    let forward = pressed(Modifiers::SHIFT, Key::ArrowUp) - pressed(Modifiers::SHIFT, Key::ArrowDown);
     let along = pressed(Modifiers::NONE, Key::ArrowRight) - pressed(Modifiers::NONE, Key::ArrowLeft);
     let row = match pressed(Modifiers::NONE, Key::ArrowDown) - pressed(Modifiers::NONE, Key::ArrowUp) {
         0.0 => row,
@@ -172,7 +209,7 @@ fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Opt
     let last = drawn.x_metres[row].len().saturating_sub(1) as f64;
     let one = (row, (number as f64 + along).clamp(0.0, last) as usize);
     ui.data_mut(|d| d.insert_temp(id, one));
-    (steps != 0.0).then(|| drawn.moved(one, steps * step_metres))
+    (steps != 0.0 || forward != 0.0).then(|| drawn.moved(one, [steps * step_metres, forward * FORWARD_STEP_METRES]))
 }
 
 /// Where the drawing stands.
@@ -209,15 +246,19 @@ impl Strip {
             for (number, x) in places.iter().enumerate() {
                 let is_chosen = chosen == Some((row, number));
                 let colour = if is_chosen { Inks::of(ui.visuals()).selected } else { ink };
-                let (at, half) = (self.at(drawn, row, *x), vec2(0.0, if is_chosen { 8.0 } else { 6.0 }));
+                let at = self.at(drawn, row, *x) - vec2(0.0, drawn.above((row, number)));
+                let half = vec2(0.0, if is_chosen { 8.0 } else { 6.0 });
                 painter.line_segment([at - half, at + half], Stroke::new(if is_chosen { 3.0 } else { 1.4 }, colour));
             }
         }
+        let deepest = made.depth_metres().into_iter().fold(0.0, |most: f64, y| most.max(y.abs()));
         // The array's middle is at x = 0; the drawing stays where it was when a drag began.
         let shift = drawn.x_metres[0].first().zip(made.transmitter_x_metres().first()).map_or(0.0, |(a, b)| a - b);
         let middle = (made.pairs().len() as f64 - 1.0) / 2.0;
         for (n, pair) in made.pairs().iter().enumerate() {
-            let at = self.at(drawn, 2, (n as f64 - middle) * made.spacing_metres() + shift);
+            let forward = made.pair(n).map_or(0.0, |pair| pair.forward_metres());
+            let above = if deepest > 0.0 { (FORWARD_POINTS * forward / deepest) as f32 } else { 0.0 };
+            let at = self.at(drawn, 2, (n as f64 - middle) * made.spacing_metres() + shift) - vec2(0.0, above);
             match pair {
                 Some(_) => _ = painter.line_segment([at - vec2(0.0, 5.0), at + vec2(0.0, 5.0)], Stroke::new(1.2, ink)),
                 None => _ = painter.circle_filled(at, 1.0, weak),
@@ -272,6 +313,46 @@ mod tests {
         panel.run();
         assert_eq!(*panel.state(), before, "it goes back where it came from");
         seen::assert_readable(panel.output());
+    }
+
+    #[test]
+    fn a_receiver_that_is_dragged_up_stands_nearer_to_the_scene() {
+        let mut panel = panel();
+        panel.run();
+        let before = panel.state().clone();
+        let third = at(&panel, (1, 2));
+        panel.drag_at(third);
+        panel.run();
+        panel.hover_at(third + vec2(0.0, FORWARD_STEP_POINTS));
+        panel.run();
+        assert_eq!(*panel.state(), before, "a hand that trembles bends nothing");
+        panel.hover_at(third - vec2(0.0, 4.0 * FORWARD_STEP_POINTS));
+        panel.run();
+        let antennas = panel.state().antennas.clone().unwrap();
+        let expected = [0.0, 0.0, 3.0 * FORWARD_STEP_METRES, 0.0];
+        assert_eq!(
+            (antennas.receiver_y_metres(), antennas.receiver_x_metres()),
+            (&expected[..], before.antennas.as_ref().unwrap().receiver_x_metres())
+        );
+        panel.hover_at(third);
+        panel.run();
+        panel.drop_at(third);
+        panel.run();
+        assert_eq!(*panel.state(), before, "it goes back where it came from");
+        seen::assert_readable(panel.output());
+    }
+
+    #[test]
+    fn shift_with_up_moves_the_chosen_transmitter_towards_the_scene() {
+        let mut panel = panel();
+        panel.run();
+        panel.get_by_label("Antennas").focus();
+        panel.run();
+        panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
+        panel.run();
+        panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
+        panel.run();
+        assert_eq!(panel.state().antennas.as_ref().unwrap().transmitter_y_metres(), [0.002, 0.0, 0.0]);
     }
 
     #[test]

@@ -31,11 +31,10 @@ impl View {
             return View { centre_metres, pairs: None };
         }
         let pair = |n: usize| {
-            let Pair { transmitter_x_metres, receiver_x_metres } = radar.pair(n);
-            Pair {
-                transmitter_x_metres: transmitter_x_metres - centre_metres,
-                receiver_x_metres: receiver_x_metres - centre_metres,
-            }
+            let pair = radar.pair(n);
+            let [transmitter_x_metres, receiver_x_metres] =
+                [pair.transmitter_x_metres, pair.receiver_x_metres].map(|x| x - centre_metres);
+            Pair { transmitter_x_metres, receiver_x_metres, ..pair }
         };
         let elements = radar.end_range(end);
         let [first, last] = [elements.start, elements.end - 1];
@@ -84,24 +83,24 @@ impl View {
     #[inline(always)]
     pub fn slope(&self, [x, y]: [f64; 2], nearest_metres: f64) -> [f64; 2] {
         let dx = x - self.centre_metres;
-        let of_leg = |antenna: f64| {
-            let across = dx - antenna;
-            let range = (across * across + y * y).sqrt().max(nearest_metres);
-            [across / range, y / range]
+        let of_leg = |[antenna_x, antenna_y]: [f64; 2]| {
+            let (across, ahead) = (dx - antenna_x, y - antenna_y);
+            let range = (across * across + ahead * ahead).sqrt().max(nearest_metres);
+            [across / range, ahead / range]
         };
-        let Some(ViewOfPairs { middle, .. }) = &self.pairs else { return of_leg(0.0) };
-        let legs = middle.iter().flat_map(|pair| [pair.transmitter_x_metres, pair.receiver_x_metres]).map(of_leg);
+        let Some(ViewOfPairs { middle, .. }) = &self.pairs else { return of_leg([0.0; 2]) };
+        let legs = middle.iter().flat_map(Pair::places_metres).map(of_leg);
         legs.fold([0.0; 2], |sum, leg| [sum[0] + leg[0] / 4.0, sum[1] + leg[1] / 4.0])
     }
 }
 
 #[inline(always)]
 fn range_of_pair<const W: usize>(pair: &Pair, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
-    let leg = |antenna: f64| {
-        let dx = dx + Lanes::splat(-antenna);
-        (dx * dx + y * y).sqrt()
-    };
-    (leg(pair.transmitter_x_metres) + leg(pair.receiver_x_metres)) * Lanes::splat(0.5)
+    let [there, back] = pair.places_metres().map(|[antenna_x, antenna_y]| {
+        let (dx, ahead) = (dx + Lanes::splat(-antenna_x), y - Lanes::splat(antenna_y));
+        (dx * dx + ahead * ahead).sqrt()
+    });
+    (there + back) * Lanes::splat(0.5)
 }
 
 #[cfg(test)]
