@@ -15,7 +15,7 @@ import zipfile
 from pathlib import Path
 
 import tree
-from common import GLIBC, MACHINE, ROOT, Fault, moment, name, run, version, window_libraries
+from common import EXE, GLIBC, MACHINE, ROOT, Fault, moment, name, run, version, window_libraries
 
 #: What a session without X, a graphics driver or a file dialog of the system would miss.
 RECOMMENDED = ["libegl1", "libgl1-mesa-dri", "libwayland-client0", "libwayland-egl1", "xdg-desktop-portal"]
@@ -88,7 +88,7 @@ def wheel(plain: Path, program: Path, page: Path | None, notices: str, folder: P
     """The module's wheel with the program, the page and the notices in it: pip puts the program beside Python's own."""
     path = folder / plain.name
     label = f"apertura-{version()}"
-    added: dict[str, tuple[bytes, int]] = {f"{label}.data/scripts/apertura{program.suffix}": (program.read_bytes(), 0o755)}
+    added: dict[str, tuple[bytes, int]] = {f"{label}.data/scripts/apertura{EXE}": (program.read_bytes(), 0o755)}
     for file in tree.files(page) if page else []:
         added[f"apertura/page/{file.as_posix()}"] = ((page / file).read_bytes(), 0o644)
     for file in ("LICENSE-MIT", "LICENSE-APACHE"):

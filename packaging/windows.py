@@ -6,9 +6,9 @@ import shutil
 import struct
 from pathlib import Path
 
-from build import MOST_BYTES, environment, tools
+from build import MOST_BYTES, environment
 from common import ROOT, SYSTEM, Fault, run, target_folder, version
-from formats import packed_zip, wheel
+from formats import packed_zip
 
 TRIPLE = "x86_64-pc-windows-gnu"
 PROFILE = "packages"
@@ -74,20 +74,6 @@ def programs(folder: Path) -> tuple[Path, Path]:
     run("cargo", "build", *common, "--no-default-features", "--features", "console", "--bin", "apertura-console", **environment())
     built = target_folder() / TRIPLE / PROFILE
     return built / "apertura.exe", built / "apertura-console.exe"
-
-
-def module(folder: Path) -> Path:
-    """The wheel of the module alone. The compiler itself writes what links it to Python's python3.dll, so that no Python for Windows is needed."""
-    shutil.rmtree(folder, ignore_errors=True)
-    wanted = ["build", "--release", "--locked", "--manifest-path", "python/Cargo.toml", "--target", TRIPLE, "--out", folder]
-    run(tools() / "maturin", *wanted, **{**environment(), "CARGO_TARGET_DIR": str(target_folder()), "PYO3_NO_PYTHON": "1"})
-    return next(folder.glob("*.whl"))
-
-
-def with_module(folder: Path, page: Path | None, notices: str) -> Path:
-    """The wheel of the module and the program, made on Linux."""
-    program, _ = programs(folder / "windows")
-    return wheel(module(folder / "windows-module"), program, page, notices, folder)
 
 
 def archive(folder: Path, notices: str) -> Path:
