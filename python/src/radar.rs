@@ -151,11 +151,12 @@ impl Radar {
             budget: budget.map(budget_of).transpose()?,
         };
         let along = [transmitter_x_metres, receiver_x_metres];
+        let says_elements = elements.is_some() || element_spacing_metres.is_some();
+        if says_elements && along.iter().all(Option::is_some) {
+            return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
+        }
         let radar = match antennas_of(along, [transmitter_y_metres, receiver_y_metres])? {
             None => radar,
-            Some(_) if elements.is_some() || element_spacing_metres.is_some() => {
-                return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
-            }
             Some(antennas) => {
                 let radar = radar.with_antennas(antennas);
                 radar::Radar { end_elements: end_elements.unwrap_or(radar.end_elements), ..radar }

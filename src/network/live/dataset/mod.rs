@@ -246,15 +246,21 @@ fn write_shard(
     precision: Precision,
 ) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
     let radar = Radar::default();
+    let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", array.name());
     let write = |array: &ArrayKind| {
-        let name = format!("{split}/{number:05}.{}.npy", array.name());
+        let name = name_of(array);
         let bytes = array.file(examples, &radar, precision);
         let path = folder.join(&name);
         write_bytes(&path, &bytes).map_err(|source| DatasetError::File { path: path.clone(), source })?;
         let entry = FileEntry { name, bytes: bytes.len() as u64, sha256: sha256::of_bytes(&bytes) };
         Ok((array.name().to_owned(), entry))
     };
-    arrays.par_iter().map(write).collect()
+    let written: Result<_, DatasetError> = arrays.par_iter().map(write).collect();
+    if written.is_err() {
+        // The arrays of a shard are of use together only. Where one can't be removed, the error above says why.
+        arrays.iter().for_each(|array| _ = fs::remove_file(folder.join(name_of(array))));
+    }
+    written
 }
 
 fn manifest_of(request: &DatasetRequest, arrays: &[ArrayKind], radar: &Radar) -> Manifest {
