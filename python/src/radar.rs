@@ -96,7 +96,8 @@ impl Radar {
     #[new]
     #[pyo3(signature = (*, transmit_power_watts=None, bandwidth_hz=None, carrier_hz=None, element_spacing_metres=None, elements=None,
                         end_elements=None, samples=None, carrier=None, window=None, convention=None, transmitter_x_metres=None,
-                        receiver_x_metres=None, transmitter_y_metres=None, receiver_y_metres=None, focus_off_line=None, chirp_seconds=None, chirps=None, chirp_interval_seconds=None, budget=None))]
+                        receiver_x_metres=None, transmitter_y_metres=None, receiver_y_metres=None, focus_off_line=None, chirp_seconds=None,
+                        chirps=None, chirp_interval_seconds=None, budget=None))]
     #[expect(clippy::too_many_arguments, reason = "one a field")]
     fn new(
         transmit_power_watts: Option<f64>,

@@ -1,7 +1,7 @@
 //! Maps of elements that stand off the array's line, focused towards the direction of each column.
 //!
-//! A far echo from the direction `theta` comes to an element at (x, y) by `x cos(theta) + y sin(theta)` earlier than to the array's centre. The
-//! angle transform takes off what x makes of it. What y makes depends on the column, by its sine alone: samples are turned back for a few
+//! A far reflector in the direction `theta` is nearer to an element at (x, y) than to the array's centre, by `x cos(theta) + y sin(theta)`. The
+//! angle transform takes off the part of x. The part of y depends on the column, by its sine alone: samples are turned back for a few
 //! sines between 0 and 1 (Chebyshev nodes), transformed, and each column is interpolated between these maps at its own sine (J.-P. Berrut and
 //! L. N. Trefethen, "Barycentric Lagrange interpolation", SIAM Rev. 46, 2004). Turning samples takes off the shift in range, too.
 //!
@@ -68,7 +68,7 @@ fn most_turns(radar: &Radar, y_metres: &[f64]) -> f64 {
     first.max(last) * y_metres.iter().fold(0.0, |most: f64, y| most.max(y.abs()))
 }
 
-/// As many Chebyshev nodes in [0, 1] as interpolate `exp(j 2 pi turns s)` within [`TOLERANCE`].
+/// Chebyshev nodes in [0, 1], enough to interpolate `exp(j 2 pi turns s)` within [`TOLERANCE`].
 fn nodes(turns: f64) -> Vec<f64> {
     // The error of m nodes is at most 2 (a / 4)^m / m! for a phase of a radians over the interval.
     let quarter = TAU * turns / 4.0;
@@ -86,7 +86,7 @@ fn part(nodes: &[f64], i: usize, at: f64) -> f64 {
     sign * ((2 * i + 1) as f64 * PI / (2 * nodes.len()) as f64).sin() / (at - nodes[i])
 }
 
-/// The samples as elements on the line would hear them from directions of this sine.
+/// The samples that elements on the line would measure of far reflectors whose direction has this sine.
 fn turned_back(radar: &Radar, samples: ArrayView2<'_, Complex64>, y_metres: &[f64], sine: f64) -> Array2<Complex64> {
     let mut turned = samples.as_standard_layout().into_owned();
     turned.outer_iter_mut().into_par_iter().zip(y_metres).for_each(|(mut row, y)| {

@@ -94,8 +94,8 @@ impl Recording {
         self.radar.samples == 1
     }
 
-    /// Whether it can be looked at with `radar`: the constants it was made with are what they were. The window is free and so is focusing, the
-    /// duration of a chirp and the link budget are, and which elements are the ends where all were recorded.
+    /// Whether it can be shown with `radar`: the constants that it was recorded with must be the same. Others may differ: the window, focusing,
+    /// the duration of a chirp, the link budget, and, where every element was recorded, which elements are the ends.
     pub fn fits(&self, radar: &Radar) -> bool {
         let end_elements = if self.signal().is_some() { radar.end_elements } else { self.radar.end_elements };
         let Radar { window, chirp_seconds, budget, focus_off_line, .. } = *radar;

@@ -43,8 +43,8 @@ fn places(antennas: &Antennas, n: usize) -> [[f64; 2]; 2] {
     ]
 }
 
-/// The sum of the physical formula for one pair, for each watt.
-fn sample(radar: &Radar, [transmitter, receiver]: [[f64; 2]; 2], points: &[(f64, f64)], n: usize) -> Complex64 {
+/// The sum of the physical formula for one pair, for each watt. Places of antennas are (x, y) in metres.
+pub fn sample(radar: &Radar, [transmitter, receiver]: [[f64; 2]; 2], points: &[(f64, f64)], n: usize) -> Complex64 {
     let hz = radar.carrier_hz + radar.bandwidth_hz * n as f64 / radar.samples as f64;
     let echo = |(x, y): &(f64, f64)| {
         let [there, back] = [transmitter, receiver].map(|[ax, ay]| ((x - ax).powi(2) + (y - ay).powi(2)).sqrt());
@@ -53,7 +53,8 @@ fn sample(radar: &Radar, [transmitter, receiver]: [[f64; 2]; 2], points: &[(f64,
     points.iter().map(echo).sum()
 }
 
-fn largest_difference(a: &BeatSignal, b: &BeatSignal) -> f64 {
+/// The largest difference of a sample, relative to the largest sample of `a`.
+pub fn largest_difference(a: &BeatSignal, b: &BeatSignal) -> f64 {
     let off = a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     off / a.peak()
 }

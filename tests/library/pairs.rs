@@ -1,5 +1,6 @@
 //! Transmitters apart from receivers, held to sums of their own: samples, maps, bounds, recordings, methods.
 
+use super::off_line::{largest_difference, sample};
 use apertura::bounds::cramer_rao;
 use apertura::engine::{Engine, Wanted};
 use apertura::files::npz::write_npz;
@@ -11,7 +12,7 @@ use apertura::reconstruct::{Detection, NoisePrior, ReconstructError, Request};
 use apertura::recording::{Recording, file};
 use apertura::scene::{Block, Object, Point, Reflector, Scene, Wall};
 use apertura::signal::chirps::{chirp_elements, simulate_chirps};
-use apertura::signal::{BeatSignal, Floor, judge, simulate};
+use apertura::signal::{Floor, judge, simulate};
 use ndarray::Array3;
 use num_complex::Complex64;
 use rand::seq::SliceRandom;
@@ -19,8 +20,6 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::TAU;
-
-const C: f64 = 299_792_458.0;
 
 fn small(transmitters: usize, receivers: usize) -> Radar {
     let usual = Radar { bandwidth_hz: 1e9, samples: 96, ..Radar::default() };
@@ -30,21 +29,6 @@ fn small(transmitters: usize, receivers: usize) -> Radar {
 /// The same elements, each sending and hearing by itself.
 fn monostatic(radar: &Radar) -> Radar {
     Radar { antennas: None, ..radar.clone() }
-}
-
-/// The sum of the physical formula, one antenna pair after the other, for each watt.
-fn sample(radar: &Radar, transmitter: f64, receiver: f64, points: &[(f64, f64)], n: usize) -> Complex64 {
-    let hz = radar.carrier_hz + radar.bandwidth_hz * n as f64 / radar.samples as f64;
-    let echo = |(x, y): &(f64, f64)| {
-        let (there, back) = ((x - transmitter).hypot(*y), (x - receiver).hypot(*y));
-        Complex64::from_polar(1.0 / (there * back), TAU * (hz * (there + back) / C).fract())
-    };
-    points.iter().map(echo).sum()
-}
-
-fn largest_difference(a: &BeatSignal, b: &BeatSignal) -> f64 {
-    let off = a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-    off / a.peak()
 }
 
 /// Three by eight pairs of which some stand at the place of another, and whose last transmitter leaves gaps.
@@ -107,7 +91,8 @@ fn samples_of_pairs_are_a_direct_sum() {
             };
             let (transmitter, receiver) = (antennas.transmitter_x_metres()[t], antennas.receiver_x_metres()[r]);
             for sample_number in [0, 1, 50, 95] {
-                let direct = sample(&radar, transmitter, receiver, &points, sample_number) * radar.transmit_power_watts;
+                let direct = sample(&radar, [transmitter, receiver].map(|x| [x, 0.0]), &points, sample_number)
+                    * radar.transmit_power_watts;
                 let off = (signal.samples[[n, sample_number]] - direct).norm() / signal.peak();
                 assert!(off < 1e-10, "element {n}, sample {sample_number}: {off:e}");
             }
@@ -223,8 +208,9 @@ fn captured(radar: &Radar, points: &[(f64, f64)], sigma: f64, rng: &mut ChaCha8R
     let noise = |rng: &mut ChaCha8Rng| rng.sample::<f64, _>(StandardNormal) * sigma / 2f64.sqrt();
     let shape = (transmitters.len(), receivers.len(), radar.samples);
     let cube = Array3::from_shape_fn(shape, |(t, r, n)| {
-        let echoes =
-            points.iter().map(|p| sample(radar, transmitters[t], receivers[r], &[*p], n) * (p.0 * p.0 + p.1 * p.1));
+        let echoes = points.iter().map(|p| {
+            sample(radar, [transmitters[t], receivers[r]].map(|x| [x, 0.0]), &[*p], n) * (p.0 * p.0 + p.1 * p.1)
+        });
         echoes.sum::<Complex64>() + Complex64::new(noise(rng), noise(rng))
     });
     let folder = tempfile::tempdir().unwrap();

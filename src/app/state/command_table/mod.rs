@@ -101,7 +101,7 @@ pub fn listed() -> &'static [Entry] {
     LISTED.get_or_init(|| listed_where(if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop }))
 }
 
-/// What there is of [`everything`] where `keys` says, with the keys that it says.
+/// The commands of [`everything`] that `keys` offers here, each with the key that it gives them.
 fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>>) -> Vec<Entry> {
     everything()
         .into_iter()
