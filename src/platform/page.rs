@@ -155,7 +155,8 @@ pub mod fs {
     ///
     /// # Errors
     /// [`io::ErrorKind::NotFound`] where there is none.
-    pub fn remove_file(path: &Path) -> io::Result<()> {
+    pub fn remove_file(path: impl AsRef<Path>) -> io::Result<()> {
+        let path = path.as_ref();
         memory_files::remove_file(path)?;
         forget(&path.to_string_lossy());
         Ok(())
