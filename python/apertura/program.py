@@ -40,7 +40,8 @@ def _of_wheel() -> list[Path]:
         files = importlib.metadata.files("apertura") or []
     except importlib.metadata.PackageNotFoundError:
         return []
-    return [Path(str(file.locate())) for file in files if file.name == _NAME]
+    # pip notes the place from the folder of modules: "../../../bin/apertura".
+    return [Path(os.path.normpath(str(file.locate()))) for file in files if file.name == _NAME]
 
 
 def open(scene: Scene | str | os.PathLike[str]) -> subprocess.Popen[bytes]:

@@ -72,7 +72,7 @@ def test_the_program_of_a_wheel_is_found_where_pip_put_it(tmp_path, monkeypatch)
         name = program._NAME
 
         def locate(self):
-            return placed
+            return tmp_path / "user" / "lib" / ".." / "bin" / program._NAME
 
     monkeypatch.setattr(program.importlib.metadata, "files", lambda name: [Placed()])
     monkeypatch.setattr(program.sys, "executable", str(tmp_path / "nowhere" / "python"))
