@@ -43,6 +43,11 @@ impl Job<'_> {
         self.wanted.floor.level_variance(self.radar).map_or(0.0, |variance| 10.0 * variance.sqrt())
     }
 
+    /// Mean amplitude of the scene's echoes: what lies below the tolerance of it is not looked at.
+    fn quiet(&self) -> f64 {
+        self.amplitude / self.scene.echo_count().max(1) as f64
+    }
+
     /// What is said of maps of which these rows were made.
     fn made(&self, rows: &Rows, over_noise: bool) -> String {
         let all = self.radar.samples;
@@ -95,7 +100,8 @@ impl<T: Real, const W: usize> Group<T, W> {
     }
 
     fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Seen], job: &Job<'_>) {
-        synthesis.range_profiles(&Echoing::seen(job.radar, objects), &mut self.profiles, job.task);
+        let echoing = Echoing::seen(job.radar, objects);
+        synthesis.range_profiles_beside(&echoing, job.quiet(), &mut self.profiles, job.task);
         self.variance = None;
         self.objects = objects.to_vec();
     }

@@ -4,6 +4,7 @@
 //! edited: dragging one of many objects evaluates that one alone. Taking an object out of the sum at rest leaves rounding behind;
 //! how much is bounded as it goes, and the sum is made afresh before it could show.
 
+use super::amplitudes::Amplitudes;
 use super::bank::{Bank, Job};
 use super::frame::{Frame, Wanted};
 use super::report::{Report, Stage};
@@ -14,7 +15,7 @@ use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::scattering::Seen;
 use crate::scene::{Scene, SceneError};
-use crate::signal::plan::{self, Sum};
+use crate::signal::plan::Sum;
 use crate::signal::simd::{LANES_F32, LANES_F64};
 use crate::signal::{Algorithm, Plan, Precision, Rows, Unfinished, simulate_ends_for};
 use crate::task::{Cancelled, Task};
@@ -31,6 +32,7 @@ pub struct Engine {
     last: Option<Precision>,
     shown: Option<Shown>,
     settled: Option<Settled>,
+    amplitudes: Amplitudes,
 }
 
 /// Choices taken from the planner; `None` leaves them to it.
@@ -47,7 +49,8 @@ pub struct Forced {
 impl Engine {
     /// An engine that has computed nothing yet. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: Radar) -> Self {
-        Engine { radar, forced: Forced::default(), single: None, double: None, last: None, shown: None, settled: None }
+        let (forced, amplitudes) = (Forced::default(), Amplitudes::default());
+        Engine { radar, forced, single: None, double: None, last: None, shown: None, settled: None, amplitudes }
     }
 
     /// Takes choices from the planner and drops every cache.
@@ -59,6 +62,7 @@ impl Engine {
     /// Forgets everything that was computed of the last scene, but keeps the memory it lay in: the next update starts from scratch.
     pub fn forget(&mut self) {
         self.settled = None;
+        self.amplitudes.forget();
         if let Some(shown) = &mut self.shown {
             shown.forget(&self.radar);
         }
@@ -231,7 +235,7 @@ impl Engine {
         report: &mut Report,
     ) -> Result<(), Cancelled> {
         let seen = Seen::all(&self.radar, scene);
-        let amplitude = plan::amplitude_bound_of(&self.radar, &seen);
+        let amplitude = self.amplitudes.bound(&self.radar, &seen);
         let mut chosen = Plan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
             let algorithm = self.forced.algorithm.unwrap_or(chosen.algorithm);

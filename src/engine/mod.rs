@@ -7,6 +7,7 @@
 //! samples of the ends are exempt from that, and once a scene rests [`Engine::settle`] computes its maps as every command does: the same
 //! scene, seed and settings are the same bits, whatever came before.
 
+mod amplitudes;
 mod bank;
 mod change;
 mod frame;

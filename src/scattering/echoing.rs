@@ -1,9 +1,12 @@
 //! All that echoes in a scene: points by themselves, and scatterers.
 
 use super::sight::{Array, Screen};
+use super::strips::Strips;
 use super::{Antennas, PathEcho, Scatterer};
 use crate::radar::Radar;
 use crate::scene::{Object, Reflector, Scene};
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// An object, and the bodies that may hide a part of it from an element. Two that are equal have the same echoes.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,38 +14,57 @@ pub struct Seen {
     /// The object.
     pub object: Object,
     /// Bodies that stand between it and the array, or nearly so; none for most objects.
-    pub hidden_by: Vec<Object>,
+    pub hidden_by: Arc<[Arc<Object>]>,
 }
 
 impl From<Object> for Seen {
     /// An object that nothing hides.
     fn from(object: Object) -> Self {
-        Seen { object, hidden_by: Vec::new() }
+        Seen { object, hidden_by: Arc::default() }
     }
 }
 
 /// Bodies that may hide something, each with the index of its object.
-struct Bodies<'a> {
+struct Bodies {
     array: Array,
-    screens: Vec<(usize, &'a Object, Screen)>,
+    screens: Vec<(usize, Arc<Object>, Screen)>,
+    strips: Strips,
 }
 
-impl<'a> Bodies<'a> {
-    fn of(radar: &Radar, scene: &'a Scene) -> Self {
+impl Bodies {
+    fn of(radar: &Radar, scene: &Scene) -> Self {
         let array = Array::of(radar, &scene.disturbances.elements);
-        let screen =
-            |(index, object): (usize, &'a Object)| Some((index, object, array.screen(&object.body()?.shape())));
+        let screen = |(index, object): (usize, &Object)| {
+            let screen = array.screen(&object.body()?.shape());
+            Some((index, Arc::new(object.clone()), screen))
+        };
         let bodies = scene.objects.iter().enumerate().filter_map(screen);
-        Bodies { array, screens: if scene.shadows { bodies.collect() } else { Vec::new() } }
+        let screens: Vec<_> = if scene.shadows { bodies.collect() } else { Vec::new() };
+        let strips = Strips::new(screens.iter().map(|(.., screen)| screen.disc()));
+        Bodies { array, screens, strips }
     }
 
     /// Those that may hide a part of object `index`. With a mirror, all.
-    fn hiding(&self, index: usize, object: &Object, all: bool) -> Vec<Object> {
+    fn hiding(&self, index: usize, object: &Object, all: bool) -> Arc<[Arc<Object>]> {
+        let is_other = |(other, ..): &&(usize, Arc<Object>, Screen)| *other != index;
+        if all {
+            return self.screens.iter().filter(is_other).map(|(_, object, _)| object.clone()).collect();
+        }
         let ways = self.array.ways_to(object);
-        let others = self.screens.iter().filter(|(other, ..)| *other != index);
-        others.filter(|(.., screen)| all || ways.may_pass(screen)).map(|(_, object, _)| (*object).clone()).collect()
+        let may_pass = |(.., screen): &&(usize, Arc<Object>, Screen)| ways.may_pass(screen);
+        let near = self.strips.near(ways.hull(), ways.widest());
+        let near = near.into_iter().filter_map(|at| self.screens.get(at));
+        let mut found: Vec<_> = near.filter(is_other).filter(may_pass).map(|(_, object, _)| object.clone()).collect();
+        if found.is_empty() && object.body().is_none() {
+            // A point that nothing can hide is summed another way, to other last bits: that asks `may_pass` alone.
+            found.extend(self.screens.iter().find(may_pass).map(|(_, object, _)| object.clone()));
+        }
+        found.into()
     }
 }
+
+/// Objects from which on the bodies that may hide them are looked for on several threads.
+const MANY: usize = 32;
 
 impl Seen {
     /// Every object of a scene, with what may hide it from `radar`.
@@ -56,7 +78,7 @@ impl Seen {
             let all = is_mirrored && object.body().is_some();
             Seen { object: object.clone(), hidden_by: bodies.hiding(index, object, all) }
         };
-        scene.objects.iter().enumerate().map(seen).collect()
+        scene.objects.par_iter().enumerate().with_min_len(MANY).map(seen).collect()
     }
 
     /// Most echoes that it gives one element.
@@ -101,7 +123,7 @@ impl Echoing {
             if one.is_points() {
                 all.points.extend(one.object.reflectors());
             } else {
-                all.scatterers.push(Scatterer::new(radar, &one.object, &one.hidden_by));
+                all.scatterers.push(Scatterer::of(radar, one));
             }
         }
         all
@@ -124,7 +146,7 @@ pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho
     let mut all = Vec::new();
     for (index, seen) in Seen::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {
         let mut echoes = Vec::new();
-        Scatterer::new(radar, &seen.object, &seen.hidden_by).echoes(&antennas, &mut echoes);
+        Scatterer::of(radar, seen).echoes(&antennas, &mut echoes);
         all.extend(echoes.into_iter().filter(PathEcho::is_heard).map(|echo| (index, echo)));
     }
     all

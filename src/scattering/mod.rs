@@ -10,6 +10,7 @@
 //! | [`shadow`] | what passes an obstacle on the way from an antenna to where an echo comes from |
 //! | [`reference`] | what all of this is held against: quadrature, and the exact series of a cylinder |
 //! | `sight` | which bodies may have an effect on an object at all |
+//! | `strips` | which bodies stand near the ways to an object, without asking all |
 //! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
 //! | [`parts`] | a polygon as convex parts, for shadows |
 //!
@@ -33,6 +34,7 @@ pub mod roughness;
 mod scatterer;
 pub mod shadow;
 mod sight;
+mod strips;
 pub mod transition;
 
 pub use echoing::{Echoing, Seen, Sources, heard_in_the_middle};

@@ -209,7 +209,8 @@ pub(super) fn behind(obstacle: &Obstacle, wave: &Wave, antennas: &Antennas, echo
         let correlation = (there.part * back.part).max(0.0).sqrt().min(1.0);
         let power = -(0.25 + correlation.asin() / TAU).log2();
         // Each way to its own power: neither turns by half a turn, their product may.
-        (there.factor.powf(power / 2.0) * back.factor.powf(power / 2.0), power)
+        let raised = there.factor.powf(power / 2.0);
+        (raised * if is_one { raised } else { back.factor.powf(power / 2.0) }, power)
     } else {
         (there.factor * back.factor, 2.0)
     };

@@ -96,7 +96,26 @@ fn corners_of(shape: &Shape) -> (Vec<V>, f64) {
     }
 }
 
+impl Screen {
+    /// A circle around it: its middle, and its radius in metres.
+    pub fn disc(&self) -> (V, f64) {
+        let middle = self.corners.iter().fold(V(0.0, 0.0), |a, b| a + *b) * (self.corners.len().max(1) as f64).recip();
+        let radius = self.corners.iter().map(|c| (*c - middle).norm()).fold(0.0, f64::max);
+        (middle, radius + self.radius)
+    }
+}
+
 impl Ways {
+    /// The convex hull of all ways, counter-clockwise, but for what a post's radius adds.
+    pub fn hull(&self) -> &[V] {
+        &self.hull
+    }
+
+    /// From this distance on, metres, nothing beside the hull has an effect on a way.
+    pub fn widest(&self) -> f64 {
+        self.margin(f64::INFINITY) + self.radius
+    }
+
     /// Whether `screen` may have an effect on any of the ways.
     pub fn may_pass(&self, screen: &Screen) -> bool {
         let margin = self.margin(screen.farthest) + screen.radius + self.radius;

@@ -42,6 +42,7 @@ pub fn applies(radar: &Radar) -> bool {
 #[derive(Debug, Clone)]
 pub struct ClosedForm<T> {
     samples: usize,
+    tolerance: f64,
     reach: usize,
     /// `exp(2 pi j n / samples)`.
     turns: Vec<Complex<T>>,
@@ -59,6 +60,7 @@ impl<T: Real> ClosedForm<T> {
         };
         applies(radar).then(|| ClosedForm {
             samples,
+            tolerance,
             reach: reach(tolerance).min(samples),
             turns: (0..samples).map(turn).collect(),
             edge: PI / (samples - 1) as f64,
@@ -69,45 +71,68 @@ impl<T: Real> ClosedForm<T> {
     pub fn rows(&self, radar: &Radar, reflectors: &[Reflector], elements: usize) -> Rows {
         let mut rows = Rows::none(self.samples);
         for r in reflectors {
-            self.touch(radar, range_span_metres(radar, elements, r), &mut rows);
+            self.touch(radar, range_span_metres(radar, elements, r), self.reach, &mut rows);
         }
         rows
     }
 
     /// Adds the rows that [`ClosedForm::add_block`] may write to for `paths`.
-    pub(super) fn touch_paths<const W: usize>(&self, radar: &Radar, paths: &[Path<W>], rows: &mut Rows) {
+    pub(super) fn touch_paths<const W: usize>(&self, radar: &Radar, paths: &[Path<W>], quiet: f64, rows: &mut Rows) {
         for path in paths {
+            let Some(reach) = self.reach_of(&path.amplitude, quiet) else { continue };
             let ranges = path.range_metres.hi.0;
             let span = ranges.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| (a.min(*r), b.max(*r)));
-            self.touch(radar, span, rows);
+            self.touch(radar, span, reach, rows);
         }
     }
 
+    /// Bins on either side of an echo's range in which it exceeds the tolerance, where an echo of amplitude `quiet` and all below it
+    /// may be wrong by as much as that of `quiet`; `None` where it never does.
+    #[inline(always)]
+    fn reach_of<const W: usize>(&self, amplitude: &Lanes<f64, W>, quiet: f64) -> Option<usize> {
+        let loudest = amplitude.0.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+        if loudest >= quiet || loudest.is_nan() {
+            return Some(self.reach);
+        }
+        let tolerance = self.tolerance * (quiet / loudest);
+        (tolerance < 4.0).then(|| reach(tolerance).min(self.reach))
+    }
+
     /// Adds the rows around ranges from the nearest to the farthest, in metres.
-    fn touch(&self, radar: &Radar, (nearest, farthest): (f64, f64), rows: &mut Rows) {
+    fn touch(&self, radar: &Radar, (nearest, farthest): (f64, f64), reach: usize, rows: &mut Rows) {
         let bins = |metres: f64| metres / radar.range_resolution_metres();
         // The last bits of a very far range may be whole bins.
         let unsure = 2.0 + bins(farthest) * 1e-15;
-        let margin = self.reach as f64 + unsure;
+        let margin = reach as f64 + unsure;
         rows.insert_wrapped((bins(nearest) - margin).floor(), (bins(farthest) + margin).ceil());
     }
 
-    /// Adds the range profiles of all that is `heard` at `pairs` to `cells`, `[range bins]`.
+    /// Adds the range profiles of all that is `heard` at `pairs` to `cells`, `[range bins]`. Each may be wrong by the tolerance times its
+    /// amplitude, or times `quiet` where that is more: a quiet echo has few rows.
     #[inline(always)]
     pub(super) fn add_block<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
         pairs: Pairs<W>,
         heard: Heard<'_, W>,
+        quiet: f64,
         cells: &mut [ComplexLanes<T, W>],
     ) {
         for i in 0..heard.len() {
-            self.add::<W, FMA>(&heard.echo::<FMA>(model, pairs, i), cells);
+            let echo = heard.echo::<FMA>(model, pairs, i);
+            if let Some(reach) = self.reach_of(&echo.amplitude, quiet) {
+                self.add::<W, FMA>(&echo, reach as isize, cells);
+            }
         }
     }
 
     #[inline(always)]
-    fn add<const W: usize, const FMA: bool>(&self, echo: &EchoLanes<W>, cells: &mut [ComplexLanes<T, W>]) {
+    fn add<const W: usize, const FMA: bool>(
+        &self,
+        echo: &EchoLanes<W>,
+        reach: isize,
+        cells: &mut [ComplexLanes<T, W>],
+    ) {
         let of = Lanes::<f64, W>::splat;
         let bins = self.samples as f64;
         // Range in bins, on the same side of the wrap as the first lane's, from the bin nearest to that.
@@ -126,8 +151,7 @@ impl<T: Real> ClosedForm<T> {
 
         let lowest = offset.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
         let highest = offset.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
-        let first = lowest.floor() as isize - self.reach as isize;
-        let last = highest.ceil() as isize + self.reach as isize;
+        let (first, last) = (lowest.floor() as isize - reach, highest.ceil() as isize + reach);
         let (first, last) = match last - first < self.samples as isize {
             true => (first, last),
             // Every bin once.

@@ -6,6 +6,7 @@ use super::path::largest_amplitude;
 use super::simd::Simd;
 use crate::radar::Radar;
 use crate::scattering::{Echoing, Seen, Sources};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// What is to be computed, and how: the planner's answer. Any field may be changed before it runs ([`super::beat_signal`]).
@@ -127,5 +128,12 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
 
 /// [`amplitude_bound`] of all that these objects reflect, object by object.
 pub fn amplitude_bound_of(radar: &Radar, seen: &[Seen]) -> f64 {
-    seen.iter().map(|one| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(one)))).sum()
+    amplitude_bounds(radar, seen.iter()).iter().sum()
+}
+
+/// [`amplitude_bound`] of each of these objects.
+pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a Seen>) -> Vec<f64> {
+    let seen: Vec<&Seen> = seen.collect();
+    let bound = |one: &&Seen| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(*one)));
+    seen.par_iter().with_min_len(4).map(bound).collect()
 }

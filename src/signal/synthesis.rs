@@ -175,6 +175,7 @@ struct AddProfiles<'a, 'b, T: Real, const W: usize> {
     first_element: usize,
     points: &'a [Reflector],
     paths: &'a [Path<W>],
+    quiet: f64,
     cells: &'b mut [ComplexLanes<T, W>],
 }
 
@@ -185,7 +186,7 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
         let s = self.synthesis;
         let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
         let heard = Heard::new(self.points, self.paths);
-        self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.cells);
+        self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.quiet, self.cells);
     }
 }
 
@@ -254,6 +255,18 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
     /// Windowed range profiles of every element; replaces what `out` held. Blocks that are left when `task` is cancelled are left out: who
     /// cancels it must not use the profiles.
     pub fn range_profiles<'a>(&self, sources: impl Into<Sources<'a>>, out: &mut BlockProfiles<T, W>, task: &Task) {
+        self.range_profiles_beside(sources, 0.0, out, task);
+    }
+
+    /// [`Synthesis::range_profiles`] of echoes that stand beside others: each may be wrong by the plan's tolerance times its amplitude, or
+    /// times `quiet` where that is more. With `quiet` the mean amplitude of all echoes, the sum is wrong by twice as much at most.
+    pub fn range_profiles_beside<'a>(
+        &self,
+        sources: impl Into<Sources<'a>>,
+        quiet: f64,
+        out: &mut BlockProfiles<T, W>,
+        task: &Task,
+    ) {
         let (sources, bins) = (sources.into(), self.radar.samples);
         if sources.is_empty() {
             return out.clear();
@@ -263,7 +276,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             let blocks = 0..if sources.scatterers.is_empty() { 0 } else { self.radar.elements.div_ceil(W) };
             let paths: Vec<Vec<Path<W>>> =
                 blocks.into_par_iter().map(|block| heard::paths(&self.radar, sources, block * W)).collect();
-            paths.iter().for_each(|paths| plan.touch_paths(&self.radar, paths, &mut rows));
+            paths.iter().for_each(|paths| plan.touch_paths(&self.radar, paths, quiet, &mut rows));
             let before = std::mem::replace(&mut out.touched, rows).runs();
             return out.cells.par_chunks_mut(bins).enumerate().for_each(|(block, cells)| {
                 before.iter().for_each(|run| cells[run.clone()].fill(ComplexLanes::zero()));
@@ -273,7 +286,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                 let first_element = block * W;
                 let paths = paths.get(block).map_or(&[][..], Vec::as_slice);
                 let points = sources.points;
-                self.simd().run(AddProfiles { synthesis: self, plan, first_element, points, paths, cells });
+                self.simd().run(AddProfiles { synthesis: self, plan, first_element, points, paths, quiet, cells });
             });
         }
         out.touched = Rows::all(bins);
