@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scene::{Block, Point, Post, Wall};
+use proptest::prelude::*;
 
 #[test]
 fn an_obstacle_that_comes_from_the_side_begins_with_no_effect() {
@@ -58,4 +59,34 @@ fn only_what_a_body_may_hide_depends_on_it() {
     let (before, after) = (seen(0.0), seen(0.3));
     assert!(before[1] != after[1] && before[2] == after[2] && before[2].hidden_by.is_empty());
     assert_eq!(seen(-8.0)[1], seen(-9.0)[1], "out of the way");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// In a crowd the echoes are, bit for bit, those of objects each of which asks all bodies.
+    #[test]
+    fn bodies_that_a_crowd_leaves_out_change_no_bit(
+        places in prop::collection::vec((0u8..4, -20.0..20.0f64, 3.0..30.0f64, 0.0..180.0f64, 0.1..2.0f64), 2..60),
+    ) {
+        let radar = Radar::default();
+        let objects: Vec<Object> = places.iter().map(|(kind, x, y, angle, size)| match kind {
+            0 => Object::Wall(Wall::new(*x, *y, 2.0 * size, *angle)),
+            1 => Object::Box(Block::new([*x, *y], [*size, 0.5 * size], *angle)),
+            2 => Object::Post(Post::new(*x, *y, 0.2 * size)),
+            _ => Object::Point(Point::new(*x, *y)),
+        }).collect();
+        let scene = Scene { objects: objects.clone(), ..Scene::default() };
+        let seen = Seen::all(&radar, &scene);
+        for n in [0, 300, 511, 1023] {
+            let antennas = Antennas::from(radar.pair(n));
+            for (at, one) in seen.iter().enumerate() {
+                let others = objects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, object)| object);
+                let (mut few, mut all) = (Vec::new(), Vec::new());
+                Scatterer::of(&radar, one).echoes(&antennas, &mut few);
+                Scatterer::new(&radar, &one.object, others).echoes(&antennas, &mut all);
+                prop_assert_eq!(few, all);
+            }
+        }
+    }
 }
