@@ -81,6 +81,11 @@ impl Seen {
         scene.objects.par_iter().enumerate().with_min_len(MANY).map(seen).collect()
     }
 
+    /// It made ready, before `radar`.
+    pub fn scatterer(&self, radar: &Radar) -> Scatterer {
+        Scatterer::new(radar, &self.object, self.hidden_by.iter().map(Arc::as_ref))
+    }
+
     /// Most echoes that it gives one element.
     pub fn echo_count(&self) -> usize {
         self.object.echo_count()
@@ -123,7 +128,7 @@ impl Echoing {
             if one.is_points() {
                 all.points.extend(one.object.reflectors());
             } else {
-                all.scatterers.push(Scatterer::of(radar, one));
+                all.scatterers.push(one.scatterer(radar));
             }
         }
         all
@@ -146,7 +151,7 @@ pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho
     let mut all = Vec::new();
     for (index, seen) in Seen::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {
         let mut echoes = Vec::new();
-        Scatterer::of(radar, seen).echoes(&antennas, &mut echoes);
+        seen.scatterer(radar).echoes(&antennas, &mut echoes);
         all.extend(echoes.into_iter().filter(PathEcho::is_heard).map(|echo| (index, echo)));
     }
     all

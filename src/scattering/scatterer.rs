@@ -6,12 +6,11 @@ use super::polygon::Outline;
 use super::post::Circle;
 use super::roughness::{RoughFace, coherent};
 use super::shadow::{Obstacle, behind};
-use super::{Antennas, EchoKind, PathEcho, Seen, Wave};
+use super::{Antennas, EchoKind, PathEcho, Wave};
 use crate::radar::Radar;
 use crate::scene::body::{DIFFUSE_SPACING_METRES, MAX_DIFFUSE, diffuse_points};
 use crate::scene::{Body, Mirror, Object, Reflector, Shape};
 use num_complex::Complex64;
-use std::sync::Arc;
 
 /// An object and what hides it. Every pair of antennas gets the same echoes in the same order; those that it doesn't hear have amplitude 0.
 #[derive(Debug, Clone)]
@@ -34,11 +33,6 @@ enum Source {
 }
 
 impl Scatterer {
-    /// What is seen before `radar`.
-    pub fn of(radar: &Radar, seen: &Seen) -> Self {
-        Scatterer::new(radar, &seen.object, seen.hidden_by.iter().map(Arc::as_ref))
-    }
-
     /// `object` before `radar`, hidden by the bodies among `hidden_by`.
     pub fn new<'a>(radar: &Radar, object: &Object, hidden_by: impl IntoIterator<Item = &'a Object>) -> Self {
         let obstacles = hidden_by.into_iter().filter_map(Object::body).flat_map(|body| obstacles(&body)).collect();

@@ -326,6 +326,31 @@ mod tests {
     }
 
     #[test]
+    fn quiet_echoes_write_fewer_rows_within_the_tolerance() {
+        let radar = Radar { elements: 90, ..Radar::default() };
+        let objects = vec![
+            Object::Point(Point::new(1.5, 25.0)),
+            Object::Point(Point { reflectivity: 1e-4, ..Point::new(0.5, 6.0) }),
+            Object::Box(Block::new([1.0, 20.0], [1.5, 0.8], 80.0)),
+        ];
+        let echoing = Echoing::of(&radar, &Scene { objects, ..Scene::default() });
+        let amplitude = crate::signal::plan::amplitude_bound(&radar, &echoing);
+        let quiet = amplitude / echoing.len() as f64;
+        for tolerance in [1e-3, 1e-6] {
+            let synthesis = Synthesis::<f64, LANES_F64>::new(&radar, plan(tolerance, Simd::best()));
+            let [mut all, mut few] = [(); 2].map(|()| BlockProfiles::silence(&radar));
+            synthesis.range_profiles(&echoing, &mut all, &Task::default());
+            synthesis.range_profiles_beside(&echoing, quiet, &mut few, &Task::default());
+            let of = |n: usize| all.profile(n).unwrap().into_iter().zip(few.profile(n).unwrap());
+            let worst = (0..radar.elements).flat_map(of).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            // The peak of an echo of amplitude 1 is the window's sum over the root of the samples.
+            let scale = amplitude * (radar.samples as f64).sqrt() / 2.0;
+            assert!(worst > 0.0 && worst < tolerance / 2.0 * scale, "{tolerance:e}: {:e}", worst / scale);
+            assert!(few.touched.count() < all.touched.count(), "{tolerance:e}: {}", few.touched.count());
+        }
+    }
+
+    #[test]
     fn ranges_near_the_kernels_centres_keep_every_digit() {
         // Elements as good as in one place, so that all see the same range: whole bins, and the centres of the outer kernels.
         let radar =

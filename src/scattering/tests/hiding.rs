@@ -83,7 +83,7 @@ proptest! {
             for (at, one) in seen.iter().enumerate() {
                 let others = objects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, object)| object);
                 let (mut few, mut all) = (Vec::new(), Vec::new());
-                Scatterer::of(&radar, one).echoes(&antennas, &mut few);
+                one.scatterer(&radar).echoes(&antennas, &mut few);
                 Scatterer::new(&radar, &one.object, others).echoes(&antennas, &mut all);
                 prop_assert_eq!(few, all);
             }

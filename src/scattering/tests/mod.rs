@@ -34,7 +34,7 @@ fn heard(radar: &Radar, objects: &[Object], antennas: &Antennas) -> Vec<PathEcho
     let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
     let mut out = Vec::new();
     for one in Seen::all(radar, &scene) {
-        Scatterer::new(radar, &one.object, &one.hidden_by).echoes(antennas, &mut out);
+        one.scatterer(radar).echoes(antennas, &mut out);
     }
     out
 }

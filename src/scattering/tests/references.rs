@@ -77,7 +77,7 @@ fn echoes(radar: &Radar, of: &VectorScene, antennas: &Antennas) -> Vec<PathEcho>
         let scene = Scene { objects: of.objects.iter().map(object).collect(), ..Scene::default() };
         let seen = Seen::all(radar, &scene);
         for one in seen.iter().take(if of.only_first { 1 } else { seen.len() }) {
-            let scatterer = Scatterer::new(radar, &one.object, &one.hidden_by);
+            let scatterer = one.scatterer(radar);
             let scatterer = if of.refined { scatterer } else { scatterer.unrefined() };
             scatterer.echoes(antennas, &mut out);
         }

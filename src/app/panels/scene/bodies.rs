@@ -126,7 +126,7 @@ pub fn shining(radar: &Radar, seen: &[Seen], end: End) -> Vec<(Place, f64)> {
     for one in seen.iter().filter(|one| one.object.body().is_some()) {
         let [mut free, mut heard] = [Vec::new(), Vec::new()];
         Scatterer::new(radar, &one.object, &[]).echoes(&antennas, &mut free);
-        Scatterer::of(radar, one).echoes(&antennas, &mut heard);
+        one.scatterer(radar).echoes(&antennas, &mut heard);
         for (free, heard) in free.iter().zip(&heard).filter(|(free, _)| shines(free) && free.is_heard()) {
             places.push((free.place_metres.into(), heard.amplitude.norm() / free.amplitude.norm()));
         }
