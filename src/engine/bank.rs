@@ -43,9 +43,11 @@ impl Job<'_> {
         self.wanted.floor.level_variance(self.radar).map_or(0.0, |variance| 10.0 * variance.sqrt())
     }
 
-    /// Mean amplitude of the scene's echoes: what lies below the tolerance of it is not looked at.
+    /// Half the mean amplitude of the scene's echoes. Echoes may each be wrong by the tolerance of it, so that all together are wrong by half as
+    /// much again as without it; [`Group::quiet`] may be twice that.
     fn quiet(&self) -> f64 {
-        self.amplitude / self.scene.echo_count().max(1) as f64
+        let half = 0.5 * self.amplitude / self.scene.echo_count().max(1) as f64;
+        if half.is_finite() { half } else { 0.0 }
     }
 
     /// What is said of maps of which these rows were made.
@@ -90,18 +92,21 @@ impl Kept {
 pub(super) struct Group<T, const W: usize> {
     objects: Vec<Seen>,
     pub(super) profiles: BlockProfiles<T, W>,
+    /// Largest [`Job::quiet`] that any of them was summed with.
+    quiet: f64,
     /// `None` until somebody asks.
     variance: Option<Vec<f64>>,
 }
 
 impl<T: Real, const W: usize> Group<T, W> {
     fn empty(radar: &Radar) -> Self {
-        Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), variance: None }
+        Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), quiet: 0.0, variance: None }
     }
 
     fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Seen], job: &Job<'_>) {
         let echoing = Echoing::seen(job.radar, objects);
         synthesis.range_profiles_beside(&echoing, job.quiet(), &mut self.profiles, job.task);
+        self.quiet = job.quiet();
         self.variance = None;
         self.objects = objects.to_vec();
     }
@@ -116,12 +121,14 @@ impl<T: Real, const W: usize> Group<T, W> {
     fn clear(&mut self) {
         self.objects.clear();
         self.profiles.clear();
+        self.quiet = 0.0;
         self.variance = None;
     }
 
     /// Adds (`sign` = 1) or takes away (-1) what another group holds, but for the list of objects.
     fn add(&mut self, other: &Self, sign: f64) {
         self.profiles.add(&other.profiles, sign);
+        self.quiet = self.quiet.max(other.quiet);
         match (&mut self.variance, &other.variance) {
             (Some(own), Some(other)) => own.iter_mut().zip(other).for_each(|(a, b)| *a = (*a + sign * b).max(0.0)),
             (own, _) => *own = None,
@@ -260,6 +267,8 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let total = job.scene.echo_count();
         let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
         let usable = self.built.as_ref().filter(|b| b.tolerance <= job.plan.tolerance && b.forced == job.forced);
+        // Beside something loud that is gone now, the others were summed too coarsely.
+        let usable = usable.filter(|_| self.rest.quiet <= 2.0 * job.quiet());
         let change = usable.map(|built| {
             let change = Change::between(&self.rest.objects, &self.active.objects, scene);
             let more = if !change.settles {
@@ -267,7 +276,8 @@ impl<T: Real, const W: usize> Bank<T, W> {
             } else {
                 // What is taken away was evaluated another way than when it was added.
                 let leaving = plan::amplitude_bound_of(job.radar, &change.leaving);
-                2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * leaving
+                let quiet = job.quiet() * change.leaving.iter().map(Seen::echo_count).sum::<usize>() as f64;
+                2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * (leaving + quiet)
             };
             let rounding = built.rounding + more;
             (change, rounding, rounding <= limit)

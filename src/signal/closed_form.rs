@@ -91,7 +91,7 @@ impl<T: Real> ClosedForm<T> {
     #[inline(always)]
     fn reach_of<const W: usize>(&self, amplitude: &Lanes<f64, W>, quiet: f64) -> Option<usize> {
         let loudest = amplitude.0.iter().fold(0.0f64, |m, a| m.max(a.abs()));
-        if loudest >= quiet || loudest.is_nan() {
+        if loudest >= quiet {
             return Some(self.reach);
         }
         let tolerance = self.tolerance * (quiet / loudest);

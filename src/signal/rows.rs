@@ -43,9 +43,9 @@ impl Rows {
             return;
         }
         let start = first.rem_euclid(len as f64) as usize;
-        for i in 0..=span as usize {
-            self.bins[(start + i) % len] = true;
-        }
+        let end = start + span as usize + 1;
+        self.bins[start.min(len)..end.min(len)].fill(true);
+        self.bins[..end.saturating_sub(len)].fill(true);
     }
 
     /// Adds all that `other` has.

@@ -259,7 +259,8 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
     }
 
     /// [`Synthesis::range_profiles`] of echoes that stand beside others: each may be wrong by the plan's tolerance times its amplitude, or
-    /// times `quiet` where that is more. With `quiet` the mean amplitude of all echoes, the sum is wrong by twice as much at most.
+    /// times `quiet` where that is more. With `quiet` the mean amplitude of all echoes, the sum is wrong by twice as much at most. Only the
+    /// closed form makes use of it.
     pub fn range_profiles_beside<'a>(
         &self,
         sources: impl Into<Sources<'a>>,
@@ -272,22 +273,28 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             return out.clear();
         }
         if let Method::ClosedForm(plan) = &self.method {
-            let mut rows = plan.rows(&self.radar, sources.points, self.radar.elements.next_multiple_of(W));
-            let blocks = 0..if sources.scatterers.is_empty() { 0 } else { self.radar.elements.div_ceil(W) };
-            let paths: Vec<Vec<Path<W>>> =
-                blocks.into_par_iter().map(|block| heard::paths(&self.radar, sources, block * W)).collect();
-            paths.iter().for_each(|paths| plan.touch_paths(&self.radar, paths, quiet, &mut rows));
-            let before = std::mem::replace(&mut out.touched, rows).runs();
-            return out.cells.par_chunks_mut(bins).enumerate().for_each(|(block, cells)| {
+            let before = out.touched.runs();
+            let fill = |(block, cells): (usize, &mut [ComplexLanes<T, W>])| {
                 before.iter().for_each(|run| cells[run.clone()].fill(ComplexLanes::zero()));
+                let mut rows = Rows::none(bins);
                 if task.is_cancelled() {
-                    return;
+                    return rows;
                 }
                 let first_element = block * W;
-                let paths = paths.get(block).map_or(&[][..], Vec::as_slice);
+                let paths = &heard::paths(&self.radar, sources, first_element);
+                plan.touch_paths(&self.radar, paths, quiet, &mut rows);
                 let points = sources.points;
                 self.simd().run(AddProfiles { synthesis: self, plan, first_element, points, paths, quiet, cells });
-            });
+                rows
+            };
+            let either = |mut rows: Rows, others: Rows| {
+                rows.extend(&others);
+                rows
+            };
+            let of_paths = out.cells.par_chunks_mut(bins).enumerate().map(fill).reduce(|| Rows::none(bins), either);
+            let of_points = plan.rows(&self.radar, sources.points, self.radar.elements.next_multiple_of(W));
+            out.touched = either(of_points, of_paths);
+            return;
         }
         out.touched = Rows::all(bins);
         out.cells.par_chunks_mut(bins).enumerate().for_each_init(

@@ -82,3 +82,30 @@ fn a_car_dragged_along_a_street_of_things_has_half_of_the_echoes_computed_again(
     // The first move takes the car out of the sum at rest. The car has 8 echoes, the two walls behind it 3 each, the post there one.
     assert!(evaluated[1..].iter().all(|what| what.starts_with("15 of 29 echoes")), "{evaluated:#?}");
 }
+
+#[test]
+fn what_a_loud_body_drowned_is_there_when_it_is_gone() {
+    let normalisation = Normalisation::DynamicRange(Decibels(100.0));
+    let wanted = Wanted { floor: Floor::Exact, normalisation, ends: false, ..Wanted::default() };
+    let radar = Radar { elements: 64, end_elements: 4, ..Radar::default() };
+    let quiet = |i: u32| {
+        Object::Point(Point { reflectivity: 1e-3, ..Point::new(f64::from(i) - 3.0, 12.0 + 3.0 * f64::from(i)) })
+    };
+    let mut scene = Scene { objects: (0..6).map(quiet).collect(), ..Scene::default() };
+    let mut loud = Post::new(-6.0, 4.0, 0.2);
+    loud.reflectivity = 1e3;
+    scene.objects.push(Object::Post(loud));
+    let mut engine = Engine::new(radar.clone());
+    for _ in 0..3 {
+        engine.update(&scene, &wanted).unwrap();
+        scene.objects[6].translate(-0.1, 0.0);
+    }
+    let beside = full_map_rows(&engine.update(&scene, &wanted).unwrap());
+    scene.objects.pop();
+    engine.update(&scene, &wanted).unwrap();
+    let mut fresh = Engine::new(radar);
+    let alone = full_map_rows(&fresh.update(&scene, &wanted).unwrap());
+    assert!(beside != alone, "{beside}");
+    let off = engine.profile_difference(&fresh).unwrap();
+    assert!(off < 1e-6, "{off:e}");
+}
