@@ -135,7 +135,7 @@ impl Scatterer {
             }
         }
         for echo in out[begin..].iter_mut().filter(|e| e.is_heard()) {
-            *echo = self.obstacles.iter().fold(*echo, |echo, obstacle| behind(obstacle, wave, antennas, echo));
+            *echo = behind(&self.obstacles, wave, antennas, *echo);
         }
     }
 

@@ -65,31 +65,25 @@ impl Obstacle {
         Obstacle { shape: Convex::Corners(corners), centre, radius_metres }
     }
 
-    /// What passes from `antenna` to `place` at a wave of `radians_per_metre` there and back; `beyond_metres` is how far the way goes on
-    /// behind `place`, straight in the mirror of a face.
-    pub(super) fn passage(&self, radians_per_metre: f64, antenna: V, place: V, beyond_metres: f64) -> Passage {
-        let way = place - antenna;
-        let full = way.norm();
-        let whole = full + beyond_metres;
-        let unit = way * full.recip();
+    /// What passes on `way`.
+    fn passage(&self, way: &Way) -> Passage {
+        let Way { antenna, unit, widest_square, ref ray } = *way;
+        let full = ray.full;
         let to_centre = self.centre - antenna;
         let (along, across) = (to_centre.dot(unit), unit.cross(to_centre));
         if along + self.radius_metres < 0.0 || along - self.radius_metres > full || full == 0.0 {
             return Passage::CLEAR;
         }
-        // Nearest to the way an edge may be for its ripple to have faded: where a detour in the middle has w = FADE[1].
-        let faded = FADE[1] * FADE[1] / radians_per_metre;
         let beside = across.abs() - self.radius_metres;
-        if beside > 0.0 && beside * beside >= faded * (whole + faded) {
+        if beside > 0.0 && (beside * beside >= widest_square || ray.has_faded(along, self.radius_metres, beside)) {
             return Passage::CLEAR;
         }
-        let ray = Ray { full, whole, half_kappa: radians_per_metre / 2.0 };
         let mut edges = Edges::none();
         match &self.shape {
             Convex::Circle => {
                 if along > 0.0 && along < full {
-                    edges.meet(&ray, along, across - self.radius_metres);
-                    edges.meet(&ray, along, across + self.radius_metres);
+                    edges.meet(ray, along, across - self.radius_metres);
+                    edges.meet(ray, along, across + self.radius_metres);
                 }
             }
             Convex::Corners(corners) => {
@@ -97,13 +91,36 @@ impl Obstacle {
                 if corners.len() <= FEW {
                     let mut few = [(0.0, 0.0); FEW];
                     few.iter_mut().zip(corners).for_each(|(f, c)| *f = seen(c));
-                    edges.meet_outline(&ray, &few[..corners.len()]);
+                    edges.meet_outline(ray, &few[..corners.len()]);
                 } else {
-                    edges.meet_outline(&ray, &corners.iter().map(seen).collect::<Vec<_>>());
+                    edges.meet_outline(ray, &corners.iter().map(seen).collect::<Vec<_>>());
                 }
             }
         }
-        edges.passage(&ray)
+        edges.passage(ray)
+    }
+}
+
+/// One way from an antenna to where an echo comes from.
+struct Way {
+    antenna: V,
+    unit: V,
+    /// Square of how near to the way an edge may be for its ripple to have faded wherever it stands, square metres.
+    widest_square: f64,
+    ray: Ray,
+}
+
+impl Way {
+    /// The way from `antenna` to `place` at a wave of `radians_per_metre` there and back; `beyond_metres` is how far it goes on behind
+    /// `place`, straight in the mirror of a face.
+    fn new(radians_per_metre: f64, antenna: V, place: V, beyond_metres: f64) -> Self {
+        let way = place - antenna;
+        let full = way.norm();
+        let whole = full + beyond_metres;
+        // A detour in the middle of the way has w = FADE[1].
+        let faded = FADE[1] * FADE[1] / radians_per_metre;
+        let ray = Ray { full, whole, half_kappa: radians_per_metre / 2.0 };
+        Way { antenna, unit: way * full.recip(), widest_square: faded * (whole + faded), ray }
     }
 }
 
@@ -125,6 +142,14 @@ impl Ray {
         let l = l.clamp(0.0, self.full);
         let leg = |l: f64| q * q / (hypotenuse(l, q) + l);
         root(self.half_kappa * (leg(l) + leg(self.whole - l))).copysign(q)
+    }
+
+    /// Whether the ripple of all that stands at most `radius_metres` from a place `along` the way and farther than `beside` beside it has
+    /// faded: where that is nearest to the middle of the way, the measure is least.
+    fn has_faded(&self, along: f64, radius_metres: f64, beside: f64) -> bool {
+        let middle = (self.whole / 2.0).max(along - radius_metres).min(along + radius_metres);
+        // Rounding may not decide here, where the corners are not looked at.
+        self.measure(middle, beside) > FADE[1] * (1.0 + 1e-9)
     }
 }
 
@@ -189,21 +214,33 @@ impl Edges {
     }
 }
 
-/// An echo as it is behind an obstacle.
+/// An echo as it is behind obstacles.
+pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &Antennas, mut echo: PathEcho) -> PathEcho {
+    if obstacles.is_empty() {
+        return echo;
+    }
+    let place = V::from(echo.place_metres);
+    let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
+    let beyond = |other: V| if echo.is_mirrored { (place - other).norm() } else { 0.0 };
+    let way = |from: V, other: V| Way::new(wave.radians_per_metre, from, place, beyond(other));
+    let there = way(t, r);
+    let back = (antennas.transmitter_metres != antennas.receiver_metres).then(|| way(r, t));
+    for obstacle in obstacles {
+        let passed = obstacle.passage(&there);
+        let passed_back = back.as_ref().map(|way| obstacle.passage(way));
+        if passed != Passage::CLEAR || passed_back.is_some_and(|back| back != Passage::CLEAR) {
+            echo = past(passed, passed_back, echo);
+        }
+    }
+    echo
+}
+
+/// An echo whose way there passes an obstacle; `back` is the way back where that is another.
 ///
 /// A glint's way passes the obstacle, the mirror and the obstacle's image in it: two edges that act as one where the obstacle touches the
 /// face, and apart where it is far from it.
-pub(super) fn behind(obstacle: &Obstacle, wave: &Wave, antennas: &Antennas, echo: PathEcho) -> PathEcho {
-    let place = V::from(echo.place_metres);
-    let kappa = wave.radians_per_metre;
-    let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
-    let is_one = antennas.transmitter_metres == antennas.receiver_metres;
-    let beyond = |other: V| if echo.is_mirrored { (place - other).norm() } else { 0.0 };
-    let there = obstacle.passage(kappa, t, place, beyond(r));
-    let back = if is_one { there } else { obstacle.passage(kappa, r, place, beyond(t)) };
-    if there == Passage::CLEAR && back == Passage::CLEAR {
-        return echo;
-    }
+fn past(there: Passage, back: Option<Passage>, echo: PathEcho) -> PathEcho {
+    let (is_one, back) = (back.is_none(), back.unwrap_or(there));
     let more = (there.detour_metres + back.detour_metres) / 2.0;
     let (factor, power) = if echo.is_mirrored {
         let correlation = (there.part * back.part).max(0.0).sqrt().min(1.0);
