@@ -54,10 +54,12 @@ mod tests {
         let mut check = |scene: &Scene| {
             let seen = Seen::all(&radar, scene);
             assert_eq!(known.bound(&radar, &seen), plan::amplitude_bound_of(&radar, &seen));
+            plan::amplitude_bounds(&radar, seen.iter())
         };
-        check(&scene);
-        scene.objects[0].translate(0.3, 0.0);
-        check(&scene);
+        let behind_the_box = check(&scene)[1];
+        scene.objects[0].translate(8.0, 0.0);
+        let free = check(&scene)[1];
+        assert!(free > 2.0 * behind_the_box, "{behind_the_box:e}, {free:e}: the post was hidden");
         scene.objects.remove(0);
         check(&scene);
         scene.objects.insert(0, Object::Post(Post::new(0.0, 4.0, 0.1)));

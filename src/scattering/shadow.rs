@@ -4,7 +4,7 @@
 //! detour over its nearer edge, so that its phase is right; what stands far beside has no effect at all, to the last bit.
 
 use super::geometry::{V, hypotenuse, root};
-use super::transition::passing;
+use super::transition::{passing, transition};
 use super::{Antennas, PathEcho, Wave};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -198,10 +198,11 @@ impl Edges {
         }
         let part = l / (ray.whole - l).max(1e-9);
         if top > 0.0 && low < 0.0 {
-            let shorter = top.min(-low);
-            let turn = Complex64::cis(shorter * shorter);
+            // What passes both edges, turned back by the phase of the shorter detour.
+            let (shorter, longer) = (top.min(-low), top.max(-low));
+            let turn = Complex64::cis((shorter - longer) * (shorter + longer));
             let detour_metres = shorter * shorter / ray.half_kappa;
-            return Passage { factor: (passing(top) + passing(-low)) * turn, detour_metres, part };
+            return Passage { factor: transition(shorter) + transition(longer) * turn, detour_metres, part };
         }
         let near = top.abs().min(low.abs());
         let left = ((FADE[1] - near) / (FADE[1] - FADE[0])).clamp(0.0, 1.0);

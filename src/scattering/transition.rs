@@ -49,7 +49,8 @@ pub fn transition(w: f64) -> Complex64 {
         let x2 = 2.0 * (2.0 * w / FAR - 1.0);
         let (mut a, mut b) = ([0.0; 2], [0.0; 2]);
         for c in NEAR[1..].iter().rev() {
-            let next = [c[0] + x2 * a[0] - b[0], c[1] + x2 * a[1] - b[1]];
+            // Summed so that a step waits for one product and one sum of the step before.
+            let next = [x2 * a[0] + (c[0] - b[0]), x2 * a[1] + (c[1] - b[1])];
             (b, a) = (a, next);
         }
         let x = x2 / 2.0;

@@ -347,6 +347,11 @@ mod tests {
             let scale = amplitude * (radar.samples as f64).sqrt() / 2.0;
             assert!(worst > 0.0 && worst < tolerance / 2.0 * scale, "{tolerance:e}: {:e}", worst / scale);
             assert!(few.touched.count() < all.touched.count(), "{tolerance:e}: {}", few.touched.count());
+            for element in 0..radar.elements {
+                let profile = few.profile(element).unwrap();
+                let beyond = profile.iter().enumerate().filter(|(bin, _)| !few.touched.contains(*bin));
+                assert!(beyond.map(|(_, cell)| cell.norm()).sum::<f64>() == 0.0, "{tolerance:e}, element {element}");
+            }
         }
     }
 
