@@ -92,7 +92,7 @@ impl Kept {
 pub(super) struct Group<T, const W: usize> {
     objects: Vec<Seen>,
     pub(super) profiles: BlockProfiles<T, W>,
-    /// Largest [`Job::quiet`] that any of them was summed with.
+    /// Largest [`Job::quiet`] that any of them was summed with, where quiet echoes have few rows.
     quiet: f64,
     /// `None` until somebody asks.
     variance: Option<Vec<f64>>,
@@ -106,7 +106,9 @@ impl<T: Real, const W: usize> Group<T, W> {
     fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Seen], job: &Job<'_>) {
         let echoing = Echoing::seen(job.radar, objects);
         synthesis.range_profiles_beside(&echoing, job.quiet(), &mut self.profiles, job.task);
-        self.quiet = job.quiet();
+        // The other algorithms take quiet echoes as they take all.
+        let has_few_rows = synthesis.plan().algorithm == Algorithm::ClosedForm;
+        self.quiet = if has_few_rows { job.quiet() } else { 0.0 };
         self.variance = None;
         self.objects = objects.to_vec();
     }
