@@ -50,6 +50,18 @@ impl Job<'_> {
         if half.is_finite() { half } else { 0.0 }
     }
 
+    /// Bound of the amplitudes of these objects, and the same with every echo counted as three quarters of [`Job::quiet`] at least: added, it
+    /// may have been wrong by a quarter of the tolerance of twice that, and taken away by a quarter of the tolerance of that.
+    fn leaving(&self, objects: &[Seen]) -> [f64; 2] {
+        let bounds = plan::amplitude_bounds(self.radar, objects.iter());
+        let counted = objects.iter().zip(&bounds).map(|(one, bound)| {
+            let (count, least) = (one.echo_count() as f64, 0.75 * self.quiet());
+            // One echo of so many has the mean at least.
+            bound + least * if *bound >= least * count { (count - 1.0).max(0.0) } else { count }
+        });
+        [bounds.iter().sum(), counted.sum()]
+    }
+
     /// What is said of maps of which these rows were made.
     fn made(&self, rows: &Rows, over_noise: bool) -> String {
         let all = self.radar.samples;
@@ -277,9 +289,8 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 0.0
             } else {
                 // What is taken away was evaluated another way than when it was added.
-                let leaving = plan::amplitude_bound_of(job.radar, &change.leaving);
-                let quiet = job.quiet() * change.leaving.iter().map(Seen::echo_count).sum::<usize>() as f64;
-                2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * (leaving + quiet)
+                let [leaving, counted] = job.leaving(&change.leaving);
+                2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * counted
             };
             let rounding = built.rounding + more;
             (change, rounding, rounding <= limit)

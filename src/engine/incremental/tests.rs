@@ -235,6 +235,23 @@ fn dragging_evaluates_the_dragged_object_alone() {
     }
 }
 
+/// Over no floor too, where quiet echoes are taken as more than they are.
+#[test]
+fn dragging_one_of_three_leaves_two_as_they_were() {
+    let normalisation = Normalisation::DynamicRange(Decibels(100.0));
+    let wanted = Wanted { floor: Floor::Exact, normalisation, ends: false, ..Wanted::default() };
+    let mut engine = Engine::new(Radar { elements: 64, end_elements: 4, ..Radar::default() });
+    let mut scene = Scene::of_points([(-30.0, 2.4), (7.0, 22.4), (-17.0, 9.4)]);
+    engine.update(&scene, &wanted).unwrap();
+    for step in 0..4 {
+        scene.objects[0].translate(0.01, 0.0);
+        let frame = engine.update(&scene, &wanted).unwrap();
+        let signal = frame.report.stages.iter().find(|s| s.stage == Stage::Signal).unwrap();
+        let Outcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
+        assert!(what.contains(" of 3 reflectors"), "step {step}: {what}");
+    }
+}
+
 /// All three maps of two frames.
 fn worst_lambda(a: &Frame, b: &Frame) -> f32 {
     let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
