@@ -43,15 +43,16 @@ impl Job<'_> {
         self.wanted.floor.level_variance(self.radar).map_or(0.0, |variance| 10.0 * variance.sqrt())
     }
 
-    /// Half the mean amplitude of the scene's echoes. Echoes may each be wrong by the tolerance of it, so that all together are wrong by half as
-    /// much again as without it; [`Group::quiet`] may be twice that.
+    /// Half the mean amplitude of the scene's echoes. The error of each echo may be the tolerance times this amplitude, even if the echo is
+    /// weaker. The error of the sum grows by half at most. [`Group::quiet`] may be twice as large.
     fn quiet(&self) -> f64 {
         let half = 0.5 * self.amplitude / self.scene.echo_count().max(1) as f64;
         if half.is_finite() { half } else { 0.0 }
     }
 
-    /// Bound of the amplitudes of these objects, and the same with every echo counted as three quarters of [`Job::quiet`] at least: added, it
-    /// may have been wrong by a quarter of the tolerance of twice that, and taken away by a quarter of the tolerance of that.
+    /// Bound of the amplitudes of these objects, and the same with every echo counted as three quarters of [`Job::quiet`] at least. A weak echo
+    /// has one error from when it was added, a quarter of the tolerance times twice that amplitude. It has another from when it is taken away, a
+    /// quarter of the tolerance times that amplitude.
     fn leaving(&self, objects: &[Seen]) -> [f64; 2] {
         let bounds = plan::amplitude_bounds(self.radar, objects.iter());
         let counted = objects.iter().zip(&bounds).map(|(one, bound)| {
@@ -281,7 +282,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let total = job.scene.echo_count();
         let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
         let usable = self.built.as_ref().filter(|b| b.tolerance <= job.plan.tolerance && b.forced == job.forced);
-        // Beside something loud that is gone now, the others were summed too coarsely.
+        // Where a strong object is gone, the others were summed with too large an error.
         let usable = usable.filter(|_| self.rest.quiet <= 2.0 * job.quiet());
         let change = usable.map(|built| {
             let change = Change::between(&self.rest.objects, &self.active.objects, scene);

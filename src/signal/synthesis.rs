@@ -258,8 +258,8 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         self.range_profiles_beside(sources, 0.0, out, task);
     }
 
-    /// [`Synthesis::range_profiles`] of echoes that stand beside others: each may be wrong by the plan's tolerance times its amplitude, or
-    /// times `quiet` where that is more. With `quiet` the mean amplitude of all echoes, the sum is wrong by twice as much at most. Only the
+    /// [`Synthesis::range_profiles`] of echoes that stand beside others. The error of each may be the plan's tolerance times its amplitude, or
+    /// times `quiet` where that is more. If `quiet` is the mean amplitude of all echoes, the error of the sum doubles at most. Only the
     /// closed form makes use of it.
     pub fn range_profiles_beside<'a>(
         &self,
