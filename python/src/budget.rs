@@ -30,6 +30,36 @@ pub fn budget_of(any: &Bound<'_, PyAny>) -> PyResult<radar::LinkBudget> {
     Ok(made.cast::<LinkBudget>()?.get().0)
 }
 
+/// The figures of `Radar.link` by their names, decibels.
+pub fn link_figures<'py>(
+    radar: &radar::Radar,
+    py: Python<'py>,
+    range_metres: f64,
+    cross_section_dbsm: f64,
+    angle_degrees: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let are_finite = range_metres.is_finite() && cross_section_dbsm.is_finite() && angle_degrees.is_finite();
+    if !(are_finite && range_metres > 0.0) {
+        let said = format!(
+            "range_metres is {range_metres}, cross_section_dbsm {cross_section_dbsm}, angle_degrees {angle_degrees}"
+        );
+        return Err(value(format!("{said}; expected finite numbers and a range above 0")));
+    }
+    let link = radar.link(cross_section_dbsm, range_metres, angle_degrees.to_radians().cos());
+    let figures = PyDict::new(py);
+    for (key, decibels) in [
+        ("received_dbm", link.received.0),
+        ("noise_dbm", link.noise.0),
+        ("sample_snr_db", link.sample.0),
+        ("range_snr_db", link.range.0),
+        ("end_snr_db", link.end.0),
+        ("array_snr_db", link.array.0),
+    ] {
+        figures.set_item(key, decibels)?;
+    }
+    Ok(figures)
+}
+
 #[pymethods]
 impl LinkBudget {
     #[new]

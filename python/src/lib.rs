@@ -12,6 +12,7 @@ mod methods;
 mod objects;
 mod pool;
 mod radar;
+mod radar_fields;
 mod recording;
 mod scene;
 mod statistics;

@@ -1,10 +1,11 @@
 //! The radar.
 
 use crate::arrays::owned;
-use crate::budget::{LinkBudget, budget_of};
+use crate::budget::{LinkBudget, budget_of, link_figures};
 use crate::errors::value;
+use crate::radar_fields::{antennas_of, carrier_name, carrier_of, convention_of, fields_of, window_of};
+use apertura::radar;
 use apertura::radar::presets::{ALL, RadarPreset};
-use apertura::radar::{self, Carrier, Convention, WindowFunction};
 use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -41,54 +42,9 @@ use pyo3::types::{PyDict, PyType};
 #[derive(Clone, PartialEq)]
 pub struct Radar(pub radar::Radar);
 
-fn carrier_of(name: &str) -> PyResult<Carrier> {
-    match name {
-        "one-way" => Ok(Carrier::OneWay),
-        "two-way" => Ok(Carrier::TwoWay),
-        _ => Err(value(format!("carrier is \"{name}\"; expected one-way or two-way"))),
-    }
-}
-
-fn carrier_name(carrier: Carrier) -> &'static str {
-    match carrier {
-        Carrier::OneWay => "one-way",
-        Carrier::TwoWay => "two-way",
-    }
-}
-
-fn convention_of(name: &str) -> PyResult<Convention> {
-    Convention::by_name(name).ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
-}
-
-fn window_of(name: &str) -> PyResult<WindowFunction> {
-    let expected = || {
-        let names: Vec<_> = WindowFunction::ALL.iter().map(|w| w.name()).collect();
-        value(format!("window is \"{name}\"; expected {}", names.join(", ")))
-    };
-    WindowFunction::ALL.into_iter().find(|w| w.name() == name).ok_or_else(expected)
-}
-
 /// The radar given, or that of table 3.1.
 pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
     radar.map(|r| r.0.clone()).unwrap_or_default()
-}
-
-/// Transmitters and receivers by their places along the line and off it.
-fn antennas_of(along: [Option<Vec<f64>>; 2], off: [Option<Vec<f64>>; 2]) -> PyResult<Option<radar::Antennas>> {
-    let (transmitters, receivers) = match along {
-        [Some(transmitters), Some(receivers)] => (transmitters, receivers),
-        [None, None] if off.iter().any(Option::is_some) => {
-            let expected = "transmitter_y_metres and receiver_y_metres belong to lists of x; expected those beside them";
-            return Err(value(expected));
-        }
-        [None, None] => return Ok(None),
-        _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
-    };
-    let [of_transmitters, of_receivers] = off;
-    let of_transmitters = of_transmitters.unwrap_or_else(|| vec![0.0; transmitters.len()]);
-    let of_receivers = of_receivers.unwrap_or_else(|| vec![0.0; receivers.len()]);
-    let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
-    antennas.off_line(&of_transmitters, &of_receivers).map(Some).map_err(value)
 }
 
 #[pymethods]
@@ -154,7 +110,9 @@ impl Radar {
         let along = [transmitter_x_metres, receiver_x_metres];
         let says_elements = elements.is_some() || element_spacing_metres.is_some();
         if says_elements && along.iter().all(Option::is_some) {
-            return Err(value("elements and element_spacing_metres are those of the antennas' pairs; expected neither"));
+            return Err(value(
+                "elements and element_spacing_metres are those of the antennas' pairs; expected neither",
+            ));
         }
         let radar = match antennas_of(along, [transmitter_y_metres, receiver_y_metres])? {
             None => radar,
@@ -187,7 +145,7 @@ impl Radar {
     /// The same radar with other fields, named as in the constructor. A convention brings its carrier and its spacing with it.
     #[pyo3(signature = (**fields))]
     fn replace<'py>(&self, py: Python<'py>, fields: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let all = self.fields(py)?;
+        let all = fields_of(&self.0, py)?;
         if let Some(fields) = fields {
             let is_said = |key: &str| Ok::<_, PyErr>(fields.get_item(key)?.is_some_and(|v| !v.is_none()));
             if is_said("convention")? {
@@ -283,26 +241,7 @@ impl Radar {
         cross_section_dbsm: f64,
         angle_degrees: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let are_finite = range_metres.is_finite() && cross_section_dbsm.is_finite() && angle_degrees.is_finite();
-        if !(are_finite && range_metres > 0.0) {
-            let said = format!(
-                "range_metres is {range_metres}, cross_section_dbsm {cross_section_dbsm}, angle_degrees {angle_degrees}"
-            );
-            return Err(value(format!("{said}; expected finite numbers and a range above 0")));
-        }
-        let link = self.0.link(cross_section_dbsm, range_metres, angle_degrees.to_radians().cos());
-        let figures = PyDict::new(py);
-        for (key, decibels) in [
-            ("received_dbm", link.received.0),
-            ("noise_dbm", link.noise.0),
-            ("sample_snr_db", link.sample.0),
-            ("range_snr_db", link.range.0),
-            ("end_snr_db", link.end.0),
-            ("array_snr_db", link.array.0),
-        ] {
-            figures.set_item(key, decibels)?;
-        }
-        Ok(figures)
+        link_figures(&self.0, py, range_metres, cross_section_dbsm, angle_degrees)
     }
 
     /// "one-way" or "two-way".
@@ -434,9 +373,9 @@ impl Radar {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let usual = Radar(radar::Radar::default()).fields(py)?;
+        let usual = fields_of(&radar::Radar::default(), py)?;
         let mut parts = Vec::new();
-        for (key, own) in self.fields(py)? {
+        for (key, own) in fields_of(&self.0, py)? {
             if !own.eq(usual.get_item(&key)?)? {
                 parts.push(format!("{key}={}", own.repr()?));
             }
@@ -445,43 +384,6 @@ impl Radar {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {
-        Ok((py.import("apertura._pickle")?.getattr("radar")?, (self.fields(py)?,)))
-    }
-}
-
-impl Radar {
-    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let fields = PyDict::new(py);
-        fields.set_item("transmit_power_watts", self.0.transmit_power_watts)?;
-        fields.set_item("bandwidth_hz", self.0.bandwidth_hz)?;
-        fields.set_item("carrier_hz", self.0.carrier_hz)?;
-        match &self.0.antennas {
-            Some(antennas) => {
-                fields.set_item("transmitter_x_metres", antennas.transmitter_x_metres().to_vec())?;
-                fields.set_item("receiver_x_metres", antennas.receiver_x_metres().to_vec())?;
-                if !antennas.is_on_line() {
-                    fields.set_item("transmitter_y_metres", antennas.transmitter_y_metres().to_vec())?;
-                    fields.set_item("receiver_y_metres", antennas.receiver_y_metres().to_vec())?;
-                }
-            }
-            None => {
-                fields.set_item("element_spacing_metres", self.0.element_spacing_metres)?;
-                fields.set_item("elements", self.0.elements)?;
-            }
-        }
-        fields.set_item("end_elements", self.0.end_elements)?;
-        fields.set_item("samples", self.0.samples)?;
-        fields.set_item("chirp_seconds", self.0.chirp_seconds)?;
-        fields.set_item("chirps", self.0.chirps)?;
-        fields.set_item("chirp_interval_seconds", self.0.chirp_interval_seconds)?;
-        if self.0.focus_off_line {
-            fields.set_item("focus_off_line", true)?;
-        }
-        if let Some(budget) = self.0.budget {
-            fields.set_item("budget", LinkBudget(budget).into_pyobject(fields.py())?)?;
-        }
-        fields.set_item("carrier", carrier_name(self.0.carrier))?;
-        fields.set_item("window", self.0.window.name())?;
-        Ok(fields)
+        Ok((py.import("apertura._pickle")?.getattr("radar")?, (fields_of(&self.0, py)?,)))
     }
 }

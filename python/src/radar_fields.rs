@@ -1,0 +1,93 @@
+//! The fields of a radar as Python says them: names, lists of places and the dict that makes it again.
+
+use crate::budget::LinkBudget;
+use crate::errors::value;
+use apertura::radar::{self, Carrier, Convention, WindowFunction};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A carrier by its name.
+pub fn carrier_of(name: &str) -> PyResult<Carrier> {
+    match name {
+        "one-way" => Ok(Carrier::OneWay),
+        "two-way" => Ok(Carrier::TwoWay),
+        _ => Err(value(format!("carrier is \"{name}\"; expected one-way or two-way"))),
+    }
+}
+
+/// Name of a carrier.
+pub fn carrier_name(carrier: Carrier) -> &'static str {
+    match carrier {
+        Carrier::OneWay => "one-way",
+        Carrier::TwoWay => "two-way",
+    }
+}
+
+/// A convention by its name.
+pub fn convention_of(name: &str) -> PyResult<Convention> {
+    Convention::by_name(name).ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
+}
+
+/// A window by its name.
+pub fn window_of(name: &str) -> PyResult<WindowFunction> {
+    let expected = || {
+        let names: Vec<_> = WindowFunction::ALL.iter().map(|w| w.name()).collect();
+        value(format!("window is \"{name}\"; expected {}", names.join(", ")))
+    };
+    WindowFunction::ALL.into_iter().find(|w| w.name() == name).ok_or_else(expected)
+}
+
+/// Transmitters and receivers by their places along the line and off it.
+pub fn antennas_of(along: [Option<Vec<f64>>; 2], off: [Option<Vec<f64>>; 2]) -> PyResult<Option<radar::Antennas>> {
+    let (transmitters, receivers) = match along {
+        [Some(transmitters), Some(receivers)] => (transmitters, receivers),
+        [None, None] if off.iter().any(Option::is_some) => {
+            let expected =
+                "transmitter_y_metres and receiver_y_metres belong to lists of x; expected those beside them";
+            return Err(value(expected));
+        }
+        [None, None] => return Ok(None),
+        _ => return Err(value("transmitter_x_metres and receiver_x_metres go together; expected both or neither")),
+    };
+    let [of_transmitters, of_receivers] = off;
+    let of_transmitters = of_transmitters.unwrap_or_else(|| vec![0.0; transmitters.len()]);
+    let of_receivers = of_receivers.unwrap_or_else(|| vec![0.0; receivers.len()]);
+    let antennas = radar::Antennas::new(&transmitters, &receivers).map_err(value)?;
+    antennas.off_line(&of_transmitters, &of_receivers).map(Some).map_err(value)
+}
+
+/// What the constructor makes the radar of again: a dict of its arguments.
+pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    fields.set_item("transmit_power_watts", radar.transmit_power_watts)?;
+    fields.set_item("bandwidth_hz", radar.bandwidth_hz)?;
+    fields.set_item("carrier_hz", radar.carrier_hz)?;
+    match &radar.antennas {
+        Some(antennas) => {
+            fields.set_item("transmitter_x_metres", antennas.transmitter_x_metres().to_vec())?;
+            fields.set_item("receiver_x_metres", antennas.receiver_x_metres().to_vec())?;
+            if !antennas.is_on_line() {
+                fields.set_item("transmitter_y_metres", antennas.transmitter_y_metres().to_vec())?;
+                fields.set_item("receiver_y_metres", antennas.receiver_y_metres().to_vec())?;
+            }
+        }
+        None => {
+            fields.set_item("element_spacing_metres", radar.element_spacing_metres)?;
+            fields.set_item("elements", radar.elements)?;
+        }
+    }
+    fields.set_item("end_elements", radar.end_elements)?;
+    fields.set_item("samples", radar.samples)?;
+    fields.set_item("chirp_seconds", radar.chirp_seconds)?;
+    fields.set_item("chirps", radar.chirps)?;
+    fields.set_item("chirp_interval_seconds", radar.chirp_interval_seconds)?;
+    if radar.focus_off_line {
+        fields.set_item("focus_off_line", true)?;
+    }
+    if let Some(budget) = radar.budget {
+        fields.set_item("budget", LinkBudget(budget).into_pyobject(fields.py())?)?;
+    }
+    fields.set_item("carrier", carrier_name(radar.carrier))?;
+    fields.set_item("window", radar.window.name())?;
+    Ok(fields)
+}
