@@ -1,0 +1,23 @@
+//! Choices beside each other, of which one is chosen.
+
+use crate::app::state::Command;
+use eframe::egui::Ui;
+
+/// Draws a label a choice: `of` has the choice, its name and its tooltip. A click on another asks by `command`.
+pub(super) fn choices<T: PartialEq + Copy, C: Into<Command>>(
+    ui: &mut Ui,
+    chosen: T,
+    of: impl IntoIterator<Item = (T, &'static str, &'static str)>,
+    command: impl Fn(T) -> C,
+    asked: &mut Vec<Command>,
+) {
+    for (choice, name, tooltip) in of {
+        let mut response = ui.selectable_label(choice == chosen, name);
+        if !tooltip.is_empty() {
+            response = response.on_hover_text(tooltip);
+        }
+        if response.clicked() && choice != chosen {
+            asked.push(command(choice).into());
+        }
+    }
+}

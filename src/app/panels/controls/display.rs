@@ -1,0 +1,89 @@
+//! How maps and the scene are drawn: coordinates, scale, colours, marks, snapping, difference and failures.
+
+use super::choices::choices;
+use crate::app::state::{Command, DifferenceView, EditCommand, Projection, Settings, Units, ViewCommand};
+use crate::app::widgets::setting_row::{rarely, row_of};
+use crate::interact::Snap;
+use crate::lesson::Uses;
+use crate::picture::ColourMap;
+use eframe::egui::Ui;
+
+/// Draws the group's rows; of what a lesson does not use, none.
+pub(super) fn show(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
+    row_of(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
+        let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
+        choices(ui, settings.projection, of, ViewCommand::SetProjection, asked);
+    });
+    row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
+        let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
+        choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
+    });
+    row_of(ui, "Colours", "Colours of Λ", |ui| {
+        let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
+        choices(ui, settings.colours, of, ViewCommand::Colours, asked);
+    });
+    marks(ui, settings, uses, asked);
+    rarely(ui, if uses.output { "Snap, difference and failures" } else { "Snap to" }, |ui| {
+        snap(ui, settings, asked);
+        if uses.output {
+            difference(ui, settings, asked);
+            failures(ui, settings, asked);
+        }
+    });
+}
+
+fn snap(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
+        let of = [
+            (Snap::Off, "Off", ""),
+            (Snap::Metres(0.5), "0.5 m", ""),
+            (Snap::Cells, "Cells", "Whole range bins and columns"),
+        ];
+        choices(ui, settings.snap, of, EditCommand::SetSnap, asked);
+    });
+}
+
+fn difference(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+    row_of(ui, "Difference", "How the panel Difference is drawn", |ui| {
+        let DifferenceView { mut absolute, whole } = settings.difference;
+        let tip = "Its absolute value, or output minus target";
+        if ui.checkbox(&mut absolute, "absolute").on_hover_text(tip).changed() {
+            asked.push(ViewCommand::ToggleAbsoluteDifference.into());
+        }
+        let mut fits = !whole;
+        let tip = "On a scale that just holds it, or on one up to 1";
+        if ui.checkbox(&mut fits, "automatic scale").on_hover_text(tip).changed() {
+            asked.push(ViewCommand::ToggleWholeDifference.into());
+        }
+    });
+}
+
+/// What is drawn over maps and scene.
+fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
+    row_of(ui, "Mark", "What is drawn over maps and scene", |ui| {
+        let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: ViewCommand| {
+            if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
+                asked.push(command.into());
+            }
+        };
+        let tooltip = "The scene's own reflectors, over every map (R)";
+        mark(ui, settings.show_reflectors, "reflectors", tooltip, ViewCommand::ToggleReflectors);
+        if uses.output {
+            mark(ui, settings.show_found, "found", "Reflectors that the method found", ViewCommand::ToggleFound);
+        }
+        let tooltip = "What each end can see, in the scene (V)";
+        mark(ui, settings.show_fields_of_view, "views", tooltip, ViewCommand::ToggleFieldsOfView);
+        let tooltip = "What the formulas say of the selected reflector, over every map (T)";
+        mark(ui, settings.show_theory, "theory", tooltip, ViewCommand::ToggleTheory);
+    });
+}
+
+fn failures(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+    row_of(ui, "Failures", "Kinds of failure", |ui| {
+        let mut marked = settings.show_kinds;
+        let tip = "What became of every object: found, missed, merged, on the wrong tooth; and ghosts (H)";
+        if ui.checkbox(&mut marked, "mark").on_hover_text(tip).changed() {
+            asked.push(ViewCommand::ToggleKinds.into());
+        }
+    });
+}
