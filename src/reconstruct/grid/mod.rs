@@ -6,6 +6,7 @@ mod fista;
 mod layout_filter;
 mod matched_filter;
 mod omp;
+mod pursuit;
 
 pub use fista::Fista;
 pub use layout_filter::layout_matched_filter;
