@@ -4,7 +4,8 @@
 //!
 //! | file | what it reads |
 //! |---|---|
-//! | [`file`], `said_radar` | the TOML: `[radar]` and `[recording]` |
+//! | [`file`], `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
+//! | `samples` | what the data files hold, in the order of the elements |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `capture`, `profile` | int16 samples of a capture card, and the `.cfg` that set the radar up |
@@ -28,6 +29,8 @@ mod numpy;
 pub mod presets;
 mod profile;
 mod said_radar;
+mod said_recording;
+mod samples;
 mod signs;
 
 pub use axes::{AxesError, AxisKind, Chirp};

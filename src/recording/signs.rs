@@ -19,6 +19,11 @@ use serde::Deserialize;
 /// The format that is written down today; texts that name none are of format 1.
 pub const FORMAT: u32 = 2;
 
+/// The format of a text that names none.
+pub(super) fn oldest() -> u32 {
+    1
+}
+
 /// Where on the chirp the frequency `radar.carrier_hz` lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]

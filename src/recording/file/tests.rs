@@ -1,6 +1,8 @@
 use super::*;
 use crate::files::npz::write_npz;
-use ndarray::{Array3, ArrayD, Ix2, array};
+use crate::recording::Recorded;
+use crate::signal::TwoEnds;
+use ndarray::{Array2, Array3, ArrayD, Axis, Ix2, array, concatenate};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::fs;

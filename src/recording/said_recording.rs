@@ -1,0 +1,113 @@
+//! The table `[recording]` of a recording's TOML.
+
+use super::signs::{BeatSign, CarrierAt, Said, Signs, Sweep, oldest};
+use super::{AxisKind, Calibration, Capture, Chirp, Fault};
+use crate::radar::{End, Radar};
+use serde::Deserialize;
+use std::path::Path;
+
+/// What the table says; `check` holds it to the radar.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Table {
+    pub file: String,
+    pub array: Option<String>,
+    pub first: Option<String>,
+    pub last: Option<String>,
+    pub axes: Option<Vec<AxisKind>>,
+    pub chirp: Option<Chirp>,
+    #[serde(default)]
+    elements: Covers,
+    #[serde(default)]
+    pub missing: Vec<usize>,
+    pub range_metres: Option<f64>,
+    conjugate: Option<bool>,
+    carrier_at: Option<CarrierAt>,
+    beat_sign: Option<BeatSign>,
+    sweep: Option<Sweep>,
+    #[serde(default)]
+    pub reverse_elements: bool,
+    #[serde(default)]
+    pub calibration: Calibration,
+    pub capture: Option<Capture>,
+    /// Whether the text says places of antennas.
+    #[serde(skip)]
+    pub has_places: bool,
+}
+
+/// Whose samples a file holds.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Covers {
+    #[default]
+    All,
+    Ends,
+}
+
+impl Table {
+    /// What the TOML says must make sense by itself.
+    pub fn check(&self, radar: &Radar) -> Result<(), Fault> {
+        match (radar.samples, self.range_metres) {
+            (1, Some(range)) if range.is_finite() && range > 0.0 => {}
+            (1, Some(range)) => {
+                return Err(Fault::key("recording.range_metres", format!("is {range}"), "a number above 0"));
+            }
+            (1, None) => {
+                let why = "the range of the snapshot in metres: one sample cannot tell it";
+                return Err(Fault::key("recording.range_metres", "is missing", why));
+            }
+            (_, None) => {}
+            (_, Some(_)) => {
+                let why = "it only where radar.samples is 1: several samples tell ranges";
+                return Err(Fault::key("recording.range_metres", "is there", why));
+            }
+        }
+        let mut may_miss = vec![false; radar.elements];
+        self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);
+        for element in &self.missing {
+            if !may_miss.get_mut(*element).is_some_and(std::mem::take) {
+                let expected = format!("elements that the file is to hold, each once, below {}", radar.elements);
+                return Err(Fault::key("recording.missing", format!("names element {element}"), expected));
+            }
+        }
+        Ok(())
+    }
+
+    /// What is done about signs and the carrier; the carrier of a `.cfg` is that in the middle of the samples.
+    pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
+        let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
+        let carrier_at = match carrier_at {
+            Some(CarrierAt::FirstSample) if has_profile => {
+                let expected = "\"middle\", as the .cfg says, or no such key";
+                return Err(Fault::key("recording.carrier_at", "is \"first-sample\"", expected));
+            }
+            None if has_profile && format > oldest() && radar.samples > 1 => Some(CarrierAt::Middle),
+            said => said,
+        };
+        Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
+    }
+
+    /// Elements of the whole array that the file is to hold, in its order.
+    pub fn covered(&self, radar: &Radar) -> Vec<usize> {
+        match self.covers() {
+            Covers::All => (0..radar.elements).collect(),
+            Covers::Ends => End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect(),
+        }
+    }
+
+    /// Whose samples the file holds.
+    pub fn covers(&self) -> Covers {
+        if self.first.is_some() { Covers::Ends } else { self.elements }
+    }
+
+    /// Whether the file counts transmitters and receivers whose places the text says: then those say which element is which.
+    pub fn counts_pairs(&self) -> bool {
+        let has_both = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
+        self.has_places && (self.capture.is_some() || self.axes.as_ref().is_some_and(has_both))
+    }
+
+    /// How the name of the data file ends, in small letters.
+    pub fn extension(&self) -> String {
+        Path::new(&self.file).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
+    }
+}

@@ -1,0 +1,187 @@
+//! Samples in the data files of a recording, brought into the order of the array's elements.
+
+use super::axes::arrange;
+use super::numbers::Numbers;
+use super::numpy::{read_npy, read_npz};
+use super::said_recording::{Covers, Table};
+use super::signs::Signs;
+use super::{AxisKind, Capture, Fault, RadarProfile, Recorded, matlab};
+use crate::radar::Radar;
+use crate::signal::{BeatSignal, TwoEnds};
+use ndarray::{Array2, Axis, concatenate};
+use num_complex::Complex64;
+use std::collections::HashSet;
+use std::io::{self, Read, Seek};
+
+/// Something to read a data file from.
+pub(super) trait Source: Read + Seek {}
+
+impl<T: Read + Seek> Source for T {}
+
+/// Opens a data file by the name that the TOML gives it.
+pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
+
+/// Reads what the table names, with all that it says done; the radar says how many elements and samples there are to be.
+///
+/// # Errors
+/// [`Fault`] names the key or the array, and what was expected of it.
+pub(super) fn read_samples(
+    table: &Table,
+    radar: &Radar,
+    open: Open<'_>,
+    profile: Option<&RadarProfile>,
+    signs: Signs,
+) -> Result<Recorded, Fault> {
+    let rows = read(table, open, profile, signs)?;
+    let rows = in_element_order(table, radar, rows)?;
+    sorted(table, radar, rows)
+}
+
+/// The file's samples as `[elements, samples]`, with all that was said of them done.
+fn read(
+    table: &Table,
+    open: Open<'_>,
+    profile: Option<&RadarProfile>,
+    signs: Signs,
+) -> Result<Array2<Complex64>, Fault> {
+    let mut rows = match profile.zip(table.capture.as_ref()) {
+        Some((profile, capture)) => read_capture(table, open, capture, profile)?,
+        None => read_arrays(table, open)?,
+    };
+    if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        return Err(Fault::NotFinite { element, sample });
+    }
+    table.calibration.take_off(&mut rows)?;
+    if signs.conjugates {
+        rows.mapv_inplace(|v| v.conj());
+    }
+    if signs.reverses_samples {
+        rows.invert_axis(Axis(1));
+    }
+    if table.reverse_elements && !table.counts_pairs() {
+        rows.invert_axis(Axis(0));
+    }
+    Ok(rows)
+}
+
+/// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand;
+/// zeros at gaps.
+fn in_element_order(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
+    let Some(antennas) = radar.antennas.as_ref().filter(|_| table.counts_pairs()) else { return Ok(rows) };
+    let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
+    if rows.nrows() != transmitters * receivers {
+        let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
+        let (found, shape) = (rows.nrows(), rows.dim());
+        return Err(Fault::Count { what: "pairs of antennas", found, expected, shape });
+    }
+    let mut ordered = Array2::zeros((radar.elements, rows.ncols()));
+    for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
+        if let Some([t, r]) = pair {
+            element.assign(&rows.row(t * receivers + r));
+        }
+    }
+    Ok(ordered)
+}
+
+fn read_capture(
+    table: &Table,
+    open: Open<'_>,
+    capture: &Capture,
+    profile: &RadarProfile,
+) -> Result<Array2<Complex64>, Fault> {
+    if table.extension() != "bin" {
+        return Err(Fault::key("[recording.capture]", "is there", "it only beside a .bin file"));
+    }
+    let arrays = [("array", table.array.is_some()), ("first", table.first.is_some()), ("last", table.last.is_some())];
+    let others = [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some())];
+    if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, said)| *said) {
+        return Err(Fault::key(
+            &format!("recording.{key}"),
+            "is there",
+            "it not beside a .bin file: [recording.capture] says it all",
+        ));
+    }
+    let loops = capture.read(open(&table.file)?, profile)?;
+    let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
+    Ok(arrange(Numbers::Complex(loops.into_dyn()), &kinds, None)?)
+}
+
+fn read_arrays(table: &Table, open: Open<'_>) -> Result<Array2<Complex64>, Fault> {
+    let Some(axes) = &table.axes else {
+        let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
+        return Err(Fault::key("recording.axes", "is missing", kinds));
+    };
+    let array = |key: Option<&str>| Ok::<_, Fault>(arrange(numbers(table, open, key)?, axes, table.chirp)?);
+    match (&table.array, &table.first, &table.last) {
+        (array_key, None, None) => array(array_key.as_deref()),
+        (None, Some(first), Some(last)) => {
+            let (first, last) = (array(Some(first))?, array(Some(last))?);
+            if first.dim() != last.dim() {
+                let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
+                let (found, shape) = (last.len(), last.dim());
+                return Err(Fault::Count { what: "numbers in \"last\"", found, expected, shape });
+            }
+            // Equal shapes join.
+            concatenate(Axis(0), &[first.view(), last.view()])
+                .map_err(|e| Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\""))
+        }
+        _ => Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last")),
+    }
+}
+
+fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, Fault> {
+    let extension = table.extension();
+    let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
+    match extension.as_str() {
+        "npz" => Ok(read_npz(open(&table.file)?, named()?)?),
+        "mat" => Ok(matlab::read_mat(open(&table.file)?, named()?)?),
+        "npy" if key.is_some() => {
+            Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
+        }
+        "npy" => Ok(read_npy(open(&table.file)?)?),
+        "bin" => Err(Fault::key("[recording.capture]", "is missing", "it beside a .bin file")),
+        _ => Err(Fault::key(
+            "recording.file",
+            format!("is \"{}\"", table.file),
+            "a name ending in .npz, .npy, .mat or .bin",
+        )),
+    }
+}
+
+/// The rows of the file in their places of the array.
+fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
+    if rows.ncols() != radar.samples {
+        let expected = format!("{} as radar.samples says", radar.samples);
+        return Err(Fault::Count { what: "samples", found: rows.ncols(), expected, shape: rows.dim() });
+    }
+    let covered = table.covered(radar);
+    let missing: HashSet<usize> = table.missing.iter().copied().collect();
+    let present: Vec<usize> = covered.iter().copied().filter(|n| !missing.contains(n)).collect();
+    let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
+        let without = if present.len() < covered.len() {
+            format!(", or {} without the missing ones", present.len())
+        } else {
+            String::new()
+        };
+        let whose =
+            if table.covers() == Covers::All { "radar.elements says" } else { "radar.end_elements says for two ends" };
+        Fault::Count {
+            what: "elements",
+            found: rows.nrows(),
+            expected: format!("{} as {whose}{without}", covered.len()),
+            shape: rows.dim(),
+        }
+    })?;
+    let mut samples = Array2::zeros((radar.elements, radar.samples));
+    for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {
+        samples.row_mut(*element).assign(&row);
+    }
+    let signal = BeatSignal { samples };
+    Ok(match table.covers() {
+        Covers::All => Recorded::All(signal),
+        Covers::Ends => {
+            let TwoEnds { first, last } = signal.two_ends(radar);
+            Recorded::Ends(TwoEnds { first, last })
+        }
+    })
+}
