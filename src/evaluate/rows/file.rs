@@ -1,6 +1,6 @@
 //! Rows written as CSV. `read` reads them.
 
-use super::origin::Part;
+use super::part::Part;
 use super::{Column, Row};
 use std::io::{self, Write};
 
@@ -120,8 +120,9 @@ pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) 
 
 #[cfg(test)]
 mod tests {
+    use super::super::origin::Origin;
     use super::super::origin::tests::origin;
-    use super::super::origin::{Origin, Part};
+    use super::super::part::Part;
     use super::super::read::{read_rows, read_table};
     use super::super::tests::row;
     use super::super::{CfarRates, Row};

@@ -5,13 +5,17 @@ mod lacks;
 mod lines;
 mod order;
 mod origin;
+mod part;
 mod read;
+mod whole;
 
 pub use file::{RowWriter, header, write_rows};
 pub use lacks::{Lack, lacks};
 pub use order::{Histogram, MergeError, estimate, merge, sorted_by};
-pub use origin::{FORMAT, GivenTwice, Origin, Part, Scenes, Whole, radar_text};
+pub use origin::{FORMAT, Origin, Scenes, radar_text};
+pub use part::Part;
 pub use read::{RowError, Table, read_rows, read_table};
+pub use whole::{GivenTwice, Whole};
 
 use super::echoes::EchoTally;
 use crate::scene::generate::Kind;

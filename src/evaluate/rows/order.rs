@@ -1,6 +1,7 @@
 //! Rows of several runs as those of one, in any order, and figures of their columns.
 
-use super::origin::{Origin, Part};
+use super::origin::Origin;
+use super::part::Part;
 use super::{Column, Row, Value};
 use crate::evaluate::Estimate;
 use std::collections::BTreeMap;

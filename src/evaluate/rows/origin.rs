@@ -1,6 +1,7 @@
 //! The origin of a row beside its set, scene, seed and method: program, floor, radar, weights.
 
-use super::MAX_ROWS;
+use super::part::Part;
+use super::whole::{Whole, methods, sets};
 use crate::evaluate::shard::Shard;
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
@@ -8,13 +9,9 @@ use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Weights;
 use crate::scene::generate::{Purpose, Reading};
 use crate::signal::Floor;
-use std::fmt;
 
 /// Number of the format of rows. Tables from before it was counted have no such column, and don't say what made them.
 pub const FORMAT: u32 = 1;
-
-/// Most pairs of set and method that one run may have.
-const MAX_PAIRS: usize = 10_000;
 
 /// What stands for the carrier, the reading and the radar of scenes that say these themselves.
 const OF_FILE: &str = "file";
@@ -61,44 +58,6 @@ pub enum Scenes {
     },
 }
 
-/// All that a run was to find, shards of other machines included.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Whole {
-    /// Name and number of scenes of each set.
-    pub sets: Vec<(String, u32)>,
-    /// Names of the methods.
-    pub methods: Vec<String>,
-}
-
-/// A set or method that is named twice: its scenes would count twice.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{what} \"{name}\" is given twice; expected each {what} once")]
-pub struct GivenTwice {
-    what: &'static str,
-    name: String,
-}
-
-impl Whole {
-    /// The run over these sets, each with its number of scenes, by these methods.
-    ///
-    /// # Errors
-    /// [`GivenTwice`] names the first set or method that is there already.
-    pub fn new(sets: Vec<(String, u32)>, methods: Vec<String>) -> Result<Whole, GivenTwice> {
-        let names: Vec<&String> = sets.iter().map(|(name, _)| name).collect();
-        if let Some(name) = first_repeated(&names) {
-            return Err(GivenTwice { what: "set", name: name.clone() });
-        }
-        match first_repeated(&methods.iter().collect::<Vec<_>>()) {
-            Some(name) => Err(GivenTwice { what: "method", name: name.clone() }),
-            None => Ok(Whole { sets, methods }),
-        }
-    }
-}
-
-fn first_repeated<'a>(names: &[&'a String]) -> Option<&'a String> {
-    names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)).map(|(_, name)| *name)
-}
-
 /// What a radar is known by in rows: each constant that differs from table 3.1, the carrier's reading left out. Empty for table 3.1.
 pub fn radar_text(radar: &Radar) -> String {
     let fields = |radar: &Radar| match serde_json::to_value(radar) {
@@ -119,96 +78,6 @@ pub fn radar_text(radar: &Radar) -> String {
         .collect();
     differing.sort();
     differing.join(" ")
-}
-
-/// A named part of an [`Origin`], as it is written in its column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the fields of `Origin` say what they are")]
-pub enum Part {
-    Version,
-    Program,
-    Floor,
-    Normalisation,
-    Purpose,
-    Reading,
-    Carrier,
-    Radar,
-    Scenes,
-    Weights,
-    Optimiser,
-    Shard,
-    Whole,
-    Methods,
-    Cfar,
-}
-
-impl Part {
-    /// Every part, in the order of the file's columns.
-    pub const ALL: [Part; 15] = [
-        Part::Version,
-        Part::Program,
-        Part::Floor,
-        Part::Normalisation,
-        Part::Purpose,
-        Part::Reading,
-        Part::Carrier,
-        Part::Radar,
-        Part::Scenes,
-        Part::Weights,
-        Part::Optimiser,
-        Part::Shard,
-        Part::Whole,
-        Part::Methods,
-        Part::Cfar,
-    ];
-
-    /// Name of the column.
-    pub fn name(self) -> &'static str {
-        match self {
-            Part::Version => "version",
-            Part::Program => "program",
-            Part::Floor => "floor",
-            Part::Normalisation => "normalisation",
-            Part::Purpose => "purpose",
-            Part::Reading => "reading",
-            Part::Carrier => "carrier",
-            Part::Radar => "radar",
-            Part::Scenes => "scenes",
-            Part::Weights => "weights",
-            Part::Optimiser => "optimiser",
-            Part::Shard => "shard",
-            Part::Whole => "whole",
-            Part::Methods => "methods",
-            Part::Cfar => "cfar",
-        }
-    }
-
-    /// What should stand in the column, for messages.
-    fn expected(self) -> &'static str {
-        match self {
-            Part::Version => "1, the format of rows that this program reads",
-            Part::Program => "the version of the program that made the row",
-            Part::Floor => "thesis, exact, or another name that --floor takes",
-            Part::Normalisation => "min-max or db=RANGE",
-            Part::Purpose => "training, validation or test",
-            Part::Reading => "program, text or file",
-            Part::Carrier => "one-way, two-way or file",
-            Part::Shard => "I/N with I from 0 to N - 1",
-            Part::Whole => "the sets of the whole run with their numbers of scenes, as in 1 x 100; 2 x 100",
-            Part::Methods => "the methods of the whole run, as in live; nomp",
-            Part::Cfar => "a detector as --cfar takes it, as in ca:guard=4x0:training=16x0:rate=0.0001, or nothing",
-            Part::Radar | Part::Scenes | Part::Weights | Part::Optimiser => "text",
-        }
-    }
-}
-
-/// A name in a list whose names are separated by semicolons.
-fn listed(name: &str) -> String {
-    name.replace('%', "%25").replace(';', "%3B")
-}
-
-fn unlisted(name: &str) -> String {
-    name.trim().replace("%3B", ";").replace("%25", "%")
 }
 
 /// A name that serde gives a value without fields, as scene files have it.
@@ -252,12 +121,9 @@ impl Origin {
             Part::Weights => self.weights.as_ref().map(|w| w.sha256.clone()).unwrap_or_default(),
             Part::Optimiser => self.weights.as_ref().map(|w| w.optimiser.clone()).unwrap_or_default(),
             Part::Shard => self.shard.to_string(),
-            Part::Whole => {
-                let sets = self.whole.sets.iter().map(|(name, count)| format!("{} x {count}", listed(name)));
-                sets.collect::<Vec<_>>().join("; ")
-            }
+            Part::Whole => self.whole.sets_text(),
             Part::Cfar => self.cfar.map(|cfar| cfar.to_string()).unwrap_or_default(),
-            Part::Methods => self.whole.methods.iter().map(|m| listed(m)).collect::<Vec<_>>().join("; "),
+            Part::Methods => self.whole.methods_text(),
         }
     }
 
@@ -319,33 +185,6 @@ impl Origin {
             parts.extend([Part::Program, Part::Weights]);
         }
         parts.into_iter().find(|part| self.text(*part) != other.text(*part))
-    }
-}
-
-impl Whole {
-    /// The same, if no file asks for more work than a run can be.
-    fn bounded(self) -> Option<Whole> {
-        let scenes = self.sets.iter().all(|(_, count)| *count as usize <= MAX_ROWS);
-        (scenes && self.sets.len().saturating_mul(self.methods.len()) <= MAX_PAIRS).then_some(self)
-    }
-}
-
-fn sets(text: &str) -> Option<Vec<(String, u32)>> {
-    let set = |text: &str| {
-        let (name, count) = text.rsplit_once(" x ")?;
-        Some((unlisted(name), count.trim().parse().ok()?)).filter(|(name, _)| !name.is_empty())
-    };
-    text.split(';').map(set).collect()
-}
-
-fn methods(text: &str) -> Option<Vec<String>> {
-    let names: Vec<String> = text.split(';').map(unlisted).collect();
-    names.iter().all(|name| !name.is_empty()).then_some(names)
-}
-
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 
@@ -439,16 +278,5 @@ pub(super) mod tests {
         assert_eq!((a.unlike(&b, true, true), a.unlike(&b, true, false)), (Some(Part::Scenes), None));
         let shard = Origin { shard: "1/2".parse().unwrap(), ..origin() };
         assert_eq!(origin().unlike(&shard, true, true), None, "shards of one run are alike");
-    }
-
-    #[test]
-    fn what_is_given_twice_is_refused() {
-        let sets = |names: [&str; 2]| names.map(|n| (n.to_owned(), 3)).to_vec();
-        let methods = |names: [&str; 2]| names.map(str::to_owned).to_vec();
-        assert!(Whole::new(sets(["1", "2"]), methods(["live", "nomp"])).is_ok());
-        let twice = Whole::new(sets(["1", "1"]), methods(["live", "nomp"])).unwrap_err();
-        assert_eq!(twice.to_string(), "set \"1\" is given twice; expected each set once");
-        let twice = Whole::new(sets(["1", "2"]), methods(["live", "live"])).unwrap_err();
-        assert_eq!(twice.to_string(), "method \"live\" is given twice; expected each method once");
     }
 }

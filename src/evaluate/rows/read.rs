@@ -2,7 +2,8 @@
 
 use super::super::echoes::EchoTally;
 use super::lines::{LongLine, MAX_LINE_BYTES, ShortLines};
-use super::origin::{Origin, Part};
+use super::origin::Origin;
+use super::part::Part;
 use super::{CfarRates, Column, MAX_ROWS, Row};
 use std::io::{self, Read};
 use std::sync::Arc;
