@@ -1,22 +1,24 @@
 //! Methods over many scenes: what fills tables 4.1 to 4.3, row by row.
 
-use super::rows::{CfarRates, GivenTwice, Origin, Row, Scenes, Whole, radar_text};
-use super::sets::{Case, FolderError, SceneSet};
+mod error;
+mod job;
+
 pub use super::shard::Shard;
-use super::trial::{Answer, RowPlace, Trial};
+pub use error::CampaignError;
+
+use super::rows::{Origin, Row, Scenes, Whole, radar_text};
+use super::sets::{Case, FolderError, SceneSet};
+use super::trial::{Answer, Trial};
 use crate::maps::Normalisation;
-use crate::maps::cfar::{Cfar, CfarError};
+use crate::maps::cfar::Cfar;
 use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstructor, Request, untrained_noise};
+use crate::reconstruct::{Reconstructor, Request, untrained_noise};
 use crate::scattering::Echoing;
-use crate::scene::SceneError;
-use crate::scene::file::SceneFileError;
 use crate::scene::generate::{Generator, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
-use rand::SeedableRng;
-use rand::seq::SliceRandom;
-use rand_chacha::ChaCha8Rng;
+use error::set_name;
+use job::Job;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -57,59 +59,6 @@ impl Default for Campaign {
             normalisation: Normalisation::MinMax,
             cfar: None,
         }
-    }
-}
-
-/// Why a campaign stopped.
-#[derive(Debug, thiserror::Error)]
-pub enum CampaignError {
-    /// A scene can't be simulated.
-    #[error("scene {index} of {set}: {source}")]
-    Scene {
-        /// The set.
-        set: String,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: SceneError,
-    },
-    /// A scene can't be read.
-    #[error(transparent)]
-    File(#[from] SceneFileError),
-    /// A folder's scenes can't be read.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    /// A set or a method would count twice.
-    #[error(transparent)]
-    GivenTwice(#[from] GivenTwice),
-    /// The detector can't work on a scene's maps.
-    #[error("the detector on scene {index} of {set}: {source}")]
-    Detector {
-        /// The set.
-        set: String,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: CfarError,
-    },
-    /// A method failed.
-    #[error("{method} on scene {index} of {set}: {source}")]
-    Method {
-        /// Name of the method.
-        method: &'static str,
-        /// The set.
-        set: String,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: ReconstructError,
-    },
-}
-
-impl CampaignError {
-    /// Whether somebody asked it to stop.
-    pub fn is_cancelled(&self) -> bool {
-        matches!(self, CampaignError::Method { source: ReconstructError::Cancelled, .. })
     }
 }
 
@@ -231,7 +180,7 @@ impl Campaign {
                 let trials: Result<Vec<Trial>, _> =
                     batch.par_iter().map(|&index| self.trial(set, &generator, index)).collect();
                 for (trial, &index) in trials?.iter().zip(batch) {
-                    let job = Job { campaign: self, set, index, trial, request: &request, origins };
+                    let job = Job { cfar: self.cfar, seed: self.seed, set, index, trial, request: &request, origins };
                     if !std::mem::replace(&mut warm, true) {
                         // A method that fails here fails again where its row is asked for, if that is one of the rows.
                         methods.iter().for_each(|&method| drop(job.answer(method)));
@@ -289,68 +238,6 @@ impl Campaign {
             .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
         trial.footprints();
         Ok(trial)
-    }
-}
-
-fn set_name(set: &SceneSet) -> String {
-    match set {
-        SceneSet::Generated(kind) if kind.test_set().is_some() => format!("set {kind}"),
-        set => set.to_string(),
-    }
-}
-
-/// All methods on one scene.
-struct Job<'a> {
-    campaign: &'a Campaign,
-    set: &'a SceneSet,
-    index: u32,
-    trial: &'a Trial,
-    request: &'a Request,
-    /// One a method.
-    origins: &'a [Arc<Origin>],
-}
-
-impl Job<'_> {
-    fn answer(&self, method: &dyn Reconstructor) -> Result<Answer, CampaignError> {
-        self.trial.ask(method, self.request).map_err(|source| CampaignError::Method {
-            method: method.name(),
-            set: set_name(self.set),
-            index: self.index,
-            source,
-        })
-    }
-
-    /// P_D and P_FA by the campaign's detector, if it has one.
-    fn cfar_rates(&self, answer: &Answer) -> Result<Option<CfarRates>, CampaignError> {
-        let rates = self.campaign.cfar.map(|cfar| self.trial.cfar_rates(answer, &cfar));
-        rates.transpose().map_err(|source| CampaignError::Detector {
-            set: set_name(self.set),
-            index: self.index,
-            source,
-        })
-    }
-
-    /// The rows of the methods of these places, in their order.
-    fn rows(
-        &self,
-        methods: &[&dyn Reconstructor],
-        mut order: Vec<usize>,
-        on_row: &mut impl FnMut(&Row, &Trial, &Answer),
-    ) -> Result<Vec<Row>, CampaignError> {
-        let set = self.set.to_string();
-        let seed = if matches!(self.set, SceneSet::Generated(_)) { self.campaign.seed } else { 0 };
-        order.shuffle(&mut ChaCha8Rng::seed_from_u64(u64::from(self.index)));
-        let mut found = Vec::new();
-        for i in order {
-            let answer = self.answer(methods[i])?;
-            let place = RowPlace { set: &set, index: self.index, seed, origin: Some(&self.origins[i]) };
-            let mut row = self.trial.row(&place, methods[i].name(), &answer, self.set.false_alarm());
-            row.cfar = self.cfar_rates(&answer)?;
-            on_row(&row, self.trial, &answer);
-            found.push((i, row));
-        }
-        found.sort_by_key(|(i, _)| *i);
-        Ok(found.into_iter().map(|(_, row)| row).collect())
     }
 }
 

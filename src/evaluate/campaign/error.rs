@@ -1,0 +1,69 @@
+//! Why a campaign stopped, and what messages call its sets.
+
+use crate::evaluate::rows::GivenTwice;
+use crate::evaluate::sets::{FolderError, SceneSet};
+use crate::maps::cfar::CfarError;
+use crate::reconstruct::ReconstructError;
+use crate::scene::SceneError;
+use crate::scene::file::SceneFileError;
+
+/// Why a campaign stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum CampaignError {
+    /// A scene can't be simulated.
+    #[error("scene {index} of {set}: {source}")]
+    Scene {
+        /// The set.
+        set: String,
+        /// Number of the scene.
+        index: u32,
+        /// Why.
+        source: SceneError,
+    },
+    /// A scene can't be read.
+    #[error(transparent)]
+    File(#[from] SceneFileError),
+    /// A folder's scenes can't be read.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// A set or a method would count twice.
+    #[error(transparent)]
+    GivenTwice(#[from] GivenTwice),
+    /// The detector can't work on a scene's maps.
+    #[error("the detector on scene {index} of {set}: {source}")]
+    Detector {
+        /// The set.
+        set: String,
+        /// Number of the scene.
+        index: u32,
+        /// Why.
+        source: CfarError,
+    },
+    /// A method failed.
+    #[error("{method} on scene {index} of {set}: {source}")]
+    Method {
+        /// Name of the method.
+        method: &'static str,
+        /// The set.
+        set: String,
+        /// Number of the scene.
+        index: u32,
+        /// Why.
+        source: ReconstructError,
+    },
+}
+
+impl CampaignError {
+    /// Whether somebody asked it to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, CampaignError::Method { source: ReconstructError::Cancelled, .. })
+    }
+}
+
+/// What a message calls a set.
+pub(super) fn set_name(set: &SceneSet) -> String {
+    match set {
+        SceneSet::Generated(kind) if kind.test_set().is_some() => format!("set {kind}"),
+        set => set.to_string(),
+    }
+}
