@@ -1,7 +1,8 @@
 //! Scene files on disk.
 
 use super::content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError};
-use super::text::{from_bytes, to_toml, to_toml_beside};
+use super::read::from_bytes;
+use super::write::{to_toml, to_toml_beside};
 use crate::files::{read_bounded, write_bytes};
 use crate::radar::Radar;
 use crate::scene::npz;

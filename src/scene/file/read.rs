@@ -1,14 +1,14 @@
-//! Scenes as TOML: written for people, read with errors that name the line.
+//! Scenes read from TOML, with errors that name the line.
 //!
 //! A text may begin with `format = 1`. It is not written: whatever needs more than that format has is written with a higher number, which
 //! older programs name in their message.
 
 use super::content::{SceneFile, SceneTextError, one_line};
 use super::objects::objects;
-use crate::radar::{Convention, Radar};
-use crate::scene::{Disturbances, Object, Scene, SceneError, yes};
+use crate::radar::Radar;
+use crate::scene::{Disturbances, Scene, SceneError, yes};
+use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
@@ -18,64 +18,6 @@ const FORMAT: i64 = 1;
 
 /// Most values and tables that a text may ask for, told by the marks that come with each: the largest scene needs some three million.
 const MAX_MARKS: usize = 4_000_000;
-
-/// The scene as text; only what differs from table 3.1 is said of the radar.
-///
-/// # Errors
-/// When a number is one that TOML can't hold (an integer above 2^63).
-pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
-    #[derive(Serialize)]
-    struct Document<'a> {
-        #[serde(skip_serializing_if = "str::is_empty")]
-        name: &'a str,
-        #[serde(skip_serializing_if = "str::is_empty")]
-        notes: &'a str,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        noise_seed: Option<u64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        shadows: Option<bool>,
-        #[serde(skip_serializing_if = "toml::Table::is_empty")]
-        radar: toml::Table,
-        #[serde(skip_serializing_if = "Disturbances::is_none")]
-        disturbances: &'a Disturbances,
-        object: &'a [Object],
-    }
-    let Scene { name, notes, noise_seed, shadows, disturbances, objects } = &file.scene;
-    let shadows = Some(*shadows).filter(|shadows| !shadows);
-    let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
-    let radar = radar_table(&file.radar)?;
-    toml::to_string_pretty(&Document { name, notes, noise_seed, shadows, radar, disturbances, object: objects })
-}
-
-/// What differs from table 3.1. The physical convention is said by its name where the spacing is its own.
-fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
-    let usual = toml::Table::try_from(Radar::default())?;
-    let mut table = toml::Table::try_from(radar)?;
-    table.retain(|key, value| usual.get(key) != Some(value));
-    let convention = radar.convention();
-    if convention == Convention::Physical && radar.element_spacing_metres == radar.filled_spacing_metres() {
-        table.remove("carrier");
-        table.remove("element_spacing_metres");
-        table.insert("convention".to_owned(), convention.name().into());
-    }
-    if !radar.is_monostatic() {
-        // The antennas say these.
-        table.remove("elements");
-        table.remove("element_spacing_metres");
-    }
-    Ok(table)
-}
-
-/// [`to_toml`] with a further table, called `key`, after it.
-///
-/// # Errors
-/// As [`to_toml`].
-pub fn to_toml_beside(file: &SceneFile, key: &str, value: &impl Serialize) -> Result<String, toml::ser::Error> {
-    let beside = toml::Table::from_iter([(key.to_owned(), toml::Value::try_from(value)?)]);
-    let scene = to_toml(file)?;
-    // An empty list of objects is a line of its own and ends before the first table does.
-    Ok(format!("{scene}\n{}", toml::to_string_pretty(&beside)?))
-}
 
 /// Reads a scene from text and checks that it can be simulated.
 ///
@@ -103,7 +45,7 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
     Ok((file, other))
 }
 
-/// Reads what [`to_toml_beside`] wrote; the second is `None` where the text has no `key`.
+/// Reads what [`to_toml_beside`](super::to_toml_beside) wrote; the second is `None` where the text has no `key`.
 ///
 /// The scene need not be one that can be simulated: a user may have left a point on an element of the array.
 ///
@@ -255,59 +197,10 @@ fn utf8(bytes: &[u8]) -> Result<&str, SceneTextError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::write::to_toml;
     use super::*;
-    use crate::radar::Carrier;
-    use crate::scene::{Block, GaussianCluster, Line, Point, Polygon, Post, Wall};
+    use crate::scene::{Line, Object};
     use proptest::prelude::*;
-
-    fn scene() -> SceneFile {
-        let objects = vec![
-            Object::Point(Point { reflectivity: -2.5, ..Point::new(0.1 + 0.2, 1e-300) }),
-            Object::Line(Line { direction_degrees: 30.0, ..Line::vertical(1.0, 2.0, 0.1, 75) }),
-            Object::Gaussian(GaussianCluster { seed: 9, ..GaussianCluster::new([-5.0, 20.0], [1.0, 0.5], 40) }),
-            Object::Wall(Wall { roughness_millimetres: 0.3, ..Wall::new(1.0, 9.0, 4.0, 0.0) }),
-            Object::Box(Block { reflectivity: 0.5, seed: 3, ..Block::new([3.0, 9.0], [4.5, 1.8], 12.0) }),
-            Object::Post(Post::new(-3.0, 9.0, 0.1)),
-            Object::Polygon(Polygon::new(vec![[-9.0, 9.0], [-8.0, 9.0], [-8.0, 10.5]])),
-        ];
-        let scene = Scene {
-            name: "All \"three\"".to_owned(),
-            notes: "First line.\nSecond: 'x'.".to_owned(),
-            noise_seed: 9,
-            shadows: false,
-            disturbances: Disturbances {
-                interferer: Some(crate::scene::Interferer { x_metres: -1.5, ..Default::default() }),
-                mirror: Some(crate::scene::Mirror { reflection: 0.25, ..Default::default() }),
-                ..Disturbances::default()
-            },
-            objects,
-        };
-        SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, ..Radar::default() } }
-    }
-
-    #[test]
-    fn every_kind_round_trips() {
-        let text = to_toml(&scene()).unwrap();
-        assert!(text.contains("carrier = \"two-way\"") && !text.contains("bandwidth"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), scene());
-    }
-
-    #[test]
-    fn the_physical_convention_is_written_by_its_name() {
-        let radar = Radar { elements: 64, ..Radar::default() }.in_convention(Convention::Physical);
-        let file = SceneFile { radar, ..scene() };
-        let text = to_toml(&file).unwrap();
-        assert!(text.contains("convention = \"physical\"") && !text.contains("spacing_metres = 0.000"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), file);
-    }
-
-    #[test]
-    fn antennas_are_written_in_place_of_the_elements_they_make() {
-        let file = SceneFile { radar: Radar::default().of_pairs(3, 4).unwrap(), ..scene() };
-        let text = to_toml(&file).unwrap();
-        assert!(text.contains("receiver_x_metres") && !text.contains("elements = 12"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), file);
-    }
 
     #[test]
     fn a_line_without_a_direction_leads_straight_ahead() {
@@ -328,12 +221,6 @@ mod tests {
         assert_eq!((budget.antenna_gain_dbi, budget.half_power_width_degrees), (13.0, Some(70.0)));
         let written = to_toml(&file).unwrap();
         assert_eq!(from_toml(&written).unwrap(), file, "{written}");
-    }
-
-    #[test]
-    fn an_empty_file_is_an_empty_scene() {
-        assert_eq!(from_toml("").unwrap(), SceneFile::default());
-        assert_eq!(from_toml(&to_toml(&SceneFile::default()).unwrap()).unwrap(), SceneFile::default());
     }
 
     #[test]
@@ -419,33 +306,12 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_table_of_somebody_elses_travels_along() {
-        let beside = toml::Table::from_iter([("here".to_owned(), 3.into())]);
-        for file in [scene(), SceneFile::default()] {
-            let text = to_toml_beside(&file, "other", &beside).unwrap();
-            assert_eq!(from_toml_beside(&text, "other").unwrap(), (file, Some(beside.clone())));
-            assert!(from_toml(&text).unwrap_err().message.contains("other"));
-        }
-        let on_element =
-            "[radar]\nelements = 7\nend_elements = 3\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 0\n";
-        assert!(from_toml(on_element).is_err());
-        assert_eq!(from_toml_beside::<IgnoredAny>(on_element, "other").unwrap().0.scene.objects.len(), 1);
-    }
-
     proptest! {
         #[test]
         fn any_text_is_read_or_refused(text in "\\PC{0,40}(\n(\\[\\[object\\]\\]|kind = \"point\"|x_metres = [0-9e.-]{1,6}|\\PC{0,12})){0,6}") {
             if let Err(error) = from_toml(&text) {
                 prop_assert!(error.line <= text.matches('\n').count() + 1);
             }
-        }
-
-        #[test]
-        fn positions_keep_every_bit(x in -1e12f64..1e12, y in 1e-3f64..1e12, reflectivity in -1e100f64..1e100) {
-            let objects = vec![Object::Point(Point { reflectivity, ..Point::new(x, y) })];
-            let file = SceneFile { scene: Scene { objects, ..Scene::default() }, radar: Radar::default() };
-            prop_assert_eq!(from_toml(&to_toml(&file).unwrap()).unwrap(), file);
         }
     }
 }
