@@ -2,6 +2,8 @@
 
 mod bounds;
 mod cli;
+mod kept_rows;
+mod merge;
 mod messages;
 #[cfg(unix)]
 mod own_method;
@@ -13,3 +15,4 @@ mod same_bits;
 mod threshold;
 #[cfg(feature = "network")]
 mod training;
+mod worsen;

@@ -1,10 +1,9 @@
-//! `apertura evaluate --rows`, `--shard`, `--merge`, `--scenes`; a row's scene by hand; `apertura worsen`.
+//! `apertura evaluate --rows` and `--scenes`: what rows say, what is printed of them, and a row's scene by hand.
 
 use apertura::evaluate::rows::{Row, read_rows};
 use apertura::evaluate::{Estimate, squared_error};
 use apertura::files::npz::Npz;
 use apertura::maps::{LogMap, Normalisation, RangeAngleMap};
-use apertura::scene::file;
 use assert_cmd::Command;
 use ndarray::{Axis, Ix2, Ix3};
 use predicates::prelude::PredicateBooleanExt;
@@ -16,21 +15,21 @@ use tempfile::TempDir;
 /// The one whose figures are reproduced by hand.
 const METHOD: &str = if cfg!(feature = "network") { "live" } else { "matched-filter-incoherent" };
 
-fn apertura(folder: &TempDir, arguments: &str) -> Command {
+pub fn apertura(folder: &TempDir, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
     command.current_dir(folder).args(arguments.split_whitespace());
     command
 }
 
-fn folder() -> TempDir {
+pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-fn rows(folder: &TempDir, name: &str) -> Vec<Row> {
+pub fn rows(folder: &TempDir, name: &str) -> Vec<Row> {
     read_rows(std::fs::File::open(folder.path().join(name)).unwrap()).unwrap()
 }
 
-fn json(folder: &TempDir, arguments: &str) -> Value {
+pub fn json(folder: &TempDir, arguments: &str) -> Value {
     let output = apertura(folder, arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
@@ -42,12 +41,12 @@ fn same(a: &Value, b: f64) -> bool {
 }
 
 /// Rows without what differs from run to run: their times, and which shard found them.
-fn figures(rows: Vec<Row>) -> Vec<Row> {
+pub fn figures(rows: Vec<Row>) -> Vec<Row> {
     rows.into_iter().map(|r| Row { milliseconds: 0.0, origin: None, ..r }).collect()
 }
 
 /// A table's lines without the times at their ends.
-fn without_times(table: &[u8]) -> Vec<String> {
+pub fn without_times(table: &[u8]) -> Vec<String> {
     let text = String::from_utf8(table.to_vec()).unwrap();
     text.lines().skip(1).map(|l| l.rsplit_once(' ').map_or(l, |(rest, _)| rest).trim_end().to_owned()).collect()
 }
@@ -147,7 +146,7 @@ fn doubt_finds_failures_as_often_as_the_rows_say() {
 }
 
 /// The SE of what `reconstruct` wrote against what `maps` wrote.
-fn error_by_hand(folder: &Path) -> f64 {
+pub fn error_by_hand(folder: &Path) -> f64 {
     let open = |name: &str| Npz::open(&folder.join(name)).unwrap();
     let decades = open("maps.npz").reals::<Ix3>("polar_full").unwrap().index_axis_move(Axis(0), 0);
     let output = open("out.npz").reals::<Ix2>("net_output").unwrap();
@@ -213,170 +212,6 @@ fn what_is_wrong_with_rows_is_named() {
     }
 }
 
-/// The program, running.
-fn begin(folder: &TempDir, arguments: &str) -> std::process::Child {
-    std::process::Command::new(env!("CARGO_BIN_EXE_apertura"))
-        .current_dir(folder)
-        .args(arguments.split_whitespace())
-        .stdout(std::process::Stdio::null())
-        .stderr(std::process::Stdio::null())
-        .spawn()
-        .unwrap()
-}
-
-fn lines(folder: &TempDir, name: &str) -> usize {
-    std::fs::read(folder.path().join(name)).map_or(0, |bytes| bytes.iter().filter(|b| **b == b'\n').count())
-}
-
-#[test]
-fn what_is_given_twice_does_not_count_twice() {
-    let folder = folder();
-    for (arguments, part) in [
-        ("evaluate --method baseline,baseline --set 1 --count 3", "method \"baseline\" is given twice"),
-        ("evaluate --method baseline --set 1,2,1 --count 3", "set \"1\" is given twice"),
-    ] {
-        apertura(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
-    }
-}
-
-#[test]
-fn unlike_rows_are_not_merged() {
-    let folder = folder();
-    let evaluate = |more: &str| format!("evaluate --method baseline --set 1 --count 2 {more}");
-    apertura(&folder, &evaluate("--shard 0/2 --rows thesis.csv")).assert().success();
-    for (more, part) in [
-        ("--shard 1/2 --floor exact --rows other.csv", "floor is thesis in thesis.csv"),
-        ("--shard 1/2 --seed 5 --rows other.csv", "seed is 0 in thesis.csv"),
-        ("--shard 1/2 --carrier two-way --rows other.csv", "carrier is one-way in thesis.csv"),
-        ("--shard 1/2 --thesis-text --rows other.csv", "reading is program in thesis.csv"),
-    ] {
-        apertura(&folder, &evaluate(&format!("{more} --overwrite"))).assert().success();
-        let merge = apertura(&folder, "evaluate --merge thesis.csv other.csv").assert().failure().stdout("");
-        let told = String::from_utf8(merge.get_output().stderr.clone()).unwrap();
-        assert!(told.contains(part) && told.contains("in other.csv"), "{told}");
-    }
-}
-
-/// Rows as they were before they said what made them.
-fn older(folder: &TempDir, name: &str, to: &str) {
-    let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
-    let old = |line: &str| line.split(',').take(21).collect::<Vec<_>>().join(",") + "\n";
-    std::fs::write(folder.path().join(to), text.lines().map(old).collect::<String>()).unwrap();
-}
-
-#[test]
-fn older_rows_are_read_with_each_other_alone() {
-    let folder = folder();
-    for shard in ["0", "1"] {
-        apertura(&folder, &format!("evaluate --set 1 --count 4 --shard {shard}/2 --rows {shard}.csv"))
-            .assert()
-            .success();
-        older(&folder, &format!("{shard}.csv"), &format!("old-{shard}.csv"));
-    }
-    let both = apertura(&folder, "evaluate --merge old-0.csv old-1.csv").assert().success();
-    let both = both.stderr(contains("don't say what made them"));
-    let new = apertura(&folder, "evaluate --merge 0.csv 1.csv").assert().success();
-    let without_line = |output: &[u8]| without_times(output).into_iter().skip(1).collect::<Vec<_>>();
-    assert_eq!(without_line(&both.get_output().stdout), without_line(&new.get_output().stdout));
-    let mixed = apertura(&folder, "evaluate --merge old-0.csv 1.csv").assert().failure().stdout("");
-    mixed.stderr(contains("version is not recorded in old-0.csv").and(contains("1 in 1.csv")));
-    let gaps = apertura(&folder, "evaluate --merge old-1.csv").assert().failure();
-    gaps.stderr(contains("set 1, baseline: 2 of 4 scenes (number 0, 2)"));
-}
-
-#[test]
-fn what_lacks_of_a_run_is_listed() {
-    let folder = folder();
-    let evaluate = "evaluate --method baseline,bartlett --set 1,2 --count 4";
-    for shard in ["0", "1"] {
-        apertura(&folder, &format!("{evaluate} --shard {shard}/2 --rows {shard}.csv")).assert().success();
-    }
-    let path = |name: &str| folder.path().join(name);
-    let text = std::fs::read_to_string(path("1.csv")).unwrap();
-    let whole: Vec<&str> = text.lines().collect();
-    std::fs::write(path("cut.csv"), whole[..whole.len() - 1].join("\n") + "\n").unwrap();
-    std::fs::write(path("half.csv"), &text[..text.len() - 7]).unwrap();
-    std::fs::write(path("header.csv"), format!("{}\n", whole[0])).unwrap();
-    let one: Vec<&str> = whole.iter().copied().filter(|line| !line.contains(",bartlett,")).collect();
-    std::fs::write(path("method.csv"), one.join("\n") + "\n").unwrap();
-    for (files, part) in [
-        ("0.csv", "set 2, bartlett: 2 of 4 scenes (shard 1/2)"),
-        ("0.csv cut.csv", "set 2, bartlett: 1 of 4 scenes (number 3)"),
-        ("0.csv half.csv", "half.csv ends within a line"),
-        ("0.csv header.csv", "header.csv holds no row"),
-        ("0.csv method.csv", "set 1, bartlett: 2 of 4 scenes (shard 1/2)"),
-    ] {
-        apertura(&folder, &format!("evaluate --merge {files}")).assert().failure().stdout("").stderr(contains(part));
-        let partial = apertura(&folder, &format!("evaluate --merge {files} --partial --json")).assert().success();
-        let found: Value = serde_json::from_slice(&partial.stderr(contains(part)).get_output().stdout).unwrap();
-        assert!(found["missing"][0]["missing"].as_u64().unwrap() > 0, "{files}");
-    }
-    apertura(&folder, "evaluate --merge header.csv --partial").assert().failure().stderr(contains("holds no row"));
-    let found = json(&folder, "evaluate --merge 0.csv 1.csv --json");
-    assert_eq!((&found["missing"], &found["count"]), (&Value::Array(Vec::new()), &4.into()));
-    assert_eq!((&found["floor"], &found["carrier"]), (&"thesis".into(), &"one-way".into()), "rows say it");
-}
-
-#[test]
-fn a_killed_run_goes_on_where_its_rows_end() {
-    let folder = folder();
-    let evaluate = "evaluate --method baseline,bartlett,music --set 3 --count 8 --seed 2 --rows";
-    let mut run = begin(&folder, &format!("{evaluate} killed.csv"));
-    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(120);
-    while lines(&folder, "killed.csv") < 3 && std::time::Instant::now() < deadline {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    run.kill().unwrap();
-    run.wait().unwrap();
-    let kept = rows(&folder, "killed.csv");
-    assert!((2..24).contains(&kept.len()), "{} rows before the run was killed", kept.len());
-    // Half a line, as a run that is killed while it writes leaves it.
-    let path = folder.path().join("killed.csv");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, format!("{text}3,7,2,base")).unwrap();
-    let on = apertura(&folder, &format!("{evaluate} killed.csv")).assert().success();
-    let printed = without_times(&on.stderr(contains("of 24 rows of this run already")).get_output().stdout);
-    let whole = apertura(&folder, &format!("{evaluate} whole.csv")).assert().success();
-    assert_eq!(printed, without_times(&whole.get_output().stdout));
-    let all = rows(&folder, "killed.csv");
-    assert_eq!(figures(all.clone()), figures(rows(&folder, "whole.csv")));
-    assert!(kept.iter().all(|row| all.contains(row)), "the rows that were there are not found again");
-    let again = apertura(&folder, &format!("{evaluate} killed.csv")).assert().success();
-    again.stderr(contains("holds all 24 rows of this run"));
-    assert_eq!(rows(&folder, "killed.csv"), all);
-}
-
-#[test]
-fn rows_of_something_else_are_not_written_over() {
-    let folder = folder();
-    apertura(&folder, "evaluate --set 1 --count 1 --rows rows.csv").assert().success();
-    older(&folder, "rows.csv", "old.csv");
-    let text = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
-    let wide: String = text.lines().enumerate().map(|(i, line)| format!("note{i},{line}\n")).collect();
-    std::fs::write(folder.path().join("wide.csv"), wide).unwrap();
-    std::fs::write(folder.path().join("notes.csv"), "day,what\n1,rain\n").unwrap();
-    for (arguments, part) in [
-        ("--set 1 --count 1 --floor exact --rows rows.csv", "floor is thesis there and exact here"),
-        ("--set 1 --count 1 --seed 4 --rows rows.csv", "seed is 0 there and 4 here"),
-        ("--set 1 --count 2 --rows rows.csv", "whole is 1 x 1 there and 1 x 2 here"),
-        ("--set 1 --count 1 --method bartlett --rows rows.csv", "rows of set 1 by baseline"),
-        ("--set 1 --count 1 --rows old.csv", "an older program wrote them"),
-        ("--set 1 --count 1 --rows notes.csv", "there is no column"),
-        ("--set 1 --count 1 --rows wide.csv", "its columns are not those"),
-    ] {
-        let name = arguments.split_whitespace().last().unwrap();
-        let before = std::fs::read(folder.path().join(name)).unwrap();
-        let refused = apertura(&folder, &format!("evaluate {arguments}")).assert().failure().stdout("");
-        refused.stderr(contains(part).and(contains("--overwrite")));
-        assert_eq!(std::fs::read(folder.path().join(name)).unwrap(), before);
-    }
-    apertura(&folder, "evaluate --set 1 --count 1 --rows notes.csv --overwrite").assert().success();
-    assert_eq!(rows(&folder, "notes.csv").len(), 1);
-    apertura(&folder, "evaluate --set 2 --count 1 --rows two.csv").assert().success();
-    let merged = apertura(&folder, "evaluate --merge rows.csv --rows two.csv").assert().failure();
-    merged.stderr(contains("two.csv: it holds other rows"));
-}
-
 #[test]
 fn the_scenes_of_a_folder_must_stay_the_same() {
     let folder = folder();
@@ -435,55 +270,4 @@ fn a_detector_gets_columns_of_its_own() {
     apertura(&folder, "evaluate --merge with.csv --json").assert().success().stdout(contains("\"detector\": \"os:"));
     let wrong = apertura(&folder, "evaluate --cfar ca:training=0x0").assert().failure();
     wrong.stderr(contains("there are no training cells"));
-}
-
-#[test]
-fn worsen_writes_a_scene_as_bad_as_it_says() {
-    let folder = folder();
-    apertura(&folder, "scenes --set 2 --seed 3 --index 1 -o s.toml").assert().success();
-    let worsen = "worsen s.toml --method baseline --tries 24 --within 1.5 --seed 5 -o";
-    let output = apertura(&folder, &format!("{worsen} w.toml")).assert().success();
-    let text = String::from_utf8(output.get_output().stdout.clone()).unwrap();
-    apertura(&folder, &format!("{worsen} again.toml")).assert().success();
-    let [found, again] = ["w.toml", "again.toml"].map(|name| file::load(&folder.path().join(name)).unwrap().scene);
-    assert_eq!(found, again);
-    let start = file::load(&folder.path().join("s.toml")).unwrap().scene;
-    for (a, b) in start.objects.iter().zip(&found.objects) {
-        let ([ax, ay], [bx, by]) = (a.centre_metres(), b.centre_metres());
-        assert!((bx - ax).hypot(by - ay) <= 1.5 + 1e-9);
-    }
-    apertura(&folder, "maps w.toml -o maps.npz").assert().success();
-    apertura(&folder, "reconstruct maps.npz --method baseline -o out.npz").assert().success();
-    let after = text.lines().find(|l| l.starts_with("after")).unwrap();
-    assert!(after.contains(&format!("SE {:.1},", error_by_hand(folder.path()))), "{text}");
-    apertura(&folder, "worsen s.toml --method baseline --tries 8 --within 0 -o x.toml")
-        .assert()
-        .failure()
-        .stderr(contains("expected a number from 0.000001 to 1000"));
-}
-
-/// Within 2 m and a minute, five times the squared error for four of five starts of set 1.
-#[test]
-#[ignore = "minutes; prints what the search finds for the live network"]
-#[cfg(feature = "network")]
-fn worsen_finds_trouble_for_the_live_network() {
-    let folder = folder();
-    let mut factors: Vec<f64> = (0..5)
-        .map(|index| {
-            apertura(&folder, &format!("scenes --set 1 --seed 11 --index {index} -o s.toml")).assert().success();
-            let start = std::time::Instant::now();
-            let arguments = "worsen s.toml --method live --within 2 --minutes 1 -o w.toml";
-            let output = apertura(&folder, arguments).assert().success();
-            let text = String::from_utf8(output.get_output().stdout.clone()).unwrap();
-            let error = |line: &str| {
-                let line = text.lines().find(|l| l.starts_with(line)).unwrap();
-                line.split("SE ").nth(1).unwrap().split(',').next().unwrap().parse::<f64>().unwrap()
-            };
-            println!("{:.0} s\n{text}", start.elapsed().as_secs_f64());
-            error("after") / error("before")
-        })
-        .collect();
-    factors.sort_by(f64::total_cmp);
-    println!("{factors:.1?}");
-    assert!(factors[1] >= 5.0);
 }

@@ -1,0 +1,96 @@
+//! `apertura evaluate --shard` and `--merge`: rows of several runs are put together, or it is said why not.
+
+use super::rows::{apertura, folder, json, without_times};
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use serde_json::Value;
+use tempfile::TempDir;
+
+#[test]
+fn what_is_given_twice_does_not_count_twice() {
+    let folder = folder();
+    for (arguments, part) in [
+        ("evaluate --method baseline,baseline --set 1 --count 3", "method \"baseline\" is given twice"),
+        ("evaluate --method baseline --set 1,2,1 --count 3", "set \"1\" is given twice"),
+    ] {
+        apertura(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
+    }
+}
+
+#[test]
+fn unlike_rows_are_not_merged() {
+    let folder = folder();
+    let evaluate = |more: &str| format!("evaluate --method baseline --set 1 --count 2 {more}");
+    apertura(&folder, &evaluate("--shard 0/2 --rows thesis.csv")).assert().success();
+    for (more, part) in [
+        ("--shard 1/2 --floor exact --rows other.csv", "floor is thesis in thesis.csv"),
+        ("--shard 1/2 --seed 5 --rows other.csv", "seed is 0 in thesis.csv"),
+        ("--shard 1/2 --carrier two-way --rows other.csv", "carrier is one-way in thesis.csv"),
+        ("--shard 1/2 --thesis-text --rows other.csv", "reading is program in thesis.csv"),
+    ] {
+        apertura(&folder, &evaluate(&format!("{more} --overwrite"))).assert().success();
+        let merge = apertura(&folder, "evaluate --merge thesis.csv other.csv").assert().failure().stdout("");
+        let told = String::from_utf8(merge.get_output().stderr.clone()).unwrap();
+        assert!(told.contains(part) && told.contains("in other.csv"), "{told}");
+    }
+}
+
+/// Rows as they were before they said what made them.
+pub fn older(folder: &TempDir, name: &str, to: &str) {
+    let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let old = |line: &str| line.split(',').take(21).collect::<Vec<_>>().join(",") + "\n";
+    std::fs::write(folder.path().join(to), text.lines().map(old).collect::<String>()).unwrap();
+}
+
+#[test]
+fn older_rows_are_read_with_each_other_alone() {
+    let folder = folder();
+    for shard in ["0", "1"] {
+        apertura(&folder, &format!("evaluate --set 1 --count 4 --shard {shard}/2 --rows {shard}.csv"))
+            .assert()
+            .success();
+        older(&folder, &format!("{shard}.csv"), &format!("old-{shard}.csv"));
+    }
+    let both = apertura(&folder, "evaluate --merge old-0.csv old-1.csv").assert().success();
+    let both = both.stderr(contains("don't say what made them"));
+    let new = apertura(&folder, "evaluate --merge 0.csv 1.csv").assert().success();
+    let without_line = |output: &[u8]| without_times(output).into_iter().skip(1).collect::<Vec<_>>();
+    assert_eq!(without_line(&both.get_output().stdout), without_line(&new.get_output().stdout));
+    let mixed = apertura(&folder, "evaluate --merge old-0.csv 1.csv").assert().failure().stdout("");
+    mixed.stderr(contains("version is not recorded in old-0.csv").and(contains("1 in 1.csv")));
+    let gaps = apertura(&folder, "evaluate --merge old-1.csv").assert().failure();
+    gaps.stderr(contains("set 1, baseline: 2 of 4 scenes (number 0, 2)"));
+}
+
+#[test]
+fn what_lacks_of_a_run_is_listed() {
+    let folder = folder();
+    let evaluate = "evaluate --method baseline,bartlett --set 1,2 --count 4";
+    for shard in ["0", "1"] {
+        apertura(&folder, &format!("{evaluate} --shard {shard}/2 --rows {shard}.csv")).assert().success();
+    }
+    let path = |name: &str| folder.path().join(name);
+    let text = std::fs::read_to_string(path("1.csv")).unwrap();
+    let whole: Vec<&str> = text.lines().collect();
+    std::fs::write(path("cut.csv"), whole[..whole.len() - 1].join("\n") + "\n").unwrap();
+    std::fs::write(path("half.csv"), &text[..text.len() - 7]).unwrap();
+    std::fs::write(path("header.csv"), format!("{}\n", whole[0])).unwrap();
+    let one: Vec<&str> = whole.iter().copied().filter(|line| !line.contains(",bartlett,")).collect();
+    std::fs::write(path("method.csv"), one.join("\n") + "\n").unwrap();
+    for (files, part) in [
+        ("0.csv", "set 2, bartlett: 2 of 4 scenes (shard 1/2)"),
+        ("0.csv cut.csv", "set 2, bartlett: 1 of 4 scenes (number 3)"),
+        ("0.csv half.csv", "half.csv ends within a line"),
+        ("0.csv header.csv", "header.csv holds no row"),
+        ("0.csv method.csv", "set 1, bartlett: 2 of 4 scenes (shard 1/2)"),
+    ] {
+        apertura(&folder, &format!("evaluate --merge {files}")).assert().failure().stdout("").stderr(contains(part));
+        let partial = apertura(&folder, &format!("evaluate --merge {files} --partial --json")).assert().success();
+        let found: Value = serde_json::from_slice(&partial.stderr(contains(part)).get_output().stdout).unwrap();
+        assert!(found["missing"][0]["missing"].as_u64().unwrap() > 0, "{files}");
+    }
+    apertura(&folder, "evaluate --merge header.csv --partial").assert().failure().stderr(contains("holds no row"));
+    let found = json(&folder, "evaluate --merge 0.csv 1.csv --json");
+    assert_eq!((&found["missing"], &found["count"]), (&Value::Array(Vec::new()), &4.into()));
+    assert_eq!((&found["floor"], &found["carrier"]), (&"thesis".into(), &"one-way".into()), "rows say it");
+}
