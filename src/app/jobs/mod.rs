@@ -14,6 +14,7 @@ mod failures;
 mod frame_log;
 mod kinds;
 mod lessons;
+mod maps;
 mod method;
 mod method_times;
 mod painter;

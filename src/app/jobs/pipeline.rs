@@ -9,17 +9,15 @@
 //! The second method works only while the panel that compares it with the first is in sight.
 
 use super::detected::DETECTED;
+use super::maps::MapsJob;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
 use super::recorded::Unexplained;
-use super::rest::{Motion, Rest};
-use super::scene_maps::{MapsRequest, MapsResult, MapsState, Scores, Truth};
+use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
-use crate::engine::{Stage, Wanted};
+use crate::engine::Wanted;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::platform::Instant;
-use crate::signal::Unfinished;
-use crate::task::{Reply, Task, Worker};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
@@ -27,28 +25,11 @@ use std::time::Duration;
 /// What is older than this on screen is marked as old: less would flicker.
 const STALE: Duration = Duration::from_millis(400);
 
-/// Maps of a scene that has changed are given up when they took longer than this.
-const PATIENCE: Duration = Duration::from_millis(400);
-
-/// The workers, what they were asked last, and what they made last.
+/// The workers of maps and methods.
 pub struct Pipeline {
-    maps: Worker<MapsRequest, Result<MapsResult, Unfinished>>,
-    /// What every request at rest works on, until the scene changes.
-    settling: Task,
-    /// Whether maps were given up since the last ones arrived: the next come to an end, so that something is seen.
-    gave_up: bool,
+    maps: MapsJob,
     /// The first method and the second.
     methods: [MethodJob; 2],
-    asked: Option<MapsRequest>,
-    rest: Rest,
-    motion: Motion,
-    /// When the maps worker was asked for what it hasn't answered yet.
-    waiting: Option<Instant>,
-    result: Option<MapsResult>,
-    /// Time of the last maps that followed a change.
-    took: Option<Duration>,
-    scene_error: Option<String>,
-    requests: u64,
 }
 
 impl Pipeline {
@@ -57,23 +38,9 @@ impl Pipeline {
     /// # Errors
     /// When the system can't start a thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Pipeline> {
-        let work = |state: &mut MapsState, request: MapsRequest, task: &Task| state.work(request, task);
-        let maps = Worker::spawn("maps", MapsState::default, work, wake.clone())?;
+        let maps = MapsJob::start(wake.clone())?;
         let methods = [MethodJob::start("reconstruction", wake.clone())?, MethodJob::start("second method", wake)?];
-        Ok(Pipeline {
-            maps,
-            settling: Task::default(),
-            gave_up: false,
-            methods,
-            asked: None,
-            rest: Rest::default(),
-            motion: Motion::default(),
-            waiting: None,
-            result: None,
-            took: None,
-            scene_error: None,
-            requests: 0,
-        })
+        Ok(Pipeline { maps, methods })
     }
 
     /// The threshold of either method's output: the user's, or what fits the output on screen, or the method's own.
@@ -85,24 +52,10 @@ impl Pipeline {
 
     /// Takes in what the workers made since the last frame. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
-        let mut messages = Vec::new();
-        for reply in self.maps.replies() {
-            self.waiting = self.waiting.filter(|_| self.maps.is_busy());
-            match reply {
-                Reply::Done { result: Ok(mut result), elapsed, .. } => {
-                    result.took = elapsed;
-                    self.take_in_maps(result);
-                }
-                Reply::Done { result: Err(Unfinished::Scene(error)), .. } => self.scene_error = Some(error.to_string()),
-                // What was asked for instead is on its way.
-                Reply::Done { result: Err(Unfinished::Cancelled(_)), .. } => {}
-                Reply::Panicked { message, .. } => messages.push(format!(
-                    "Computing the maps failed ({message}). The last maps stay; undo the last change (Ctrl+Z) or change the scene."
-                )),
-            }
-        }
-        for method in &mut self.methods {
-            messages.extend(method.poll(self.result.as_ref()));
+        let Pipeline { maps, methods } = self;
+        let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.aim(maps)));
+        for method in methods {
+            messages.extend(method.poll(maps.result()));
         }
         messages
     }
@@ -118,26 +71,7 @@ impl Pipeline {
 
     /// What a method gets of the scene on screen, where somebody wants an output.
     pub fn basis(&self) -> Option<Basis> {
-        Basis::of(self.result.as_ref()?)
-    }
-
-    /// The samples of a scene's ends are the same bits whether it rests or not: what a method made of them before stays its output, but
-    /// aims for the latest target.
-    fn take_in_maps(&mut self, mut result: MapsResult) {
-        let before = self.result.as_ref().and_then(|r| r.frame.ends.as_ref());
-        if let (Some(ends), Some(before)) = (&mut result.frame.ends, before)
-            && **ends == **before
-        {
-            *ends = before.clone();
-        }
-        self.methods.iter_mut().for_each(|method| method.aim(&result));
-        let only_settled = result.request.at_rest && result.frame.report.ran(Stage::Signal);
-        if !only_settled || self.took.is_none() {
-            self.took = Some(result.took);
-        }
-        self.result = Some(result);
-        self.scene_error = None;
-        self.gave_up = false;
+        Basis::of(self.maps.result()?)
     }
 
     /// Asks the workers for what the panels of this frame need, if that changed.
@@ -145,7 +79,7 @@ impl Pipeline {
         let looked_at = LookedAt::of(state);
         let request = self.maps_request(state, &looked_at);
         let is_recorded = request.recording.is_some();
-        self.ask_maps(request, state.editor.dragged().is_some());
+        self.maps.ask(request, state.editor.dragged().is_some());
         for slot in MethodSlot::BOTH {
             match looked_at.outputs[slot as usize] {
                 true => self.ask_method(state, slot, slot == MethodSlot::First && (looked_at.listed || is_recorded)),
@@ -155,7 +89,7 @@ impl Pipeline {
         }
     }
 
-    fn maps_request(&mut self, state: &State, looked_at: &LookedAt) -> MapsRequest {
+    fn maps_request(&self, state: &State, looked_at: &LookedAt) -> MapsRequest {
         let map = |kind| looked_at.pictures.contains(&kind);
         let all = looked_at.every_map;
         let output = looked_at.outputs.contains(&true);
@@ -170,8 +104,7 @@ impl Pipeline {
             full: map(MapKind::Target) || map(MapKind::TargetAbove) || output || map(MapKind::Unexplained),
             ends: output,
         };
-        let (scene, held) = (state.scene(), state.editor.dragged().is_some());
-        self.motion = self.rest.look(scene, state.radar(), settings.floor, held, Instant::now());
+        let scene = state.scene();
         let is_read = |slot: MethodSlot| looked_at.outputs[slot as usize];
         let pair = |slot: MethodSlot| {
             let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
@@ -179,7 +112,7 @@ impl Pipeline {
         };
         // An empty scene over noise has false alarms to count; one without noise has nothing.
         let is_noise = settings.floor.has_level();
-        let mut request = MapsRequest {
+        MapsRequest {
             document: state.editor.document().id(),
             radar: state.radar().clone(),
             scene: scene.clone(),
@@ -197,41 +130,12 @@ impl Pipeline {
             scores: output && (recording.is_some() || !scene.objects.is_empty() || is_noise),
             roc: looked_at.roc,
             recording,
-        };
-        // Maps that follow the hand come first: those at rest may take long, and would push a request that waits aside.
-        let follows = self.result.as_ref().is_some_and(|r| r.request.same_subject(&request));
-        request.at_rest = self.motion == Motion::AtRest && follows;
-        request
-    }
-
-    fn ask_maps(&mut self, request: MapsRequest, held: bool) {
-        if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
-            self.requests += 1;
-            if self.asked.as_ref().is_some_and(|a| !a.same_subject(&request)) {
-                self.make_way(held);
-            }
-            let task = if request.at_rest { self.settling.clone() } else { Task::default() };
-            self.maps.request_for(task, request.clone());
-            if !request.at_rest {
-                // Maps that are only computed once more are not old meanwhile.
-                self.waiting.get_or_insert_with(Instant::now);
-            }
-            self.asked = Some(request);
-        }
-    }
-
-    /// The scene has changed: what was only computed once more is given up at once, other maps where they take long and nothing is
-    /// held.
-    fn make_way(&mut self, held: bool) {
-        std::mem::take(&mut self.settling).cancel();
-        if !held && !self.gave_up {
-            self.gave_up = self.maps.cancel_older_than(PATIENCE);
         }
     }
 
     /// Asks for an output of the latest maps, unless it was asked for just that.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
-        let latest = self.result.as_ref().and_then(|r| {
+        let latest = self.maps.result().and_then(|r| {
             let (target, about) = (r.target(), (r.request.at_rest, r.request.document));
             // A recording of the two ends has none; a scene has one as soon as somebody wants it.
             (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target, about))
@@ -250,7 +154,7 @@ impl Pipeline {
 
     /// The latest maps.
     pub fn result(&self) -> Option<&MapsResult> {
-        self.result.as_ref()
+        self.maps.result()
     }
 
     /// Either method: its latest output, or why it has none.
@@ -271,14 +175,14 @@ impl Pipeline {
 
     /// The scene of the latest maps and its target, where it is one of reflectors and not a recording.
     pub fn truth(&self) -> Option<Truth> {
-        let MapsResult { request, frame, .. } = self.result.as_ref()?;
+        let MapsResult { request, frame, .. } = self.maps.result()?;
         let target = frame.full.clone().filter(|_| request.recording.is_none())?;
         Some(Truth { radar: request.radar.clone(), scene: request.scene.clone(), target })
     }
 
     /// Why the detector in use finds nothing.
     pub fn detector_error(&self) -> Option<&str> {
-        self.result.as_ref()?.detected.error.as_deref()
+        self.maps.result()?.detected.error.as_deref()
     }
 
     /// What says which cells of a method's output are detections: the output and its threshold, or a detector's map and the threshold in the
@@ -286,14 +190,14 @@ impl Pipeline {
     pub fn judged(&self, state: &State, slot: MethodSlot) -> Option<(&Arc<RangeAngleMap>, f32)> {
         let output = &self.method(slot).output()?.pair.output;
         let Some(cfar) = state.settings.cfar else { return Some((output, self.eta(state, slot))) };
-        let result = self.result.as_ref().filter(|r| r.request.cfar == Some(cfar))?;
+        let result = self.maps.result().filter(|r| r.request.cfar == Some(cfar))?;
         let is_of_it = result.request.pairs[slot as usize].as_ref().is_some_and(|p| Arc::ptr_eq(&p.output, output));
         Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTED))
     }
 
     /// The maps that can be cut.
     pub fn cut_maps(&self) -> Vec<CutMap> {
-        let frame = self.result.as_ref().map(|r| &r.frame);
+        let frame = self.maps.result().map(|r| &r.frame);
         let scale = frame.and_then(|f| f.full.as_ref()).map(|m| m.scale);
         let ready = [
             (MapKind::Input0, frame.and_then(|f| f.first.as_ref())),
@@ -311,18 +215,18 @@ impl Pipeline {
 
     /// What Lambda of the target on screen spans, decibels.
     pub fn range_db(&self) -> Option<f64> {
-        let scale = self.result.as_ref()?.frame.full.as_ref()?.scale;
+        let scale = self.maps.result()?.frame.full.as_ref()?.scale;
         Some(20.0 * (scale.peak - scale.floor))
     }
 
     /// What the reflectors on screen leave of the recording, where somebody looks at it.
     pub fn unexplained(&self) -> Option<&Unexplained> {
-        self.result.as_ref()?.unexplained.as_ref()?.as_ref().ok()
+        self.maps.result()?.unexplained.as_ref()?.as_ref().ok()
     }
 
     /// Why the reflectors can't be fitted to the recording.
     pub fn why_unexplained(&self) -> Option<&str> {
-        self.result.as_ref()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
+        self.maps.result()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
     /// Figures of the first method's output, against the target of the same scene.
@@ -333,12 +237,12 @@ impl Pipeline {
     /// Figures of either method's output, against the target of the same scene.
     pub fn scores_in(&self, slot: MethodSlot) -> Option<Scores> {
         self.method(slot).output()?;
-        self.result.as_ref()?.scores[slot as usize]
+        self.maps.result()?.scores[slot as usize]
     }
 
     /// Why the scene on screen can't be computed.
     pub fn scene_error(&self) -> Option<&str> {
-        self.scene_error.as_deref()
+        self.maps.scene_error()
     }
 
     /// Why the first method has no output for the scene on screen.
@@ -353,41 +257,37 @@ impl Pipeline {
 
     /// Requests sent to the maps worker: a test asks that an idle app sends none.
     pub fn requests(&self) -> u64 {
-        self.requests
+        self.maps.requests()
     }
 
     /// Whether any worker has something to do, or will as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
-        self.maps.is_busy() || self.methods.iter().any(MethodJob::is_busy) || self.rests_in().is_some()
+        self.maps.is_busy() || self.methods.iter().any(MethodJob::is_busy)
     }
 
     /// How long until the scene on screen rests; `None` where it does, or is held.
     pub fn rests_in(&self) -> Option<Duration> {
-        match self.motion {
-            Motion::RestsIn(left) => Some(left),
-            Motion::Held | Motion::AtRest => None,
-        }
+        self.maps.rests_in()
     }
 
     /// Whether the maps are those of the scene on screen at rest, as every command computes them.
     pub fn is_settled(&self) -> bool {
-        let latest = self.asked.as_ref().zip(self.result.as_ref());
-        latest.is_some_and(|(asked, result)| result.frame.settled && asked.same(&result.request))
+        self.maps.is_settled()
     }
 
     /// Whether they are being computed.
     pub fn is_settling(&self) -> bool {
-        self.maps.is_busy() && self.asked.as_ref().is_some_and(|asked| asked.at_rest) && !self.is_settled()
+        self.maps.is_settling()
     }
 
     /// Time of the last maps and pictures that followed a change.
     pub fn took(&self) -> Option<Duration> {
-        self.took
+        self.maps.took()
     }
 
     /// Whether somebody looks at an output, or would if there were one.
     pub fn wants_output(&self) -> bool {
-        self.asked.as_ref().is_some_and(|asked| asked.wanted.ends)
+        self.maps.wants_ends()
     }
 
     /// Whether the shown output belongs to something else than the shown maps.
@@ -397,13 +297,13 @@ impl Pipeline {
 
     /// Whether a map belongs to an earlier scene.
     pub fn is_outdated(&self, kind: MapKind) -> bool {
-        self.waiting.is_some() || kind.slot().is_some_and(|slot| self.method(slot).outdated().is_some())
+        self.maps.waiting().is_some() || kind.slot().is_some_and(|slot| self.method(slot).outdated().is_some())
     }
 
     /// Whether a map has belonged to an earlier scene for so long that it must be told.
     pub fn is_stale(&self, kind: MapKind) -> bool {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
-        old(self.waiting) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
+        old(self.maps.waiting()) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
     }
 }
 
