@@ -22,7 +22,7 @@ pub use log_map::{LOG_GUARD, LogMap, guard};
 pub use spectra::{Spectrum, centred_spectrum};
 pub use transform::{
     Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, channels_range_transform, range_transform,
-    windowed_range_transform,
+    range_transform_in_place, windowed_range_transform,
 };
 
 use crate::radar::{BuiltArray, End, Radar};

@@ -47,6 +47,11 @@ pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
     channels_range_transform(radar, signal.samples.view())
 }
 
+/// [`range_transform`] in the memory of the samples, where these are not needed any more.
+pub fn range_transform_in_place(radar: &Radar, signal: BeatSignal) -> RangeProfiles {
+    windowed_in_place(radar, signal.samples, &radar.window.weights(radar.samples))
+}
+
 /// Windowed range profiles of any channels, `[channels, samples]` to `[channels, range bins]`.
 pub fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> RangeProfiles {
     windowed_range_transform(radar, samples, &radar.window.weights(radar.samples))
@@ -54,10 +59,17 @@ pub fn channels_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64
 
 /// Range profiles of any channels under a window of `radar.samples` weights.
 pub fn windowed_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64>, window: &[f64]) -> RangeProfiles {
+    windowed_in_place(radar, samples.as_standard_layout().into_owned(), window)
+}
+
+/// `profiles` holds the samples; in the standard layout they stay where they are.
+fn windowed_in_place(radar: &Radar, mut profiles: Array2<Complex64>, window: &[f64]) -> RangeProfiles {
+    if !profiles.is_standard_layout() {
+        profiles = profiles.as_standard_layout().into_owned();
+    }
     let fft = Simd::chosen().forward_fft(radar.samples);
     let scale = (radar.samples as f64).sqrt().recip();
     let window: Vec<f64> = window.iter().map(|w| w * scale).collect();
-    let mut profiles = samples.as_standard_layout().into_owned();
     profiles.outer_iter_mut().into_par_iter().for_each_init(
         || vec![Complex64::default(); fft.get_inplace_scratch_len()],
         |scratch, mut row| {

@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use super::features::{FeatureExtractor, LiveInput};
 use crate::evaluate::sets::SceneSet;
-use crate::maps::{fast::whole_map, range_transform};
+use crate::maps::{fast::whole_map, range_transform_in_place};
 use crate::network::floors::Floors;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
@@ -100,7 +100,7 @@ impl Examples {
             simulated(&scene)?.two_ends(&self.radar)
         };
         let input = self.extractor.extract(&ends).map_err(|source| ExampleError::Input { index, source })?;
-        let map = whole_map(&self.radar, &range_transform(&self.radar, &signal));
+        let map = whole_map(&self.radar, &range_transform_in_place(&self.radar, signal));
         let decades = map.mapv_into(|v| (f64::from(v) - input.gain) as f32);
         Ok(Example { kind, floor, ends, input, decades })
     }
