@@ -179,13 +179,34 @@ class Doubt(nn.Module):
         super().__init__()
         self.conv1 = Conv(c, hidden)
         self.conv2 = nn.Conv2d(hidden, FINE // GRID, 1)
+        self.scene = nn.Linear(hidden, 1)
         with torch.no_grad():
             self.conv2.weight.mul_(0.1)
             self.conv2.bias.fill_(-1.5)
+            self.scene.weight.zero_()
+            self.scene.bias.zero_()
+
+    def parts(self, picture):
+        """log10 of the error of each cell, [B, 512, 256], and what the head's hidden layer holds on average, [B, hidden]."""
+        hidden = F.relu(self.conv1(picture))
+        return shuffle_cols(self.conv2(hidden), FINE // GRID)[:, 0].float(), hidden.mean((2, 3)).float()
 
     def forward(self, picture):
-        """log10 of the error in Lambda that nine of ten cells stay below, [B, 512, 256]: one number for four columns."""
-        return shuffle_cols(self.conv2(F.relu(self.conv1(picture))), FINE // GRID)[:, 0].float()
+        """log10 of the error in Lambda that nine of ten cells stay below, [B, 512, 256]: one number for four columns.
+
+        The mean of the hidden layer adds the same to every cell of a scene."""
+        of_cells, of_scene = self.parts(picture)
+        return of_cells + self.scene(of_scene)[:, :, None]
+
+
+#: Decades between which the head's cells count, and how far a scene's part may go.
+CELL_DECADES, SCENE_DECADES = (-4.0, 0.0), 0.5
+
+
+def expected_error(of_cells, of_scene):
+    """The error of Lambda that is said, at most 1: [B, 512, 1024] of the decades of the cells [B, 512, 256] and of the scene [B]."""
+    decades = of_cells.clamp(*CELL_DECADES) + of_scene.clamp(-SCENE_DECADES, SCENE_DECADES)[:, None, None]
+    return (10 ** decades).clamp(max=1).repeat_interleave(COLS // FINE, 2)
 
 
 class Doubting(nn.Module):

@@ -10,7 +10,7 @@ import torch
 from safetensors.torch import save_file
 
 import apertura as ap
-from live import Doubt, Doubting, Live
+from live import Doubt, Live, expected_error
 from thesis import Thesis
 
 POINTS = np.array([[3.0, 12.0], [-9.5, 17.0], [20.0, 6.0]])
@@ -26,18 +26,23 @@ def main(folder):
     doubt = Doubt(4, 5)
     with torch.no_grad():
         doubt.conv2.weight.mul_(20)
+        doubt.scene.weight[0, ::2] = 0.3
+        doubt.scene.bias.fill_(-0.2)
     given = ap.live_input(ap.Scene.of_points(POINTS).simulate(floor="exact").ends)
     fine, coarse, rows, scalars = (torch.from_numpy(given[name]) for name in ("fine", "coarse", "rows", "scalars"))
     with torch.no_grad():
-        log, minimum, expected = Doubting(model, doubt)(fine[None], coarse[None], rows[None], scalars[None])
+        log, minimum, picture = model.with_picture(fine[None], coarse[None], rows[None], scalars[None])
+        of_cells, hidden = doubt.parts(picture)
+        of_scene = doubt.scene(hidden)[:, 0]
+        assert 0.01 < abs(of_scene) < 0.5, f"{of_scene} decades of the scene say little of the twin"
     weights = {k: v.contiguous() for k, v in model.state_dict().items()}
     save_file(weights, f"{folder}/live_reference_weights.safetensors", metadata={"network": "live"})
     weights.update({f"doubt.{k}": v.contiguous() for k, v in doubt.state_dict().items()})
-    save_file(weights, f"{folder}/doubt_reference_weights.safetensors", metadata={"network": "live", "doubt_factor": "0.5"})
+    save_file(weights, f"{folder}/doubt_reference_weights.safetensors", metadata={"network": "live"})
     tensors = {
         "fine": fine[:, ::32, ::8].contiguous(), "coarse": coarse[:, ::32, ::4].contiguous(), "rows": rows[:, ::8].contiguous(),
         "scalars": scalars, "gain": torch.tensor([given["gain"]]), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum,
-        "doubt": 10 ** expected[0, ::16, ::4].contiguous(),
+        "doubt": expected_error(of_cells, of_scene)[0, ::16, ::16].contiguous(),
         "points": torch.from_numpy(POINTS).float(),
     }
     save_file(tensors, f"{folder}/live_reference.safetensors", metadata={"network": "live-reference"})

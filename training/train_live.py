@@ -8,6 +8,7 @@ on a CPU. The shipped weights come from here.
         --init ../assets/weights/live.safetensors                    # go on from the shipped weights
     python3 train_live.py --out DIR --validation 24 \\
         --export ../assets/weights/live.safetensors                  # write the averaged weights and their figures, and stop
+    python3 calibrate_doubt.py ../assets/weights/live.safetensors    # then fit its doubt to validation scenes
     python3 train_live.py --validation 24 --judge FILE               # figures of any weights on the validation scenes, and stop
 
 Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new; with `--pool`
@@ -31,13 +32,12 @@ import options
 if __name__ == "__main__":
     ARGUMENTS = options.live()  # before PyTorch, which takes seconds to load
 
-import numpy as np
 import torch
 
 import apertura as ap
 import provenance
 from common import export, figures, save, unit, validation_scenes
-from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, normalise, parted, widened
+from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, expected_error, normalise, parted, widened
 from pool import Pool
 from team import Log, Team, batches
 
@@ -92,28 +92,18 @@ def doubt_loss_of(doubt, error):
 
 
 @torch.no_grad()
-def errors_and_limits(model, doubt, entries):
-    """For each entry the errors of Lambda and what the network says nine of ten of them stay below, [512, 1024] each."""
-    for entry in entries:
-        log, minimum, expected = Doubting(model, doubt)(*(entry[name][None].float() for name in INPUTS))
-        error = error_of(normalise(log, minimum), entry["target"][None].float())
-        yield error[0], 10 ** expected[0].repeat_interleave(COLS // FINE, 1)
-
-
-def coverage(model, doubt, sets, factor=1.0):
-    """Percent of the cells whose error stays below `factor` times what the network says, by kind."""
+def coverage(model, doubt, sets):
+    """Percent of the cells whose error is at most what the network says, by kind."""
     report = {}
     for kind, entries in sets.items():
-        covered = [float((error <= factor * limit).float().mean()) for error, limit in errors_and_limits(model, doubt, entries)]
+        covered = []
+        for entry in entries:
+            log, minimum, picture = model.with_picture(*(entry[name][None].float() for name in INPUTS))
+            of_cells, hidden = doubt.parts(picture)
+            limit = expected_error(of_cells, doubt.scene(hidden)[:, 0])
+            covered.append(float((error_of(normalise(log, minimum), entry["target"][None].float()) <= limit).float().mean()))
         report[kind] = round(100 * sum(covered) / len(covered), 2)
     return report
-
-
-def doubt_factor(model, doubt, sets):
-    """What the said errors must be multiplied with so that a part `COVERED` of all cells of the validation scenes stays below: split conformal
-    prediction with the ratio of error and said error as the score (Papadopoulos et al., 2002)."""
-    ratios = [(error / limit).flatten()[::17] for entries in sets.values() for error, limit in errors_and_limits(model, doubt, entries)]
-    return float(np.quantile(torch.cat(ratios).numpy(), COVERED))
 
 
 def estimate_with(model, device="cpu"):
@@ -249,7 +239,6 @@ def main(args):
     torch.manual_seed(args.seed)
     team = Team(args.threads)
     if args.judge:
-        from safetensors import safe_open
         from safetensors.torch import load_file
         model = Live()
         network, of_doubt = parted(load_file(args.judge))
@@ -259,9 +248,7 @@ def main(args):
         if of_doubt:
             doubt = Doubt()
             doubt.load_state_dict(of_doubt)
-            with safe_open(args.judge, "pt") as file:
-                factor = float(file.metadata().get("doubt_factor", 1))
-            report["covered"] = coverage(model, doubt, sets, factor)
+            report["covered"] = coverage(model, doubt, sets)
         print(json.dumps(report))
         return
     os.makedirs(args.out, exist_ok=True)
@@ -274,8 +261,7 @@ def main(args):
             tensor.copy_(tensor.half())
         report = figures(estimate_with(run.average, team.device), sets)
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
-                "steps": str(run.step), "scenes_simulated": str(run.drawn),
-                "doubt_factor": f"{doubt_factor(run.average, run.doubt, sets):.4f}", **provenance.metadata(run.parts)}
+                "steps": str(run.step), "scenes_simulated": str(run.drawn), **provenance.metadata(run.parts)}
         doubt = {f"{DOUBT}{name}": weights for name, weights in run.doubt.state_dict().items()}
         tensors = {**run.average.state_dict(), **doubt}
         export({name: tensor.half() for name, tensor in tensors.items()}, args.export, meta, report, args.validation)

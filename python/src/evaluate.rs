@@ -155,7 +155,8 @@ pub fn roc<'py>(
 /// Returns:
 ///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row. `echoes` and `echoes_found`
 ///     are texts of six numbers, one for every 10 dB below the strongest echo; None for scenes without bodies. `doubt` is the squared
-///     error if every cell were off by `Reconstruction.doubt`; None for methods that say no doubt.
+///     error if every cell were off by `Reconstruction.doubt`, and `within_doubt` the part of the cells that are off by at most it; None for
+///     methods that say no doubt.
 ///
 /// Raises:
 ///     ValueError: A name is unknown or given twice, `count` is 0, or a method can't work on a scene.
@@ -345,6 +346,7 @@ fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
     dict.set_item("echoes", echoes)?;
     dict.set_item("echoes_found", echoes_found)?;
     dict.set_item("doubt", row.doubt)?;
+    dict.set_item("within_doubt", row.within_doubt)?;
     if row.cfar.is_some() {
         dict.set_item("cfar_detection", row.cfar.and_then(|rates| rates.detection))?;
         dict.set_item("cfar_false_alarm", row.cfar.map(|rates| rates.false_alarm))?;

@@ -34,4 +34,7 @@ def test_rows_say_the_doubt_of_a_method(tmp_path):
     found = ap.method("live").reconstruct(ap.Scene.random("1").simulate().ends)
     expected = float((found.doubt.astype(float) ** 2).sum())
     assert baseline["doubt"] is None and math.isclose(live["doubt"], expected, rel_tol=1e-9)
+    target = ap.Scene.random("1").simulate().target
+    within = float((abs(found.map - target) <= found.doubt).mean())
+    assert baseline["within_doubt"] is None and math.isclose(live["within_doubt"], within, abs_tol=1e-5)
     assert [row["doubt"] for row in ap.read_rows(tmp_path / "rows.csv")] == [live["doubt"], None]

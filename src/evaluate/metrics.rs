@@ -50,6 +50,14 @@ pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
     doubt.lambda.iter().map(|v| f64::from(*v).powi(2)).sum()
 }
 
+/// Part of the cells of `output` that are off `target` by at most their doubt
+/// ([`Reconstruction::doubt`](crate::reconstruct::Reconstruction::doubt)); all are `[range bins, columns]`. Nine of ten are meant to be.
+pub fn part_within(doubt: &RangeAngleMap, target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
+    let cells = doubt.lambda.iter().zip(target.lambda.iter().zip(&output.lambda));
+    let within = cells.filter(|(doubt, (target, output))| (*target - *output).abs() <= **doubt).count();
+    within as f64 / doubt.lambda.len().max(1) as f64
+}
+
 /// A threshold as it is shown: with every digit it has, so that whoever types it gets the same P_D and P_FA, and with two at least.
 pub fn eta_text(eta: f32) -> String {
     let exact = eta.to_string();
@@ -94,6 +102,8 @@ mod tests {
         let output = RangeAngleMap { lambda: array![[0.5, 0.75], [1.0, 0.0]] };
         let doubt = RangeAngleMap { lambda: (&target.lambda - &output.lambda).mapv(f32::abs) };
         assert_eq!(squared_doubt(&doubt), squared_error(&target, &output));
+        let smaller = RangeAngleMap { lambda: &doubt.lambda * 0.5 };
+        assert_eq!([&doubt, &smaller].map(|doubt| part_within(doubt, &target, &output)), [1.0, 0.5]);
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub mod worsen;
 
 pub use blobs::{Blobs, blobs};
 pub use estimate::Estimate;
-pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, squared_doubt, squared_error};
+pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, part_within, squared_doubt, squared_error};
 pub use placement::{Placement, placement};
 pub use robustness::{Robustness, RobustnessRow};
 pub use roc::{Roc, RocPoint};

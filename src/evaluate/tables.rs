@@ -137,6 +137,11 @@ impl Tally {
         self.estimate(Column::CfarFalseAlarm)
     }
 
+    /// Part of the cells that are off by at most their doubt; NaN where the rows say none.
+    pub fn within_doubt(&self) -> Estimate {
+        self.estimate(Column::WithinDoubt)
+    }
+
     /// Objects missed, a scene.
     pub fn missed(&self) -> Estimate {
         self.estimate(Column::Missed)

@@ -3,7 +3,7 @@
 use super::echoes::{self, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::{CfarRates, Origin, Row};
-use super::{Metrics, Roc, squared_doubt};
+use super::{Metrics, Roc, part_within, squared_doubt};
 use crate::maps::cfar::{Cfar, CfarError};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
@@ -136,6 +136,7 @@ impl Trial {
             merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
             wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
             doubt: answer.found.doubt.as_ref().map(squared_doubt),
+            within_doubt: answer.found.doubt.as_ref().map(|d| part_within(d, &self.target, &answer.found.lambda)),
             cfar: None,
             echoes: self.scene.objects.iter().any(|object| object.body().is_some()).then(|| self.echoes(answer)),
             origin: place.origin.cloned(),

@@ -113,7 +113,10 @@ fn echoes_of_bodies_stand_in_rows_tables_and_json() {
 
 /// Twenty scenes of a set by `live`, each with the next larger error and the doubt that `doubt` says.
 fn made_up_rows(set: u32, error: impl Fn(u32) -> f64, doubt: impl Fn(u32) -> f64) -> String {
-    let row = |i: u32| format!("{set},{i},0,live,0.8,{},0.9,0.01,,5,3,3,0,0,,,5,0,{}\n", error(i), doubt(i));
+    // Nine of ten cells in the mean.
+    let part = |i: u32| if i.is_multiple_of(2) { 0.875 } else { 0.925 };
+    let row =
+        |i: u32| format!("{set},{i},0,live,0.8,{},0.9,0.01,,5,3,3,0,0,,,5,0,{},{}\n", error(i), doubt(i), part(i));
     (0..20).map(row).collect()
 }
 
@@ -121,7 +124,7 @@ fn made_up_rows(set: u32, error: impl Fn(u32) -> f64, doubt: impl Fn(u32) -> f64
 fn doubt_finds_failures_as_often_as_the_rows_say() {
     let folder = folder();
     let names = "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,reflectors,\
-                 missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,doubt\n";
+                 missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,doubt,within_doubt\n";
     // Of set 1's two failures one has more doubt than all 18 others, one than 9 of them, and as much as one more.
     let first = made_up_rows(1, f64::from, |i| f64::from(if i == 18 { 9 } else { i }));
     let second = made_up_rows(2, |i| f64::from(100 + i), |i| f64::from(100 + i));
@@ -131,6 +134,7 @@ fn doubt_finds_failures_as_often_as_the_rows_say() {
     assert!(same(&doubt(0)["area"], 27.5 / 36.0), "{}", doubt(0));
     assert_eq!((&doubt(0)["failures"], &doubt(0)["rows"]), (&Value::from(2), &Value::from(20)));
     assert!(same(&doubt(0)["least_squared_error"], 18.0) && same(&doubt(1)["area"], 1.0));
+    assert!(same(&report["sets"][0]["methods"][0]["within_doubt"]["mean"], 0.9));
     let all = &report["doubt"][0];
     assert_eq!((&all["method"], &all["failures"]), (&Value::from("live"), &Value::from(4)));
     assert!(same(&all["least_squared_error"], 116.0) && same(&all["area"], 1.0));
@@ -140,6 +144,7 @@ fn doubt_finds_failures_as_often_as_the_rows_say() {
     assert!(same(&doubt(0)["area"], 1.0) && doubt(1)["area"].is_null(), "every row of set 2 fails");
     apertura(&folder, "evaluate --merge rows.csv").assert().success().stdout(
         contains("doubt of live against failures: area under the ROC curve 0.764 \u{b1} 0.")
+            .and(contains("doubt of live: 90.00 \u{b1} 0.574 % of the cells are off by no more; 90 % are meant"))
             .and(contains("(2 failures in 20 rows, SE from 18.0 on)"))
             .and(contains("All sets together\ndoubt of live against failures: area under the ROC curve 1.000")),
     );

@@ -1,5 +1,7 @@
-//! Whether the doubt of a method finds its failures.
+//! Whether the doubt of a method is as large as its errors, and finds its failures.
 
+use super::percent::percent_of;
+use crate::evaluate::Estimate;
 use crate::evaluate::rows::Row;
 use crate::evaluate::statistics::DoubtArea;
 use crate::radar::counted;
@@ -28,6 +30,15 @@ impl DoubtReport {
         let standard_error = area.and_then(|area| area.standard_error);
         let area = area.map(|area| area.area);
         Some(DoubtReport { method: method.to_owned(), rows, failures, least_squared_error, area, standard_error })
+    }
+}
+
+/// Adds a line a method to a table: how many of its cells are off by at most their doubt.
+pub fn write_within<'a>(methods: impl IntoIterator<Item = (&'a String, &'a Estimate)>, text: &mut String) {
+    for (method, part) in methods {
+        // Writing to a string can't fail.
+        let _ =
+            writeln!(text, "doubt of {method}: {} % of the cells are off by no more; 90 % are meant", percent_of(part));
     }
 }
 

@@ -4,6 +4,7 @@ mod against;
 mod by_doubt;
 mod by_echo;
 mod kept;
+mod percent;
 mod progress;
 mod report;
 

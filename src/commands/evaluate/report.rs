@@ -3,6 +3,7 @@
 use super::against::{self, Against};
 use super::by_doubt::{self, DoubtReport};
 use super::by_echo::{self, EchoReport};
+use super::percent::percent_of;
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
 use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
@@ -68,6 +69,8 @@ struct MethodReport {
     echoes: Option<EchoReport>,
     /// `None` where the rows say no doubt, and where they are too few.
     doubt: Option<DoubtReport>,
+    /// Part of the cells that are off by at most their doubt; `None` where the rows say none.
+    within_doubt: Option<Estimate>,
     /// `None` where no detector of constant false-alarm rate was tried.
     cfar: Option<CfarReport>,
     median_milliseconds: f64,
@@ -252,6 +255,8 @@ impl SetReport {
         }
         let counted = self.methods.iter().filter_map(|m| Some((m.name.as_str(), m.echoes.as_ref()?)));
         by_echo::write(&counted.collect::<Vec<_>>(), width, text);
+        let within = self.methods.iter().filter_map(|m| Some((&m.name, m.within_doubt.as_ref()?)));
+        by_doubt::write_within(within, text);
         by_doubt::write(self.methods.iter().filter_map(|m| m.doubt.as_ref()), text);
         self.write_cfar(width, text);
         against::write(&self.against, text);
@@ -267,14 +272,6 @@ impl SetReport {
             let (detection, false_alarm) = (percent_of(&cfar.detection), percent_of(&cfar.false_alarm));
             let _ = writeln!(text, "{name:<width$} {detection:>20} {false_alarm:>16}");
         }
-    }
-}
-
-/// A rate in percent, with its standard error.
-fn percent_of(rate: &Estimate) -> String {
-    match rate.mean.is_nan() {
-        true => "-".to_owned(),
-        false => format!("{:.2} \u{b1} {:.3}", 100.0 * rate.mean, 100.0 * rate.standard_error),
     }
 }
 
@@ -318,6 +315,7 @@ impl MethodReport {
             cfar: CfarReport::of(rows, &tally),
             echoes: tally.echoes().as_ref().map(EchoReport::of),
             doubt: DoubtReport::of(name, rows, limit),
+            within_doubt: Some(tally.within_doubt()).filter(|part| !part.mean.is_nan()),
             median_milliseconds: tally.median_milliseconds(),
             near_best: part_near_best(rows, name),
         }

@@ -36,6 +36,7 @@ impl Row {
             echoes,
             echoes_found,
             maybe(self.doubt),
+            maybe(self.within_doubt),
             maybe(self.cfar.and_then(|rates| rates.detection)),
             maybe(self.cfar.map(|rates| rates.false_alarm)),
         ]
@@ -151,7 +152,7 @@ mod tests {
         assert!(text(&rows).starts_with(
             "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,\
              reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,\
-             found,merged,wrong_tooth,echoes,echoes_found,doubt,version,program,floor,normalisation,purpose,reading,carrier,radar,scenes,weights,optimiser,\
+             found,merged,wrong_tooth,echoes,echoes_found,doubt,within_doubt,version,program,floor,normalisation,purpose,reading,carrier,radar,scenes,weights,optimiser,\
              shard,whole,methods\n"
         ));
     }
@@ -181,10 +182,18 @@ mod tests {
 
     #[test]
     fn tables_from_before_doubt_was_kept_are_read() {
-        let of = |doubt| Row { origin: Some(Arc::new(origin())), doubt, ..row("1", 0, "live") };
+        let of = |doubt| Row {
+            origin: Some(Arc::new(origin())),
+            doubt,
+            within_doubt: doubt.map(|v| v / 2.0),
+            ..row("1", 0, "live")
+        };
         let table = text(&[of(Some(0.125)), of(None)]);
-        let old = table.replace("doubt,", "").replace(",0.125,1,", ",1,").replace(",,1,0.1.0", ",1,0.1.0");
-        assert_eq!(old.len(), table.len() - 13, "the column is cut out");
+        let old = table
+            .replace("doubt,within_doubt,", "")
+            .replace(",0.125,0.0625,1,", ",1,")
+            .replace(",,,1,0.1.0", ",1,0.1.0");
+        assert_eq!(old.len(), table.len() - 34, "both columns are cut out");
         assert_eq!(read_rows(old.as_bytes()).unwrap(), [of(None), of(None)]);
         assert_eq!(read_rows(table.as_bytes()).unwrap(), [of(Some(0.125)), of(None)]);
     }
@@ -210,11 +219,12 @@ mod tests {
 
     #[test]
     fn tables_from_before_the_kinds_were_counted_are_read() {
-        let old = |line: &str| line.rsplitn(7 + Part::ALL.len() - 1, ',').last().unwrap().to_owned();
+        let old = |line: &str| line.rsplitn(8 + Part::ALL.len() - 1, ',').last().unwrap().to_owned();
         let table = text(&[row("1", 0, "live")]);
         let table: String = table.lines().map(|line| old(line) + "\n").collect();
         assert!(table.lines().next().unwrap().ends_with("strongest_over_weakest_db"));
-        let without = Row { found: None, merged: None, echoes: None, doubt: None, ..row("1", 0, "live") };
+        let without =
+            Row { found: None, merged: None, echoes: None, doubt: None, within_doubt: None, ..row("1", 0, "live") };
         assert_eq!(read_rows(table.as_bytes()).unwrap(), [without]);
     }
 
@@ -255,7 +265,7 @@ mod tests {
         );
         assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\""));
         assert!(error(&good.replace("ghosts", "spirits")).contains("no column \"ghosts\""));
-        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 38"));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 39"));
         assert!(error(&good.replacen("1 0 0 1 0 0", "1 0 0 3 0 0", 1)).starts_with("line 2, column echoes_found: "));
         assert!(error("").contains("no column \"set\""));
         let long = format!("{good}{}", "x".repeat(1 << 20));

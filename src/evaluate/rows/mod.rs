@@ -75,6 +75,8 @@ pub struct Row {
     /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods that say no doubt, and in tables
     /// that were written before it was kept.
     pub doubt: Option<f64>,
+    /// Part of the cells whose error is at most their doubt ([`part_within`](super::part_within)); `None` as for `doubt`.
+    pub within_doubt: Option<f64>,
     /// P_D and P_FA by the detector of its origin; `None` where none was asked for.
     pub cfar: Option<CfarRates>,
     /// What made the row; `None` in tables that were written before this was kept.
@@ -133,6 +135,7 @@ pub enum Column {
     Echoes,
     EchoesFound,
     Doubt,
+    WithinDoubt,
     CfarDetection,
     CfarFalseAlarm,
 }
@@ -150,7 +153,7 @@ pub enum Value<'a> {
 
 impl Column {
     /// Every column, in the file's order.
-    pub const ALL: [Column; 26] = [
+    pub const ALL: [Column; 27] = [
         Column::Set,
         Column::Index,
         Column::Seed,
@@ -175,6 +178,7 @@ impl Column {
         Column::Echoes,
         Column::EchoesFound,
         Column::Doubt,
+        Column::WithinDoubt,
         Column::CfarDetection,
         Column::CfarFalseAlarm,
     ];
@@ -206,6 +210,7 @@ impl Column {
             Column::Echoes => "echoes",
             Column::EchoesFound => "echoes_found",
             Column::Doubt => "doubt",
+            Column::WithinDoubt => "within_doubt",
             Column::CfarDetection => "cfar_detection",
             Column::CfarFalseAlarm => "cfar_false_alarm",
         }
@@ -213,8 +218,8 @@ impl Column {
 
     /// Whether a table may lack it: older ones do.
     pub fn is_optional(self) -> bool {
-        use Column::{Doubt, Echoes, EchoesFound, Found, Merged, WrongTooth};
-        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound | Doubt) || self.is_of_cfar()
+        use Column::{Doubt, Echoes, EchoesFound, Found, Merged, WithinDoubt, WrongTooth};
+        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound | Doubt | WithinDoubt) || self.is_of_cfar()
     }
 
     /// Whether only rows with a detector of constant false-alarm rate have it.
@@ -256,6 +261,7 @@ impl Column {
             Column::Echoes => count(row.echoes.map(|echoes| echoes.there.iter().sum())),
             Column::EchoesFound => count(row.echoes.map(|echoes| echoes.found.iter().sum())),
             Column::Doubt => maybe(row.doubt),
+            Column::WithinDoubt => maybe(row.within_doubt),
             Column::CfarDetection => maybe(row.cfar.and_then(|rates| rates.detection)),
             Column::CfarFalseAlarm => maybe(row.cfar.map(|rates| rates.false_alarm)),
         }
@@ -292,6 +298,7 @@ pub(super) mod tests {
             wrong_tooth: None,
             echoes: Some(EchoTally { there: [1, 0, 0, 2, 0, 4], found: [1, 0, 0, 1, 0, 0] }),
             doubt: Some(200.0 / 7.0),
+            within_doubt: Some(8.0 / 9.0),
             cfar: None,
             origin: None,
         }

@@ -217,6 +217,7 @@ impl Cells<'_> {
             wrong_tooth: self.maybe_count(Column::WrongTooth)?,
             echoes: self.echoes()?,
             doubt: self.maybe(Column::Doubt)?,
+            within_doubt: self.maybe(Column::WithinDoubt)?,
             cfar: self.cfar()?,
             origin: None,
         })

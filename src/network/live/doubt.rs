@@ -19,13 +19,17 @@ const SAID: usize = FINE / COARSE;
 /// Columns of the map that one of them is for.
 const EACH: usize = COLUMNS / FINE;
 
+/// Decades between which what is said of a cell counts.
+const CELL_DECADES: [f32; 2] = [-4.0, 0.0];
+/// How far the decades that are one for all cells of a scene may go.
+const SCENE_DECADES: f64 = 0.5;
+
 /// The head's weights.
 #[derive(Debug)]
 pub struct DoubtHead {
     conv1: Conv3x3,
+    /// What it says of the cells of a coarse one, and after these the coarse cell's part of what it says of the scene.
     conv2: Packed,
-    /// What the errors it says are multiplied with, so that nine of ten cells of validation scenes stay below.
-    factor: f32,
 }
 
 impl DoubtHead {
@@ -37,17 +41,21 @@ impl DoubtHead {
         let name = format!("{PREFIX}conv1.conv");
         let Some([hidden, ..]) = file.shape(&format!("{name}.weight")) else { return Ok(None) };
         let (hidden, layers) = (*hidden, Layers { file });
-        let factor = file.provenance.get("doubt_factor").parse().ok().filter(|f: &f32| f.is_finite() && *f > 0.0);
+        let [mut weights, mut bias] = layers.tensors(&format!("{PREFIX}conv2"), &[SAID, hidden, 1, 1])?;
+        // What is linear in the mean over the cells is the mean of what is linear in each.
+        let [of_scene, constant] = layers.tensors(&format!("{PREFIX}scene"), &[1, hidden])?;
+        weights.extend(of_scene);
+        bias.extend(constant);
         Ok(Some(DoubtHead {
             conv1: layers.conv(&name, [channels, padded(channels)], hidden)?,
-            conv2: layers.small(&format!("{PREFIX}conv2"), hidden, SAID, 1)?,
-            factor: factor.unwrap_or(1.0),
+            conv2: Packed::new(&weights, &bias, [hidden, padded(hidden)], [1, 1], 1),
         }))
     }
 
     /// The error of Lambda, `[512, 1024]`, that nine of ten cells stay below, from the picture that the network's heads read.
     pub(super) fn read(&self, picture: &Plane) -> RangeAngleMap {
-        let mut said = vec![0.0; ROWS * COARSE * self.conv2.output()];
+        let lanes = self.conv2.output();
+        let mut said = vec![0.0; ROWS * COARSE * lanes];
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&picture.data[row * line.len()..][..line.len()]);
         let simd = Simd::chosen();
         let heads = |results: Results, out: &mut [f32]| {
@@ -56,20 +64,29 @@ impl DoubtHead {
             self.conv2.line(simd, sums, COARSE, COARSE, out);
         };
         self.conv1.run([ROWS, COARSE], read, &mut said, heads);
+        let of_scene =
+            mean(said.chunks_exact(lanes).map(|cell| cell[SAID])).clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
+        let [least, most] = CELL_DECADES;
         let mut error = Array2::zeros((ROWS, COLUMNS));
         let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(COLUMNS);
-        lines.zip(said.par_chunks(COARSE * self.conv2.output())).for_each(|(line, said)| {
+        lines.zip(said.par_chunks(COARSE * lanes)).for_each(|(line, said)| {
             let mut fine = [0.0; FINE];
-            for (to, cell) in fine.chunks_exact_mut(SAID).zip(said.chunks_exact(self.conv2.output())) {
+            for (to, cell) in fine.chunks_exact_mut(SAID).zip(said.chunks_exact(lanes)) {
                 to.copy_from_slice(&cell[..SAID]);
             }
-            each(&mut fine, |v| (self.factor * power_of_ten(v.clamp(-4.0, 0.0))).min(1.0));
+            each(&mut fine, |v| power_of_ten(v.clamp(least, most) + of_scene).min(1.0));
             for (to, v) in line.chunks_exact_mut(EACH).zip(fine) {
                 to.fill(v);
             }
         });
         RangeAngleMap { lambda: error }
     }
+}
+
+/// Mean of the numbers, added up in their order whatever the threads.
+fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
+    let count = numbers.len() as f64;
+    numbers.map(f64::from).sum::<f64>() / count
 }
 
 #[cfg(test)]
@@ -89,8 +106,6 @@ mod tests {
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
     /// Three reflectors, and what PyTorch makes of them.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
-    /// `doubt_factor` of the reference weights.
-    const FACTOR: f32 = 0.5;
 
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
         let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
@@ -115,7 +130,7 @@ mod tests {
         let expected = reference.tensor("doubt", &[ROWS / 16, FINE / 4]).unwrap();
         for (i, expected) in expected.iter().enumerate() {
             let [row, column] = [i / (FINE / 4) * 16, i % (FINE / 4) * 4 * EACH];
-            let gap = (found[[row, column]] - FACTOR * expected).abs();
+            let gap = (found[[row, column]] - expected).abs();
             assert!(gap < 1e-4 && found[[row, column]] == found[[row, column + EACH - 1]], "{row}, {column}: {gap}");
         }
         let spread = expected.iter().fold(0.0f32, |a, v| a.max(*v)) - expected.iter().fold(1.0f32, |a, v| a.min(*v));

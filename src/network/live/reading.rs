@@ -16,7 +16,7 @@ pub(super) struct Layers<'a> {
 
 impl Layers<'_> {
     /// Weights and bias.
-    fn tensors(&self, name: &str, shape: &[usize]) -> Result<[Vec<f32>; 2], WeightsError> {
+    pub(super) fn tensors(&self, name: &str, shape: &[usize]) -> Result<[Vec<f32>; 2], WeightsError> {
         let tensor = |part: &str, shape: &[usize]| self.file.tensor(&format!("{name}.{part}"), shape);
         Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
     }

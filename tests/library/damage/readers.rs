@@ -261,6 +261,7 @@ fn tables_of_rows() -> Reader {
         wrong_tooth: figure.map(|_| 1),
         echoes: None,
         doubt: figure,
+        within_doubt: figure,
         cfar: None,
         origin: None,
     };

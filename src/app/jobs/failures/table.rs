@@ -120,6 +120,7 @@ pub fn some_row(index: u32, method: &str) -> Row {
         wrong_tooth: Some(0),
         echoes: None,
         doubt: (method == "live").then_some(90.0 + f64::from(index)),
+        within_doubt: (method == "live").then_some(0.9),
         cfar: None,
         origin: None,
     }

@@ -16,7 +16,7 @@ pub fn text(row: &Row, column: Column) -> String {
 pub fn number(column: Column, value: f64) -> String {
     let digits = match column {
         Column::Eta => return eta_text(value as f32),
-        Column::Detection | Column::FalseAlarm | Column::DetectionAtPrinted => 4,
+        Column::Detection | Column::FalseAlarm | Column::DetectionAtPrinted | Column::WithinDoubt => 4,
         Column::SquaredError | Column::Doubt | Column::Milliseconds | Column::StrongestOverWeakestDb => 1,
         Column::NearestPairColumns | Column::NearestPairBins => 1,
         Column::MinRangeMetres => 2,
@@ -57,6 +57,7 @@ pub fn title(column: Column) -> [&'static str; 2] {
         Column::Echoes => ["Echoes of", "bodies"],
         Column::EchoesFound => ["Echoes", "found"],
         Column::Doubt => ["Doubt", "as SE"],
+        Column::WithinDoubt => ["Cells within", "doubt"],
         Column::CfarDetection => ["P_D", "by CFAR"],
         Column::CfarFalseAlarm => ["P_FA", "by CFAR"],
     }
@@ -75,7 +76,7 @@ pub fn width(column: Column) -> f32 {
         Column::Method => 130.0,
         Column::Index | Column::Seed => 52.0,
         Column::StrongestOverWeakestDb => 110.0,
-        Column::NearestPairColumns | Column::NearestPairBins | Column::Doubt => 90.0,
+        Column::NearestPairColumns | Column::NearestPairBins | Column::Doubt | Column::WithinDoubt => 90.0,
         _ => 78.0,
     }
 }
