@@ -1,10 +1,10 @@
-"""Fits the part of the live network's doubt that is one for all cells of a scene, so that nine of ten cells of each kind of scene stay below it.
+"""Fits the term of the live network's doubt that is the same for every cell of a scene, so that 90 % of the cells have at most their doubt's error.
 
     python3 calibrate_doubt.py FILE                  # fit on the validation scenes of seed 0, write into FILE, print the coverage on those of seed 1
     python3 calibrate_doubt.py FILE --judge          # print the coverage alone
 
-The part is linear in the means of the head's hidden layer. Fitted are its weights, by three terms: the pinball loss of all cells, the squared distance of
-each kind's coverage from nine of ten, and the weights' squares. Nothing else in FILE changes. The scenes are those of every kind over the thesis'
+The term is linear in the means of the head's hidden layer. Its weights minimise a sum: the pinball loss of all cells, the squared distance of each kind's
+coverage from 90 %, and the squares of the weights. Nothing else in FILE changes. The scenes are those of every kind over the thesis'
 floor, of every kind over thermal noise of 10 to 60 dB, and of two sets heard by elements that are off; training and test never see them.
 
 Needs what train_live.py needs. 32 scenes a kind take 10 minutes on two cores.
@@ -60,7 +60,7 @@ def seen(live, doubt, seed, count):
 
 
 def fitted(found):
-    """Weights [hidden] and constant of the scene's part."""
+    """Weights [hidden] and constant of the scene's term."""
     means, gaps = (torch.cat(parts) for parts in zip(*found.values()))
     centre, spread = means.mean(0), means.std(0) + 1e-9
     known = (means - centre) / spread
@@ -81,8 +81,8 @@ def fitted(found):
 
 
 def report(found, scene):
-    """Prints the coverage of each kind in percent, with its standard error over scenes, for no scene's part and for this one."""
-    print("covered, percent: without the scene's part, with it")
+    """Prints the coverage of each kind in percent, with its standard error over scenes, without the scene's term and with it."""
+    print("covered, percent: without the scene's term, with it")
     within = 0
     for name, (means, gaps) in found.items():
         figures = []
@@ -104,6 +104,8 @@ def main():
     with safe_open(args.file, "pt") as file:
         meta = file.metadata()
     network, of_doubt = parted(tensors)
+    if not of_doubt:
+        parser.error(f"{args.file} has no head of doubt; expected weights that train_live.py wrote")
     live, doubt = Live(), Doubt()
     live.load_state_dict(network)
     doubt.load_state_dict(of_doubt, strict=False)

@@ -50,8 +50,8 @@ pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
     doubt.lambda.iter().map(|v| f64::from(*v).powi(2)).sum()
 }
 
-/// Part of the cells of `output` that are off `target` by at most their doubt
-/// ([`Reconstruction::doubt`](crate::reconstruct::Reconstruction::doubt)); all are `[range bins, columns]`. Nine of ten are meant to be.
+/// Part of the cells whose error is at most their doubt ([`Reconstruction::doubt`](crate::reconstruct::Reconstruction::doubt)). The error is the
+/// distance of `output` from `target`; all three are `[range bins, columns]`. The aim is 0.9.
 pub fn part_within(doubt: &RangeAngleMap, target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
     let cells = doubt.lambda.iter().zip(target.lambda.iter().zip(&output.lambda));
     let within = cells.filter(|(doubt, (target, output))| (*target - *output).abs() <= **doubt).count();

@@ -144,7 +144,9 @@ fn doubt_finds_failures_as_often_as_the_rows_say() {
     assert!(same(&doubt(0)["area"], 1.0) && doubt(1)["area"].is_null(), "every row of set 2 fails");
     apertura(&folder, "evaluate --merge rows.csv").assert().success().stdout(
         contains("doubt of live against failures: area under the ROC curve 0.764 \u{b1} 0.")
-            .and(contains("doubt of live: 90.00 \u{b1} 0.574 % of the cells are off by no more; 90 % are meant"))
+            .and(contains(
+                "doubt of live: the error of 90.00 \u{b1} 0.574 % of the cells is at most their doubt; 90 % is the aim",
+            ))
             .and(contains("(2 failures in 20 rows, SE from 18.0 on)"))
             .and(contains("All sets together\ndoubt of live against failures: area under the ROC curve 1.000")),
     );

@@ -33,12 +33,15 @@ impl DoubtReport {
     }
 }
 
-/// Adds a line a method to a table: how many of its cells are off by at most their doubt.
+/// Adds a line a method to a table: the part of the cells whose error is at most their doubt.
 pub fn write_within<'a>(methods: impl IntoIterator<Item = (&'a String, &'a Estimate)>, text: &mut String) {
     for (method, part) in methods {
         // Writing to a string can't fail.
-        let _ =
-            writeln!(text, "doubt of {method}: {} % of the cells are off by no more; 90 % are meant", percent_of(part));
+        let _ = writeln!(
+            text,
+            "doubt of {method}: the error of {} % of the cells is at most their doubt; 90 % is the aim",
+            percent_of(part)
+        );
     }
 }
 

@@ -4,8 +4,13 @@ use crate::evaluate::Estimate;
 
 /// A rate in percent, with its standard error.
 pub(super) fn percent_of(rate: &Estimate) -> String {
-    match rate.mean.is_nan() {
+    percent(rate.mean, rate.standard_error)
+}
+
+/// A mean rate and its standard error in percent; a dash where there is none.
+pub(super) fn percent(mean: f64, standard_error: f64) -> String {
+    match mean.is_nan() {
         true => "-".to_owned(),
-        false => format!("{:.2} \u{b1} {:.3}", 100.0 * rate.mean, 100.0 * rate.standard_error),
+        false => format!("{:.2} \u{b1} {:.3}", 100.0 * mean, 100.0 * standard_error),
     }
 }

@@ -3,7 +3,7 @@
 use super::against::{self, Against};
 use super::by_doubt::{self, DoubtReport};
 use super::by_echo::{self, EchoReport};
-use super::percent::percent_of;
+use super::percent::{percent, percent_of};
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
 use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
@@ -334,34 +334,29 @@ impl MethodReport {
     }
 
     fn write(&self, count: usize, width: usize, text: &mut String) {
-        let percent = |mean: f64, error: f64| match mean.is_nan() {
-            true => "-".to_owned(),
-            false => format!("{:.2} \u{b1} {:.3}", 100.0 * mean, 100.0 * error),
-        };
-        let rate = |e: Estimate| percent(e.mean, e.standard_error);
         let at = &self.detection_at_printed_false_alarm;
         let _ = writeln!(
             text,
             "{:<width$} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>11} {:>9.1}",
             self.label(count),
             format!("{:.1} \u{b1} {:.1}", self.squared_error.mean, self.squared_error.standard_error),
-            rate(self.detection),
-            rate(self.false_alarm),
+            percent_of(&self.detection),
+            percent_of(&self.false_alarm),
             percent(at.detection, at.standard_error),
             self.missed.mean,
             self.ghosts.mean,
             self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part)),
             self.median_milliseconds
         );
-        let percent = |median: f64| if median.is_nan() { "-".to_owned() } else { format!("{:.2}", 100.0 * median) };
+        let median = |rate: f64| if rate.is_nan() { "-".to_owned() } else { format!("{:.2}", 100.0 * rate) };
         let _ = writeln!(
             text,
             "{:<width$} {:>20.1} {:>16} {:>16} {:>22} {:>7} {:>7}",
             "  median",
             self.squared_error.median,
-            percent(self.detection.median),
-            percent(self.false_alarm.median),
-            percent(at.median),
+            median(self.detection.median),
+            median(self.false_alarm.median),
+            median(at.median),
             self.missed.median,
             self.ghosts.median
         );

@@ -83,7 +83,7 @@ impl DoubtHead {
     }
 }
 
-/// Mean of the numbers, added up in their order whatever the threads.
+/// Mean of the numbers, summed in a fixed order: the number of threads doesn't change it.
 fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
     let count = numbers.len() as f64;
     numbers.map(f64::from).sum::<f64>() / count
