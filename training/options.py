@@ -46,12 +46,14 @@ def live(arguments=None):
     ap.add_argument("--cool", type=float, default=0.0, help="minutes at the end of this part over which the learning rate falls to zero")
     ap.add_argument("--pool", type=int, default=0, help="keep this many scenes on the GPU and draw batches from them; for one process (0: no)")
     ap.add_argument("--uses", type=float, default=2.0, help="with --pool: how often a scene is drawn, on average, at most")
+    ap.add_argument("--graph", action="store_true", help="record the step as a CUDA graph and replay it: for one process with a GPU")
     ap.add_argument("--log-every", type=int, default=1, help="steps a line of log.csv: reading the loss waits for the GPU")
     common(ap)
     ap.add_argument("--judge", metavar="FILE", help="print the validation figures of this weight file, and stop; needs no --out")
     args = checked(ap, arguments)
-    if args.pool and int(os.environ.get("WORLD_SIZE", 1)) > 1:
-        ap.error("--pool is for one process; leave torchrun away, or --pool")
+    for name in ("pool", "graph"):
+        if getattr(args, name) and int(os.environ.get("WORLD_SIZE", 1)) > 1:
+            ap.error(f"--{name} is for one process; leave torchrun away, or --{name}")
     if args.pool and (args.pool < args.batch or args.uses <= 0):
         ap.error(f"--pool {args.pool} --uses {args.uses}: expected at least --batch ({args.batch}) scenes, and uses above 0")
     if args.log_every < 1:

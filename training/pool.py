@@ -86,5 +86,7 @@ class Pool:
                 raise scenes
             self._keep(scenes)
         self.used += self.batch
-        places = torch.tensor(self.random.sample(range(min(self.arrived, self.size)), self.batch), device=self.device)
+        places = torch.tensor(self.random.sample(range(min(self.arrived, self.size)), self.batch))
+        if self.on_gpu:
+            places = places.pin_memory().to(self.device, non_blocking=True)  # without pinned memory the copy would wait for the training
         return {name: kept[places].float() for name, kept in self.kept.items()}
