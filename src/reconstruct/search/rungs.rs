@@ -27,9 +27,6 @@ const MOST_ROUNDS: usize = 3;
 /// Another round of pairing needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.5;
 
-/// Another look for long lines needs that this part of the energy at most is left of what the last one saw.
-pub const WORTH_ANOTHER_LOOK: f64 = 0.3;
-
 /// Most atoms of a fit that is worth a second search for what it lacks.
 pub const MOST_AGAIN: usize = 60;
 
@@ -63,7 +60,6 @@ impl Search<'_> {
     /// Long lines along y, looked for as a whole.
     pub fn climb_long_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
         state.fit = self.long_lines(state.fit.clone())?;
-        state.looked_at = state.fit.cost();
         if !state.fit.atoms.is_empty() || state.pairs.is_none() {
             state.pairs = Some(self.pairs(&state.fit));
         }
@@ -101,17 +97,6 @@ impl Search<'_> {
         let pairs = state.pairs.take().unwrap_or_default();
         let answer = self.paired_again(state.fit.clone(), pairs, state.is_long)?;
         state.reach(answer);
-        Ok(())
-    }
-
-    /// Long lines that what was found may have hidden, and the points beside them.
-    pub fn climb_weaker_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
-        let lines = self.long_lines(state.fit.clone())?;
-        if lines.atoms.len() > state.fit.atoms.len() {
-            let pairs = self.pairs(&lines);
-            let answer = self.paired_again(lines, pairs, state.is_long)?;
-            state.reach(answer);
-        }
         Ok(())
     }
 

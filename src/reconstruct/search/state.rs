@@ -38,8 +38,6 @@ pub struct State {
     pub pairs: Option<Pairs>,
     /// Whether an echo of the samples is long in range, as a line's is.
     pub is_long: bool,
-    /// Energy that was left when long lines were last looked for.
-    pub looked_at: f64,
 }
 
 impl State {
@@ -48,12 +46,12 @@ impl State {
         let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
         let flat = nothing.residual.flat(&search.bench.sensor);
         let is_long = search.grower().unexplained(&flat, &nothing).echoes().are_long();
-        State { looked_at: nothing.cost(), is_long, pairs: None, ..State::of(nothing) }
+        State { is_long, ..State::of(nothing) }
     }
 
     /// With `fit` found.
     pub fn of(fit: Fit) -> Self {
-        State { looked_at: fit.cost(), fit, is_sure: false, pairs: None, is_long: false }
+        State { fit, is_sure: false, pairs: None, is_long: false }
     }
 
     /// With `answer` found.
