@@ -72,7 +72,7 @@ impl Seeds {
 }
 
 /// Whether `wall` has many reflectors, most of them told apart.
-pub fn is_long(radar: &Radar, wall: &Atom) -> bool {
+fn is_long(radar: &Radar, wall: &Atom) -> bool {
     let [first, last] = [0.0, wall.reflector_count() as f64 - 1.0].map(|i| wall.position_metres(i));
     let bins = (last[0] - first[0]).hypot(last[1] - first[1]) / radar.range_resolution_metres();
     wall.reflector_count() >= LEAST_LONG && bins >= LEAST_LONG as f64

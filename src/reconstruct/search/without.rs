@@ -18,8 +18,6 @@ pub enum Part {
     ByEnergy,
     /// Rule: lines are followed to their ends again once all are known.
     SettledEnds,
-    /// Rule: lines that leave much in their range bins are dropped.
-    DoubtfulLines,
     /// Rule: points beside lines are joined before the next look for lines.
     PointsWithLines,
     /// Rule: pairs on whose strength the ends disagree are dropped.
@@ -62,7 +60,6 @@ const PARTS: &[(&str, Part)] = &[
     ("moved-counts", Part::MovedCounts),
     ("by-energy", Part::ByEnergy),
     ("settled-ends", Part::SettledEnds),
-    ("doubtful-lines", Part::DoubtfulLines),
     ("points-with-lines", Part::PointsWithLines),
     ("pairs-agree", Part::PairsAgree),
     ("points-agree", Part::PointsAgree),
