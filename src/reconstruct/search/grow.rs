@@ -1,7 +1,7 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
 use super::propose::end_beams::beam_noise_power;
-use super::propose::peaks::{Candidate, Detector};
+use super::propose::peaks::Detector;
 use super::propose::source::{Propose, Unexplained};
 use super::settings::Settings;
 use super::trace::{Trace, decades};
@@ -56,33 +56,6 @@ const MOST_TOGETHER: usize = 48;
 /// Candidates taken from one look at the residual.
 const MOST_A_ROUND: usize = 16;
 
-/// Range bins that are closed together where more atoms don't help.
-const SECTOR_BINS: usize = 6;
-
-/// Where atoms were tried, and what was unexplained there then.
-struct Trials {
-    sectors: Vec<Vec<f64>>,
-}
-
-impl Trials {
-    fn new(radar: &Radar) -> Self {
-        Trials { sectors: vec![Vec::new(); 2 * radar.samples / SECTOR_BINS + 2] }
-    }
-
-    fn add(&mut self, radar: &Radar, candidate: &Candidate, profile: &Profile) {
-        let range = candidate.x_metres.hypot(candidate.y_metres);
-        let sector = (radar.bin_of_range(range) as usize / SECTOR_BINS).min(self.sectors.len() - 1);
-        let atom = Atom::Point { x_metres: candidate.x_metres, y_metres: candidate.y_metres };
-        self.sectors[sector].push(profile.at(&rows_of(radar, &atom)));
-    }
-
-    /// Whether the last trials at this range of the array's centre have not halved what was there.
-    fn is_closed(&self, bin: usize, most: usize) -> bool {
-        let tried = &self.sectors[(bin / SECTOR_BINS).min(self.sectors.len() - 1)];
-        tried.len() > most && tried[tried.len() - 1] > 0.5 * tried[tried.len() - 1 - most]
-    }
-}
-
 /// Greedy search in the samples of one radar.
 pub struct Grower<'a> {
     /// The radar.
@@ -115,9 +88,10 @@ impl Grower<'_> {
         decades(fit.cost() + energy, fit.cost())
     }
 
-    /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
-    pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool + Sync) -> Vec<Candidate> {
-        self.detector.peaks(self.radar, flat, self.least_power(flat), most, closed)
+    /// Places (x, y; metres) that stand out of the noise of `flat`, the strongest first.
+    fn places(&self, flat: &[Complex64], most: usize) -> Vec<[f64; 2]> {
+        let candidates = self.detector.peaks(self.radar, flat, self.least_power(flat), most);
+        candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect()
     }
 
     /// Whether nothing stands out of the noise of what `fit` leaves.
@@ -162,7 +136,6 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut trials = Trials::new(self.radar);
         let mut best = fit.clone();
         let mut look_back = (self.bench.work.done(), fit.cost());
         while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
@@ -172,23 +145,16 @@ impl Grower<'_> {
                 best = fit.clone();
             }
             let flat = fit.residual.flat(&self.bench.sensor);
-            let profile = Profile::new(self.radar, &flat);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let candidates = self.candidates(&flat, MOST_A_ROUND.min(room), |bin| {
-                !self.settings.lacks(Part::Closing) && trials.is_closed(bin, self.settings.trials)
-            });
-            if candidates.is_empty() {
+            let points = self.places(&flat, MOST_A_ROUND.min(room));
+            if points.is_empty() {
                 break;
             }
-            for c in &candidates {
-                trials.add(self.radar, c, &profile);
-            }
-            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
             fit = self.with_points(fit, &points)?;
             if !self.settings.lacks(Part::Settling) {
                 fit = self.settled(fit)?;
             }
-            tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
+            tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
                 if fit.cost() > WORTH_GOING_ON * cost && !self.settings.lacks(Part::LookBack) {

@@ -32,8 +32,6 @@ pub enum Part {
     Prune,
     /// Rule: a point is also tried one wrap of the range away.
     Wraps,
-    /// Rule: ranges where points don't help are closed.
-    Closing,
     /// Rule: growing ends where it goes slowly.
     LookBack,
     /// Rule: gains have a price where much is unexplained.
@@ -67,7 +65,6 @@ const PARTS: &[(&str, Part)] = &[
     ("polish-pairs", Part::PolishPairs),
     ("prune", Part::Prune),
     ("wraps", Part::Wraps),
-    ("closing", Part::Closing),
     ("look-back", Part::LookBack),
     ("price", Part::Price),
     ("settling", Part::Settling),
