@@ -17,8 +17,8 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Of one new atom by itself.
-const ALONE: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
+/// Of what more is to come beside: one new atom by itself, or walls and points together.
+pub const ROUGHLY: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 
 /// Of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
@@ -88,12 +88,6 @@ impl Grower<'_> {
         decades(fit.cost() + energy, fit.cost())
     }
 
-    /// Places (x, y; metres) that stand out of the noise of `flat`, the strongest first.
-    fn places(&self, flat: &[Complex64], most: usize) -> Vec<[f64; 2]> {
-        let candidates = self.detector.peaks(self.radar, flat, self.least_power(flat), most);
-        candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect()
-    }
-
     /// Whether nothing stands out of the noise of what `fit` leaves.
     pub fn is_explained(&self, fit: &Fit) -> bool {
         let flat = fit.residual.flat(&self.bench.sensor);
@@ -146,7 +140,8 @@ impl Grower<'_> {
             }
             let flat = fit.residual.flat(&self.bench.sensor);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let points = self.places(&flat, MOST_A_ROUND.min(room));
+            let candidates = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
+            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
             if points.is_empty() {
                 break;
             }
@@ -190,10 +185,9 @@ impl Grower<'_> {
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
         placed.retain(|(atom, gains)| {
-            let [a, b] = gains.map(|g| g.norm());
             let is_kept = std::mem::take(&mut strongest)
                 || self.settings.lacks(Part::PointsAgree)
-                || a.max(b) < MOST_UNLIKE * a.min(b);
+                || ends_agree(gains, MOST_UNLIKE);
             if !is_kept {
                 self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
@@ -217,7 +211,7 @@ impl Grower<'_> {
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone =
-            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ALONE);
+            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ROUGHLY);
         if self.settings.lacks(Part::Wraps) {
             let own = alone(own);
             return (own.atoms[0], own.gains[0]);
@@ -259,7 +253,7 @@ impl Grower<'_> {
             let base = self.bench.without(&fit.residual, &atoms, &back).residual;
             let own = union_of(group.iter().map(|&i| rows[i]));
             let ridge = own.map_or(0.0, |own| self.ridge(&fit, &base, &own) / group.len() as f64);
-            let refined = self.bench.refine(&base, atoms, gains, Tie::PerEnd, limits.with_ridge(ridge));
+            let refined = self.bench.refine(&base, atoms, gains, Tie::PerEnd, Limits { ridge, ..limits });
             for (k, &i) in group.iter().enumerate() {
                 (fit.atoms[i], fit.gains[i]) = (refined.atoms[k], refined.gains[k]);
             }
@@ -332,6 +326,12 @@ impl Grower<'_> {
         }
         Ok(fit)
     }
+}
+
+/// Whether both ends have the same gain, within this factor.
+pub fn ends_agree(gains: &Gains, within: f64) -> bool {
+    let [a, b] = gains.map(|g| g.norm());
+    a.max(b) < within * a.min(b)
 }
 
 /// `atom` as an attempt names it.

@@ -1,6 +1,7 @@
 //! What each rung of the search does.
 
 use super::begin::Seeds;
+use super::grow::ROUGHLY;
 use super::on_wall::is_on;
 use super::propose::lines::LongLines;
 use super::propose::pairs::Pairs;
@@ -10,16 +11,13 @@ use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Tie};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
 
 /// Tones that are told apart in no time.
 const FEW_TONES: usize = 92;
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
-
-/// Of walls and points together.
-const WITH_POINTS: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;
@@ -148,7 +146,7 @@ impl Search<'_> {
             }
             fit.gains.extend(vec![Gains::default(); more.len()]);
             fit.atoms.extend(more);
-            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, WITH_POINTS);
+            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
             if self.is_explained(&fit) {
                 break;
             }

@@ -1,6 +1,6 @@
 //! What a search works on, how far it has come, and what several rungs ask of it.
 
-use super::grow::{Grower, tried};
+use super::grow::{Grower, ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
@@ -8,7 +8,7 @@ use super::trace::{Trace, decades};
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Samples, Tie, Workbench};
 use crate::reconstruct::{ReconstructError, Request};
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
@@ -156,11 +156,8 @@ impl Search<'_> {
         atoms.truncate(self.settings.most_atoms);
         let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
         for _ in 0..if self.settings.lacks(Part::PairsAgree) { 0 } else { MOST_DOUBTS } {
-            let alike = |gains: &Gains| {
-                let [a, b] = gains.map(|g| g.norm());
-                a.max(b) < MOST_UNLIKE * a.min(b)
-            };
-            let (kept, unlike): (Vec<_>, Vec<_>) = fit.atoms.iter().zip(&fit.gains).partition(|(_, g)| alike(g));
+            let (kept, unlike): (Vec<_>, Vec<_>) =
+                fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
             if unlike.is_empty() {
                 break;
             }

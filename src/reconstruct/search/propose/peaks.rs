@@ -3,15 +3,12 @@
 //! Magnitudes are multiplied, not amplitudes added: the phase between the ends changes with every column of the full map, and what stands in one end
 //! alone is a ghost.
 
-use super::end_beams::end_beams;
+use super::end_beams::{BEAMS_PER_ELEMENT, end_beams};
 use super::registered::Registered;
 use crate::radar::Radar;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Beams formed by each end for each of its elements.
-const BEAMS_PER_ELEMENT: usize = 4;
 
 /// Columns of the common polar grid for each element of an end.
 const COLUMNS_PER_ELEMENT: usize = 10;
