@@ -13,9 +13,6 @@ use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
 
-/// Tones that are told apart in no time.
-const FEW_TONES: usize = 92;
-
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
 
@@ -31,11 +28,7 @@ pub const MOST_AGAIN: usize = 60;
 impl Search<'_> {
     /// Points that both ends' tones lead to, kept where they are all there is.
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
-        // Many tones take long to tell apart, and are mostly those of lines.
-        state.pairs = self.pairs_of_tones(
-            &state.fit,
-            if state.is_long && !self.settings.lacks(Part::FewTones) { FEW_TONES } else { usize::MAX },
-        );
+        state.pairs = self.pairs_of_tones(&state.fit);
         if let Some(pairs) = &state.pairs {
             let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {

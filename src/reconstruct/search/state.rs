@@ -135,14 +135,14 @@ impl Search<'_> {
 
     /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
     pub fn pairs(&self, fit: &Fit) -> Pairs {
-        self.pairs_of_tones(fit, usize::MAX).unwrap_or_default()
+        self.pairs_of_tones(fit).unwrap_or_default()
     }
 
-    /// The same; `None` where an end hears more tones than `most`.
-    pub fn pairs_of_tones(&self, fit: &Fit, most: usize) -> Option<Pairs> {
+    /// The same; `None` where an end hears too many tones.
+    pub fn pairs_of_tones(&self, fit: &Fit) -> Option<Pairs> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let noise = self.bench.hearing.noise_variance(self.radar, &flat);
-        paired_points(self.radar, &flat, noise, most)
+        paired_points(self.radar, &flat, noise)
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.

@@ -44,8 +44,6 @@ pub enum Part {
     Teeth,
     /// Rule: what is complete is fitted without a window.
     Unwindowed,
-    /// Rule: few tones only are paired before long lines are looked for.
-    FewTones,
     /// Rule: objects that the ends disagree on are left to the fallback.
     NotAgreed,
 }
@@ -71,7 +69,6 @@ const PARTS: &[(&str, Part)] = &[
     ("tied", Part::Tied),
     ("teeth", Part::Teeth),
     ("unwindowed", Part::Unwindowed),
-    ("few-tones", Part::FewTones),
     ("not-agreed", Part::NotAgreed),
 ];
 
