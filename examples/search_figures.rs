@@ -2,14 +2,14 @@
 //!
 //! `cargo run --release --example search_figures -- --method nomp,hybrid,live --set clusters,walls --count 6`; `--snr-db 40` lays noise
 //! beneath the samples. `--without NAME` (any number of times; `--without all` for every part) runs the search of `nomp` with and
-//! without that part on the same scenes; `NAME+NAME` leaves out several at once.
+//! without that part on the same scenes; `NAME+NAME` leaves out several at once. `--hybrid` does so with `hybrid`.
 
 use apertura::evaluate::Roc;
 use apertura::evaluate::trial::Trial;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
 use apertura::reconstruct::search::{Nomp, Settings, Without, parts, without};
-use apertura::reconstruct::{Reconstructor, Request};
+use apertura::reconstruct::{Hybrid, Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
 use clap::Parser;
@@ -28,6 +28,9 @@ struct Args {
     /// A rung, source or rule of the search: `nomp` is run with and without it, in place of the methods; `all` for each
     #[arg(long)]
     without: Vec<String>,
+    /// Parts are left out of `hybrid`, in place of `nomp`
+    #[arg(long, requires = "without")]
+    hybrid: bool,
     /// Kinds of scenes, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
@@ -67,15 +70,22 @@ fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
         return args.method.iter().map(|name| Ok(column(name.clone(), methods::by_name(name)?))).collect();
     }
     let names = if args.without.iter().any(|name| name == "all") { parts() } else { args.without.clone() };
-    let mut found = vec![column("whole".into(), Arc::new(Nomp::default()) as Arc<dyn Reconstructor>)];
+    let fallback = methods::by_name("live");
+    let searching = |without: Without| -> Result<Arc<dyn Reconstructor>, Box<dyn Error>> {
+        let settings = Settings { without, ..Settings::default() };
+        Ok(match args.hybrid {
+            true => Arc::new(Hybrid::new(fallback.clone()?).with_settings(settings)),
+            false => Arc::new(Nomp::with_settings(settings)),
+        })
+    };
+    let mut found = vec![column("whole".into(), searching(Without::default())?)];
     for name in names {
         let mut left_out = Without::default();
         for part in name.split('+') {
             let known = || format!("no part is called {part}; there are {}", parts().join(", "));
             left_out = left_out.and(without(part).ok_or_else(known)?);
         }
-        let nomp = Nomp::with_settings(Settings { without: left_out, ..Settings::default() });
-        found.push(column(format!("-{name}"), Arc::new(nomp)));
+        found.push(column(format!("-{name}"), searching(left_out)?));
     }
     Ok(found)
 }

@@ -24,27 +24,20 @@ impl Profile {
 
     /// The most that any bin at or beside these rows holds.
     pub fn strongest(&self, rows: &Rows) -> f64 {
-        let bins = |low: f64, high: f64| ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);
-        let of_end = |((low, high), energy): (&(f64, f64), &Vec<f64>)| {
-            let (low, high) = bins(*low, *high);
-            let len = energy.len() as i64;
-            (low..=high.min(low + len - 1)).map(|bin| energy[bin.rem_euclid(len) as usize]).fold(0.0, f64::max)
-        };
-        rows.iter().zip(&self.energy).map(of_end).fold(0.0, f64::max)
+        rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).fold(0.0, f64::max)).fold(0.0, f64::max)
     }
 
     /// Energy at and beside these rows.
     pub fn at(&self, rows: &Rows) -> f64 {
-        rows.iter()
-            .zip(&self.energy)
-            .map(|((low, high), energy)| {
-                let (low, high) = ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);
-                let len = energy.len() as i64;
-                let high = high.min(low + len - 1);
-                (low..=high).map(|bin| energy[bin.rem_euclid(len) as usize]).sum::<f64>()
-            })
-            .sum()
+        rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).sum::<f64>()).sum()
     }
+}
+
+/// Energy of each bin at and beside these rows of one end, none twice.
+fn near(energy: &[f64], (low, high): &(f64, f64)) -> impl Iterator<Item = f64> {
+    let (low, high) = ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);
+    let len = energy.len() as i64;
+    (low..=high.min(low + len - 1)).map(move |bin| energy[bin.rem_euclid(len) as usize])
 }
 
 /// Rows that hold all of several atoms' rows.

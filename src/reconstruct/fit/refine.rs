@@ -39,13 +39,6 @@ pub struct Limits {
     pub ridge: f64,
 }
 
-impl Limits {
-    /// The same with another price of gains.
-    pub fn with_ridge(self, ridge: f64) -> Self {
-        Limits { ridge, ..self }
-    }
-}
-
 /// Gains at the first and at the last end.
 pub type Gains = [Complex64; 2];
 

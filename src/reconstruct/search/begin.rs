@@ -29,8 +29,8 @@ const LEAST_OF_LONG: f64 = 0.6;
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.
 const LEAST_LONG: usize = 45;
 
-/// What a line that was found as a whole must explain, to be followed and then.
-const LEAST_OF_LINE: [f64; 2] = [0.3, 0.45];
+/// The same of a line that was looked up as a whole.
+const LEAST_OF_LINE: f64 = 0.45;
 
 /// Fewest reflectors of such a line.
 const LEAST_OF_LINE_REFLECTORS: usize = 50;
@@ -66,13 +66,13 @@ impl Seeds {
         match self {
             Seeds::Points(_) if is_long(radar, wall) && explained >= LEAST_OF_LONG => true,
             Seeds::Points(_) => LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part),
-            Seeds::LongLines(_) => count >= LEAST_OF_LINE_REFLECTORS && explained >= LEAST_OF_LINE[1],
+            Seeds::LongLines(_) => count >= LEAST_OF_LINE_REFLECTORS && explained >= LEAST_OF_LINE,
         }
     }
 }
 
 /// Whether `wall` has many reflectors, most of them told apart.
-pub fn is_long(radar: &Radar, wall: &Atom) -> bool {
+fn is_long(radar: &Radar, wall: &Atom) -> bool {
     let [first, last] = [0.0, wall.reflector_count() as f64 - 1.0].map(|i| wall.position_metres(i));
     let bins = (last[0] - first[0]).hypot(last[1] - first[1]) / radar.range_resolution_metres();
     wall.reflector_count() >= LEAST_LONG && bins >= LEAST_LONG as f64

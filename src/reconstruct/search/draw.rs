@@ -133,6 +133,7 @@ fn cell_noise(radar: &Radar, variance: &[f64]) -> f64 {
 
 /// The range that Lambda divides by: the harmonic mean of `peak - min` where `10^(2 min)` is exponential with `rate`.
 fn expected_range(peak: f64, rate: f64) -> f64 {
+    // Quantiles of the minimum that the mean is taken over.
     const STEPS: usize = 400;
     let scale = -rate.max(f64::MIN_POSITIVE).log10() / 2.0;
     let mean_inverse: f64 = (0..STEPS)

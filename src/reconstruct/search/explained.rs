@@ -5,7 +5,7 @@
 
 use super::draw::Expected;
 use super::finish::Found;
-use super::propose::end_beams::{beam_noise_power, beam_of_cos, end_beams};
+use super::propose::end_beams::{BEAMS_PER_ELEMENT, beam_noise_power, beam_of_cos, end_beams};
 use super::propose::view::View;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
@@ -13,9 +13,6 @@ use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::{Array2, ArrayView1, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
-
-/// Beams formed by each end for each of its elements.
-const BEAMS_PER_ELEMENT: usize = 4;
 
 /// Rows and beams to each side over which powers are averaged.
 const AROUND: usize = 2;

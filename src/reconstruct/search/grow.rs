@@ -1,7 +1,7 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
 use super::propose::end_beams::beam_noise_power;
-use super::propose::peaks::{Candidate, Detector};
+use super::propose::peaks::Detector;
 use super::propose::source::{Propose, Unexplained};
 use super::settings::Settings;
 use super::trace::{Trace, decades};
@@ -17,8 +17,8 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Of one new atom by itself.
-const ALONE: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
+/// Of what more is to come beside: one new atom by itself, or walls and points together.
+pub const ROUGHLY: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 
 /// Of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
@@ -56,33 +56,6 @@ const MOST_TOGETHER: usize = 48;
 /// Candidates taken from one look at the residual.
 const MOST_A_ROUND: usize = 16;
 
-/// Range bins that are closed together where more atoms don't help.
-const SECTOR_BINS: usize = 6;
-
-/// Where atoms were tried, and what was unexplained there then.
-struct Trials {
-    sectors: Vec<Vec<f64>>,
-}
-
-impl Trials {
-    fn new(radar: &Radar) -> Self {
-        Trials { sectors: vec![Vec::new(); 2 * radar.samples / SECTOR_BINS + 2] }
-    }
-
-    fn add(&mut self, radar: &Radar, candidate: &Candidate, profile: &Profile) {
-        let range = candidate.x_metres.hypot(candidate.y_metres);
-        let sector = (radar.bin_of_range(range) as usize / SECTOR_BINS).min(self.sectors.len() - 1);
-        let atom = Atom::Point { x_metres: candidate.x_metres, y_metres: candidate.y_metres };
-        self.sectors[sector].push(profile.at(&rows_of(radar, &atom)));
-    }
-
-    /// Whether the last trials at this range of the array's centre have not halved what was there.
-    fn is_closed(&self, bin: usize, most: usize) -> bool {
-        let tried = &self.sectors[(bin / SECTOR_BINS).min(self.sectors.len() - 1)];
-        tried.len() > most && tried[tried.len() - 1] > 0.5 * tried[tried.len() - 1 - most]
-    }
-}
-
 /// Greedy search in the samples of one radar.
 pub struct Grower<'a> {
     /// The radar.
@@ -113,11 +86,6 @@ impl Grower<'_> {
             |r: Reflector| self.bench.worth_of(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)), self.radar);
         let energy: f64 = atom.reflectors((gains[0].norm() + gains[1].norm()) / 2.0).map(own).sum();
         decades(fit.cost() + energy, fit.cost())
-    }
-
-    /// Places that stand out of the noise of what `fit` leaves, where nothing forbids to look.
-    pub fn candidates(&self, flat: &[Complex64], most: usize, closed: impl Fn(usize) -> bool + Sync) -> Vec<Candidate> {
-        self.detector.peaks(self.radar, flat, self.least_power(flat), most, closed)
     }
 
     /// Whether nothing stands out of the noise of what `fit` leaves.
@@ -162,7 +130,6 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut trials = Trials::new(self.radar);
         let mut best = fit.clone();
         let mut look_back = (self.bench.work.done(), fit.cost());
         while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
@@ -172,23 +139,17 @@ impl Grower<'_> {
                 best = fit.clone();
             }
             let flat = fit.residual.flat(&self.bench.sensor);
-            let profile = Profile::new(self.radar, &flat);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let candidates = self.candidates(&flat, MOST_A_ROUND.min(room), |bin| {
-                !self.settings.lacks(Part::Closing) && trials.is_closed(bin, self.settings.trials)
-            });
-            if candidates.is_empty() {
+            let candidates = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
+            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
+            if points.is_empty() {
                 break;
             }
-            for c in &candidates {
-                trials.add(self.radar, c, &profile);
-            }
-            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
             fit = self.with_points(fit, &points)?;
             if !self.settings.lacks(Part::Settling) {
                 fit = self.settled(fit)?;
             }
-            tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = candidates.len(), "grown");
+            tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
                 if fit.cost() > WORTH_GOING_ON * cost && !self.settings.lacks(Part::LookBack) {
@@ -224,10 +185,9 @@ impl Grower<'_> {
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
         placed.retain(|(atom, gains)| {
-            let [a, b] = gains.map(|g| g.norm());
             let is_kept = std::mem::take(&mut strongest)
                 || self.settings.lacks(Part::PointsAgree)
-                || a.max(b) < MOST_UNLIKE * a.min(b);
+                || ends_agree(gains, MOST_UNLIKE);
             if !is_kept {
                 self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
@@ -251,7 +211,7 @@ impl Grower<'_> {
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone =
-            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ALONE);
+            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ROUGHLY);
         if self.settings.lacks(Part::Wraps) {
             let own = alone(own);
             return (own.atoms[0], own.gains[0]);
@@ -293,7 +253,7 @@ impl Grower<'_> {
             let base = self.bench.without(&fit.residual, &atoms, &back).residual;
             let own = union_of(group.iter().map(|&i| rows[i]));
             let ridge = own.map_or(0.0, |own| self.ridge(&fit, &base, &own) / group.len() as f64);
-            let refined = self.bench.refine(&base, atoms, gains, Tie::PerEnd, limits.with_ridge(ridge));
+            let refined = self.bench.refine(&base, atoms, gains, Tie::PerEnd, Limits { ridge, ..limits });
             for (k, &i) in group.iter().enumerate() {
                 (fit.atoms[i], fit.gains[i]) = (refined.atoms[k], refined.gains[k]);
             }
@@ -366,6 +326,12 @@ impl Grower<'_> {
         }
         Ok(fit)
     }
+}
+
+/// Whether both ends have the same gain, within this factor.
+pub fn ends_agree(gains: &Gains, within: f64) -> bool {
+    let [a, b] = gains.map(|g| g.norm());
+    a.max(b) < within * a.min(b)
 }
 
 /// `atom` as an attempt names it.

@@ -6,7 +6,7 @@
 //!
 //! Within a rung, work is counted ([`Settings::most_work`](super::Settings)): where it is spent, each loop ends with the best it has.
 
-use super::rungs::{MOST_AGAIN, WORTH_ANOTHER_LOOK};
+use super::rungs::MOST_AGAIN;
 use super::state::{Answer, Search, State};
 use super::without::Without;
 use crate::reconstruct::ReconstructError;
@@ -63,13 +63,6 @@ pub const LADDER: &[Rung] = &[
         skipped: None,
         is_due: |_| true,
         climb: |search, state| search.climb_pairs(state),
-    },
-    Rung {
-        name: "weaker long lines",
-        does: "Looks up long lines along y once more in what is left, then pairs tones into points.",
-        skipped: Some("Much is left of what the last look for long lines saw."),
-        is_due: |state| state.fit.cost() < WORTH_ANOTHER_LOOK * state.looked_at,
-        climb: |search, state| search.climb_weaker_lines(state),
     },
     POINTS,
     POINTS_AGAIN,

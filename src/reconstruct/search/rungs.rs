@@ -1,6 +1,7 @@
 //! What each rung of the search does.
 
 use super::begin::Seeds;
+use super::grow::ROUGHLY;
 use super::on_wall::is_on;
 use super::propose::lines::LongLines;
 use super::propose::pairs::Pairs;
@@ -10,16 +11,10 @@ use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Tie};
-
-/// Tones that are told apart in no time.
-const FEW_TONES: usize = 92;
+use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
-
-/// Of walls and points together.
-const WITH_POINTS: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;
@@ -27,20 +22,13 @@ const MOST_ROUNDS: usize = 3;
 /// Another round of pairing needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.5;
 
-/// Another look for long lines needs that this part of the energy at most is left of what the last one saw.
-pub const WORTH_ANOTHER_LOOK: f64 = 0.3;
-
 /// Most atoms of a fit that is worth a second search for what it lacks.
 pub const MOST_AGAIN: usize = 60;
 
 impl Search<'_> {
     /// Points that both ends' tones lead to, kept where they are all there is.
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
-        // Many tones take long to tell apart, and are mostly those of lines.
-        state.pairs = self.pairs_of_tones(
-            &state.fit,
-            if state.is_long && !self.settings.lacks(Part::FewTones) { FEW_TONES } else { usize::MAX },
-        );
+        state.pairs = self.pairs_of_tones(&state.fit);
         if let Some(pairs) = &state.pairs {
             let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {
@@ -63,7 +51,6 @@ impl Search<'_> {
     /// Long lines along y, looked for as a whole.
     pub fn climb_long_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
         state.fit = self.long_lines(state.fit.clone())?;
-        state.looked_at = state.fit.cost();
         if !state.fit.atoms.is_empty() || state.pairs.is_none() {
             state.pairs = Some(self.pairs(&state.fit));
         }
@@ -101,17 +88,6 @@ impl Search<'_> {
         let pairs = state.pairs.take().unwrap_or_default();
         let answer = self.paired_again(state.fit.clone(), pairs, state.is_long)?;
         state.reach(answer);
-        Ok(())
-    }
-
-    /// Long lines that what was found may have hidden, and the points beside them.
-    pub fn climb_weaker_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
-        let lines = self.long_lines(state.fit.clone())?;
-        if lines.atoms.len() > state.fit.atoms.len() {
-            let pairs = self.pairs(&lines);
-            let answer = self.paired_again(lines, pairs, state.is_long)?;
-            state.reach(answer);
-        }
         Ok(())
     }
 
@@ -163,7 +139,7 @@ impl Search<'_> {
             }
             fit.gains.extend(vec![Gains::default(); more.len()]);
             fit.atoms.extend(more);
-            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, WITH_POINTS);
+            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
             if self.is_explained(&fit) {
                 break;
             }

@@ -14,8 +14,6 @@ pub struct Settings {
     /// Price of a gain's energy, over the part of its neighbourhood that is unexplained: what keeps atoms that are not quite right from
     /// large gains that cancel.
     pub gain_price: f64,
-    /// Points tried at one range before what is unexplained there must have halved.
-    pub trials: usize,
     /// Work granted to the search: about ten microseconds a unit, counted and not timed.
     pub most_work: usize,
     /// Parts that are left out, to see what they are good for.
@@ -36,7 +34,6 @@ impl Default for Settings {
             least_prominence: 14.0,
             rounds: 6,
             gain_price: 0.3,
-            trials: 4,
             most_work: 40_000,
             without: Without::default(),
         }

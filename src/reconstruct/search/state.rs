@@ -1,6 +1,6 @@
 //! What a search works on, how far it has come, and what several rungs ask of it.
 
-use super::grow::{Grower, tried};
+use super::grow::{Grower, ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
@@ -8,7 +8,7 @@ use super::trace::{Trace, decades};
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Samples, Tie, Workbench};
 use crate::reconstruct::{ReconstructError, Request};
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
@@ -38,8 +38,6 @@ pub struct State {
     pub pairs: Option<Pairs>,
     /// Whether an echo of the samples is long in range, as a line's is.
     pub is_long: bool,
-    /// Energy that was left when long lines were last looked for.
-    pub looked_at: f64,
 }
 
 impl State {
@@ -48,12 +46,12 @@ impl State {
         let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
         let flat = nothing.residual.flat(&search.bench.sensor);
         let is_long = search.grower().unexplained(&flat, &nothing).echoes().are_long();
-        State { looked_at: nothing.cost(), is_long, pairs: None, ..State::of(nothing) }
+        State { is_long, ..State::of(nothing) }
     }
 
     /// With `fit` found.
     pub fn of(fit: Fit) -> Self {
-        State { looked_at: fit.cost(), fit, is_sure: false, pairs: None, is_long: false }
+        State { fit, is_sure: false, pairs: None, is_long: false }
     }
 
     /// With `answer` found.
@@ -137,14 +135,14 @@ impl Search<'_> {
 
     /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
     pub fn pairs(&self, fit: &Fit) -> Pairs {
-        self.pairs_of_tones(fit, usize::MAX).unwrap_or_default()
+        self.pairs_of_tones(fit).unwrap_or_default()
     }
 
-    /// The same; `None` where an end hears more tones than `most`.
-    pub fn pairs_of_tones(&self, fit: &Fit, most: usize) -> Option<Pairs> {
+    /// The same; `None` where an end hears too many tones.
+    pub fn pairs_of_tones(&self, fit: &Fit) -> Option<Pairs> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let noise = self.bench.hearing.noise_variance(self.radar, &flat);
-        paired_points(self.radar, &flat, noise, most)
+        paired_points(self.radar, &flat, noise)
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
@@ -158,11 +156,8 @@ impl Search<'_> {
         atoms.truncate(self.settings.most_atoms);
         let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
         for _ in 0..if self.settings.lacks(Part::PairsAgree) { 0 } else { MOST_DOUBTS } {
-            let alike = |gains: &Gains| {
-                let [a, b] = gains.map(|g| g.norm());
-                a.max(b) < MOST_UNLIKE * a.min(b)
-            };
-            let (kept, unlike): (Vec<_>, Vec<_>) = fit.atoms.iter().zip(&fit.gains).partition(|(_, g)| alike(g));
+            let (kept, unlike): (Vec<_>, Vec<_>) =
+                fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
             if unlike.is_empty() {
                 break;
             }

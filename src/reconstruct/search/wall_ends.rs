@@ -65,25 +65,11 @@ impl Grower<'_> {
     fn more_reflectors(&self, near: &Narrow, wall: &Fit, at_last: bool) -> usize {
         let Some(atom) = wall.atoms.first() else { return 0 };
         let count = atom.reflector_count();
-        let (mut best, mut least) = (0, wall.cost());
-        let mut residual = wall.residual.clone();
-        for more in 1..=count {
-            let at = if at_last { (count - 1 + more) as f64 } else { -(more as f64) };
-            let [x_metres, y_metres] = atom.position_metres(at);
-            let next = Atom::Point { x_metres, y_metres };
-            if y_metres < 0.0 || !near.holds(&rows_of(self.radar, &next)) {
-                break;
-            }
-            let left = near.bench.without(&residual, &[next], &wall.gains);
-            residual = left.residual;
-            let cost = left.energy[0] + left.energy[1];
-            if cost < least {
-                (best, least) = (more, cost);
-            } else if more >= best + BEYOND {
-                break;
-            }
-        }
-        best
+        let next = |more: usize| atom.position_metres(if at_last { (count - 1 + more) as f64 } else { -(more as f64) });
+        let is_within = |&[x_metres, y_metres]: &[f64; 2]| {
+            y_metres >= 0.0 && near.holds(&rows_of(self.radar, &Atom::Point { x_metres, y_metres }))
+        };
+        how_many(&near.bench, wall, &wall.gains, (1..=count).map(next).take_while(is_within))
     }
 }
 
@@ -113,17 +99,21 @@ fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
     let Some(atom) = wall.atoms.first() else { return 0 };
     let count = atom.reflector_count();
     let back: Vec<Gains> = wall.gains.iter().map(|g| g.map(|g| -g)).collect();
+    let next = |fewer: usize| atom.position_metres(if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 });
+    how_many(bench, wall, &back, (1..=count / 2).map(next))
+}
+
+/// How many of `places`, one after the other, leave least of what `wall` leaves when reflectors of these gains are taken off there.
+fn how_many(bench: &Workbench, wall: &Fit, gains: &[Gains], places: impl Iterator<Item = [f64; 2]>) -> usize {
     let (mut best, mut least) = (0, wall.cost());
     let mut residual = wall.residual.clone();
-    for fewer in 1..=count / 2 {
-        let at = if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 };
-        let [x_metres, y_metres] = atom.position_metres(at);
-        let left = bench.without(&residual, &[Atom::Point { x_metres, y_metres }], &back);
+    for (taken, [x_metres, y_metres]) in (1..).zip(places) {
+        let left = bench.without(&residual, &[Atom::Point { x_metres, y_metres }], gains);
         residual = left.residual;
         let cost = left.energy[0] + left.energy[1];
         if cost < least {
-            (best, least) = (fewer, cost);
-        } else if fewer >= best + BEYOND {
+            (best, least) = (taken, cost);
+        } else if taken >= best + BEYOND {
             break;
         }
     }

@@ -1,6 +1,6 @@
 //! Walls: rows of points that were found one by one, followed to where they end.
 
-use super::begin::{Seeds, is_long};
+use super::begin::Seeds;
 use super::grow::{Grower, tried};
 use super::on_wall::stands_on;
 use super::propose::chains::Chains;
@@ -8,7 +8,7 @@ use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie};
 
 /// A wall must leave less than this part of what was left without it.
 const LEAST_GAINED: f64 = 0.98;
@@ -22,12 +22,6 @@ const MOST_WALLS: usize = 8;
 /// Part of the work granted that the search for walls may take.
 const MOST_SPENT: f64 = 0.5;
 
-/// Part of the energy in its range bins that may be left where a wall is known with all that stands beside it.
-const MOST_LEFT: f64 = 0.15;
-
-/// The same of a long wall, in whose range bins much else may stand.
-const MOST_LEFT_OF_LONG: f64 = 0.5;
-
 /// Most times all ends are followed and all walls moved together.
 const MOST_TURNS: usize = 4;
 
@@ -35,8 +29,7 @@ const MOST_TURNS: usize = 4;
 const WORTH_ANOTHER_TURN: f64 = 0.9;
 
 impl Grower<'_> {
-    /// `fit` and the walls that begin at `seeds`, as long as each explains much of what there is in its range bins; without those that
-    /// have not explained nearly all of it in the end.
+    /// `fit` and the walls that begin at `seeds`, as long as each explains much of what there is in its range bins.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -52,11 +45,7 @@ impl Grower<'_> {
         if fit.atoms.len() == known {
             return Ok(fit);
         }
-        let fit = self.with_settled_ends(samples, fit)?;
-        Ok(match seeds {
-            Seeds::Points(_) => self.without_doubtful_walls(samples, fit, known),
-            Seeds::LongLines(_) => fit,
-        })
+        self.with_settled_ends(samples, fit)
     }
 
     /// Every wall followed to its ends once more, now that the others are known, and all moved together; by turns, as long as it helps.
@@ -84,31 +73,6 @@ impl Grower<'_> {
             }
         }
         Ok(fit)
-    }
-
-    /// `fit` without those atoms from number `known` on that leave more than a little in their range bins.
-    fn without_doubtful_walls(&self, samples: &Samples, fit: Fit, known: usize) -> Fit {
-        let flat = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor));
-        let (all, left) = (flat(samples), flat(&fit.residual));
-        let is_doubtful = |i: &usize| {
-            let rows = rows_of(self.radar, &fit.atoms[*i]);
-            let most = if is_long(self.radar, &fit.atoms[*i]) { MOST_LEFT_OF_LONG } else { MOST_LEFT };
-            left.at(&rows) > most * all.at(&rows)
-        };
-        let mut doubtful: Vec<usize> = (known..fit.atoms.len()).filter(is_doubtful).collect();
-        if self.settings.lacks(Part::DoubtfulLines) {
-            doubtful.clear();
-        }
-        tracing::debug!(doubtful = doubtful.len(), walls = fit.atoms.len() - known, "walls");
-        if doubtful.is_empty() {
-            return fit;
-        }
-        let less = self.bench.less(fit.clone(), &doubtful);
-        for &i in &doubtful {
-            let part = 1.0 - left.at(&rows_of(self.radar, &fit.atoms[i])) / all.at(&rows_of(self.radar, &fit.atoms[i]));
-            self.refuse(tried(&fit.atoms[i]), decades(less.cost(), fit.cost()), Refusal::ExplainsTooLittle(part));
-        }
-        less
     }
 
     /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.

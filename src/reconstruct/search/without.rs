@@ -18,8 +18,6 @@ pub enum Part {
     ByEnergy,
     /// Rule: lines are followed to their ends again once all are known.
     SettledEnds,
-    /// Rule: lines that leave much in their range bins are dropped.
-    DoubtfulLines,
     /// Rule: points beside lines are joined before the next look for lines.
     PointsWithLines,
     /// Rule: pairs on whose strength the ends disagree are dropped.
@@ -34,8 +32,6 @@ pub enum Part {
     Prune,
     /// Rule: a point is also tried one wrap of the range away.
     Wraps,
-    /// Rule: ranges where points don't help are closed.
-    Closing,
     /// Rule: growing ends where it goes slowly.
     LookBack,
     /// Rule: gains have a price where much is unexplained.
@@ -48,8 +44,6 @@ pub enum Part {
     Teeth,
     /// Rule: what is complete is fitted without a window.
     Unwindowed,
-    /// Rule: few tones only are paired before long lines are looked for.
-    FewTones,
     /// Rule: objects that the ends disagree on are left to the fallback.
     NotAgreed,
 }
@@ -62,7 +56,6 @@ const PARTS: &[(&str, Part)] = &[
     ("moved-counts", Part::MovedCounts),
     ("by-energy", Part::ByEnergy),
     ("settled-ends", Part::SettledEnds),
-    ("doubtful-lines", Part::DoubtfulLines),
     ("points-with-lines", Part::PointsWithLines),
     ("pairs-agree", Part::PairsAgree),
     ("points-agree", Part::PointsAgree),
@@ -70,14 +63,12 @@ const PARTS: &[(&str, Part)] = &[
     ("polish-pairs", Part::PolishPairs),
     ("prune", Part::Prune),
     ("wraps", Part::Wraps),
-    ("closing", Part::Closing),
     ("look-back", Part::LookBack),
     ("price", Part::Price),
     ("settling", Part::Settling),
     ("tied", Part::Tied),
     ("teeth", Part::Teeth),
     ("unwindowed", Part::Unwindowed),
-    ("few-tones", Part::FewTones),
     ("not-agreed", Part::NotAgreed),
 ];
 

@@ -1,6 +1,7 @@
 //! Rows of reflectors between their first and their last: of a wall whose reflectors stand too close to be told apart, those at its ends
 //! are heard all the same, and only how many stand between them is unknown.
 
+use super::edges::LEAST_STEP_METRES;
 use super::phased::{Heard, PhasedBeams, Row, Strongest};
 use super::source::{Propose, Unexplained};
 use super::strides::{MOST_REFLECTORS, Stride, climbed};
@@ -8,9 +9,6 @@ use crate::reconstruct::fit::Atom;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
-
-/// Shortest step, metres.
-const LEAST_STEP_METRES: f64 = 0.03;
 
 /// Longest step, metres: reflectors farther apart are told apart.
 const MOST_STEP_METRES: f64 = 0.16;

@@ -1,8 +1,7 @@
 //! Neighbouring points of a column of the coarse grid, added a few at a time with the phases that a line there predicts.
 
-use super::phased::{Heard, PhasedBeams, Row};
+use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
 use crate::signal::simd::{Kernel, Simd};
-use num_complex::Complex64;
 
 /// Points added with their phases before magnitudes are taken.
 pub const BLOCK: usize = 5;
@@ -31,11 +30,7 @@ pub fn glance(beams: &PhasedBeams, end: usize, row: Row, points: usize) -> Vec<B
     let mut heard = vec![Heard::default(); points / (GLANCED * BLOCK) * BLOCK];
     Simd::chosen().run(Column { beams, end, row, every: GLANCED, heard: &mut heard });
     let block = |points: &[Heard]| {
-        let (mut sum, mut weight) = (Complex64::default(), 0.0);
-        for point in points {
-            sum += point.weighted;
-            weight += point.weight;
-        }
+        let AddedUp { sum, weight, .. } = added_up(points);
         Block { power: sum.norm_sqr() / (weight * weight), weight }
     };
     heard.chunks_exact(BLOCK).map(block).collect()
@@ -125,6 +120,7 @@ mod tests {
     use super::*;
     use crate::radar::Radar;
     use crate::signal::floor::unit_noise;
+    use num_complex::Complex64;
 
     #[test]
     fn a_glance_is_every_third_block() {

@@ -1,13 +1,11 @@
 //! Points found one by one that stand in a row at equal steps: where a wall may be.
 
 use super::source::{Propose, Unexplained};
+use super::strides::LEAST_STEP_METRES;
 use crate::reconstruct::fit::{Atom, Gains};
 
 /// Longest step from one reflector of a wall to the next, metres.
 const MOST_STEP_METRES: f64 = 0.5;
-
-/// Shortest step, metres: nearer points are one that was found twice.
-const LEAST_STEP_METRES: f64 = 0.02;
 
 /// A point counts as the next of a row when it stands this near to where that is expected, as a part of the step.
 const OFF: f64 = 0.12;

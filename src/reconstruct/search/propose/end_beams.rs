@@ -9,6 +9,9 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
+/// Beams formed by each end for each of its elements: so many that an echo between two of them is hardly weaker.
+pub const BEAMS_PER_ELEMENT: usize = 4;
+
 /// `count` beams of each end, evenly spaced in cos(theta), of `samples` laid out channel by channel: `[beam, range bin]` for each
 /// end, phases referred to the middle of the end.
 pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<Complex64>; 2] {

@@ -6,13 +6,12 @@
 //! ends; one bright reflector does not, so a low quantile of the gains tells them apart.
 
 use super::blocks::{BLOCK, Blocks, GLANCED, glance, heard_along};
-use super::phased::{PhasedBeams, Row};
+use super::phased::{AddedUp, PhasedBeams, Row, added_up};
 use super::runs::EchoBins;
 use super::source::{Propose, Unexplained};
 use crate::radar::Radar;
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
-use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Starts tried between one point and the next.
@@ -49,19 +48,14 @@ const SORTED: usize = 64;
 /// The same at the first glance, by a few blocks of the line: they may be too weak by chance.
 const GLANCED_PART: f64 = 0.02;
 
-/// A line to look for: its points stand one behind the other along y. What is found may become longer or shorter, and turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Shape {
-    /// Distance between neighbours, range bins.
-    spacing_bins: f64,
-    /// Points at least.
-    count: usize,
-}
+/// Range bins from one point to the next of the lines that are looked for: as the author's program makes the tables' scenes, and as the text
+/// says. What is found may turn.
+const SPACINGS_BINS: [f64; 2] = [1.5, 1.0];
 
-/// Lines that are looked for: at the spacings of the tables' scenes as the author's program makes them, and as the text says.
-const SHAPES: [Shape; 2] = [Shape { spacing_bins: 1.5, count: 75 }, Shape { spacing_bins: 1.0, count: 75 }];
+/// Points of these lines. What is found may become longer or shorter.
+const COUNT: usize = 75;
 
-/// Lines of one shape that are moved to the best place near them, and those of them that are kept.
+/// Lines of one spacing that are moved to the best place near them, and those of them that are kept.
 const MOST_FINE: [usize; 2] = [4, 3];
 
 /// How far around a line of the coarse grid the fine one reaches, and its step, metres.
@@ -105,11 +99,11 @@ fn lines_in(radar: &Radar, beams: &PhasedBeams, echoes: &EchoBins, task: &Task) 
         score_of_energy: radar.end_elements as f64 * sum * sum / (radar.samples as f64 * square),
     };
     let mut found = Vec::new();
-    for Shape { spacing_bins, count } in SHAPES {
+    for spacing_bins in SPACINGS_BINS {
         if task.is_cancelled() {
             break;
         }
-        let coarse = detector.coarse(spacing_bins * radar.range_resolution_metres(), count);
+        let coarse = detector.coarse(spacing_bins * radar.range_resolution_metres(), COUNT);
         let mut fine: Vec<Candidate> = coarse.iter().map(|c| detector.fine(c)).collect();
         fine.sort_by(|a, b| b.part.total_cmp(&a.part));
         found.extend(fine.iter().take(MOST_FINE[1]).map(|line| line.atom));
@@ -244,11 +238,7 @@ impl LineDetector<'_> {
         let row = Row { first_metres: [x_metres, y_metres], step_metres: [dx_metres, dy_metres] };
         let mut energy = 0.0;
         for end in 0..2 {
-            let (mut sum, mut weight) = (Complex64::default(), 0.0);
-            for echo in heard_along(self.beams, end, row, count) {
-                sum += echo.weighted;
-                weight += echo.weight;
-            }
+            let AddedUp { sum, weight, .. } = added_up(&heard_along(self.beams, end, row, count));
             energy += sum.norm_sqr() / weight;
         }
         energy

@@ -149,12 +149,12 @@ pub struct Pairs {
 }
 
 /// Points whose tones both ends hear, from samples laid out channel by channel over white noise of `noise_variance`. `None` where an end
-/// hears more tones than `most`, or than it can tell apart, or where neighbouring elements are too far apart to tell directions.
-pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64, most: usize) -> Option<Pairs> {
+/// hears more tones than it can tell apart, or where neighbouring elements are too far apart to tell directions.
+pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> Option<Pairs> {
     let listen = |end: End| {
         let at = if end == End::First { 0 } else { radar.end_elements };
         let channels: Vec<&[Complex64]> = flat.chunks_exact(radar.samples).skip(at).take(radar.end_elements).collect();
-        listener(radar, end, &channels, noise_variance, most)
+        listener(radar, end, &channels, noise_variance)
     };
     let (first, last) = rayon::join(|| listen(End::First), || listen(End::Last));
     let (first, last) = (first?, last?);
@@ -196,7 +196,7 @@ fn matched(pairs: &[Pair], first: &Listener, last: &Listener, most: usize) -> Ve
 }
 
 /// Tones of an end's middle element, with directions from the element beside it.
-fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64, most: usize) -> Option<Listener> {
+fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64) -> Option<Listener> {
     let middle = (radar.end_elements.max(1) - 1) / 2;
     let (own, beside) = (channels.get(middle)?, channels.get(middle + 1)?);
     let number = radar.end_range(end).start + middle;
@@ -210,7 +210,7 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
     if (radians_per_metre * step_metres).abs() > 1.05 * TAU / 2.0 {
         return None;
     }
-    let tones = tones(own, noise_variance, most)?;
+    let tones = tones(own, noise_variance)?;
     let gains = gains_of_tones(own, &tones);
     let mut cosines = vec![0.0f64; tones.len()];
     for _ in 0..ROUNDS {
@@ -299,7 +299,7 @@ mod tests {
         let scene: Scene = generator.scene(Kind::Crowd, 0);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into());
-        let found = paired_points(&radar, &ends.flat(), noise, usize::MAX).unwrap().points;
+        let found = paired_points(&radar, &ends.flat(), noise).unwrap().points;
         let near = |x: f64, y: f64| {
             let distance = |a: &Paired| {
                 let [fx, fy] = a.atom.position_metres(0.0);

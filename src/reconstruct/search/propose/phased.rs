@@ -6,7 +6,7 @@
 use super::end_beams::{beam_of_cos, end_beams};
 use super::view::View;
 use crate::radar::{End, Radar};
-use crate::signal::simd::{LANES_F64, Lanes, phasor};
+use crate::signal::simd::{LANES_F64 as W, Lanes, phasor};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -15,8 +15,6 @@ const BEAMS: usize = 96;
 
 /// Nearest that a place of a row counts as, metres.
 const NEAREST_METRES: f64 = 0.05;
-
-const W: usize = LANES_F64;
 
 /// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
 pub struct PhasedBeams {

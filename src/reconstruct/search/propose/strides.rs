@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub const MOST_STEP_METRES: f64 = 0.4;
 
 /// Shortest step, metres: nearer points are one that was found twice.
-const LEAST_STEP_METRES: f64 = 0.02;
+pub const LEAST_STEP_METRES: f64 = 0.02;
 
 /// Neighbours of a point that its row may lead over.
 const NEIGHBOURS: usize = 8;

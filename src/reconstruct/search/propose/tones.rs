@@ -52,14 +52,14 @@ pub struct Tone {
 /// Seed of the projection: the same samples have the same tones.
 const SEED: u64 = 0x70_6e_65_73;
 
-/// The tones of a chirp over white noise of `noise_variance` a sample; `None` where there are more than `most`, or than the chirp can tell
+/// The tones of a chirp over white noise of `noise_variance` a sample; `None` where there are more than the chirp can tell
 /// apart.
-pub fn tones(chirp: &[Complex64], noise_variance: f64, most: usize) -> Option<Vec<Tone>> {
+pub fn tones(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<Tone>> {
     let samples = chirp.len();
     if samples < LEAST_SAMPLES {
         return None;
     }
-    let basis = signal_subspace(chirp, noise_variance, most)?;
+    let basis = signal_subspace(chirp, noise_variance)?;
     if basis.ncols() == 0 {
         return Some(Vec::new());
     }
@@ -81,14 +81,14 @@ fn rotation(basis: &Mat<Complex64>) -> Mat<Complex64> {
 }
 
 /// An orthonormal basis of what of the chirp's Hankel matrix stands out of the noise, a column for each tone.
-fn signal_subspace(chirp: &[Complex64], noise_variance: f64, most: usize) -> Option<Mat<Complex64>> {
+fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Complex64>> {
     let rows = (ROWS * chirp.len() as f64) as usize;
     let columns = chirp.len() - rows + 1;
     let hankel = Mat::from_fn(rows, columns, |i, j| chirp[i + j]);
     let largest_of_noise = noise_variance.sqrt() * ((rows as f64).sqrt() + (columns as f64).sqrt());
     let least = ABOVE_NOISE * largest_of_noise;
     let all_noise = (noise_variance * (rows * columns) as f64).sqrt();
-    let most_width = (columns - SPARE).min(most.saturating_add(SPARE));
+    let most_width = columns - SPARE;
     let mut width = FIRST_COLUMNS.min(most_width);
     let mut projected: Mat<Complex64> = Mat::zeros(rows, 0);
     loop {
@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn tones_far_below_a_bin_apart_and_ten_decades_below_the_strongest_are_told_apart() {
         let sizes = [[10.0, 1.0], [10.2, 0.5], [10.45, -0.7], [300.25, 1e-6], [511.9, 0.1]];
-        let found = tones(&chirp(&sizes, 1e-13), 1e-26, 512).unwrap();
+        let found = tones(&chirp(&sizes, 1e-13), 1e-26).unwrap();
         assert_eq!(found.len(), sizes.len(), "{found:?}");
         for [bins, _] in sizes {
             assert!(found.iter().any(|f| (f.bins - bins).abs() < 1e-5), "{bins} in {found:?}");
@@ -181,9 +181,8 @@ mod tests {
         let comb = |count: usize| -> Vec<[f64; 2]> {
             (0..count).map(|i| [i as f64 * 512.0 / count as f64, size(i)]).collect()
         };
-        assert_eq!(tones(&chirp(&comb(100), 1e-12), 1e-24, 512).unwrap().len(), 100);
-        assert_eq!(tones(&chirp(&comb(100), 1e-12), 1e-24, 90), None);
-        assert_eq!(tones(&chirp(&comb(300), 1e-12), 1e-24, 512), None);
-        assert_eq!(tones(&chirp(&[], 1e-3), 1e-6, 512), Some(Vec::new()));
+        assert_eq!(tones(&chirp(&comb(100), 1e-12), 1e-24).unwrap().len(), 100);
+        assert_eq!(tones(&chirp(&comb(300), 1e-12), 1e-24), None);
+        assert_eq!(tones(&chirp(&[], 1e-3), 1e-6), Some(Vec::new()));
     }
 }
