@@ -52,7 +52,10 @@ enum Choice {
     Penalty,
     /// Weight of the hybrid's fallback over the parts of a cell's power and of a scene's energy that are unexplained, on validation scenes
     /// of every kind: figures to judge by, which fail nowhere
-    Weights,
+    Weights {
+        /// Kinds of scenes; all where none is named
+        kinds: Vec<Kind>,
+    },
 }
 
 type Outcome<T = ()> = Result<T, Box<dyn Error>>;
@@ -62,7 +65,7 @@ fn main() -> Outcome {
         Choice::Thresholds { methods } => thresholds(&methods),
         Choice::Live => live(),
         Choice::Penalty => penalty(),
-        Choice::Weights => weights(),
+        Choice::Weights { kinds } => weights(kinds),
     }
 }
 
@@ -224,12 +227,15 @@ struct Cells {
 
 /// For cells in which about the same part of the power is unexplained, the part of the way from the drawn map to the fallback's that leaves
 /// the least squared error; apart for scenes of which little, some and much of the energy is left.
-fn weights() -> Outcome {
+fn weights(mut kinds: Vec<Kind>) -> Outcome {
+    if kinds.is_empty() {
+        kinds = Kind::with_echoes().chain(Kind::IRREGULAR).chain(Kind::THINGS).collect();
+    }
     let radar = Radar::default();
     let request = Request::default();
     let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
     let mut all = [[Cells::default(); BINS]; LEFT.len() + 1];
-    for kind in Kind::with_echoes() {
+    for kind in kinds {
         for trial in validation(&radar, kind, SCENES) {
             let trial = trial?;
             let found = find(&radar, &trial.ends, &request, &Settings::default())?;

@@ -11,7 +11,7 @@ import onnxruntime
 import apertura as ap
 
 #: Cells this many decades below the strongest are no detections.
-BELOW_PEAK_DECADES = 3.0
+BELOW_PEAK_DECADES = 3.3
 
 
 def method(path):

@@ -47,7 +47,7 @@ impl Hybrid {
         let unexplained = found.unexplained_cells(radar, ends, &expected);
         let left = found.energy_left() as f32;
         let filled = on_one_scale(&expected.map, filled.lambda, &unexplained, left);
-        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, most_weight(left)), Some(least_eta)))
+        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, left), Some(least_eta)))
     }
 
     fn about_itself() -> About {
@@ -140,6 +140,13 @@ const SCENE_DECADES: [f32; 2] = [-3.0, -1.5];
 /// Weight of the fallback where little of the scene's energy is left. The two maps err in different ways: their mean is better than either.
 const LEAST_WEIGHT: f32 = 0.7;
 
+/// Parts of a map's cells that are mostly unexplained, between which the fallback's map takes over in all cells, and on its own scale. Where
+/// little energy is left and yet most cells are unexplained, the scene is not made of what the search looks for: rough bodies, for instance.
+const MAP_PARTS: [f32; 2] = [0.7, 0.9];
+
+/// A cell is mostly unexplained where more than this part of its power is.
+const MOSTLY: f32 = 0.5;
+
 /// Cells beyond which a difference between the maps is believed to be one of scale.
 const CELLS_TO_BELIEVE: f64 = 5000.0;
 
@@ -151,24 +158,37 @@ fn between([low, high]: [f32; 2], part: f32) -> f32 {
     ((part.max(1e-9).log10() - low) / (high - low)).clamp(0.0, 1.0)
 }
 
+/// How far the fallback's map takes over in all cells: 0 to 1.
+fn taken_over(unexplained: &Array2<f32>) -> f32 {
+    let part = unexplained.iter().filter(|part| **part > MOSTLY).count() as f32 / unexplained.len() as f32;
+    ((part - MAP_PARTS[0]) / (MAP_PARTS[1] - MAP_PARTS[0])).clamp(0.0, 1.0)
+}
+
 /// Most weight that the fallback gets where this part of the scene's energy is left.
 fn most_weight(energy_left: f32) -> f32 {
     LEAST_WEIGHT + (1.0 - LEAST_WEIGHT) * between(SCENE_DECADES, energy_left)
 }
 
-/// From `drawn`, where all is explained, towards `filled`, by `most` where nothing is. Both are Lambda of one scene on one scale.
-fn blended(drawn: &RangeAngleMap, filled: &RangeAngleMap, unexplained: &Array2<f32>, most: f32) -> RangeAngleMap {
+/// From `drawn`, where all is explained, towards `filled`, where nothing is. Both are Lambda of one scene on one scale.
+fn blended(
+    drawn: &RangeAngleMap,
+    filled: &RangeAngleMap,
+    unexplained: &Array2<f32>,
+    energy_left: f32,
+) -> RangeAngleMap {
+    let least = taken_over(unexplained);
+    let most = most_weight(energy_left).max(least);
     let mut lambda = drawn.lambda.clone();
     Zip::from(&mut lambda)
         .and(&filled.lambda)
         .and(unexplained)
-        .par_for_each(|out, filled, part| *out += most * between(CELL_DECADES, *part) * (filled - *out));
+        .par_for_each(|out, filled, part| *out += most * between(CELL_DECADES, *part).max(least) * (filled - *out));
     RangeAngleMap { lambda }
 }
 
 /// `filled` moved to the scale of `drawn`: each knows the weakest and the strongest cell in its own way, and where nearly all is explained
 /// the two should be one. Where few cells are, or much of the scene's energy is left, it stays nearly as it is: what lacks a strong object
-/// has no scale.
+/// has no scale. Nor has a map of which most is unexplained.
 pub fn on_one_scale(
     drawn: &RangeAngleMap,
     filled: RangeAngleMap,
@@ -181,7 +201,8 @@ pub fn on_one_scale(
         sum += weight * f64::from(filled - drawn);
         cells += weight;
     }
-    let brighter = (1.0 - between(SCENE_DECADES, energy_left)) * (sum / (cells + CELLS_TO_BELIEVE)) as f32;
+    let believed = (1.0 - between(SCENE_DECADES, energy_left)) * (1.0 - taken_over(unexplained));
+    let brighter = believed * (sum / (cells + CELLS_TO_BELIEVE)) as f32;
     RangeAngleMap { lambda: filled.lambda.mapv_into(|v| (v - brighter).clamp(0.0, 1.0)) }
 }
 
@@ -213,7 +234,7 @@ mod tests {
         let scene = Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() };
         let ends = ends_of(&radar, &scene);
         let request = Request::default();
-        // One point can't explain a cloud: over the cloud the map is the fallback's, and nomp's own where it does.
+        // One point can't explain a cloud: over the cloud the map is the fallback's, and elsewhere it takes over as far as the cloud fills the map.
         let few = Settings { most_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let found = find(&radar, &ends, &request, &few).unwrap();
@@ -221,11 +242,12 @@ mod tests {
         let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = on_one_scale(&drawn, fallback, &parts, found.energy_left() as f32);
+        let least = taken_over(&parts);
         let mut taken = 0;
         for (i, (h, part)) in hybrid.lambda.lambda.iter().zip(&parts).enumerate() {
             let [drawn, fallback] = [&drawn, &fallback].map(|m| m.lambda.as_slice().unwrap()[i]);
             assert!(*h >= drawn.min(fallback) - 1e-6 && *h <= drawn.max(fallback) + 1e-6);
-            assert!(*part > 1e-4 || *h == drawn);
+            assert!(*part > 1e-4 || (h - drawn).abs() <= least * (fallback - drawn).abs() + 1e-6);
             taken += u32::from(*part > 0.2 && (h - fallback).abs() < 1e-6);
         }
         assert!(taken > 1000, "{taken} cells are the fallback's");

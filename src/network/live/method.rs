@@ -115,7 +115,7 @@ const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
 /// Cells this far below the strongest are no detections: 1 % of false alarms on average on validation scenes of every kind and over all floors,
 /// which no threshold in Lambda has (`choose_eta live`).
-const BELOW_PEAK_DECADES: f64 = 3.0;
+const BELOW_PEAK_DECADES: f64 = 3.3;
 
 /// A threshold to three decimals, as people read it: a thousandth of Lambda is about a hundredth of a decade.
 fn rounded(eta: f64) -> f32 {
