@@ -46,8 +46,9 @@ impl Hybrid {
         let least_eta = filled.least_eta.unwrap_or(0.0).max(expected.least_eta);
         let unexplained = found.unexplained_cells(radar, ends, &expected);
         let left = found.energy_left() as f32;
-        let filled = on_one_scale(&expected.map, filled.lambda, &unexplained, left);
-        Ok(found.as_drawn(blended(&expected.map, &filled, &unexplained, left), Some(least_eta)))
+        let filled_map = on_one_scale(&expected.map, filled.lambda, &unexplained, left);
+        let lambda = blended(&expected.map, &filled_map, &unexplained, left);
+        Ok(Reconstruction { eta: eta_of(filled.eta, &unexplained), ..found.as_drawn(lambda, Some(least_eta)) })
     }
 
     fn about_itself() -> About {
@@ -162,6 +163,13 @@ fn between([low, high]: [f32; 2], part: f32) -> f32 {
 fn taken_over(unexplained: &Array2<f32>) -> f32 {
     let part = unexplained.iter().filter(|part| **part > MOSTLY).count() as f32 / unexplained.len() as f32;
     ((part - MAP_PARTS[0]) / (MAP_PARTS[1] - MAP_PARTS[0])).clamp(0.0, 1.0)
+}
+
+/// The threshold of a map that the fallback has taken over, in part or whole, given its own; none where the search's own threshold holds.
+fn eta_of(fallback: Option<f32>, unexplained: &Array2<f32>) -> Option<f32> {
+    let part = taken_over(unexplained);
+    let eta = |fallback| super::search::ETA + part * (fallback - super::search::ETA);
+    fallback.filter(|_| part > 0.0).map(eta)
 }
 
 /// Most weight that the fallback gets where this part of the scene's energy is left.
