@@ -272,6 +272,27 @@ mod tests {
     }
 
     #[test]
+    fn the_fallback_takes_over_a_map_of_which_most_is_unexplained_with_its_scale_and_threshold() {
+        let [drawn, filled] = [0.2, 0.6].map(|v| RangeAngleMap { lambda: Array2::from_elem((10, 10), v) });
+        // So many of a hundred cells are unexplained.
+        let unexplained =
+            |cells: usize| Array2::from_shape_fn((10, 10), |(i, j)| f32::from(u8::from(10 * i + j < cells)));
+        let answer = |cells| blended(&drawn, &filled, &unexplained(cells), 0.0).lambda;
+        assert_eq!(answer(95), filled.lambda);
+        let few = answer(50);
+        assert_eq!(few[[9, 9]], 0.2);
+        assert!((few[[0, 0]] - (0.2 + 0.4 * LEAST_WEIGHT)).abs() < 1e-6);
+        let of_a_part = answer(80)[[9, 9]];
+        assert!(
+            (of_a_part - (0.2 + 0.4 * LEAST_WEIGHT / 2.0)).abs() < 1e-5,
+            "{of_a_part} where nothing is unexplained"
+        );
+        assert_eq!(eta_of(Some(0.75), &unexplained(50)), None);
+        assert!((eta_of(Some(0.75), &unexplained(95)).unwrap() - 0.75).abs() < 1e-6);
+        assert_eq!(eta_of(None, &unexplained(95)), None);
+    }
+
+    #[test]
     fn maps_that_differ_in_scale_alone_are_one_where_all_is_explained() {
         let drawn =
             RangeAngleMap { lambda: Array2::from_shape_fn((512, 1024), |(i, j)| ((i * j) % 83) as f32 / 100.0) };
