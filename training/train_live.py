@@ -124,7 +124,9 @@ class Run:
         self.model, self.average = Live().to(team.device, memory_format=torch.channels_last), Live().to(team.device)
         self.doubt = Doubt().to(team.device)
         # A recorded step reads the rates from the GPU.
-        self.recorded = args.graph and team.device.type == "cuda"
+        self.recorded = args.graph
+        if args.graph and team.device.type != "cuda":
+            raise SystemExit("--graph records the step on a GPU, and PyTorch sees none; leave --graph away")
         self.rate, self.lerp = (torch.tensor(float(v), device=team.device) for v in (args.lr, 0.0))
         kept = {"lr": self.rate if self.recorded else args.lr, "capturable": self.recorded}
         self.optimizer = torch.optim.AdamW([*self.model.parameters(), *self.doubt.parameters()], weight_decay=1e-4, betas=(0.9, 0.99), **kept)

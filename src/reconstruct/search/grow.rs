@@ -328,7 +328,7 @@ impl Grower<'_> {
     }
 }
 
-/// Whether both ends have the same gain, within this factor.
+/// Whether the amplitudes of both ends' gains differ by less than the factor `within`.
 pub fn ends_agree(gains: &Gains, within: f64) -> bool {
     let [a, b] = gains.map(|g| g.norm());
     a.max(b) < within * a.min(b)
