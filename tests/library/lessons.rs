@@ -370,15 +370,23 @@ fn the_detector_keeps_its_rate_as_its_lesson_says() {
 }
 
 #[test]
-fn the_detector_finds_and_loses_points_as_its_lesson_says() {
+fn the_detector_finds_a_far_point_as_its_lesson_says() {
     let (mask, lambda) = detected(3, None);
     let [near, far] = [0, 1].map(|point| cell_of(3, point));
     let above = lambda.above(0.9);
     assert!(finds(&above, near) && !finds(&above, far), "the threshold finds the near point alone");
     assert!(finds(&mask, near) && finds(&mask, far), "the detector finds both");
+}
+
+#[test]
+fn ordered_statistics_find_a_weak_point_as_their_lesson_says() {
     let weak = cell_of(4, 1);
     let [mean, rank] = ["ca", "os"].map(|cfar| finds(&detected(4, Some(cfar)).0, weak));
     assert!(!mean && rank, "{mean} {rank}");
+}
+
+#[test]
+fn a_window_along_range_finds_a_streak_as_its_lesson_says() {
     let middle = cell_of(5, 0);
     let [along_the_streak, across] = ["ca:guard=0x3:training=0x12", "ca:guard=8x0:training=20x0"]
         .map(|cfar| detected(5, Some(cfar)).0.cells[middle]);

@@ -76,9 +76,10 @@ fn the_right_end_sees_a_hidden_point_as_weakly_as_its_lesson_says() {
     taught(id, &format!("{:.0} dB weaker", first - last));
 }
 
+const ON_ROUGHNESS: &str = "smooth-and-rough";
+
 #[test]
-fn roughness_takes_and_gives_what_its_lesson_says() {
-    let id = "smooth-and-rough";
+fn roughness_weakens_a_glint_by_as_much_as_its_lesson_says() {
     let glint = |roughness_millimetres| {
         let wall = Wall { roughness_millimetres, ..Wall::new(0.0, 15.0, 8.0, 0.0) };
         let scene = Scene { objects: vec![Object::Wall(wall)], ..Scene::default() };
@@ -86,12 +87,17 @@ fn roughness_takes_and_gives_what_its_lesson_says() {
         20.0 * heard.into_iter().find(|(_, e)| e.kind == EchoKind::Glint).unwrap().1.amplitude.norm().log10()
     };
     let lost = |roughness| glint(0.0) - glint(roughness);
-    taught(id, &format!("{:.1} dB. 0.5 mm take {:.1} dB, 2 mm take {:.0} dB", lost(1.0), lost(0.5), lost(2.0)));
-    let mut turned = scene(id, 3);
+    let said = format!("{:.1} dB. 0.5 mm take {:.1} dB, 2 mm take {:.0} dB", lost(1.0), lost(0.5), lost(2.0));
+    taught(ON_ROUGHNESS, &said);
+}
+
+#[test]
+fn roughness_brightens_a_wall_that_looks_away_as_its_lesson_says() {
+    let mut turned = scene(ON_ROUGHNESS, 3);
     let smooth = brightest(&maps(&turned).full);
     let Object::Wall(wall) = &mut turned.objects[0] else { panic!() };
     wall.roughness_millimetres = 0.5;
-    taught(id, &format!("{:.0} dB brighter", brightest(&maps(&turned).full) - smooth));
+    taught(ON_ROUGHNESS, &format!("{:.0} dB brighter", brightest(&maps(&turned).full) - smooth));
 }
 
 #[test]

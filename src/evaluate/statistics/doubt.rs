@@ -97,18 +97,31 @@ mod tests {
         pairs.iter().enumerate().map(of).collect()
     }
 
+    /// Failures 3, 2; others 2, 1, 0: of six pairs five are in order and one is a tie.
+    const SCORES: [(f64, bool); 5] = [(3.0, true), (2.0, true), (2.0, false), (1.0, false), (0.0, false)];
+
     #[test]
-    fn an_area_is_the_part_of_the_pairs_that_are_in_order_and_ties_count_half() {
-        // Failures 3, 2; others 2, 1, 0: of six pairs five are in order and one is a tie.
-        let scores = [(3.0, true), (2.0, true), (2.0, false), (1.0, false), (0.0, false)];
-        let found = RocArea::of(&scores).unwrap();
-        assert!((found.area - 5.5 / 6.0).abs() < 1e-15);
-        // By hand: failures have 1 and 2.5/3 of the others below, the others 0.25, 0 and 0 of the failures.
-        let by_hand = (1.0f64 / 144.0 + 1.0 / 144.0).sqrt();
-        assert!((found.standard_error.unwrap() - by_hand).abs() < 1e-15, "{found:?}");
-        let turned = scores.map(|(score, failed)| (-score, failed));
+    fn an_area_is_the_part_of_the_pairs_that_are_in_order() {
+        assert!((RocArea::of(&SCORES).unwrap().area - 5.5 / 6.0).abs() < 1e-15);
+        let turned = SCORES.map(|(score, failed)| (-score, failed));
         assert!((RocArea::of(&turned).unwrap().area - 0.5 / 6.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_tie_counts_half() {
         assert_eq!(RocArea::of(&[(1.0, true), (1.0, false)]).map(|a| (a.area, a.standard_error)), Some((0.5, None)));
+    }
+
+    #[test]
+    fn the_standard_error_is_that_computed_by_hand() {
+        // Failures have 1 and 2.5/3 of the others below, the others 0.25, 0 and 0 of the failures.
+        let by_hand = (1.0f64 / 144.0 + 1.0 / 144.0).sqrt();
+        let found = RocArea::of(&SCORES).unwrap();
+        assert!((found.standard_error.unwrap() - by_hand).abs() < 1e-15, "{found:?}");
+    }
+
+    #[test]
+    fn scores_of_one_kind_have_no_area() {
         assert_eq!((RocArea::of(&[(1.0, true)]), RocArea::of(&[(1.0, false)]), RocArea::of(&[])), (None, None, None));
     }
 
@@ -138,11 +151,21 @@ mod tests {
         assert_eq!(DoubtArea::of(&rows(&pairs), Some(50.0)).map(|a| (a.failures, a.area)), Some((0, None)));
     }
 
+    /// Rows whose doubt and squared error are 0 to 9.
+    fn ten_rows() -> Vec<Row> {
+        rows(&(0..10).map(|i| (f64::from(i), f64::from(i))).collect::<Vec<_>>())
+    }
+
     #[test]
-    fn rows_without_doubt_and_too_few_rows_say_nothing() {
-        let pairs: Vec<(f64, f64)> = (0..10).map(|i| (f64::from(i), f64::from(i))).collect();
-        let mut rows = rows(&pairs);
+    fn fewer_than_ten_rows_have_no_tenth() {
+        let rows = ten_rows();
         assert_eq!(DoubtArea::of(&rows, None).map(|a| (a.failures, a.rows)), Some((1, 10)));
+        assert_eq!(DoubtArea::of(&rows[..9], None), None);
+    }
+
+    #[test]
+    fn rows_without_doubt_are_left_out() {
+        let mut rows = ten_rows();
         rows[0].doubt = None;
         assert_eq!(DoubtArea::of(&rows, None), None, "nine rows have no tenth");
         assert_eq!(DoubtArea::of(&rows, Some(5.0)).map(|a| (a.failures, a.rows)), Some((5, 9)));

@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn sets_and_methods_are_named_in_quotes() {
+    fn sets_are_named_in_quotes() {
         let mut all = rows(300, 5, |_| 0.0);
         for row in &mut all {
             row.missed = usize::from(row.set == "walls");

@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn half_the_way_starts_and_ends_where_the_antennas_stand() {
+    fn the_range_is_half_the_way_from_transmitter_to_receiver() {
         let radar = radar().with_antennas(bent().unwrap());
         for n in 0..12 {
             let ([[tx, ty], [rx, ry]], [x, y]) = (radar.pair(n).places_metres(), [1.3f64, 4.0f64]);
