@@ -142,9 +142,12 @@ mod tests {
         }
     }
 
+    fn text(t: &str) -> Event {
+        Event::Text(t.to_owned())
+    }
+
     #[test]
-    fn letters_and_the_keys_that_move_the_focus_come_one_frame_after_the_other() {
-        let text = |t: &str| Event::Text(t.to_owned());
+    fn a_key_that_moves_the_focus_has_a_frame_of_its_own() {
         let fast = vec![text("1"), text("2"), press(Key::Tab), text("5"), press(Key::Enter), text("p")];
         let slow = [
             vec![text("1"), text("2")],
@@ -154,6 +157,10 @@ mod tests {
             vec![text("p")],
         ];
         assert_eq!(frames(fast), slow);
+    }
+
+    #[test]
+    fn a_click_has_a_frame_of_its_own() {
         let at = eframe::egui::pos2(1.0, 1.0);
         let button = |pressed| Event::PointerButton {
             pos: at,
@@ -164,6 +171,10 @@ mod tests {
         let click = vec![text("b"), Event::PointerMoved(at), button(true), button(false), text("c")];
         let apart = [vec![text("b"), Event::PointerMoved(at)], vec![button(true), button(false)], vec![text("c")]];
         assert_eq!(frames(click), apart, "what was typed before a click stays");
+    }
+
+    #[test]
+    fn an_arrow_key_shares_a_frame_with_letters() {
         let harmless = vec![text("1"), press(Key::ArrowUp), text("2")];
         assert_eq!(frames(harmless.clone()), [harmless]);
     }

@@ -52,10 +52,14 @@ mod tests {
     use eframe::egui::Color32;
 
     #[test]
-    fn a_picture_hangs_upright_and_is_bounded() {
+    fn a_picture_hangs_upright() {
         let pixels = [Color32::RED, Color32::GREEN, Color32::BLUE, Color32::WHITE].to_vec();
         let image = upright(&ColorImage::new([2, 2], pixels)).unwrap();
         assert_eq!(image.pixels, [Color32::BLUE, Color32::WHITE, Color32::RED, Color32::GREEN]);
+    }
+
+    #[test]
+    fn a_picture_that_does_not_fit_the_clipboard_is_refused() {
         let error = upright(&ColorImage::filled([4097, 4096], Color32::RED)).unwrap_err();
         assert!(error.contains("4097 × 4096"), "{error}");
     }

@@ -191,10 +191,10 @@ impl Bounds {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_picture_is_brightest_at_the_reflector_and_empty_beyond_end_fire() {
-        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+    /// Of a reflector so far to the side that the picture reaches beyond end fire.
+    fn found() -> BoundsResult {
         let request = BoundsRequest {
+            radar: Radar { elements: 64, samples: 32, ..Radar::default() },
             reflector: Reflector { x_metres: 1.5, y_metres: 0.2, reflectivity: 1.0 },
             elements: Elements::OneEnd,
             seed: 0,
@@ -202,13 +202,22 @@ mod tests {
             snr: Decibels(20.0),
             columns: 16.0,
             bins: 3.0,
-            radar,
         };
-        let found = bounds_of(request).unwrap();
+        bounds_of(request).unwrap()
+    }
+
+    #[test]
+    fn likeness_is_one_at_the_reflector() {
+        let found = found();
         let (rows, columns) = found.ambiguity.likeness.dim();
         assert!((found.ambiguity.likeness[[rows / 2, columns / 2]] - 1.0).abs() < 1e-9);
-        assert!(found.ambiguity.likeness[[0, columns - 1]].is_nan());
         assert_eq!(found.image.size, [columns, rows]);
         assert!(found.bound.unwrap().x_metres > 0.0);
+    }
+
+    #[test]
+    fn beyond_end_fire_there_is_no_likeness() {
+        let likeness = found().ambiguity.likeness;
+        assert!(likeness[[0, likeness.ncols() - 1]].is_nan());
     }
 }

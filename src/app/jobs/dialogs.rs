@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_system_without_a_bus_and_without_zenity_is_not_asked() {
+    fn a_system_shows_dialogs_by_a_bus_or_zenity() {
         let folder = tempfile::tempdir().unwrap();
         let there = || Some(folder.path().as_os_str().to_owned());
         assert!(!may_have_dialogs(None, None, None) && !may_have_dialogs(Some("".into()), there(), there()));
@@ -299,6 +299,10 @@ mod tests {
         assert!(may_have_dialogs(None, None, there()));
         std::fs::write(folder.path().join("bus"), "").unwrap();
         assert!(may_have_dialogs(None, there(), None));
+    }
+
+    #[test]
+    fn a_system_without_dialogs_is_told_once() {
         let mut dialogs = Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) };
         for told in [Some(APOLOGY), None] {
             dialogs.ask(Question::beside(Purpose::Open, None), || ()).unwrap();
@@ -308,45 +312,68 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_is_saved_beside_its_file_and_under_its_name() {
+    fn a_scene_is_saved_under_the_name_of_its_file() {
         let path = Path::new("/scenes/a.npz");
         let named = |purpose, path| Question::beside(purpose, path).name;
         assert_eq!(named(Purpose::SaveScene, Some(path)), "a.toml");
         assert_eq!(named(Purpose::ExportMaps, Some(path)), "maps.npz");
         assert_eq!(named(Purpose::SaveScene, None), "scene.toml");
-        let laid_over = Question::beside(Purpose::SaveScene, Some(Path::new("chip-8-overlay.toml")));
-        assert_eq!((laid_over.name.as_str(), laid_over.folder), ("chip-8-overlay.toml", None));
-        assert_eq!(Question::beside(Purpose::Open, Some(path)).folder.as_deref(), Some(Path::new("/scenes")));
+        assert_eq!(named(Purpose::SaveScene, Some(Path::new("chip-8-overlay.toml"))), "chip-8-overlay.toml");
     }
 
     #[test]
-    fn where_the_system_shows_nothing_the_window_asks_and_says_so_once() {
-        let mut dialogs = Dialogs::by(Some(Arc::new(|_, reply| {
+    fn a_dialog_begins_in_the_folder_of_the_file() {
+        let folder = |path: &str| Question::beside(Purpose::Open, Some(Path::new(path))).folder;
+        assert_eq!(folder("/scenes/a.npz").as_deref(), Some(Path::new("/scenes")));
+        assert_eq!(folder("chip-8-overlay.toml"), None);
+    }
+
+    /// Of a system that shows none.
+    fn never_shown() -> Dialogs {
+        Dialogs::by(Some(Arc::new(|_, reply| {
             reply(None);
             Ok(())
-        })));
-        let question = |purpose| Question::beside(purpose, Some(Path::new("/scenes/a.npz")));
-        let (chosen, told) = answer(&mut dialogs, question(Purpose::Open));
-        assert!(chosen.is_empty() && told.is_some());
-        assert_eq!(dialogs.take_unanswered(), Some(question(Purpose::Open)));
-        let again = answer(&mut dialogs, question(Purpose::SaveScene));
-        assert_eq!(again, (Vec::new(), None), "told once");
-        assert_eq!(dialogs.take_unanswered(), Some(question(Purpose::SaveScene)));
+        })))
+    }
+
+    #[test]
+    fn where_the_system_shows_no_dialog_the_window_asks() {
+        let mut dialogs = never_shown();
+        for purpose in [Purpose::Open, Purpose::SaveScene] {
+            let question = || Question::beside(purpose, Some(Path::new("/scenes/a.npz")));
+            assert!(answer(&mut dialogs, question()).0.is_empty());
+            assert_eq!(dialogs.take_unanswered(), Some(question()));
+        }
         assert_eq!(dialogs.take_unanswered(), None);
     }
 
     #[test]
-    fn a_dialog_that_somebody_closed_is_no_failure_and_a_file_is_a_command() {
+    fn dialogs_that_are_never_shown_are_told_once() {
+        let mut dialogs = never_shown();
+        let told = [Purpose::Open, Purpose::SaveScene].map(|p| answer(&mut dialogs, Question::beside(p, None)).1);
+        assert_eq!(told, [Some(APOLOGY), None]);
+    }
+
+    /// What follows a question where somebody closes every dialog but that of a scene to open.
+    fn answered(purpose: Purpose) -> (Vec<Command>, Option<&'static str>, Option<Question>) {
         let slow: System = Arc::new(|question, reply| {
             std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));
             reply((question.title == Purpose::Open.title()).then(|| PathBuf::from("a.toml")));
             Ok(())
         });
         let mut dialogs = Dialogs::by(Some(slow));
-        let question = |purpose| Question::beside(purpose, None);
-        assert_eq!(answer(&mut dialogs, question(Purpose::ExportMaps)), (Vec::new(), None));
-        assert_eq!(dialogs.take_unanswered(), None);
-        let (chosen, _) = answer(&mut dialogs, question(Purpose::Open));
+        let (chosen, told) = answer(&mut dialogs, Question::beside(purpose, None));
+        (chosen, told, dialogs.take_unanswered())
+    }
+
+    #[test]
+    fn a_dialog_that_somebody_closed_is_no_failure() {
+        assert_eq!(answered(Purpose::ExportMaps), (Vec::new(), None, None));
+    }
+
+    #[test]
+    fn a_scene_that_was_chosen_is_opened() {
+        let (chosen, ..) = answered(Purpose::Open);
         assert_eq!(chosen, [Command::Document(DocumentCommand::OpenPath("a.toml".into()))]);
     }
 }

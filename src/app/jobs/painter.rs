@@ -174,7 +174,7 @@ mod tests {
     use ndarray::array;
 
     fn subject(paint: Paint) -> Subject {
-        let map = Arc::new(RangeAngleMap { lambda: array![[0.0f32, 1.0], [0.5, 0.95]] });
+        let map = lambda(array![[0.0, 1.0], [0.5, 0.95]]);
         Subject { minus: Some(map.clone()), map, paint, projection: Projection::RangeAngle }
     }
 
@@ -200,10 +200,13 @@ mod tests {
         }
     }
 
+    fn lambda(cells: Array2<f32>) -> Arc<RangeAngleMap> {
+        Arc::new(RangeAngleMap { lambda: cells })
+    }
+
     #[test]
     fn hits_misses_and_false_alarms_are_told_apart_by_the_target() {
         let (mut painter, radar) = (Painter::default(), Radar::default());
-        let lambda = |cells| Arc::new(RangeAngleMap { lambda: cells });
         for dark in [true, false] {
             let subject = Subject {
                 map: lambda(array![[0.0f32, 0.0], [0.8, 0.8]]),
@@ -233,23 +236,32 @@ mod tests {
         assert_eq!([inside, around, beside], [15, 5 * 7 - 15, 81 - 5 * 7]);
     }
 
+    /// Differences of 0, -0.03, 0.03 and 0.02.
+    fn difference(absolute: bool, whole: bool) -> Picture {
+        let paint = Paint::Difference { view: DifferenceView { absolute, whole }, colours: ColourMap::Grey };
+        let (map, minus) = (lambda(array![[0.5, 0.5, 0.5, 0.5]]), lambda(array![[0.5, 0.53, 0.47, 0.48]]));
+        let subject = Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle };
+        Painter::default().paint(&Radar::default(), MapKind::Difference, &subject)
+    }
+
     #[test]
-    fn a_difference_fills_its_scale_and_zero_is_its_middle() {
-        let (mut painter, radar) = (Painter::default(), Radar::default());
-        let lambda = |cells| Arc::new(RangeAngleMap { lambda: cells });
-        let paint = |absolute, whole| {
-            let view = DifferenceView { absolute, whole };
-            let paint = Paint::Difference { view, colours: ColourMap::Grey };
-            let (map, minus) = (lambda(array![[0.5f32, 0.5, 0.5, 0.5]]), lambda(array![[0.5f32, 0.53, 0.47, 0.48]]));
-            Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle }
-        };
-        let mut picture = |absolute, whole| painter.paint(&radar, MapKind::Difference, &paint(absolute, whole));
-        let (signed, absolute, whole) = (picture(false, false), picture(true, false), picture(false, true));
-        assert_eq!((signed.end, absolute.end, whole.end), (0.05, 0.05, 1.0));
-        let table = colour_table(ColourMap::Diverging);
-        assert_eq!(signed.image.pixels[0], table[128]);
+    fn a_difference_fills_its_scale() {
+        let (signed, whole, table) =
+            (difference(false, false), difference(false, true), colour_table(ColourMap::Diverging));
+        assert_eq!((signed.end, whole.end), (0.05, 1.0));
         assert_eq!(signed.image.pixels[1], table[51], "three fifths of the way down");
         assert_eq!(whole.image.pixels[2], table[131], "hardly to be seen on the whole scale");
+    }
+
+    #[test]
+    fn no_difference_is_the_middle_of_the_scale() {
+        assert_eq!(difference(false, false).image.pixels[0], colour_table(ColourMap::Diverging)[128]);
+    }
+
+    #[test]
+    fn an_absolute_difference_has_no_sign() {
+        let absolute = difference(true, false);
+        assert_eq!(absolute.end, 0.05);
         assert_eq!(absolute.image.pixels[1], absolute.image.pixels[2]);
         assert_eq!(absolute.image.pixels[0], colour_table(ColourMap::Grey)[0]);
     }

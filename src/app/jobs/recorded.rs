@@ -175,7 +175,7 @@ mod tests {
     };
 
     #[test]
-    fn what_is_laid_over_its_echo_turns_dark_and_nothing_else() {
+    fn only_what_is_laid_over_its_echo_turns_dark() {
         let (radar, recording) = recorded();
         let mut maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let full = maps.frame(&WANTED).full.unwrap();
@@ -194,11 +194,17 @@ mod tests {
     }
 
     #[test]
-    fn the_same_maps_are_the_same_arcs_and_a_window_is_seen() {
+    fn maps_of_an_unchanged_radar_are_not_made_again() {
         let (radar, recording) = recorded();
         let mut maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let (a, b) = (maps.frame(&WANTED), maps.frame(&WANTED));
         assert!(Arc::ptr_eq(&a.full.unwrap().lambda, &b.full.unwrap().lambda) && !b.report.ran(Stage::FullMap));
+    }
+
+    #[test]
+    fn a_radar_of_other_ends_has_maps_of_its_own() {
+        let (radar, recording) = recorded();
+        let maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let hamming = Radar { window: crate::radar::WindowFunction::Hamming, end_elements: 9, ..radar.clone() };
         assert!(
             maps.is_of(&recording, &radar, &BuiltArray::default())
@@ -210,13 +216,23 @@ mod tests {
         );
     }
 
-    #[test]
-    fn two_ends_have_no_target_and_are_explained_by_their_own_map() {
+    /// Maps of a recording by the two ends alone.
+    fn of_two_ends() -> RecordedMaps {
         let (radar, recording) = recorded();
         let ends = Recording { samples: Recorded::Ends(recording.two_ends()), ..Recording::clone(&recording) };
-        let mut maps = RecordedMaps::new(&Arc::new(ends), &radar, &BuiltArray::default());
-        let frame = maps.frame(&WANTED);
+        RecordedMaps::new(&Arc::new(ends), &radar, &BuiltArray::default())
+    }
+
+    #[test]
+    fn two_ends_have_no_target() {
+        let frame = of_two_ends().frame(&WANTED);
         assert!(frame.full.is_none() && frame.first.is_some());
+    }
+
+    #[test]
+    fn two_ends_are_explained_by_their_own_map() {
+        let mut maps = of_two_ends();
+        let frame = maps.frame(&WANTED);
         assert_eq!(maps.unexplained(&Arc::default()).unwrap().map.lambda, frame.first.unwrap().lambda);
     }
 

@@ -307,20 +307,28 @@ mod tests {
         assert_eq!(wide.dimensions(), (WIDEST, 9));
     }
 
-    #[test]
-    fn what_is_given_up_writes_nothing_and_an_empty_recording_is_told() {
+    /// Why an animation of these frames was not written.
+    fn refusal(pictures: &[Arc<ColorImage>], task: &Task) -> String {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("drag.gif");
         let (send, frames) = sync_channel(9);
-        send.send(picture(40, 1)).unwrap();
+        pictures.iter().for_each(|picture| send.send(picture.clone()).unwrap());
         drop(send);
+        let why = animate(&path, &frames, task).unwrap_err();
+        assert!(!path.exists());
+        why
+    }
+
+    #[test]
+    fn a_recording_that_is_cancelled_writes_nothing() {
         let task = Task::default();
         task.cancel();
-        assert_eq!(animate(&path, &frames, &task), Err(String::new()));
-        let (send, frames) = sync_channel(9);
-        drop(send);
-        assert!(animate(&path, &frames, &Task::default()).unwrap_err().contains("nothing was recorded"));
-        assert!(!path.exists());
+        assert_eq!(refusal(&[picture(40, 1)], &task), "");
+    }
+
+    #[test]
+    fn an_empty_recording_is_told() {
+        assert!(refusal(&[], &Task::default()).contains("nothing was recorded"));
     }
 
     #[test]

@@ -61,19 +61,32 @@ impl Rest {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_scene_rests_a_moment_after_the_last_change_and_never_while_it_is_held() {
+    /// Looks at one of two scenes, this long after the first look.
+    fn looks() -> impl FnMut(usize, Floor, bool, Duration) -> Motion {
         let (radar, scenes) = (Radar::default(), [Arc::new(Scene::default()), Arc::new(Scene::default())]);
         let (mut rest, start) = (Rest::default(), Instant::now());
-        let mut look =
-            |scene: usize, floor, held, after: Duration| rest.look(&scenes[scene], &radar, floor, held, start + after);
-        let at = Duration::from_millis;
+        move |scene, floor, held, after| rest.look(&scenes[scene], &radar, floor, held, start + after)
+    }
+
+    fn at(milliseconds: u64) -> Duration {
+        Duration::from_millis(milliseconds)
+    }
+
+    #[test]
+    fn a_scene_rests_a_moment_after_its_last_change() {
+        let mut look = looks();
         assert_eq!(look(0, Floor::Thesis, false, at(0)), Motion::RestsIn(QUIET));
         assert_eq!(look(0, Floor::Thesis, false, at(40)), Motion::RestsIn(at(60)));
         assert_eq!(look(0, Floor::Thesis, false, at(100)), Motion::AtRest);
         assert_eq!(look(1, Floor::Thesis, false, at(101)), Motion::RestsIn(QUIET), "another scene");
         assert_eq!(look(1, Floor::Exact, false, at(150)), Motion::RestsIn(QUIET), "another floor");
         assert_eq!(look(1, Floor::Exact, false, at(250)), Motion::AtRest);
+    }
+
+    #[test]
+    fn a_scene_that_is_held_never_rests() {
+        let mut look = looks();
+        assert_eq!(look(1, Floor::Exact, false, at(0)), Motion::RestsIn(QUIET));
         assert_eq!(look(1, Floor::Exact, true, at(900)), Motion::Held);
         assert_eq!(look(1, Floor::Exact, false, at(901)), Motion::RestsIn(QUIET), "let go just now");
     }

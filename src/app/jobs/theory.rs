@@ -115,20 +115,27 @@ impl Theory {
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_map_has_its_overlay_and_the_axis_has_no_ellipse() {
-        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
-        let request = |y_metres| TheoryRequest {
-            radar: radar.clone(),
+    /// Of a point this far ahead of the array.
+    fn found(y_metres: f64) -> TheoryResult {
+        work(TheoryRequest {
+            radar: Radar { elements: 64, samples: 32, ..Radar::default() },
             name: "point 1".to_owned(),
             reflector: Reflector { x_metres: 1.5, y_metres, reflectivity: 1.0 },
             elements: Elements::TwoEnds,
             seed: 0,
             snr: Decibels(20.0),
-        };
-        let found = work(request(1.0));
-        let [first, last, full] = found.overlays.map(|o| o.unwrap().blob.peak);
-        assert!(first != last && last != full && found.ellipse.is_some());
-        assert!(work(request(0.0)).ellipse.is_none(), "y is not bounded on the array's axis");
+        })
+    }
+
+    #[test]
+    fn every_map_has_its_own_overlay() {
+        let [first, last, full] = found(1.0).overlays.map(|o| o.unwrap().blob.peak);
+        assert!(first != last && last != full);
+    }
+
+    #[test]
+    fn a_reflector_on_the_axis_of_the_array_has_no_ellipse() {
+        assert!(found(1.0).ellipse.is_some());
+        assert!(found(0.0).ellipse.is_none(), "y is not bounded there");
     }
 }

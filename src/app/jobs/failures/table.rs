@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_and_method_stands_there_once_with_its_latest_figures() {
+    fn a_later_row_takes_the_place_of_an_earlier_one() {
         let mut table = RowTable::default();
         for index in [0, 1, 0] {
             assert!(table.add(some_row(index, "live")));
@@ -140,6 +140,12 @@ mod tests {
         table.add(better.clone());
         assert!(table.has(&better) && !table.has(&some_row(1, "nomp")));
         assert_eq!(**table.rows(), [some_row(0, "live"), better]);
+    }
+
+    #[test]
+    fn other_rows_are_another_generation() {
+        let mut table = RowTable::default();
+        table.add(some_row(0, "live"));
         let (version, generation) = (table.version(), table.generation());
         table.replace(vec![some_row(3, "nomp")], Conditions::default());
         assert!(table.version() > version && table.generation() > generation);
