@@ -144,15 +144,28 @@ mod tests {
         panel
     }
 
-    #[test]
-    fn both_are_switched_on_edited_and_off() {
+    fn click(panel: &mut Harness<'static, Disturbances>, label: &str) {
+        panel.get_by_label(label).click();
+        panel.run();
+    }
+
+    /// The panel with both switched on.
+    fn panel_of_both() -> Harness<'static, Disturbances> {
         let mut panel = panel(false);
-        for label in ["Interferer", "Mirror"] {
-            panel.get_by_label(label).click();
-            panel.run();
-        }
+        ["Interferer", "Mirror"].into_iter().for_each(|label| click(&mut panel, label));
+        panel
+    }
+
+    #[test]
+    fn what_is_switched_on_has_its_usual_numbers() {
+        let panel = panel_of_both();
         assert_eq!(panel.state().interferer, Some(Interferer::default()), "as it stands before the radar of table 3.1");
         assert_eq!(panel.state().mirror, Some(Mirror::default()));
+    }
+
+    #[test]
+    fn a_number_that_is_typed_changes_no_other() {
+        let mut panel = panel_of_both();
         let field = panel.get_by(|n| {
             n.label().as_deref() == Some("crossing time (% of chirp)") && n.role() == egui::accesskit::Role::SpinButton
         });
@@ -163,9 +176,13 @@ mod tests {
         panel.key_press(egui::Key::Enter);
         panel.run();
         let edited = panel.state().interferer.unwrap();
-        assert_eq!(edited, Interferer { crossing: 0.25, ..Interferer::default() }, "and nothing else moved");
-        panel.get_by_label("Interferer").click();
-        panel.run();
+        assert_eq!(edited, Interferer { crossing: 0.25, ..Interferer::default() });
+    }
+
+    #[test]
+    fn either_is_switched_off_by_itself() {
+        let mut panel = panel_of_both();
+        click(&mut panel, "Interferer");
         assert_eq!((panel.state().interferer, panel.state().mirror.is_some()), (None, true));
     }
 

@@ -321,12 +321,12 @@ mod tests {
     }
 
     #[test]
-    fn play_and_back_are_asked_for() {
-        let mut panel = panel([700.0, 420.0], 64, 5.0, 1.0);
-        panel.get_by_label("Play").click();
-        panel.get_by_label("Back to 0 s").click();
-        panel.run();
-        assert!(panel.state().contains(&Command::View(ViewCommand::TogglePlay)), "{:?}", panel.state());
-        assert!(panel.state().contains(&Command::View(ViewCommand::SetTime(0.0))));
+    fn every_button_of_time_is_a_command() {
+        for (label, command) in [("Play", ViewCommand::TogglePlay), ("Back to 0 s", ViewCommand::SetTime(0.0))] {
+            let mut panel = panel([700.0, 420.0], 64, 5.0, 1.0);
+            panel.get_by_label(label).click();
+            panel.run();
+            assert!(panel.state().contains(&Command::View(command)), "{label}: {:?}", panel.state());
+        }
     }
 }

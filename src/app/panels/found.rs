@@ -134,10 +134,13 @@ mod tests {
         }
     }
 
+    fn two() -> Vec<Detection> {
+        vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)]
+    }
+
     #[test]
     fn angles_ranges_and_decibels_are_listed() {
-        let list = vec![detection(6.96, 15.0, 0.0), detection(-3.5, 7.25, -2.04)];
-        let shown = panel(Some(list.clone()), None, true);
+        let shown = panel(Some(two()), None, true);
         let _told = [
             "iaa found 2 echoes, the strongest first",
             "+6.96°",
@@ -150,7 +153,11 @@ mod tests {
             "20 %",
         ]
         .map(|text| shown.get_by_label(text));
-        let snapshot = panel(Some(list), None, false);
+    }
+
+    #[test]
+    fn a_snapshot_lists_no_range() {
+        let snapshot = panel(Some(two()), None, false);
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
     }
 
@@ -175,10 +182,18 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_too_much_are_told() {
+    fn a_method_that_found_nothing_says_so() {
         let _nothing = panel(Some(Vec::new()), None, true).get_by_label("iaa found nothing.");
+    }
+
+    #[test]
+    fn echoes_that_are_not_listed_are_counted() {
         let many = panel(Some((0..250).map(|i| detection(0.0, f64::from(i), -1.0)).collect()), None, true);
         let _more = many.get_by_label("and 50 weaker ones");
+    }
+
+    #[test]
+    fn a_refusal_is_told() {
         let _refused = panel(None, Some("needs at least 4 samples"), true).get_by_label("needs at least 4 samples");
     }
 }

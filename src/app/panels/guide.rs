@@ -278,19 +278,23 @@ mod tests {
     }
 
     #[test]
-    fn every_chapter_has_its_buttons_and_every_button_does_something() {
+    fn every_chapter_has_its_buttons() {
         assert_eq!(chapters().count(), CHAPTERS.len());
         for (chapter, steps) in chapters().zip(CHAPTERS) {
             assert!(chapter.lines().count() > 1 && !steps.is_empty(), "{chapter}");
-            for step in *steps {
-                let commands = (step.commands)();
-                assert!(!commands.is_empty(), "{}", step.label);
-                let opens = matches!(
-                    commands[0],
-                    Command::Document(DocumentCommand::Preset(_)) | Command::Window(WindowCommand::OpenPanel(_))
-                );
-                assert!(opens, "{}: a preset of that name", step.label);
-            }
+        }
+    }
+
+    #[test]
+    fn every_button_opens_something_first() {
+        for step in CHAPTERS.iter().copied().flatten() {
+            let commands = (step.commands)();
+            assert!(!commands.is_empty(), "{}", step.label);
+            let opens = matches!(
+                commands[0],
+                Command::Document(DocumentCommand::Preset(_)) | Command::Window(WindowCommand::OpenPanel(_))
+            );
+            assert!(opens, "{}: a preset of that name", step.label);
         }
     }
 }

@@ -226,8 +226,8 @@ mod tests {
     }
 
     #[test]
-    fn arrow_keys_walk_and_the_list_follows() {
-        let mut list = panel(1000);
+    fn arrow_keys_move_the_selection() {
+        let mut list = panel(6);
         click(&mut list, "point 2 in the list", Modifiers::NONE);
         list.key_press(Key::ArrowDown);
         list.run();
@@ -237,6 +237,11 @@ mod tests {
         list.key_press(Key::ArrowUp);
         list.run();
         assert_eq!(list.state().selection, Selection::of([2]));
+    }
+
+    #[test]
+    fn the_list_scrolls_to_the_selection() {
+        let mut list = panel(1000);
         assert!(list.query_by_label("point 700 in the list").is_none(), "only rows in sight are drawn");
         list.state_mut().selection.pick([699], SelectionMode::Replace);
         list.run();

@@ -192,24 +192,31 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    #[test]
-    fn measuring_is_asked_for_and_can_be_stopped() {
+    /// What clicks on these labels ask for while a measurement has come this far.
+    fn asked(progress: Option<f32>, labels: &[&str]) -> Vec<Command> {
         let radar = Radar { elements: 128, ..Radar::default() };
         let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
-            let progress = (!state.1.is_empty()).then_some(0.5);
             let input = Input { radar: &radar, progress, rows: &[], bare_fft_ms: None, note: None };
             let commands = show(ui, input, &mut state.0);
             state.1.extend(commands);
         };
         let mut run_time = Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Default::default());
         let _told = run_time.get_by_label_contains("128 elements");
-        for label in ["thorough", "Measure", "Cancel"] {
+        for label in labels {
             run_time.get_by_label(label).click();
             run_time.run_steps(2);
         }
-        assert_eq!(
-            run_time.state().1,
-            [Command::Work(WorkCommand::Measure { thorough: true }), Command::Work(WorkCommand::CancelMeasurement)]
-        );
+        run_time.state().1.clone()
+    }
+
+    #[test]
+    fn a_thorough_measurement_is_asked_for() {
+        let asked = asked(None, &["thorough", "Measure"]);
+        assert_eq!(asked, [Command::Work(WorkCommand::Measure { thorough: true })]);
+    }
+
+    #[test]
+    fn a_measurement_that_runs_can_be_cancelled() {
+        assert_eq!(asked(Some(0.5), &["Cancel"]), [Command::Work(WorkCommand::CancelMeasurement)]);
     }
 }

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn the_search_is_one_command_and_its_cancel_another() {
+    fn the_search_is_one_command() {
         let mut fields = fields(Memory { percent: 0.5, count: 80, ..Memory::default() });
         seen::assert_readable(fields.output());
         fields.get_by_label("Find η").click();
@@ -142,11 +142,16 @@ mod tests {
         let kinds = vec![Kind::Set1, Kind::Set2, Kind::Set3];
         let choice = ThresholdChoice { false_alarm_percent: 0.5, kinds, count: 80 };
         assert_eq!(fields.state().asked, [WorkCommand::FindThreshold(choice).into()]);
+    }
+
+    #[test]
+    fn a_search_that_runs_can_be_cancelled() {
+        let mut fields = fields(Memory::default());
         fields.state_mut().search.progress = Some(0.4);
         fields.step();
         fields.get_by_label("Cancel").click();
         fields.step();
-        assert_eq!(fields.state().asked.last(), Some(&WorkCommand::CancelThreshold.into()));
+        assert_eq!(fields.state().asked, [WorkCommand::CancelThreshold.into()]);
     }
 
     #[test]
@@ -159,16 +164,25 @@ mod tests {
     }
 
     #[test]
-    fn too_few_scenes_are_told_and_no_search_begins() {
+    fn too_few_scenes_begin_no_search() {
         let mut fields = fields(Memory { count: 20, ..Memory::default() });
         let _told = fields.get_by_label("60 scenes can't keep a rate of 1 %; take 99 scenes or more");
         fields.get_by_label("Find η").click();
         fields.run();
         assert!(fields.state().asked.is_empty());
-        fields.state_mut().memory.count = 33;
+    }
+
+    #[test]
+    fn a_search_without_a_threshold_is_told() {
+        let mut fields = fields(Memory { count: 33, ..Memory::default() });
         fields.state_mut().search.note = Some("no threshold keeps 1 % on these scenes");
         fields.run();
         let _told = fields.get_by_label("no threshold keeps 1 % on these scenes");
+    }
+
+    #[test]
+    fn scenes_are_asked_for_where_none_is_chosen() {
+        let mut fields = fields(Memory::default());
         fields.state_mut().memory.kinds.clear();
         fields.run();
         let _told = fields.get_by_label("Choose scenes first.");

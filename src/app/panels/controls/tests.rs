@@ -92,7 +92,7 @@ fn thresholds_are_told_in_decibels_where_these_are_chosen() {
 }
 
 #[test]
-fn a_click_is_one_command_and_nothing_else_changes() {
+fn every_click_is_one_command() {
     let mut controls = panel(Run::default);
     controls.run();
     assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
