@@ -228,14 +228,21 @@ mod tests {
         assert!(panel.query_by_label("Output map").is_none());
     }
 
+    const EDGE: &str = "Edge between two maps";
+
+    /// Where the edge was asked to be.
+    fn swipes(panel: &Harness<'_, Held>) -> Vec<f32> {
+        let edge = |c: &Command| if let Command::View(ViewCommand::Swipe(edge)) = c { Some(*edge) } else { None };
+        panel.state().asked.iter().filter_map(edge).collect()
+    }
+
     #[test]
-    fn the_edge_is_dragged_and_moved_by_keys() {
+    fn the_edge_is_dragged() {
         let mut panel = panel(Layout::Swipe);
         let map = panel.get_by_label("Output map").rect();
-        let edge =
-            |panel: &Harness<'_, Held>| panel.get_by_role_and_label(Role::Slider, "Edge between two maps").rect();
-        assert!((edge(&panel).center().x - map.center().x).abs() < 1.0);
-        let from = edge(&panel).center() + vec2(0.0, 60.0);
+        let edge = panel.get_by_role_and_label(Role::Slider, EDGE).rect().center();
+        assert!((edge.x - map.center().x).abs() < 1.0);
+        let from = edge + vec2(0.0, 60.0);
         panel.hover_at(from);
         panel.step();
         panel.drag_at(from);
@@ -244,49 +251,58 @@ mod tests {
         panel.step();
         panel.drop_at(from + vec2(-map.width() / 4.0, 0.0));
         panel.step();
-        let swipes = |asked: &[Command]| -> Vec<f32> {
-            asked
-                .iter()
-                .filter_map(|c| if let Command::View(ViewCommand::Swipe(edge)) = c { Some(*edge) } else { None })
-                .collect()
-        };
-        let dragged = swipes(&panel.state().asked);
+        let dragged = swipes(&panel);
         assert!(dragged.last().is_some_and(|edge| (edge - 0.25).abs() < 0.01), "{dragged:?}");
         assert!(
             !panel.state().asked.iter().any(|c| matches!(c, Command::Edit(EditCommand::Grab(_)))),
             "the map beneath stays"
         );
+    }
 
-        panel.state_mut().asked.clear();
-        panel.get_by_role_and_label(Role::Slider, "Edge between two maps").focus();
+    #[test]
+    fn arrow_keys_move_the_edge() {
+        let mut panel = panel(Layout::Swipe);
+        panel.get_by_role_and_label(Role::Slider, EDGE).focus();
         panel.run_steps(2);
         panel.key_press(Key::ArrowRight);
         panel.run_steps(2);
         panel.key_press_modifiers(egui::Modifiers::SHIFT, Key::ArrowLeft);
         panel.run_steps(2);
-        let [right, left] = swipes(&panel.state().asked)[..] else { panic!("{:?}", panel.state().asked) };
+        let [right, left] = swipes(&panel)[..] else { panic!("{:?}", panel.state().asked) };
         assert!((right - 0.51).abs() < 1e-6 && (left - 0.4).abs() < 1e-6, "{right}, {left}");
     }
 
+    /// The comparison that was asked for last.
+    fn asked_for(panel: &Harness<'_, Held>) -> Compare {
+        match panel.state().asked.last() {
+            Some(Command::View(ViewCommand::SetCompare(compare))) => Compare::clone(compare),
+            other => panic!("{other:?}"),
+        }
+    }
+
     #[test]
-    fn methods_and_maps_are_chosen_and_a_second_that_runs_is_cancelled() {
+    fn the_second_method_is_chosen_from_a_list() {
         let mut panel = panel(Layout::Swipe);
         panel.get_by_label("Second").click();
         panel.run_steps(2);
         panel.get_by_role_and_label(Role::Button, "baseline").click();
         panel.run_steps(2);
-        let Some(Command::View(ViewCommand::SetCompare(compare))) = panel.state().asked.last().cloned() else {
-            panic!("{:?}", panel.state().asked)
-        };
-        assert_eq!(compare.second, "baseline");
+        assert_eq!(asked_for(&panel).second, "baseline");
+    }
+
+    #[test]
+    fn the_second_map_is_chosen_from_a_list() {
+        let mut panel = panel(Layout::Swipe);
         panel.get_by_label("and").click();
         panel.run_steps(2);
         panel.get_by_label("Target").click();
         panel.run_steps(2);
-        let Some(Command::View(ViewCommand::SetCompare(compare))) = panel.state().asked.last().cloned() else {
-            panic!("{:?}", panel.state().asked)
-        };
-        assert_eq!(compare.maps, [MapKind::Output, MapKind::Target]);
+        assert_eq!(asked_for(&panel).maps, [MapKind::Output, MapKind::Target]);
+    }
+
+    #[test]
+    fn a_second_method_that_runs_can_be_cancelled() {
+        let mut panel = panel(Layout::Swipe);
         panel.state_mut().progress = Some(0.4);
         panel.run_steps(2);
         panel.get_by_label("Cancel").click();

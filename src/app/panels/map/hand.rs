@@ -82,7 +82,7 @@ mod tests {
     use crate::interact::{Editor, Snap};
     use crate::radar::Radar;
     use crate::scene::Reflector;
-    use eframe::egui::{Modifiers, Rect, vec2};
+    use eframe::egui::{Modifiers, Rect, Vec2, vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -128,77 +128,96 @@ mod tests {
         map.state().editor.scene().objects[object].anchor_metres()
     }
 
+    const POINTS: [(f64, f64); 2] = [(-8.0, 18.0), (9.0, 25.0)];
+
+    /// Where the blob of a point is on screen.
+    fn blob_at(
+        map: &Harness<'static, Desk>,
+        kind: MapKind,
+        projection: Projection,
+        [x_metres, y_metres]: [f64; 2],
+    ) -> Pos2 {
+        let rect = map.get_by_label(&format!("{} map", kind.title())).rect();
+        frame(&Radar::default(), kind, projection, rect).blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 })
+    }
+
+    /// The map after a drag of the second point, whose blob should then be at this place.
+    fn dragged(kind: MapKind, projection: Projection) -> (Harness<'static, Desk>, Pos2) {
+        let mut map = map(kind, projection, &POINTS);
+        let (from, by) = (blob_at(&map, kind, projection, POINTS[1].into()), vec2(-60.0, 35.0));
+        map.hover_at(from + vec2(2.0, 1.0));
+        map.step();
+        map.drag_at(from + vec2(2.0, 1.0));
+        map.step();
+        for part in [0.3, 0.7, 1.0] {
+            map.hover_at(from + by * part + vec2(2.0, 1.0));
+            map.step();
+        }
+        map.drop_at(from + by + vec2(2.0, 1.0));
+        map.run_steps(2);
+        (map, from + by)
+    }
+
     #[test]
-    fn a_blob_is_dragged_in_every_map_and_both_views_and_one_undo_brings_it_back() {
-        let radar = Radar::default();
+    fn a_blob_follows_the_pointer_in_every_map() {
         for projection in [Projection::RangeAngle, Projection::Cartesian] {
             for kind in [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output, MapKind::Difference] {
-                let mut map = map(kind, projection, &[(-8.0, 18.0), (9.0, 25.0)]);
-                let label = format!("{} map", kind.title());
-                let rect = map.get_by_label(&label).rect();
-                let frame = frame(&radar, kind, projection, rect);
-                let at =
-                    |[x_metres, y_metres]: [f64; 2]| frame.blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 });
-                let (from, by) = (at([9.0, 25.0]), vec2(-60.0, 35.0));
-                map.hover_at(from + vec2(2.0, 1.0));
-                map.step();
-                map.drag_at(from + vec2(2.0, 1.0));
-                map.step();
-                for part in [0.3, 0.7, 1.0] {
-                    map.hover_at(from + by * part + vec2(2.0, 1.0));
-                    map.step();
-                }
-                map.drop_at(from + by + vec2(2.0, 1.0));
-                map.run_steps(2);
-                let off = at(place(&map, 1)).distance(from + by);
+                let (map, to) = dragged(kind, projection);
+                let off = blob_at(&map, kind, projection, place(&map, 1)).distance(to);
                 assert!(off < 1.5, "{kind:?}, {projection:?}: its blob is {off} points beside the pointer");
                 assert_eq!(place(&map, 0), [-8.0, 18.0]);
                 assert_eq!(map.state().view, MapView::default(), "the map itself stays");
                 assert_eq!(map.state().asked.last(), Some(&Command::Edit(EditCommand::Drop)));
-                let editor = &mut map.state_mut().editor;
-                assert_eq!((editor.selection().single(), editor.history().depth()), (Some(1), 1));
-                editor.undo();
-                assert_eq!(place(&map, 1), [9.0, 25.0]);
+                assert_eq!(map.state().editor.selection().single(), Some(1));
             }
         }
     }
 
     #[test]
-    fn clicks_select_what_is_behind_a_blob_and_nothing_elsewhere() {
-        let radar = Radar::default();
-        let points = [(-8.0, 18.0), (9.0, 25.0)];
-        let mut map = map(MapKind::Target, Projection::RangeAngle, &points);
-        let frame = frame(&radar, MapKind::Target, Projection::RangeAngle, map.get_by_label("Target map").rect());
-        let at = |i: usize| {
-            let (x_metres, y_metres) = points[i];
-            frame.blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 })
-        };
-        let click = |map: &mut Harness<'static, Desk>, pos: Pos2, modifiers: Modifiers| {
-            for pressed in [true, false] {
-                map.hover_at(pos);
-                map.event_modifiers(
-                    eframe::egui::Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers },
-                    modifiers,
-                );
-                map.step();
-            }
-            map.run_steps(12);
-            map.state().editor.selection().iter().collect::<Vec<_>>()
-        };
-        assert_eq!(click(&mut map, at(1), Modifiers::NONE), [1]);
-        assert_eq!(click(&mut map, at(0), Modifiers::NONE), [0]);
-        assert_eq!(click(&mut map, at(1), Modifiers::COMMAND), [0, 1]);
-        assert!(click(&mut map, at(1) + vec2(70.0, 40.0), Modifiers::NONE).is_empty());
+    fn one_undo_brings_a_dragged_blob_back() {
+        let (mut map, _) = dragged(MapKind::Target, Projection::RangeAngle);
+        let editor = &mut map.state_mut().editor;
+        assert_eq!(editor.history().depth(), 1);
+        editor.undo();
+        assert_eq!(place(&map, 1), [9.0, 25.0]);
+    }
+
+    /// What a click this far from the blob of a point selects.
+    fn clicked(map: &mut Harness<'static, Desk>, point: usize, off: Vec2, modifiers: Modifiers) -> Vec<usize> {
+        let pos = blob_at(map, MapKind::Target, Projection::RangeAngle, POINTS[point].into()) + off;
+        for pressed in [true, false] {
+            map.hover_at(pos);
+            map.event_modifiers(
+                eframe::egui::Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers },
+                modifiers,
+            );
+            map.step();
+        }
+        map.run_steps(12);
         assert_eq!(map.state().editor.history().depth(), 0);
+        map.state().editor.selection().iter().collect()
+    }
+
+    #[test]
+    fn a_click_selects_what_is_behind_a_blob() {
+        let mut map = map(MapKind::Target, Projection::RangeAngle, &POINTS);
+        assert_eq!(clicked(&mut map, 1, Vec2::ZERO, Modifiers::NONE), [1]);
+        assert_eq!(clicked(&mut map, 0, Vec2::ZERO, Modifiers::NONE), [0]);
+        assert_eq!(clicked(&mut map, 1, Vec2::ZERO, Modifiers::COMMAND), [0, 1]);
+    }
+
+    #[test]
+    fn a_click_beside_every_blob_selects_nothing() {
+        let mut map = map(MapKind::Target, Projection::RangeAngle, &POINTS);
+        assert_eq!(clicked(&mut map, 1, Vec2::ZERO, Modifiers::NONE), [1]);
+        assert!(clicked(&mut map, 1, vec2(70.0, 40.0), Modifiers::NONE).is_empty());
     }
 
     #[test]
     fn a_dragged_blob_snaps_as_in_the_scene() {
-        let radar = Radar::default();
         let mut map = map(MapKind::Target, Projection::Cartesian, &[(4.0, 20.0)]);
         map.state_mut().snap = Snap::Metres(2.0);
-        let frame = frame(&radar, MapKind::Target, Projection::Cartesian, map.get_by_label("Target map").rect());
-        let from = frame.blob(&Reflector { x_metres: 4.0, y_metres: 20.0, reflectivity: 1.0 });
+        let from = blob_at(&map, MapKind::Target, Projection::Cartesian, [4.0, 20.0]);
         map.hover_at(from);
         map.drag_at(from);
         map.step();

@@ -243,8 +243,8 @@ pub mod tests {
     }
 
     #[test]
-    fn the_mark_under_the_pointer_says_what_happened_and_why() {
-        let (fates, radar) = (fates(), Radar::default());
+    fn a_mark_says_why_an_object_has_its_fate() {
+        let fates = fates();
         let kinds = Kinds { fates: &fates, current: true };
         let said: Vec<String> = fates.verdicts.iter().map(|v| kinds.why(v)).collect();
         assert_eq!(said[0], "point 1: found\n100 % of its 40 cells exceed η = 0.80");
@@ -253,12 +253,20 @@ pub mod tests {
         assert!(said[3].starts_with("point 4: wrong tooth\nthe output has it 3 columns to the left;\n"), "{}", said[3]);
         assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
         assert_eq!(said[5], "ghost: 12 cells above η = 0.80\nwhere the scene has nothing");
-        assert_eq!(kinds.counts().len(), Sign::ALL.len());
+    }
 
+    #[test]
+    fn every_kind_is_counted() {
+        assert_eq!(Kinds { fates: &fates(), current: true }.counts().len(), Sign::ALL.len());
+    }
+
+    #[test]
+    fn a_ghost_is_marked_at_its_brightest_cell() {
+        let (fates, radar) = (fates(), Radar::default());
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1024.0, 512.0));
         let (view, projection) = (MapView::default(), Projection::RangeAngle);
         let frame = Frame::of(rect, view, &radar, projection, 0.0);
-        let ghost = kinds.place(frame, &fates.verdicts[5]).unwrap();
+        let ghost = Kinds { fates: &fates, current: true }.place(frame, &fates.verdicts[5]).unwrap();
         assert!((ghost - pos2(300.5, 512.0 - 100.5)).length() < 0.1, "{ghost:?}");
     }
 }

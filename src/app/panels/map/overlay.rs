@@ -202,7 +202,7 @@ mod tests {
     use crate::maps::{LambdaScale, RangeAngleMap};
     use crate::radar::Radar;
     use crate::scene::Line;
-    use eframe::egui::Rect;
+    use eframe::egui::{FullOutput, Rect};
     use egui_kittest::Harness;
     use ndarray::array;
 
@@ -230,16 +230,28 @@ mod tests {
         assert_eq!(value_text(&cells, Units::Decibels, 0, 1).unwrap(), "≤ −200 dB  (Λ 0.100)");
     }
 
-    #[test]
-    fn a_wall_has_one_outline_and_separate_reflectors_have_rings() {
+    /// Five blobs this far apart.
+    fn five(step: f32) -> Vec<Pos2> {
+        (0..5).map(|i| Pos2::new(step * i as f32, 50.0)).collect()
+    }
+
+    /// How many rings and outlines mark an object whose reflectors have these five blobs.
+    fn count(is_line: bool, blobs: &[Pos2]) -> usize {
         let reflector = Reflector { x_metres: 0.0, y_metres: 1.0, reflectivity: 1.0 };
-        let object = |is_line| Marked { reflectors: vec![reflector; 5], is_line };
-        let blobs = |step: f32| (0..5).map(|i| Pos2::new(step * i as f32, 50.0)).collect::<Vec<_>>();
-        let count = |is_line, step| rings(&object(is_line), &blobs(step), 100.0, 0.0).len();
-        assert_eq!([count(true, 4.0), count(true, 14.0), count(false, 4.0)], [1, 5, 5]);
-        let mut wrapped = blobs(4.0);
+        rings(&Marked { reflectors: vec![reflector; 5], is_line }, blobs, 100.0, 0.0).len()
+    }
+
+    #[test]
+    fn a_wall_has_one_outline() {
+        assert_eq!(count(true, &five(4.0)), 1);
+        let mut wrapped = five(4.0);
         wrapped[3..].iter_mut().for_each(|at| at.y -= 90.0);
-        assert_eq!(rings(&object(true), &wrapped, 100.0, 0.0).len(), 2, "what wraps around is in two pieces");
+        assert_eq!(count(true, &wrapped), 2, "what wraps around is in two pieces");
+    }
+
+    #[test]
+    fn separate_reflectors_have_a_ring_each() {
+        assert_eq!([count(true, &five(14.0)), count(false, &five(4.0))], [5, 5]);
     }
 
     #[test]
@@ -251,8 +263,8 @@ mod tests {
         assert_eq!(around(wrapped, 300.0).len(), 2, "what wraps around is in two pieces");
     }
 
-    #[test]
-    fn the_ring_under_the_pointer_tells_the_true_direction_and_no_other() {
+    /// What is drawn of a selected wall, with the pointer away from it or on its nearest blob.
+    fn wall(is_under_the_pointer: bool) -> FullOutput {
         let (radar, wall) = (Radar::default(), Object::Line(Line::vertical(-0.832 * 20.0, 0.5548 * 20.0, 0.1, 40)));
         let objects = [Marked { reflectors: wall.reflectors(), is_line: true }];
         let scene = Scene { objects: vec![wall], ..Scene::default() };
@@ -260,21 +272,28 @@ mod tests {
         let (view, projection) = (MapView::default(), Projection::RangeAngle);
         let frame = Frame::of(rect, view, &radar, projection, 0.0);
         let blob = frame.blob(&objects[0].reflectors[0]);
-        let draw = |pointer| {
-            let panel = Harness::builder().with_size(rect.size()).build_ui(|ui| {
-                marks(ui.painter(), frame, &objects, pointer);
-                selected(ui.painter(), frame, &scene, &Selection::of([0]));
-            });
-            panel.output().clone()
-        };
-        let (away, near) = (draw(None), draw(Some(blob)));
-        assert!(!seen::texts(&away).iter().any(|t| t.text.starts_with("stands at")));
-        let told = seen::texts(&near).into_iter().find(|t| t.text.starts_with("stands at")).unwrap();
+        let panel = Harness::builder().with_size(rect.size()).build_ui(|ui| {
+            marks(ui.painter(), frame, &objects, is_under_the_pointer.then_some(blob));
+            selected(ui.painter(), frame, &scene, &Selection::of([0]));
+        });
+        panel.output().clone()
+    }
+
+    #[test]
+    fn only_a_ring_under_the_pointer_tells_the_true_direction() {
+        let told = |drawn: FullOutput| seen::texts(&drawn).into_iter().find(|t| t.text.starts_with("stands at"));
+        assert!(told(wall(false)).is_none());
+        let told = told(wall(true)).unwrap();
         assert!(
             told.text.starts_with("stands at −56.3° · cos θ −0.832\nseen at −54.1° · cos θ −0.81"),
             "{}",
             told.text
         );
+    }
+
+    #[test]
+    fn a_selected_wall_is_marked_by_outlines_with_a_curve() {
+        let away = wall(false);
         // Two outlines of the wall, and its curve with a dot at each end, each in two colours.
         let count = |is: fn(&Shape) -> bool| away.shapes.iter().filter(|s| is(&s.shape)).count();
         let [paths, dots] = [count(|s| matches!(s, Shape::Path(_))), count(|s| matches!(s, Shape::Circle(_)))];

@@ -54,21 +54,32 @@ impl Scale {
 mod tests {
     use super::*;
 
-    fn scale(kind: MapKind, units: Units, absolute: bool) -> Bar {
+    const END: f32 = 0.2;
+
+    /// Ends and title of the bar.
+    fn scale(kind: MapKind, units: Units, absolute: bool) -> (f64, f64, &'static str) {
         let lambda = Some(LambdaScale { peak: 1.0, floor: -2.0 });
         let difference = DifferenceView { absolute, whole: false };
-        Scale { kind, colours: ColourMap::Grey, units, lambda, difference, end: 0.2 }.bar()
+        let bar = Scale { kind, colours: ColourMap::Grey, units, lambda, difference, end: END }.bar();
+        (bar.low, bar.high, bar.title)
     }
 
     #[test]
-    fn a_difference_is_symmetric_and_its_absolute_value_begins_at_nothing() {
-        let ends = |bar: Bar| (bar.low, bar.high, bar.title);
-        let end = f64::from(0.2f32);
-        assert_eq!(ends(scale(MapKind::Target, Units::Lambda, false)), (0.0, 1.0, "Λ, normalised"));
-        assert_eq!(ends(scale(MapKind::Target, Units::Decibels, false)), (-60.0, 0.0, "dB"));
-        assert_eq!(ends(scale(MapKind::Doubt, Units::Lambda, false)), (0.0, end, "± Λ"));
-        assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, false)), (-end, end, "ΔΛ"));
-        assert_eq!(ends(scale(MapKind::Difference, Units::Lambda, true)), (0.0, end, "|ΔΛ|"));
-        assert_eq!(ends(scale(MapKind::Difference, Units::Decibels, false)), (-60.0 * end, 60.0 * end, "Δ dB"));
+    fn the_scale_of_a_map_is_normalised() {
+        assert_eq!(scale(MapKind::Target, Units::Lambda, false), (0.0, 1.0, "Λ, normalised"));
+        assert_eq!(scale(MapKind::Target, Units::Decibels, false), (-60.0, 0.0, "dB"));
+    }
+
+    #[test]
+    fn a_difference_is_symmetric() {
+        let end = f64::from(END);
+        assert_eq!(scale(MapKind::Difference, Units::Lambda, false), (-end, end, "ΔΛ"));
+        assert_eq!(scale(MapKind::Difference, Units::Decibels, false), (-60.0 * end, 60.0 * end, "Δ dB"));
+    }
+
+    #[test]
+    fn what_has_no_sign_begins_at_0() {
+        assert_eq!(scale(MapKind::Doubt, Units::Lambda, false), (0.0, f64::from(END), "± Λ"));
+        assert_eq!(scale(MapKind::Difference, Units::Lambda, true), (0.0, f64::from(END), "|ΔΛ|"));
     }
 }

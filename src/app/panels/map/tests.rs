@@ -36,14 +36,25 @@ fn the_pointer_is_told_in_cells() {
     assert!((cursor.bin - 255.5).abs() < 1.0 && (cursor.column - 511.5).abs() < 1.0, "{cursor:?}");
 }
 
-#[test]
-fn a_refusal_is_told_and_another_method_offered() {
+/// A map whose method refuses, where another can do it.
+fn refused() -> Harness<'static, Vec<Command>> {
     let problem = || Problem { reason: "trained on another radar", instead: Some("capon") };
-    let mut map = Harness::new_ui_state(|ui, asked| draw(ui, Some(problem()), asked), Vec::new());
+    let mut map = Harness::new_ui_state(move |ui, asked| draw(ui, Some(problem()), asked), Vec::new());
     map.step();
+    map
+}
+
+#[test]
+fn a_refusal_is_told_in_place_of_the_map() {
+    let map = refused();
     let _told = map.get_by_label("trained on another radar");
     assert!(!map.output().shapes.iter().any(|s| matches!(s.shape, Shape::Circle(_))), "no crosshair is drawn over it");
     let _one = map.get_by_label("Output map");
+}
+
+#[test]
+fn a_refusal_offers_another_method() {
+    let mut map = refused();
     map.get_by_label("Use capon").click();
     map.step();
     assert!(map.state().contains(&Command::View(ViewCommand::Method("capon"))), "{:?}", map.state());
@@ -148,39 +159,44 @@ fn a_map_of_an_earlier_scene_says_so() {
     assert_eq!([true, false].map(says_so), [true, false]);
 }
 
+/// A map on which what became of objects is marked.
+fn judged(size: [f32; 2]) -> Harness<'static> {
+    let (radar, fates) = (Radar::default(), kinds::tests::fates());
+    let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
+        let kinds = Some(Kinds { fates: &fates, current: true });
+        let texture = Some(TextureId::default());
+        let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
+        let input = Input { kinds, texture, told_apart, kind: MapKind::OutputAbove, ..input(&radar, None) };
+        _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+    });
+    map.step();
+    seen::assert_readable(map.output());
+    map
+}
+
 #[test]
-fn what_became_of_objects_is_told_above_the_map_and_under_the_pointer() {
-    let radar = Radar::default();
-    let fates = kinds::tests::fates();
-    let map = |current: bool, size: [f32; 2]| {
-        let (radar, fates) = (radar.clone(), fates.clone());
-        let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
-            let kinds = Some(Kinds { fates: &fates, current });
-            let texture = Some(TextureId::default());
-            let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
-            let input = Input { kinds, texture, told_apart, kind: MapKind::OutputAbove, ..input(&radar, None) };
-            _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
-        });
-        map.step();
-        map
-    };
-    let mut large = map(true, [900.0, 500.0]);
+fn fates_of_objects_are_counted_above_the_map() {
     let legend = "Legend: hit, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
-    let _told = large.get_by_label(legend);
-    seen::assert_readable(large.output());
-    let rect = large.get_by_label("Output > η map").rect();
-    let blob = crate::theory::blob_cell(&radar, -4.0, 16.0, crate::maps::Aperture::Full);
+    assert!(judged([900.0, 500.0]).query_by_label(legend).is_some());
+}
+
+#[test]
+fn a_small_panel_has_no_legend() {
+    assert!(judged([260.0, 140.0]).query_by_label_contains("Legend").is_none());
+}
+
+#[test]
+fn the_fate_of_an_object_is_told_under_the_pointer() {
+    let mut map = judged([900.0, 500.0]);
+    let rect = map.get_by_label("Output > η map").rect();
+    let blob = crate::theory::blob_cell(&Radar::default(), -4.0, 16.0, crate::maps::Aperture::Full);
     let at = pos2(
         rect.left() + rect.width() * ((blob.column + 0.5) / 1024.0) as f32,
         rect.bottom() - rect.height() * ((blob.bin + 0.5) / 512.0) as f32,
     );
     let said = |map: &Harness<'_>| seen::texts(map.output()).into_iter().find(|t| t.text.starts_with("point 2"));
-    assert!(said(&large).is_none());
-    large.hover_at(at);
-    large.run_steps(2);
-    assert!(said(&large).is_some_and(|t| t.text.contains("missed")));
-    // A small panel is left to the map.
-    let small = map(true, [260.0, 140.0]);
-    assert!(small.query_by_label_contains("Legend").is_none());
-    seen::assert_readable(small.output());
+    assert!(said(&map).is_none());
+    map.hover_at(at);
+    map.run_steps(2);
+    assert!(said(&map).is_some_and(|t| t.text.contains("missed")));
 }

@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ellipse_is_large_enough_to_be_seen_and_told_how_much() {
+    fn the_ellipse_is_drawn_large_enough_to_be_seen() {
         let radar = Radar::default();
         let reflector = Reflector { x_metres: 3.0, y_metres: 20.0, reflectivity: 1.0 };
         let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
@@ -374,13 +374,23 @@ mod tests {
         let size = Rect::from_points(&outline).size();
         assert!(size.max_elem() > ELLIPSE && size.max_elem() < 400.0, "{size:?}");
         assert!(times >= 10.0 && times.log10().fract() == 0.0, "{times}");
+    }
+
+    #[test]
+    fn the_numbers_leave_a_small_map_in_sight() {
         let small = Rect::from_min_size(Pos2::ZERO, vec2(300.0, 180.0));
         let lines = [vec2(290.0, 14.0); 7];
         let (patch, count) = clear_patch(small, &[small.center()], &lines);
         assert!(count > 1 && patch.area() <= MOST_PART * small.area(), "{count} lines at {patch:?}");
         assert!(!patch.expand(CLEAR).contains(small.center()));
         assert_eq!(clear_patch(RECT, &[RECT.center()], &lines).1, 7);
-        let corner = free_corner(RECT, outline[0], vec2(300.0, 90.0));
-        assert!(RECT.contains_rect(corner) && !corner.contains(outline[0]));
+    }
+
+    #[test]
+    fn a_free_corner_is_away_from_the_place() {
+        for from in [pos2(320.0, 160.0), pos2(960.0, 160.0), pos2(320.0, 480.0), pos2(960.0, 480.0)] {
+            let corner = free_corner(RECT, from, vec2(300.0, 90.0));
+            assert!(RECT.contains_rect(corner) && !corner.contains(from), "{corner:?}");
+        }
     }
 }
