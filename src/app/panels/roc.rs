@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn both_axes_are_in_percent_to_a_hundred_and_every_label_is_whole() {
+    fn both_axes_reach_a_hundred_percent() {
         for size in [[270.0, 150.0], [450.0, 270.0], [1200.0, 700.0]] {
             let roc = Harness::builder().with_size(size).build_ui(|ui| {
                 let point = |i: u16| {

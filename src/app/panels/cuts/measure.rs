@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_read_between_cells_and_not_beyond_them() {
+    fn values_are_read_only_between_cells() {
         let line = [[0.0, -10.0], [2.0, -20.0]];
         assert_eq!(
             [-0.1, 0.0, 1.0, 2.0, 2.1].map(|x| value_at(&line, x)),

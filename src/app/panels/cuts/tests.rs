@@ -26,11 +26,16 @@ fn lobe(kind: MapKind, radar: &Radar) -> CutMap {
     CutMap { kind, map: Arc::new(RangeAngleMap { lambda }), scale: Some(LambdaScale { peak: 0.0, floor: -5.0 }) }
 }
 
-fn panel(size: [f32; 2]) -> Harness<'static, Held> {
-    let radar = Radar::default();
+/// An input and the target, and an output of another radar.
+fn maps(radar: &Radar) -> [CutMap; 3] {
     let small =
         CutMap { kind: MapKind::Output, map: Arc::new(RangeAngleMap { lambda: Array2::zeros((8, 8)) }), scale: None };
-    let maps = [lobe(MapKind::Input0, &radar), lobe(MapKind::Target, &radar), small];
+    [lobe(MapKind::Input0, radar), lobe(MapKind::Target, radar), small]
+}
+
+fn panel(size: [f32; 2]) -> Harness<'static, Held> {
+    let radar = Radar::default();
+    let maps = maps(&radar);
     let draw = move |ui: &mut Ui, held: &mut Held| {
         let cursor = Cursor::at_cell(&radar, held.bin, 700.0);
         let input = Input { radar: &radar, cursor, maps: &maps, pins: &held.pins, units: held.units };
@@ -62,28 +67,62 @@ fn click(panel: &mut Harness<'_, Held>, at: Pos2) {
 }
 
 #[test]
-fn maps_of_another_radar_are_left_out_and_nothing_is_asked() {
-    let cuts = panel([640.0, 300.0]);
-    let _named = cuts.get_by_label("Target");
-    assert!(cuts.state().asked.is_empty());
-    let lines = cuts.state().memory.read.map(|line| line.kind);
-    assert_eq!(lines, Some(MapKind::Target), "what is measured where nobody chose");
+fn maps_of_another_radar_are_left_out() {
+    let radar = Radar::default();
+    let maps = maps(&radar);
+    let cursor = Cursor::at_cell(&radar, 300.0, 700.0);
+    let input = Input { radar: &radar, cursor, maps: &maps, pins: &[], units: Units::Lambda };
+    for cut in Cut::ALL {
+        let drawn: Vec<MapKind> = traces(&input, &BTreeSet::new(), cut).iter().map(|t| t.kind).collect();
+        assert_eq!(drawn, [MapKind::Input0, MapKind::Target]);
+    }
 }
 
 #[test]
-fn clicks_place_markers_drags_move_them_and_their_difference_is_told() {
+fn the_target_is_read_where_nobody_chose() {
+    let cuts = panel([640.0, 300.0]);
+    assert!(cuts.state().asked.is_empty());
+    assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target));
+}
+
+/// Where a part of the width of a chart is.
+fn at(part: f32, rect: Rect) -> Pos2 {
+    pos2(rect.left() + part * rect.width(), rect.center().y)
+}
+
+#[test]
+fn clicks_place_markers() {
     let mut cuts = panel([700.0, 600.0]);
     let chart = cuts.get_by_label("Range profile").rect();
-    let at = |part: f32, rect: Rect| pos2(rect.left() + part * rect.width(), rect.center().y);
     click(&mut cuts, at(0.25, chart));
     let chart = cuts.get_by_label("Range profile").rect();
     click(&mut cuts, at(0.5, chart));
     let extent = Radar::default().max_range_metres();
     let [Some(a), Some(b)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
     assert!((a / extent - 0.25).abs() < 5e-3 && (b / extent - 0.5).abs() < 5e-3, "{a} {b}");
+}
+
+/// The panel with markers at a quarter of the maximum range, and at this part of it.
+fn marked(part: f64) -> Harness<'static, Held> {
+    let mut cuts = panel([700.0, 600.0]);
+    let places = [0.25, part].map(|part| Some(part * Radar::default().max_range_metres()));
+    cuts.state_mut().memory.views.entry(Cut::Range).or_default().markers.places = places;
+    cuts.run_steps(2);
+    cuts
+}
+
+#[test]
+fn the_difference_of_markers_is_told() {
+    let cuts = marked(0.5);
     let _difference = cuts.get_by_label_contains("B − A: +9.");
+}
+
+#[test]
+fn a_drag_moves_a_marker() {
+    let mut cuts = marked(0.5);
+    let before = places(&cuts);
     let chart = cuts.get_by_label("Range profile").rect();
-    let from = at((b / extent) as f32, chart);
+    let from = at(0.5, chart);
     cuts.hover_at(from);
     cuts.step();
     cuts.drag_at(from);
@@ -93,13 +132,23 @@ fn clicks_place_markers_drags_move_them_and_their_difference_is_told() {
     cuts.drop_at(at(0.75, chart));
     cuts.step();
     let [now, Some(moved)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
-    assert_eq!(now, Some(a));
-    assert!((moved / extent - 0.75).abs() < 5e-3, "{moved}");
+    assert_eq!(now, before[0]);
+    assert!((moved / Radar::default().max_range_metres() - 0.75).abs() < 5e-3, "{moved}");
     assert!(cuts.state().memory.views[&Cut::Range].span.is_none(), "the cut itself was not dragged");
+}
+
+#[test]
+fn the_width_of_the_peak_at_a_marker_is_told() {
+    let cuts = marked(0.75);
     let _width = cuts.get_by_label_contains("3 dB width at B: ");
+}
+
+#[test]
+fn the_width_of_the_peak_at_a_marker_has_both_its_ends_drawn() {
+    let cuts = marked(0.75);
     let is_end = |shape: &egui::Shape| matches!(shape, egui::Shape::Circle(circle) if circle.radius == 3.0);
     let ends = cuts.output().shapes.iter().filter(|clipped| is_end(&clipped.shape)).count();
-    assert!(ends >= 2 && ends % 2 == 0, "both ends of each width are drawn, {ends}");
+    assert!(ends >= 2 && ends % 2 == 0, "{ends}");
 }
 
 #[test]
@@ -133,11 +182,16 @@ fn a_pinned_cut_stays_while_the_cursor_moves_on() {
 }
 
 #[test]
-fn decibels_are_an_axis_and_a_choice() {
+fn decibels_are_chosen_by_a_click() {
     let mut cuts = panel([900.0, 400.0]);
     cuts.get_by_label("dB").click();
     cuts.step();
     assert_eq!(cuts.state().asked, [Command::View(ViewCommand::SetUnits(Units::Decibels))]);
+}
+
+#[test]
+fn decibels_have_an_axis_of_their_own() {
+    let mut cuts = panel([900.0, 400.0]);
     cuts.state_mut().units = Units::Decibels;
     cuts.run_steps(2);
     let texts = seen::texts(cuts.output());

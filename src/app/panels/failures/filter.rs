@@ -141,14 +141,19 @@ mod tests {
     }
 
     #[test]
-    fn names_are_completed_and_the_expression_is_read() {
+    fn names_are_completed() {
         let mut field = field();
         write(&mut field, "nomp.squ");
         field.key_press(egui::Key::Enter);
         field.run_steps(3);
         assert_eq!(field.state().text, "nomp.squared_error");
         assert!(field.state().filter().is_none() && field.state().error.is_some(), "it is no expression yet");
-        write(&mut field, " > 800");
+    }
+
+    #[test]
+    fn an_expression_is_read_as_it_is_typed() {
+        let mut field = field();
+        write(&mut field, "nomp.squared_error > 800");
         assert!(field.state().error.is_none());
         assert_eq!(
             field.state().filter(),
@@ -157,13 +162,19 @@ mod tests {
     }
 
     #[test]
-    fn a_mistake_is_pointed_at_and_the_last_filter_stays() {
+    fn a_mistake_leaves_the_last_filter() {
         let mut field = field();
         write(&mut field, "objects > 3");
         let (stamp, filter) = (field.state().stamp(), field.state().filter().cloned());
         assert!(filter.is_some());
         write(&mut field, " & objcts = 2");
         assert_eq!((field.state().stamp(), field.state().filter()), (stamp, filter.as_ref()));
+    }
+
+    #[test]
+    fn a_mistake_is_pointed_at() {
+        let mut field = field();
+        write(&mut field, "objects > 3 & objcts = 2");
         let _told = field.get_by_label_contains("column 15:");
     }
 }

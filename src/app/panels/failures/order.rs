@@ -140,32 +140,63 @@ mod tests {
         table
     }
 
-    #[test]
-    fn rows_are_filtered_boxed_and_sorted_only_when_something_changed() {
-        let mut table = table(6);
-        let mut order = Order::default();
+    /// Six rows, some of them by a filter and in a box.
+    struct Asked {
+        table: RowTable,
+        filter: Filter,
+        boxed: Boxed,
+    }
+
+    impl Asked {
+        fn wanted(&self) -> Wanted<'_> {
+            let sort = Some(Sort { column: Column::Index, descending: true });
+            Wanted { table: &self.table, filter: Some(&self.filter), filter_stamp: 1, sort, boxed: Some(&self.boxed) }
+        }
+    }
+
+    /// With the order that it leads to.
+    fn asked() -> (Asked, Order) {
+        let table = table(6);
         let filter = Filter::parse("index >= 2", &["live"]).unwrap();
         let boxed = Boxed { generation: table.generation(), rows: HashSet::from([1, 3, 5]), stamp: 1 };
-        fn wanted<'a>(table: &'a RowTable, filter: &'a Filter, boxed: &'a Boxed) -> Wanted<'a> {
-            let sort = Some(Sort { column: Column::Index, descending: true });
-            Wanted { table, filter: Some(filter), filter_stamp: 1, sort, boxed: Some(boxed) }
-        }
-        order.update(&wanted(&table, &filter, &boxed));
-        assert_eq!((order.filtered(), order.shown()), (&[2, 3, 4, 5][..], &[5, 3][..]));
-        let stamp = order.stamp();
-        order.update(&wanted(&table, &filter, &boxed));
-        assert_eq!(order.stamp(), stamp);
-        table.add(some_row(6, "live"));
-        assert!(order.update(&wanted(&table, &filter, &boxed)).is_some(), "rows that come are taken in now and then");
-        order.update(&Wanted { boxed: None, ..wanted(&table, &filter, &boxed) });
-        assert_eq!(order.shown(), [6, 5, 4, 3, 2], "and at once when something else changed");
-        table.replace(Vec::new(), Conditions::default());
-        order.update(&wanted(&table, &filter, &boxed));
-        assert!(order.shown().is_empty(), "nor do indices of another table stay");
+        let (asked, mut order) = (Asked { table, filter, boxed }, Order::default());
+        order.update(&asked.wanted());
+        (asked, order)
     }
 
     #[test]
-    fn a_title_sorts_both_ways_and_then_no_more() {
+    fn only_filtered_rows_in_the_box_are_shown() {
+        let (_, order) = asked();
+        assert_eq!((order.filtered(), order.shown()), (&[2, 3, 4, 5][..], &[5, 3][..]));
+    }
+
+    #[test]
+    fn unchanged_rows_are_not_put_in_order_again() {
+        let (asked, mut order) = asked();
+        let stamp = order.stamp();
+        order.update(&asked.wanted());
+        assert_eq!(order.stamp(), stamp);
+    }
+
+    #[test]
+    fn rows_that_come_are_taken_in_now_or_a_moment_later() {
+        let (mut asked, mut order) = asked();
+        asked.table.add(some_row(6, "live"));
+        assert!(order.update(&asked.wanted()).is_some(), "a moment later");
+        order.update(&Wanted { boxed: None, ..asked.wanted() });
+        assert_eq!(order.shown(), [6, 5, 4, 3, 2], "at once when something else changed");
+    }
+
+    #[test]
+    fn rows_of_another_table_do_not_stay() {
+        let (mut asked, mut order) = asked();
+        asked.table.replace(Vec::new(), Conditions::default());
+        order.update(&asked.wanted());
+        assert!(order.shown().is_empty());
+    }
+
+    #[test]
+    fn the_third_click_on_a_title_sorts_no_more() {
         let first = Sort::clicked(None, Column::Missed);
         assert_eq!(first, Some(Sort { column: Column::Missed, descending: true }));
         let second = Sort::clicked(first, Column::Missed);

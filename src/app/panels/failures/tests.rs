@@ -68,7 +68,7 @@ fn click(panel: &mut Harness<'_, Drawn>, label: &str) {
 }
 
 #[test]
-fn what_is_chosen_is_tried_searched_and_kept() {
+fn every_button_is_one_command() {
     let mut panel = panel(0);
     for label in ["Try", "Worse", "Keep", "Open…"] {
         click(&mut panel, label);
@@ -84,13 +84,25 @@ fn what_is_chosen_is_tried_searched_and_kept() {
     assert_eq!(panel.state().asked, asked);
 }
 
-#[test]
-fn titles_sort_and_keys_walk_through_the_rows_in_that_order() {
+/// Fifty rows, and which of them has the largest squared error; its title was clicked.
+fn by_squared_error() -> (Harness<'static, Drawn>, usize) {
     let mut panel = panel(50);
     click(&mut panel, "Squared error");
     let rows = panel.state().table.rows().clone();
     let worst = (0..50).max_by(|a, b| rows[*a].squared_error.total_cmp(&rows[*b].squared_error)).unwrap();
+    (panel, worst)
+}
+
+#[test]
+fn a_title_sorts_the_rows() {
+    let (panel, worst) = by_squared_error();
     assert_eq!(panel.state().memory.in_sight()[0], worst);
+}
+
+#[test]
+fn keys_walk_through_the_rows_in_their_order() {
+    let (mut panel, worst) = by_squared_error();
+    let rows = panel.state().table.rows().clone();
     click(&mut panel, &format!("set 1, scene {worst}, capon"));
     for _ in 0..2 {
         panel.key_press(Key::ArrowDown);
@@ -138,14 +150,20 @@ fn a_box_in_the_scatter_plot_selects_rows() {
     assert_eq!(panel.state().memory.order.shown().len(), 200);
 }
 
-#[test]
-fn ten_thousand_rows_are_put_in_order_once_and_drawn_as_few() {
-    let mut panel = panel(10_000);
+/// Rows with pictures, sorted by a title.
+fn with_pictures(count: u32) -> Harness<'static, Drawn> {
+    let mut panel = panel(count);
     let Drawn { table, album, .. } = panel.state();
     let bytes = || vec![99; THUMBNAIL_WIDTH * THUMBNAIL_HEIGHT].into_boxed_slice();
     let thumbnail = Arc::new(Thumbnail { target: bytes(), output: bytes() });
     table.rows().iter().for_each(|row| album.insert(table.generation(), row, Ok(thumbnail.clone())));
     click(&mut panel, "Missed");
+    panel
+}
+
+#[test]
+fn ten_thousand_rows_are_put_in_order_once() {
+    let mut panel = with_pictures(10_000);
     let stamp = panel.state().memory.order.stamp();
     let began = Instant::now();
     for _ in 0..20 {
@@ -153,10 +171,20 @@ fn ten_thousand_rows_are_put_in_order_once_and_drawn_as_few() {
     }
     let took = began.elapsed();
     assert_eq!(panel.state().memory.order.stamp(), stamp, "nothing changed");
+    assert!(took < Duration::from_secs(10), "20 frames took {took:?}");
+}
+
+#[test]
+fn rows_out_of_sight_are_not_drawn() {
+    let panel = with_pictures(1000);
     let in_sight = panel.state().memory.in_sight().len();
     assert!((5..30).contains(&in_sight), "{in_sight} rows in sight");
-    assert!(seen::texts(panel.output()).len() < 700, "what is out of sight is not drawn");
-    assert!(took < Duration::from_secs(10), "20 frames took {took:?}");
+    assert!(seen::texts(panel.output()).len() < 700);
+}
+
+#[test]
+fn pictures_are_held_only_of_rows_in_sight() {
+    let mut panel = with_pictures(1000);
     panel.get_by_label("Rows").focus();
     panel.step();
     panel.key_press_modifiers(Modifiers::NONE, Key::End);
@@ -214,22 +242,37 @@ fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
     assert_eq!(panel.state().memory.order.shown().len(), 48);
 }
 
-#[test]
-fn doubt_is_a_column_a_filter_and_an_axis() {
+/// Six scenes by a method that says its doubt and one that says none.
+fn with_doubt() -> Harness<'static, Drawn> {
     let rows = (0..6).flat_map(|i| ["capon", "live"].map(|method| some_row(i, method))).collect();
-    let mut panel = panel_of(rows, vec2(3000.0, 700.0));
+    panel_of(rows, vec2(3000.0, 700.0))
+}
+
+#[test]
+fn rows_are_sorted_by_doubt() {
+    let mut panel = with_doubt();
     click(&mut panel, "Doubt as SE");
     let in_sight = panel.state().memory.in_sight().to_vec();
     let methods = in_sight.iter().map(|row| panel.state().table.rows()[*row].method.clone()).collect::<Vec<_>>();
     assert_eq!(methods[..6], ["live"; 6], "those that say none come last");
     assert_eq!(in_sight[0], 11, "the largest comes first");
     assert!(seen::texts(panel.output()).iter().any(|t| t.text == "95.0"), "and is shown");
+}
+
+#[test]
+fn rows_are_filtered_by_doubt() {
+    let mut panel = with_doubt();
     panel.state_mut().memory.filter.set("squared_error > doubt".to_owned());
     panel.run_steps(3);
     let rows = panel.state().table.rows().clone();
     let shown = panel.state().memory.order.shown().to_vec();
     assert!(!shown.is_empty() && shown.iter().all(|row| rows[*row].method == "live"));
-    let all: Vec<usize> = (0..rows.len()).collect();
+}
+
+#[test]
+fn doubt_is_an_axis_of_the_scatter_plot() {
+    let panel = with_doubt();
+    let all: Vec<usize> = (0..panel.state().table.rows().len()).collect();
     let axes = points::Subject::Columns(Column::Doubt, Column::SquaredError);
     let dots = points::Points::of(&panel.state().table, &all, &axes).dots;
     assert_eq!(dots.iter().map(|dot| dot.at[0]).collect::<Vec<_>>(), [90.0, 91.0, 92.0, 93.0, 94.0, 95.0]);

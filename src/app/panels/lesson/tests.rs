@@ -62,16 +62,21 @@ fn lessons_ask_for_the_whole_screen() {
 }
 
 #[test]
-fn options_are_predictions_and_results_stay_hidden_before() {
-    let mut panel = harness(Some(run("range-and-bandwidth", 3)));
+fn results_stay_hidden_before_a_prediction() {
+    let panel = harness(Some(run("range-and-bandwidth", 3)));
     assert!(panel.query_by_label_contains("Correct").is_none());
+}
+
+#[test]
+fn an_option_that_is_clicked_is_a_prediction() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 3)));
     panel.get_by_label("It stays").click();
     panel.step();
     assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Predict(Guess::Choice(3)))]);
 }
 
 #[test]
-fn a_number_is_typed_and_answered() {
+fn a_number_that_is_typed_is_a_prediction() {
     let mut panel = harness(Some(run("range-and-bandwidth", 1)));
     panel.get_by_label("Your number").focus();
     panel.step();
@@ -101,7 +106,7 @@ fn answered_run(lesson: &str, step: usize, guess: Guess) -> LessonRun {
 }
 
 #[test]
-fn a_wrong_choice_leaves_the_options_and_marks_the_right_one() {
+fn a_wrong_choice_is_marked_beside_the_right_one() {
     let panel = harness(Some(answered_run("range-and-bandwidth", 3, Guess::Choice(1))));
     for text in ["It shrinks to a third", "your answer, wrong", "It stays", "the right answer"] {
         assert_eq!(panel.query_all_by_label(text).count(), 1, "{text}");

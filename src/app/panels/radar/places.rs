@@ -128,8 +128,7 @@ mod tests {
 
     #[test]
     fn a_list_off_the_line_is_taken_with_the_places_it_belongs_to() {
-        let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
-        let antennas = radar.antennas.unwrap();
+        let antennas = radar().antennas.unwrap();
         let bent = antennas.off_line(&[0.0, -0.002, 0.0], &[0.0; 4]).unwrap();
         let own = [
             bent.transmitter_x_metres(),
@@ -146,27 +145,35 @@ mod tests {
         assert_eq!(told, "receiver_y_metres has 3 numbers; expected 4, one for each antenna");
     }
 
-    #[test]
-    fn places_are_typed_and_bad_ones_are_told() {
-        let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
-        let apart = 8.0 * radar.element_spacing_metres;
+    fn radar() -> Radar {
+        Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap()
+    }
+
+    /// How many transmitters there are after this was typed, and whether a fault was told.
+    fn typed(text: &str) -> (usize, bool) {
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
-        let mut panel = Harness::builder().with_size([600.0, 300.0]).build_ui_state(draw, radar);
+        let mut panel = Harness::builder().with_size([600.0, 300.0]).build_ui_state(draw, radar());
         panel.run();
-        let mut typed = |text: &str| {
-            let field = panel.get_by_label(NAMES[0]);
-            field.focus();
-            panel.run();
-            panel.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
-            panel.run();
-            panel.get_by_label(NAMES[0]).type_text(text);
-            panel.run();
-            panel.key_press(Key::Enter);
-            panel.run();
-            let told = panel.query_by_label_contains("is no number").is_some();
-            (panel.state().antennas.as_ref().unwrap().transmitter_x_metres().len(), told)
-        };
-        assert_eq!(typed("0, viel"), (3, true));
+        panel.get_by_label(NAMES[0]).focus();
+        panel.run();
+        panel.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
+        panel.run();
+        panel.get_by_label(NAMES[0]).type_text(text);
+        panel.run();
+        panel.key_press(Key::Enter);
+        panel.run();
+        let told = panel.query_by_label_contains("is no number").is_some();
+        (panel.state().antennas.as_ref().unwrap().transmitter_x_metres().len(), told)
+    }
+
+    #[test]
+    fn places_are_typed() {
+        let apart = 8.0 * radar().element_spacing_metres;
         assert_eq!(typed(&listed(&[0.0, apart, 2.0 * apart, 3.0 * apart])), (4, false));
+    }
+
+    #[test]
+    fn a_place_that_is_no_number_is_told() {
+        assert_eq!(typed("0, viel"), (3, true));
     }
 }

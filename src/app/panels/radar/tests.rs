@@ -84,10 +84,15 @@ fn a_bandwidth_changes_its_consequence() {
 }
 
 #[test]
-fn fewer_elements_take_their_ends_along_and_spacings_are_one_number() {
+fn fewer_elements_take_their_ends_along() {
     let mut panel = panel(Radar::default(), None);
     type_into(&mut panel, "elements", "16");
     assert_eq!((panel.state().0.elements, panel.state().0.end_elements), (16, 8));
+}
+
+#[test]
+fn the_spacing_is_typed_in_wavelengths() {
+    let mut panel = panel(Radar { elements: 16, end_elements: 8, ..Radar::default() }, None);
     type_into(&mut panel, "spacing / λ", "1");
     let spacing = panel.state().0.element_spacing_metres;
     assert!((spacing - panel.state().0.wavelength_metres()).abs() < 1e-12);
@@ -96,7 +101,7 @@ fn fewer_elements_take_their_ends_along_and_spacings_are_one_number() {
 }
 
 #[test]
-fn the_focus_passes_through_and_changes_nothing() {
+fn the_focus_passes_through_without_a_change() {
     let odd = Radar { carrier_hz: 76.123_456_789e9, element_spacing_metres: 1.234_567e-3, ..Radar::default() };
     let mut panel = panel(odd, None);
     for _ in 0..30 {
@@ -107,7 +112,7 @@ fn the_focus_passes_through_and_changes_nothing() {
 }
 
 #[test]
-fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
+fn a_preset_is_chosen_from_a_list() {
     let mut free = panel(Radar::default(), None);
     free.get_by_label("Start from").click();
     free.run();
@@ -116,17 +121,31 @@ fn presets_are_offered_and_a_measured_radar_stays_as_it_is() {
     let number = presets::ALL.iter().position(|p| p.id == "24-ghz").unwrap();
     assert_eq!(free.state().1, [Command::Radar(RadarCommand::Preset(number))]);
     let _told = free.get_by_label_contains("range bins of 60 cm");
+}
+
+#[test]
+fn a_measured_radar_stays_as_it_is() {
     let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
     measured.run();
     assert!(measured.query_by_label("Start from").is_none());
     measured.get_by_label("two-way").click();
     measured.run();
     assert!(measured.state().1.is_empty());
+}
+
+#[test]
+fn ends_are_no_part_of_a_measurement() {
+    let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
     type_into(&mut measured, "elements of an end", "20");
     assert_eq!(measured.state().0.end_elements, 20);
+}
+
+#[test]
+fn the_window_is_no_part_of_a_measurement() {
+    let mut measured = panel(Radar::default(), Some(Measured { by_all_elements: true }));
     measured.get_by_label("hamming").click();
     measured.run();
-    assert_eq!(measured.state().0.window, WindowFunction::Hamming, "windows are no part of a measurement");
+    assert_eq!(measured.state().0.window, WindowFunction::Hamming);
 }
 
 #[test]
@@ -157,13 +176,20 @@ fn pairs_are_chosen_with_their_counts() {
     panel.state().0.validate().unwrap();
 }
 
+fn snapshot() -> Radar {
+    Radar { samples: 1, elements: 86, ..Radar::default() }
+}
+
 #[test]
-fn a_snapshot_has_no_ranges_and_one_that_was_measured_no_bandwidth() {
-    let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
-    let free = panel(radar.clone(), None);
+fn a_snapshot_has_no_ranges() {
+    let free = panel(snapshot(), None);
     let _told =
         (free.get_by_label("one sample has no range resolution"), free.get_by_label("a snapshot: one range bin"));
-    let measured = panel(radar, Some(Measured { by_all_elements: true }));
+}
+
+#[test]
+fn a_snapshot_that_was_measured_has_no_bandwidth() {
+    let measured = panel(snapshot(), Some(Measured { by_all_elements: true }));
     let _told = measured.get_by_label("not known");
     assert!(measured.query_by_label_contains("2000").is_none());
 }
@@ -184,34 +210,58 @@ fn with_budget(size: [f32; 2]) -> Harness<'static, Radar> {
     Harness::builder().with_size(size).build_ui_state(draw, Radar::default())
 }
 
+fn click(panel: &mut Harness<'static, Radar>, label: &str) {
+    panel.get_by_label(label).click();
+    panel.run();
+}
+
+/// Switches a link budget on or off.
+const USE: &str = "Use a link budget";
+
 #[test]
-fn the_group_is_folded_and_the_thesis_convention_is_the_default() {
+fn a_link_budget_is_folded_away_at_first() {
     let mut panel = with_budget([600.0, 1400.0]);
-    assert!(panel.query_by_label("Use a link budget").is_none());
-    panel.get_by_label(BUDGET).click();
-    panel.run();
+    assert!(panel.query_by_label(USE).is_none());
+    click(&mut panel, BUDGET);
+    assert!(panel.query_by_label(USE).is_some());
+}
+
+#[test]
+fn the_thesis_convention_is_the_default() {
+    let mut panel = with_budget([600.0, 1400.0]);
+    click(&mut panel, BUDGET);
     assert!(panel.query_by_label_contains("the thesis' convention. A sample's").is_some());
-    panel.get_by_label("Use a link budget").click();
-    panel.run();
+}
+
+/// The panel of a radar with a link budget.
+fn with_budget_in_use(size: [f32; 2]) -> Harness<'static, Radar> {
+    let mut panel = with_budget(size);
+    [BUDGET, USE].into_iter().for_each(|label| click(&mut panel, label));
+    panel
+}
+
+#[test]
+fn a_link_budget_tells_what_is_received() {
+    let panel = with_budget_in_use([600.0, 1400.0]);
     assert_eq!(panel.state().budget, Some(crate::radar::LinkBudget::default()));
     // 12 + 20 - 48.2 - 33.0 - 40 dBm, over -174 + 73 + 12 dBm of noise; 512 samples under a Hann window gain 25.3 dB.
     let told = "received with -89.2 dBm. SNR -0.2 dB in a sample, 25.1 dB in its range bin";
     assert!(panel.query_by_label_contains(told).is_some(), "{:?}", seen::texts(panel.output()));
     let chart = panel.get_by_label("SNR against range").rect();
     assert!(chart.width() > 200.0 && chart.height() > 80.0, "{chart:?}");
-    panel.get_by_label("Use a link budget").click();
-    panel.run();
+}
+
+#[test]
+fn a_link_budget_is_taken_away_again() {
+    let mut panel = with_budget_in_use([600.0, 1400.0]);
+    click(&mut panel, USE);
     assert_eq!(panel.state(), &Radar::default());
 }
 
 #[test]
-fn its_numbers_can_be_read_in_a_narrow_panel() {
+fn a_link_budget_can_be_read_in_a_narrow_panel() {
     for width in [342.0, 438.0, 600.0] {
-        let mut panel = with_budget([width, 1600.0]);
-        panel.get_by_label(BUDGET).click();
-        panel.run();
-        panel.get_by_label("Use a link budget").click();
-        panel.run();
+        let panel = with_budget_in_use([width, 1600.0]);
         seen::assert_readable(panel.output());
         for label in ["noise of", "MHz of noise", "there and back"] {
             assert!(panel.get_by_label_contains(label).rect().right() <= width, "{label} at {width}");
