@@ -55,7 +55,7 @@ fn maps_follow_time_but_the_document_stays() {
 }
 
 #[test]
-fn motion_plays_to_its_end_and_stops() {
+fn time_goes_on_while_motion_is_played() {
     let mut s = moving();
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
     s.app.step();

@@ -38,7 +38,7 @@ fn an_evaluation_runs_beside_the_app() {
 }
 
 #[test]
-fn a_threshold_by_false_alarms_is_found_and_set() {
+fn a_false_alarm_rate_sets_the_threshold() {
     let mut s = Session::start();
     let choice = |count| ThresholdChoice { false_alarm_percent: 40.0, kinds: vec![Kind::Set1, Kind::Set2], count };
     s.ask_and_wait(WorkCommand::FindThreshold(choice(2)));

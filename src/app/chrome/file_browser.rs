@@ -222,8 +222,8 @@ mod tests {
         panel
     }
 
-    #[test]
-    fn folders_are_entered_and_only_files_of_the_kind_are_listed() {
+    /// The dialog in a folder `walls`, and the folder above it.
+    fn in_walls() -> (Harness<'static, (Browser, Vec<Answer>)>, tempfile::TempDir) {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("walls")).unwrap();
         for name in ["walls/a.toml", "walls/notes.txt", "walls/.hidden.toml"] {
@@ -233,26 +233,48 @@ mod tests {
         seen::assert_readable(dialog.output());
         dialog.get_by_label("walls/").click();
         dialog.run_steps(3);
+        (dialog, folder)
+    }
+
+    #[test]
+    fn up_leads_to_the_folder_above() {
+        let (mut dialog, _folder) = in_walls();
+        let _below = dialog.get_by_label("a.toml");
+        dialog.get_by_label("Up").click();
+        dialog.run_steps(3);
+        let _above = dialog.get_by_label("walls/");
+    }
+
+    #[test]
+    fn only_files_of_the_kind_are_listed_unless_all_are_asked_for() {
+        let (mut dialog, _folder) = in_walls();
         assert!(dialog.query_by_label("notes.txt").is_none() && dialog.query_by_label(".hidden.toml").is_none());
+        dialog.get_by_label("All files").click();
+        dialog.run_steps(3);
+        let _listed = dialog.get_by_label("notes.txt");
+    }
+
+    #[test]
+    fn a_file_is_chosen_before_it_is_opened() {
+        let (mut dialog, folder) = in_walls();
         dialog.get_by_label("a.toml").click();
         dialog.run_steps(3);
         assert!(dialog.state().1.is_empty(), "chosen, not opened");
         dialog.get_by_label("Open").click();
         dialog.run_steps(3);
         assert_eq!(dialog.state().1, [Answer::Chosen(folder.path().join("walls/a.toml"))]);
-        dialog.get_by_label("All files").click();
-        dialog.run_steps(3);
-        let _listed = dialog.get_by_label("notes.txt");
-        dialog.get_by_label("Up").click();
-        dialog.run_steps(3);
-        let _above = dialog.get_by_label("walls/");
+    }
+
+    #[test]
+    fn escape_cancels() {
+        let (mut dialog, _folder) = in_walls();
         dialog.key_press(Key::Escape);
         dialog.run_steps(2);
         assert_eq!(dialog.state().1.last(), Some(&Answer::Cancelled));
     }
 
     #[test]
-    fn every_control_has_a_name_and_what_is_missing_is_told() {
+    fn a_file_that_is_missing_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let mut dialog = panel(Purpose::Open, folder.path());
         // The name's field has the focus.
@@ -262,6 +284,12 @@ mod tests {
         dialog.run_steps(3);
         assert!(dialog.state().1.is_empty());
         let _told = dialog.get_by_label_contains("missing.toml is not there");
+    }
+
+    #[test]
+    fn a_folder_that_can_not_be_read_is_not_entered() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut dialog = panel(Purpose::Open, folder.path());
         dialog.get_by_label("Name").click();
         dialog.run_steps(2);
         dialog.get_by_label("Folder").click();
@@ -269,7 +297,6 @@ mod tests {
         dialog.event(egui::Event::Text("/nowhere".to_owned()));
         dialog.key_press(Key::Enter);
         dialog.run_steps(3);
-        let shown = dialog.state().0.folder.clone();
-        assert_eq!(shown, folder.path(), "a folder that can't be read is not entered");
+        assert_eq!(dialog.state().0.folder, folder.path());
     }
 }

@@ -54,16 +54,34 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    #[test]
-    fn the_latest_comes_first_and_each_can_be_brought_back_or_given_up() {
-        let document = |points: usize| {
-            let scene = Scene::of_points((0..points).map(|i| (i as f64, 9.0)));
+    /// Scenes of one and of two points.
+    fn left() -> [Document; 2] {
+        [1u8, 2].map(|points| {
+            let scene = Scene::of_points((0..points).map(|i| (f64::from(i), 9.0)));
             Document::made(SceneFile { scene, ..SceneFile::default() })
-        };
-        let left = [document(1), document(2)];
-        let ids = [left[0].id(), left[1].id()];
+        })
+    }
+
+    fn menu(left: [Document; 2]) -> Harness<'static, Vec<Command>> {
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| show(ui, &left, asked);
-        let mut menu = Harness::builder().with_size([700.0, 400.0]).build_ui_state(draw, Vec::new());
+        Harness::builder().with_size([700.0, 400.0]).build_ui_state(draw, Vec::new())
+    }
+
+    #[test]
+    fn the_latest_scene_comes_first() {
+        let mut menu = menu(left());
+        menu.get_by_label("Unsaved scenes").click();
+        menu.run();
+        let [latest, first] =
+            ["untitled (2 objects)", "untitled (1 object)"].map(|name| menu.get_by_label_contains(name).rect());
+        assert!(latest.bottom() <= first.top(), "{latest:?} {first:?}");
+    }
+
+    #[test]
+    fn each_scene_can_be_brought_back_or_given_up() {
+        let left = left();
+        let ids = [left[0].id(), left[1].id()];
+        let mut menu = menu(left);
         for (scene, entry) in [("untitled (2 objects)", "Bring back"), ("untitled (1 object)", "Discard")] {
             for label in ["Unsaved scenes", scene, entry] {
                 menu.get_by_label_contains(label).click();

@@ -290,16 +290,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_panel_is_there_and_the_tools_are_closed() {
-        let mut arrangement = Arrangement::default();
+    fn tools_are_closed_at_first() {
+        let arrangement = Arrangement::default();
         for panel in Panel::all() {
             let closed = [Panel::Timing, Panel::Map(MapKind::Doubt), Panel::Map(MapKind::Unexplained)].contains(&panel)
                 || Panel::TOOLS.contains(&panel);
             assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
         }
+    }
+
+    #[test]
+    fn a_lesson_has_no_settings() {
         let lesson = Arrangement::of_a_lesson();
         assert!([Panel::Lesson, Panel::Scene, Panel::Map(MapKind::Target)].iter().all(|p| lesson.is_open(*p)));
         assert!(!lesson.is_open(Panel::Controls) && !lesson.is_open(Panel::Cuts));
+    }
+
+    #[test]
+    fn only_a_panel_in_sight_is_closed_by_its_switch() {
+        let mut arrangement = Arrangement::default();
         arrangement.toggle(Panel::Timing);
         arrangement.toggle(Panel::Cuts);
         assert!(arrangement.is_open(Panel::Cuts), "it was behind another tab");

@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flipping_changes_the_map_and_nothing_else() {
+    fn flipping_changes_only_the_map_in_front() {
         let mut compare = Compare::default();
         compare.flip();
         let first = compare.clone();

@@ -78,11 +78,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_message_stands_there_once_and_old_ones_make_room() {
+    fn the_same_message_stands_there_once() {
         let mut notices = Notices::default();
         notices.add(NoticeKind::Error, "a".to_owned());
         notices.add(NoticeKind::Error, "a".to_owned());
         assert_eq!(notices.len(), 1);
+    }
+
+    #[test]
+    fn old_messages_make_room() {
+        let mut notices = Notices::default();
         for i in 0..9 {
             notices.add(NoticeKind::Info, i.to_string());
         }

@@ -248,13 +248,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn windows_zoom_around_a_fixed_place_and_stay_inside() {
+    fn a_map_zooms_around_a_fixed_place() {
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 100.0));
         let mut w = MapView::default();
         let pointer = pos2(60.0, 45.0);
         let fixed = w.at(rect, pointer);
         w.zoom(3.0, fixed);
         assert!((w.to_screen(rect, fixed) - pointer).length() < 1e-3);
+    }
+
+    #[test]
+    fn a_zoomed_map_stays_within_its_edges() {
+        let (mut w, fixed) = (MapView::default(), pos2(0.25, 0.75));
+        w.zoom(3.0, fixed);
         w.pan(vec2(9.0, -9.0));
         assert!(w.low.x >= 0.0 && w.high.x <= 1.0 + 1e-6 && w.low.y >= 0.0);
         w.zoom(1e-6, fixed);

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_of_a_small_chart_are_whole_and_apart() {
+    fn labels_of_a_small_chart_are_readable() {
         let ticks = ["≤0.001 %", "1 %", "100 %"];
         let ticks: Vec<_> = ticks
             .into_iter()

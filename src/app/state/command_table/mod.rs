@@ -204,6 +204,10 @@ mod tests {
         for colours in ColourMap::ALL {
             assert!(Command::View(ViewCommand::Colours(colours)).entry().is_some(), "{colours:?}");
         }
+    }
+
+    #[test]
+    fn closing_a_panel_is_listed_as_its_switch() {
         let map = Panel::Map(MapKind::Target);
         assert_eq!(
             Command::Window(WindowCommand::ClosePanel(map)).entry(),
