@@ -44,7 +44,7 @@ def written(folder, disk):
 
 
 @ON_UNIX
-def test_files_that_may_not_grow_are_told_and_leave_no_part(tmp_path):
+def test_a_file_that_may_not_grow_leaves_no_part(tmp_path):
     assert written(tmp_path, SHORT_FILES) == ("File too large", [])
 
 
@@ -57,7 +57,7 @@ def tiny_disk(tmp_path):
     subprocess.run(["umount", "--lazy", str(tmp_path)], check=True)
 
 
-def test_a_full_disk_is_told_and_leaves_no_part(tiny_disk):
+def test_a_full_disk_leaves_no_part_of_a_file(tiny_disk):
     assert written(tiny_disk, "") == ("No space left on device", [])
 
 

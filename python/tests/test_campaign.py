@@ -190,7 +190,7 @@ except OSError as error:
 """
 
 
-def test_a_full_disk_is_told_and_the_journal_goes_on(tmp_path):
+def test_a_journal_can_be_read_after_a_full_disk(tmp_path):
     found = subprocess.run([sys.executable, "-c", FULL], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert found.stdout.startswith("told:"), found
     journal = _journal.Journal(tmp_path / "rows.csv.journal", campaign.Run(("baseline",), ("1",), 1000).told())

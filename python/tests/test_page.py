@@ -73,7 +73,7 @@ def test_what_is_no_scene_is_refused(page):
 
 
 @pytest.mark.skipif(not (BUILT / "index.html").is_file() or not shutil.which("chromium"), reason="needs a page that was built (PAGE_FOLDER or target/web) and chromium")
-def test_a_scene_of_python_is_in_the_page_and_comes_back_dragged(monkeypatch):
+def test_a_scene_of_python_comes_back_as_it_was_dragged_in_the_page(monkeypatch):
     playwright = pytest.importorskip("playwright.sync_api")
     monkeypatch.setenv("APERTURA_PAGE", str(BUILT))
     # Unlike the scene that a page opens by itself, but for the place of one point.
