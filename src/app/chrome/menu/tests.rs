@@ -89,7 +89,7 @@ fn the_palette_names_the_menus_in_which_a_command_stands() {
 }
 
 #[test]
-fn help_has_the_guide_the_lessons_keys_and_where_figures_come_from() {
+fn the_help_menu_lists_its_pages() {
     let mut menu = bar(900.0);
     open(&mut menu, &["Help"]);
     for name in ["Guide", "Captions on the maps", "Keys and pointer", "Where figures come from", "About apertura"] {
