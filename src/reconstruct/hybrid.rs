@@ -4,7 +4,7 @@ use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
 use super::reconstructor::{About, Reconstructor, Weights};
-use super::search::{Found, Settings, find, find_from};
+use super::search::{Expected, Found, Settings, find, find_from};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
@@ -16,17 +16,23 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Hybrid {
     fallback: Arc<dyn Reconstructor>,
     settings: Settings,
+    map_parts: [f32; 2],
 }
 
 impl Hybrid {
     /// With the method that fills in.
     pub fn new(fallback: Arc<dyn Reconstructor>) -> Self {
-        Hybrid { fallback, settings: Settings::default() }
+        Hybrid { fallback, settings: Settings::default(), map_parts: MAP_PARTS }
     }
 
     /// The same with other limits to the search.
     pub fn with_settings(self, settings: Settings) -> Self {
         Hybrid { settings, ..self }
+    }
+
+    /// The same with other limits to the part of a map that is unexplained: the fallback's map takes over from the first to the second.
+    pub fn with_map_parts(self, map_parts: [f32; 2]) -> Self {
+        Hybrid { map_parts, ..self }
     }
 
     /// The map of what was found, with what is in doubt filled in.
@@ -44,11 +50,11 @@ impl Hybrid {
         }
         let filled = self.fallback.reconstruct(radar, ends, request)?;
         let least_eta = filled.least_eta.unwrap_or(0.0).max(expected.least_eta);
-        let unexplained = found.unexplained_cells(radar, ends, &expected);
-        let left = found.energy_left() as f32;
-        let filled_map = on_one_scale(&expected.map, filled.lambda, &unexplained, left);
-        let lambda = blended(&expected.map, &filled_map, &unexplained, left);
-        Ok(Reconstruction { eta: eta_of(filled.eta, &unexplained), ..found.as_drawn(lambda, Some(least_eta)) })
+        let cells = found.unexplained_cells(radar, ends, &expected);
+        let unexplained = Unexplained::new(cells, found.energy_left() as f32, self.map_parts);
+        let filled_map = unexplained.on_one_scale(&expected.map, filled.lambda);
+        let lambda = unexplained.blended(&expected.map, &filled_map);
+        Ok(Reconstruction { eta: unexplained.eta_given(filled.eta), ..found.as_drawn(lambda, Some(least_eta)) })
     }
 
     fn about_itself() -> About {
@@ -143,6 +149,7 @@ const LEAST_WEIGHT: f32 = 0.7;
 
 /// Parts of a map's cells that are mostly unexplained, between which the fallback's map takes over in all cells, and on its own scale. Where
 /// little energy is left and yet most cells are unexplained, the scene is not made of what the search looks for: rough bodies, for instance.
+/// By `examples/choose_eta.rs takeover`.
 const MAP_PARTS: [f32; 2] = [0.7, 0.9];
 
 /// A cell is mostly unexplained where more than this part of its power is.
@@ -159,59 +166,72 @@ fn between([low, high]: [f32; 2], part: f32) -> f32 {
     ((part.max(1e-9).log10() - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// How far the fallback's map takes over in all cells: 0 to 1.
-fn taken_over(unexplained: &Array2<f32>) -> f32 {
-    let part = unexplained.iter().filter(|part| **part > MOSTLY).count() as f32 / unexplained.len() as f32;
-    ((part - MAP_PARTS[0]) / (MAP_PARTS[1] - MAP_PARTS[0])).clamp(0.0, 1.0)
-}
-
-/// The threshold of a map that the fallback has taken over, in part or whole, given its own; none where the search's own threshold holds.
-fn eta_of(fallback: Option<f32>, unexplained: &Array2<f32>) -> Option<f32> {
-    let part = taken_over(unexplained);
-    let eta = |fallback| super::search::ETA + part * (fallback - super::search::ETA);
-    fallback.filter(|_| part > 0.0).map(eta)
-}
-
 /// Most weight that the fallback gets where this part of the scene's energy is left.
 fn most_weight(energy_left: f32) -> f32 {
     LEAST_WEIGHT + (1.0 - LEAST_WEIGHT) * between(SCENE_DECADES, energy_left)
 }
 
-/// From `drawn`, where all is explained, towards `filled`, where nothing is. Both are Lambda of one scene on one scale.
-fn blended(
-    drawn: &RangeAngleMap,
-    filled: &RangeAngleMap,
-    unexplained: &Array2<f32>,
+/// How much of a scene the search left unexplained.
+pub struct Unexplained {
+    /// How far each cell of the map is unexplained, 0 to 1: `[range bins, columns]`.
+    cells: Array2<f32>,
+    /// Part of the scene's energy that is left.
     energy_left: f32,
-) -> RangeAngleMap {
-    let least = taken_over(unexplained);
-    let most = most_weight(energy_left).max(least);
-    let mut lambda = drawn.lambda.clone();
-    Zip::from(&mut lambda)
-        .and(&filled.lambda)
-        .and(unexplained)
-        .par_for_each(|out, filled, part| *out += most * between(CELL_DECADES, *part).max(least) * (filled - *out));
-    RangeAngleMap { lambda }
+    /// How far the fallback's map takes over in all cells: 0 to 1.
+    taken_over: f32,
 }
 
-/// `filled` moved to the scale of `drawn`: each knows the weakest and the strongest cell in its own way, and where nearly all is explained
-/// the two should be one. Where few cells are, or much of the scene's energy is left, it stays nearly as it is: what lacks a strong object
-/// has no scale. Nor has a map of which most is unexplained.
-pub fn on_one_scale(
-    drawn: &RangeAngleMap,
-    filled: RangeAngleMap,
-    unexplained: &Array2<f32>,
-    energy_left: f32,
-) -> RangeAngleMap {
-    let (mut sum, mut cells) = (0.0, 0.0);
-    for ((drawn, filled), part) in drawn.lambda.iter().zip(&filled.lambda).zip(unexplained) {
-        let weight = f64::from((1.0 - part / SAYS_NOTHING).max(0.0));
-        sum += weight * f64::from(filled - drawn);
-        cells += weight;
+impl Unexplained {
+    /// Of these cells and this part of the scene's energy. The fallback's map takes over in all cells where the part of them that is mostly
+    /// unexplained grows from the first of `map_parts` to the second.
+    fn new(cells: Array2<f32>, energy_left: f32, map_parts: [f32; 2]) -> Self {
+        let part = cells.iter().filter(|part| **part > MOSTLY).count() as f32 / cells.len() as f32;
+        let [low, high] = map_parts;
+        Unexplained { cells, energy_left, taken_over: ((part - low) / (high - low)).clamp(0.0, 1.0) }
     }
-    let believed = (1.0 - between(SCENE_DECADES, energy_left)) * (1.0 - taken_over(unexplained));
-    let brighter = believed * (sum / (cells + CELLS_TO_BELIEVE)) as f32;
-    RangeAngleMap { lambda: filled.lambda.mapv_into(|v| (v - brighter).clamp(0.0, 1.0)) }
+
+    /// What `found` leaves unexplained where its own map is `expected`; `ends` are the samples that were searched.
+    pub fn by(found: &Found, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Self {
+        Unexplained::new(found.unexplained_cells(radar, ends, expected), found.energy_left() as f32, MAP_PARTS)
+    }
+
+    /// How far each cell of the map is unexplained, 0 to 1: `[range bins, columns]`.
+    pub fn cells(&self) -> &Array2<f32> {
+        &self.cells
+    }
+
+    /// The threshold of a map that the fallback has taken over, in part or whole, given its own; none where the search's own threshold holds.
+    fn eta_given(&self, fallback: Option<f32>) -> Option<f32> {
+        let eta = |fallback| super::search::ETA + self.taken_over * (fallback - super::search::ETA);
+        fallback.filter(|_| self.taken_over > 0.0).map(eta)
+    }
+
+    /// From `drawn`, where all is explained, towards `filled`, where nothing is. Both are Lambda of one scene on one scale.
+    fn blended(&self, drawn: &RangeAngleMap, filled: &RangeAngleMap) -> RangeAngleMap {
+        let least = self.taken_over;
+        let most = most_weight(self.energy_left).max(least);
+        let mut lambda = drawn.lambda.clone();
+        Zip::from(&mut lambda)
+            .and(&filled.lambda)
+            .and(&self.cells)
+            .par_for_each(|out, filled, part| *out += most * between(CELL_DECADES, *part).max(least) * (filled - *out));
+        RangeAngleMap { lambda }
+    }
+
+    /// `filled` moved to the scale of `drawn`: each knows the weakest and the strongest cell in its own way, and where nearly all is explained
+    /// the two should be one. Where few cells are, or much of the scene's energy is left, it stays nearly as it is: what lacks a strong object
+    /// has no scale. Nor has a map of which most is unexplained.
+    pub fn on_one_scale(&self, drawn: &RangeAngleMap, filled: RangeAngleMap) -> RangeAngleMap {
+        let (mut sum, mut cells) = (0.0, 0.0);
+        for ((drawn, filled), part) in drawn.lambda.iter().zip(&filled.lambda).zip(&self.cells) {
+            let weight = f64::from((1.0 - part / SAYS_NOTHING).max(0.0));
+            sum += weight * f64::from(filled - drawn);
+            cells += weight;
+        }
+        let believed = (1.0 - between(SCENE_DECADES, self.energy_left)) * (1.0 - self.taken_over);
+        let brighter = believed * (sum / (cells + CELLS_TO_BELIEVE)) as f32;
+        RangeAngleMap { lambda: filled.lambda.mapv_into(|v| (v - brighter).clamp(0.0, 1.0)) }
+    }
 }
 
 #[cfg(test)]
@@ -246,13 +266,13 @@ mod tests {
         let few = Settings { most_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let found = find(&radar, &ends, &request, &few).unwrap();
-        let parts = found.unexplained_cells(&radar, &ends, &found.expected(&radar, &request));
+        let unexplained = Unexplained::by(&found, &radar, &ends, &found.expected(&radar, &request));
         let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let fallback = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;
-        let fallback = on_one_scale(&drawn, fallback, &parts, found.energy_left() as f32);
-        let least = taken_over(&parts);
+        let fallback = unexplained.on_one_scale(&drawn, fallback);
+        let least = unexplained.taken_over;
         let mut taken = 0;
-        for (i, (h, part)) in hybrid.lambda.lambda.iter().zip(&parts).enumerate() {
+        for (i, (h, part)) in hybrid.lambda.lambda.iter().zip(&unexplained.cells).enumerate() {
             let [drawn, fallback] = [&drawn, &fallback].map(|m| m.lambda.as_slice().unwrap()[i]);
             assert!(*h >= drawn.min(fallback) - 1e-6 && *h <= drawn.max(fallback) + 1e-6);
             assert!(*part > 1e-4 || (h - drawn).abs() <= least * (fallback - drawn).abs() + 1e-6);
@@ -275,9 +295,11 @@ mod tests {
     fn the_fallback_takes_over_a_map_of_which_most_is_unexplained_with_its_scale_and_threshold() {
         let [drawn, filled] = [0.2, 0.6].map(|v| RangeAngleMap { lambda: Array2::from_elem((10, 10), v) });
         // So many of a hundred cells are unexplained.
-        let unexplained =
-            |cells: usize| Array2::from_shape_fn((10, 10), |(i, j)| f32::from(u8::from(10 * i + j < cells)));
-        let answer = |cells| blended(&drawn, &filled, &unexplained(cells), 0.0).lambda;
+        let unexplained = |cells: usize| {
+            let cells = Array2::from_shape_fn((10, 10), |(i, j)| f32::from(u8::from(10 * i + j < cells)));
+            Unexplained::new(cells, 0.0, [0.7, 0.9])
+        };
+        let answer = |cells| unexplained(cells).blended(&drawn, &filled).lambda;
         assert_eq!(answer(95), filled.lambda);
         let few = answer(50);
         assert_eq!(few[[9, 9]], 0.2);
@@ -287,9 +309,9 @@ mod tests {
             (of_a_part - (0.2 + 0.4 * LEAST_WEIGHT / 2.0)).abs() < 1e-5,
             "{of_a_part} where nothing is unexplained"
         );
-        assert_eq!(eta_of(Some(0.75), &unexplained(50)), None);
-        assert!((eta_of(Some(0.75), &unexplained(95)).unwrap() - 0.75).abs() < 1e-6);
-        assert_eq!(eta_of(None, &unexplained(95)), None);
+        assert_eq!(unexplained(50).eta_given(Some(0.75)), None);
+        assert!((unexplained(95).eta_given(Some(0.75)).unwrap() - 0.75).abs() < 1e-6);
+        assert_eq!(unexplained(95).eta_given(None), None);
     }
 
     #[test]
@@ -298,8 +320,8 @@ mod tests {
             RangeAngleMap { lambda: Array2::from_shape_fn((512, 1024), |(i, j)| ((i * j) % 83) as f32 / 100.0) };
         let brighter = RangeAngleMap { lambda: drawn.lambda.mapv(|v| v + 0.05) };
         let largest = |unexplained: f32| {
-            let parts = Array2::from_elem(drawn.lambda.dim(), unexplained);
-            let moved = on_one_scale(&drawn, brighter.clone(), &parts, 0.0);
+            let cells = Array2::from_elem(drawn.lambda.dim(), unexplained);
+            let moved = Unexplained::new(cells, 0.0, MAP_PARTS).on_one_scale(&drawn, brighter.clone());
             moved.lambda.iter().zip(&drawn.lambda).map(|(m, d)| (m - d).abs()).fold(0.0, f32::max)
         };
         assert!(largest(0.0) < 1e-3, "{}", largest(0.0));

@@ -42,7 +42,7 @@ pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
 pub use family::Family;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
-pub use hybrid::{Hybrid, on_one_scale};
+pub use hybrid::{Hybrid, Unexplained};
 #[cfg(feature = "live")]
 pub(crate) use noise_test::level_above_mean_decades;
 pub use prior::{NoisePrior, NoisePriorError};
