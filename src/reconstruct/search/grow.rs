@@ -29,7 +29,7 @@ const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 /// Atoms this many bins apart at either end are refined together.
 const LINK_BINS: f64 = 6.0;
 
-/// Most rounds of refinement where more is left than noise.
+/// Most rounds of cyclic refinement between one look at the residual and the next.
 const MOST_SWEEPS: usize = 5;
 
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
@@ -45,7 +45,7 @@ const SIDE_LOBE: f64 = 1e-4;
 const LOOK: usize = 200;
 
 /// Work after which it is seen whether growing is worth while.
-const LOOK_BACK: usize = 2000;
+const LOOK_BACK: usize = 3000;
 
 /// It is if this part of the energy at most is left since.
 const WORTH_GOING_ON: f64 = 1.0 / 3.0;
@@ -100,9 +100,9 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// What is left, `flat`, as sources of candidates look at it.
-    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64]) -> Unexplained<'a> {
-        Unexplained::new(self.radar, flat, self.bench.hearing, self.task)
+    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
+    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
+        Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
     }
 
     /// What a source proposes; nothing where an ablation leaves it out.
@@ -146,6 +146,9 @@ impl Grower<'_> {
                 break;
             }
             fit = self.with_points(fit, &points)?;
+            if !self.settings.lacks(Part::Settling) {
+                fit = self.settled(fit)?;
+            }
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
@@ -159,13 +162,17 @@ impl Grower<'_> {
         Ok(if best.cost() < fit.cost() { best } else { fit })
     }
 
-    /// All atoms refined once, each with its neighbours.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
-    pub fn swept(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        let all = vec![true; fit.atoms.len()];
-        self.refined(fit, &all, LINK_BINS, GROWING)
+    /// Cyclic refinement: all atoms with their neighbours, as long as the energy falls fast. What one group leaves blinds the others.
+    pub fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_SWEEPS {
+            let before = fit.cost();
+            let all = vec![true; fit.atoms.len()];
+            fit = self.refined(fit, &all, LINK_BINS, GROWING)?;
+            if fit.cost() > 0.3 * before {
+                break;
+            }
+        }
+        Ok(fit)
     }
 
     /// `fit` with one more atom for every one of `points` (x and y, metres; the strongest first), each refined alone, then with its

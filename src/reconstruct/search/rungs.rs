@@ -8,9 +8,10 @@ use super::propose::pairs::Pairs;
 use super::propose::source::Propose;
 use super::state::{Answer, Search, State};
 use super::trace::decades;
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::{Fit, Tie};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
@@ -29,7 +30,7 @@ impl Search<'_> {
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
         state.pairs = self.pairs_of_tones(&state.fit);
         if let Some(pairs) = &state.pairs {
-            let fit = self.paired(state.fit.clone(), pairs)?;
+            let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {
                 state.reach(Answer { fit, is_sure: true });
             } else {
@@ -59,10 +60,10 @@ impl Search<'_> {
     /// Points beside the long lines, kept where they are all there is besides.
     pub fn climb_points_beside_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.get_or_insert_default();
-        let fit = self.nearly_there(self.paired(state.fit.clone(), pairs)?)?;
+        let fit = self.nearly_there(self.paired(state.fit.clone(), pairs, true)?)?;
         if self.is_nearly_all(&fit) {
             let left = self.pairs(&fit);
-            let answer = self.paired_again(fit, left)?;
+            let answer = self.paired_again(fit, left, state.is_long)?;
             if answer.is_sure {
                 state.reach(answer);
             } else {
@@ -82,10 +83,10 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Points that both ends' tones lead to beside the lines.
+    /// Points that both ends' tones lead to beside the lines, and lines through those points.
     pub fn climb_pairs(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.take().unwrap_or_default();
-        let answer = self.paired_again(state.fit.clone(), pairs)?;
+        let answer = self.paired_again(state.fit.clone(), pairs, state.is_long)?;
         state.reach(answer);
         Ok(())
     }
@@ -105,14 +106,14 @@ impl Search<'_> {
             let (grower, before) = (self.grower(), fit.atoms.len());
             let flat = fit.residual.flat(&self.bench.sensor);
             let lines = {
-                let left = grower.unexplained(&flat);
+                let left = grower.unexplained(&flat, &fit);
                 if !left.echoes().are_long() {
                     break;
                 }
                 self.bench.work.spend(LOOK_FOR_LINES);
                 LongLines.propose(&left)
             };
-            fit = grower.more_walls(fit, Seeds::LongLines(lines))?;
+            fit = grower.more_walls(self.samples, fit, Seeds::LongLines(lines))?;
             if fit.atoms.len() == before {
                 break;
             }
@@ -120,22 +121,31 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// Walls that begin where both ends may hear points; and again, as what was found may have hidden more. `pairs` are those of `fit`; those of
-    /// the answer come with it.
+    /// Walls that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found may have
+    /// hidden more. `pairs` are those of `fit`; those of the answer come with it.
     fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<(Fit, Pairs), ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
-            fit = self.grower().more_walls(fit, Seeds::Points(pairs.guesses_metres.clone()))?;
-            if fit.atoms.len() == before {
+            fit = self.grower().more_walls(self.samples, fit, Seeds::Points(pairs.guesses_metres.clone()))?;
+            let sure = pairs.points.iter().filter(|point| point.is_sure());
+            let more: Vec<Atom> =
+                sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
+            let more = if self.settings.lacks(Part::PointsWithLines) { Vec::new() } else { more };
+            if fit.atoms.len() + more.len() == before {
+                if fit.cost() != cost {
+                    pairs = self.pairs(&fit);
+                }
                 break;
             }
+            fit.gains.extend(vec![Gains::default(); more.len()]);
+            fit.atoms.extend(more);
             fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
             if self.is_explained(&fit) {
                 break;
             }
             if fit.cost() > WORTH_ANOTHER * cost {
                 // Much the same is left, and much the same would be heard in it: what is not in `fit` yet.
-                pairs.points.retain(|point| !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
+                pairs.points.retain(|point| !point.is_sure() && !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
                 break;
             }
             pairs = self.pairs(&fit);
@@ -143,8 +153,10 @@ impl Search<'_> {
         Ok((fit, pairs))
     }
 
-    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again.
-    fn paired_again(&self, mut fit: Fit, pairs: Pairs) -> Result<Answer, ReconstructError> {
+    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again. Where an echo is long
+    /// and no wall was found, they are left where they are: lines are better found before.
+    fn paired_again(&self, mut fit: Fit, pairs: Pairs, is_long: bool) -> Result<Answer, ReconstructError> {
+        let is_polished = !is_long || !fit.atoms.is_empty();
         let mut pairs = Some(pairs);
         for _ in 0..MOST_ROUNDS {
             if self.is_explained(&fit) {
@@ -152,7 +164,8 @@ impl Search<'_> {
             }
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
-            fit = self.nearly_there(self.paired(fit, &pairs)?)?;
+            fit = self.grower().with_walls(self.samples, self.paired(fit, &pairs, is_polished)?)?;
+            fit = self.nearly_there(fit)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
                 break;

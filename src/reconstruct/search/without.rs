@@ -8,10 +8,26 @@ pub enum Part {
     Between,
     /// Source: lines over two neighbouring points.
     Strides,
+    /// Source: lines from one point.
+    Edges,
+    /// Source: lines through points at equal steps.
+    Chains,
+    /// Rule: counts of a line between two points that do about as well are moved before one is chosen.
+    MovedCounts,
+    /// Rule: beside the line that explains the greatest part, the one that explains most is followed.
+    ByEnergy,
+    /// Rule: lines are followed to their ends again once all are known.
+    SettledEnds,
+    /// Rule: points beside lines are joined before the next look for lines.
+    PointsWithLines,
+    /// Rule: pairs on whose strength the ends disagree are dropped.
+    PairsAgree,
     /// Rule: new points on whose strength the ends disagree are dropped.
     PointsAgree,
     /// Rule: a fit that explains nearly all is brought to its end.
     NearlyThere,
+    /// Rule: pairs are polished.
+    PolishPairs,
     /// Rule: objects that the rest does without are taken away.
     Prune,
     /// Rule: a point is also tried one wrap of the range away.
@@ -20,6 +36,8 @@ pub enum Part {
     LookBack,
     /// Rule: gains have a price where much is unexplained.
     Price,
+    /// Rule: all points are settled after each round.
+    Settling,
     /// Rule: tied gains.
     Tied,
     /// Rule: neighbouring teeth are tried.
@@ -33,12 +51,21 @@ pub enum Part {
 const PARTS: &[(&str, Part)] = &[
     ("between", Part::Between),
     ("strides", Part::Strides),
+    ("edges", Part::Edges),
+    ("chains", Part::Chains),
+    ("moved-counts", Part::MovedCounts),
+    ("by-energy", Part::ByEnergy),
+    ("settled-ends", Part::SettledEnds),
+    ("points-with-lines", Part::PointsWithLines),
+    ("pairs-agree", Part::PairsAgree),
     ("points-agree", Part::PointsAgree),
     ("nearly-there", Part::NearlyThere),
+    ("polish-pairs", Part::PolishPairs),
     ("prune", Part::Prune),
     ("wraps", Part::Wraps),
     ("look-back", Part::LookBack),
     ("price", Part::Price),
+    ("settling", Part::Settling),
     ("tied", Part::Tied),
     ("teeth", Part::Teeth),
     ("unwindowed", Part::Unwindowed),
