@@ -61,7 +61,7 @@ impl Search<'_> {
         if pairs.points.len() > moved.len() + MOST_APPEARING {
             return Ok(None);
         }
-        let anew = self.nearly_there(self.paired(stayed, &pairs)?)?;
+        let anew = self.nearly_there(self.paired(stayed, &pairs, false)?)?;
         Ok(self.is_explained(&anew).then_some(anew))
     }
 }

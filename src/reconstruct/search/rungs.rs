@@ -29,7 +29,7 @@ impl Search<'_> {
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
         state.pairs = self.pairs_of_tones(&state.fit);
         if let Some(pairs) = &state.pairs {
-            let fit = self.paired(state.fit.clone(), pairs)?;
+            let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {
                 state.reach(Answer { fit, is_sure: true });
             } else {
@@ -59,10 +59,10 @@ impl Search<'_> {
     /// Points beside the long lines, kept where they are all there is besides.
     pub fn climb_points_beside_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.get_or_insert_default();
-        let fit = self.nearly_there(self.paired(state.fit.clone(), pairs)?)?;
+        let fit = self.nearly_there(self.paired(state.fit.clone(), pairs, true)?)?;
         if self.is_nearly_all(&fit) {
             let left = self.pairs(&fit);
-            let answer = self.paired_again(fit, left)?;
+            let answer = self.paired_again(fit, left, state.is_long)?;
             if answer.is_sure {
                 state.reach(answer);
             } else {
@@ -85,7 +85,7 @@ impl Search<'_> {
     /// Points that both ends' tones lead to beside the lines.
     pub fn climb_pairs(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.take().unwrap_or_default();
-        let answer = self.paired_again(state.fit.clone(), pairs)?;
+        let answer = self.paired_again(state.fit.clone(), pairs, state.is_long)?;
         state.reach(answer);
         Ok(())
     }
@@ -143,8 +143,10 @@ impl Search<'_> {
         Ok((fit, pairs))
     }
 
-    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again.
-    fn paired_again(&self, mut fit: Fit, pairs: Pairs) -> Result<Answer, ReconstructError> {
+    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again. Where an echo is long
+    /// and no wall was found, they are left where they are: lines are better found before.
+    fn paired_again(&self, mut fit: Fit, pairs: Pairs, is_long: bool) -> Result<Answer, ReconstructError> {
+        let is_polished = !is_long || !fit.atoms.is_empty();
         let mut pairs = Some(pairs);
         for _ in 0..MOST_ROUNDS {
             if self.is_explained(&fit) {
@@ -152,7 +154,7 @@ impl Search<'_> {
             }
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
-            fit = self.nearly_there(self.paired(fit, &pairs)?)?;
+            fit = self.nearly_there(self.paired(fit, &pairs, is_polished)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
                 break;

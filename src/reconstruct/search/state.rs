@@ -1,6 +1,6 @@
 //! What a search works on, how far it has come, and what several rungs ask of it.
 
-use super::grow::{Grower, tried};
+use super::grow::{Grower, ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
@@ -13,6 +13,12 @@ use crate::reconstruct::{ReconstructError, Request};
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
 const NEARLY_NOTHING: f64 = 1e-5;
+
+/// Rounds in which pairs that the ends don't agree on are dropped.
+const MOST_DOUBTS: usize = 3;
+
+/// Gains of one pair at both ends agree within this factor.
+const MOST_UNLIKE: f64 = 1.5;
 
 /// What a search found, and whether nothing else stands out of the samples.
 pub struct Answer {
@@ -139,21 +145,36 @@ impl Search<'_> {
         paired_points(self.radar, &flat, noise)
     }
 
-    /// `known` and the points that `pairs` of what it leaves lead to, less those that the rest does without.
-    pub fn paired(&self, known: Fit, pairs: &Pairs) -> Result<Fit, ReconstructError> {
+    /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
+    /// They are moved to their best places only if that is asked for.
+    pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
         atoms.extend(pairs.points.iter().map(|point| point.atom));
         if atoms.len() == known.atoms.len() {
             return Ok(known);
         }
         atoms.truncate(self.settings.most_atoms);
-        let fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
+        let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
+        for _ in 0..if self.settings.lacks(Part::PairsAgree) { 0 } else { MOST_DOUBTS } {
+            let (kept, unlike): (Vec<_>, Vec<_>) =
+                fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
+            if unlike.is_empty() {
+                break;
+            }
+            for (atom, gains) in unlike {
+                self.grower().refuse(tried(atom), self.grower().own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+            }
+            let kept = kept.into_iter().map(|(atom, _)| *atom).collect();
+            fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
+        }
         if fit.cost() > known.cost() {
             let tried = Tried::Together { count: pairs.points.len() };
             self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
-        self.grower().pruned(fit)
+        let grower = self.grower();
+        let polished = polished && !self.settings.lacks(Part::PolishPairs);
+        if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
     }
 
     /// Whether nothing stands out of what `fit` leaves.

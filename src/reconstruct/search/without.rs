@@ -8,10 +8,14 @@ pub enum Part {
     Between,
     /// Source: lines over two neighbouring points.
     Strides,
+    /// Rule: pairs on whose strength the ends disagree are dropped.
+    PairsAgree,
     /// Rule: new points on whose strength the ends disagree are dropped.
     PointsAgree,
     /// Rule: a fit that explains nearly all is brought to its end.
     NearlyThere,
+    /// Rule: pairs are polished.
+    PolishPairs,
     /// Rule: objects that the rest does without are taken away.
     Prune,
     /// Rule: a point is also tried one wrap of the range away.
@@ -33,8 +37,10 @@ pub enum Part {
 const PARTS: &[(&str, Part)] = &[
     ("between", Part::Between),
     ("strides", Part::Strides),
+    ("pairs-agree", Part::PairsAgree),
     ("points-agree", Part::PointsAgree),
     ("nearly-there", Part::NearlyThere),
+    ("polish-pairs", Part::PolishPairs),
     ("prune", Part::Prune),
     ("wraps", Part::Wraps),
     ("look-back", Part::LookBack),
