@@ -45,7 +45,7 @@ const SIDE_LOBE: f64 = 1e-4;
 const LOOK: usize = 200;
 
 /// Work after which it is seen whether growing is worth while.
-const LOOK_BACK: usize = 2000;
+const LOOK_BACK: usize = 3000;
 
 /// It is if this part of the energy at most is left since.
 const WORTH_GOING_ON: f64 = 1.0 / 3.0;

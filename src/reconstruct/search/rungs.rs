@@ -112,7 +112,7 @@ impl Search<'_> {
                 self.bench.work.spend(LOOK_FOR_LINES);
                 LongLines.propose(&left)
             };
-            fit = grower.more_walls(fit, Seeds::LongLines(lines))?;
+            fit = grower.more_walls(self.samples, fit, Seeds::LongLines(lines))?;
             if fit.atoms.len() == before {
                 break;
             }
@@ -125,7 +125,7 @@ impl Search<'_> {
     fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<(Fit, Pairs), ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
-            fit = self.grower().more_walls(fit, Seeds::Points(pairs.guesses_metres.clone()))?;
+            fit = self.grower().more_walls(self.samples, fit, Seeds::Points(pairs.guesses_metres.clone()))?;
             if fit.atoms.len() == before {
                 break;
             }

@@ -8,6 +8,8 @@ pub enum Part {
     Between,
     /// Source: lines over two neighbouring points.
     Strides,
+    /// Rule: lines are followed to their ends again once all are known.
+    SettledEnds,
     /// Rule: pairs on whose strength the ends disagree are dropped.
     PairsAgree,
     /// Rule: new points on whose strength the ends disagree are dropped.
@@ -37,6 +39,7 @@ pub enum Part {
 const PARTS: &[(&str, Part)] = &[
     ("between", Part::Between),
     ("strides", Part::Strides),
+    ("settled-ends", Part::SettledEnds),
     ("pairs-agree", Part::PairsAgree),
     ("points-agree", Part::PointsAgree),
     ("nearly-there", Part::NearlyThere),
