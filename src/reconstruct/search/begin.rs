@@ -1,8 +1,9 @@
-//! Where walls begin: rows between two points, over two, or long lines as a whole, and which of them are borne out.
+//! Where walls begin: rows between two points, over two, from the edge of a wall, or long lines as a whole, and which of them are borne out.
 
 use super::grow::{Grower, tried};
 use super::on_wall::is_on;
 use super::propose::between::Between;
+use super::propose::edges::Edges;
 use super::propose::source::Unexplained;
 use super::propose::strides::Strides;
 use super::trace::decades;
@@ -32,6 +33,9 @@ const LEAST_OF_LINE: f64 = 0.45;
 
 /// Fewest reflectors of such a line.
 const LEAST_OF_LINE_REFLECTORS: usize = 50;
+
+/// A row between two points that explains this part of the energy in its range bins is the one; else others are looked for beside it.
+const CONVINCING: f64 = 0.85;
 
 /// Echoes that the look for rows over one point takes as long as.
 const LOOK_A_POINT: usize = 20;
@@ -90,7 +94,7 @@ impl Grower<'_> {
                     !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
                 });
                 let points = points.clone();
-                self.next_from_points(&left, &self.unexplained(&flat).with_points(&points), seeds)
+                self.next_from_points(&left, &self.unexplained(&flat, fit).with_points(&points), seeds)
             }
             Seeds::LongLines(lines) => {
                 // What a line that is not quite right yet has left is no other.
@@ -102,12 +106,23 @@ impl Grower<'_> {
         }
     }
 
-    /// A wall between two points, or over two of them.
+    /// A wall between two points, over two of them or from one alone; the last takes longest.
     fn next_from_points(&self, left: &Left, all: &Unexplained, seeds: &Seeds) -> Option<Fit> {
         self.bench.work.spend(LOOK_A_POINT * all.points_metres.len());
-        let between = if all.echoes().are_long() { self.proposed(Part::Between, &Between, all) } else { Vec::new() };
-        self.borne_out(left, seeds, &between)
-            .or_else(|| self.borne_out(left, seeds, &self.proposed(Part::Strides, &Strides, all)))
+        let are_long = all.echoes().are_long();
+        let between = if are_long { self.proposed(Part::Between, &Between, all) } else { Vec::new() };
+        let between = self.best_begun(left, &between);
+        if let Some(row) = between.filter(|row| row.part > CONVINCING)
+            && let Some(wall) = self.borne_out(left, seeds, &[row.atom])
+        {
+            return Some(wall);
+        }
+        let rows: Vec<Atom> =
+            between.iter().map(|row| row.atom).chain(self.proposed(Part::Strides, &Strides, all)).collect();
+        self.borne_out(left, seeds, &rows).or_else(|| {
+            let from_edges = if are_long { self.proposed(Part::Edges, &Edges, all) } else { Vec::new() };
+            self.borne_out(left, seeds, &from_edges)
+        })
     }
 
     /// The row with the part that it explains, where it is, of the energy in its range bins.
@@ -118,12 +133,17 @@ impl Grower<'_> {
         Begun { atom, part: energy / left.profile.at(&rows).max(f64::MIN_POSITIVE) }
     }
 
-    /// That of `rows` which explains the greatest part of what there is in its range bins, if it is borne out when it is followed to its ends.
-    fn borne_out(&self, left: &Left, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
-        let fit = left.fit;
+    /// That of `rows` which explains the greatest part of what there is in its range bins.
+    fn best_begun(&self, left: &Left, rows: &[Atom]) -> Option<Begun> {
         let begun: Vec<Begun> = rows.par_iter().take(MOST_TRIED).map(|&atom| self.begun(left, atom)).collect();
         tracing::debug!(rows = rows.len(), "rows");
-        let best = begun.iter().max_by(|a, b| a.part.total_cmp(&b.part)).filter(|row| row.part > LEAST_BEGUN)?;
+        begun.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
+    }
+
+    /// The best of `rows`, if it is borne out when it is followed to its ends.
+    fn borne_out(&self, left: &Left, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
+        let fit = left.fit;
+        let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;
         let wall = self.followed_to_its_ends(&fit.residual, best.atom);
         let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
         tracing::debug!(?best, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");

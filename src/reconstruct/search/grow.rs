@@ -100,9 +100,9 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// What is left, `flat`, as sources of candidates look at it.
-    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64]) -> Unexplained<'a> {
-        Unexplained::new(self.radar, flat, self.bench.hearing, self.task)
+    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
+    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
+        Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
     }
 
     /// What a source proposes; nothing where an ablation leaves it out.

@@ -59,7 +59,7 @@ pub const LADDER: &[Rung] = &[
     },
     Rung {
         name: "pairs",
-        does: "Pairs the tones that the lines leave into points.",
+        does: "Pairs the tones that the lines leave into points, and puts lines in place of points at equal steps.",
         skipped: None,
         is_due: |_| true,
         climb: |search, state| search.climb_pairs(state),

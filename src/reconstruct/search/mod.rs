@@ -82,7 +82,8 @@ pub(super) const ETA: f32 = 0.896;
 
 /// What the search knows beside the samples.
 pub(super) const TOLD: &str = "that a scene holds single reflectors or straight rows of equal ones; for long rows along y also the \
-    spacings that the lines of the tables' scenes have; the kind of floor beneath the samples, and how the thesis' program rounds";
+    spacings that the lines of the tables' scenes have; that rows often run along or across the array's axis, or each other; the kind \
+    of floor beneath the samples, and how the thesis' program rounds";
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]

@@ -8,9 +8,10 @@ use super::propose::pairs::Pairs;
 use super::propose::source::Propose;
 use super::state::{Answer, Search, State};
 use super::trace::decades;
+use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::{Fit, Tie};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
 
 /// Work that a look for long lines amounts to.
 const LOOK_FOR_LINES: usize = 2000;
@@ -105,7 +106,7 @@ impl Search<'_> {
             let (grower, before) = (self.grower(), fit.atoms.len());
             let flat = fit.residual.flat(&self.bench.sensor);
             let lines = {
-                let left = grower.unexplained(&flat);
+                let left = grower.unexplained(&flat, &fit);
                 if !left.echoes().are_long() {
                     break;
                 }
@@ -120,22 +121,31 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// Walls that begin where both ends may hear points; and again, as what was found may have hidden more. `pairs` are those of `fit`; those of
-    /// the answer come with it.
+    /// Walls that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found may have
+    /// hidden more. `pairs` are those of `fit`; those of the answer come with it.
     fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<(Fit, Pairs), ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
             fit = self.grower().more_walls(self.samples, fit, Seeds::Points(pairs.guesses_metres.clone()))?;
-            if fit.atoms.len() == before {
+            let sure = pairs.points.iter().filter(|point| point.is_sure());
+            let more: Vec<Atom> =
+                sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
+            let more = if self.settings.lacks(Part::PointsWithLines) { Vec::new() } else { more };
+            if fit.atoms.len() + more.len() == before {
+                if fit.cost() != cost {
+                    pairs = self.pairs(&fit);
+                }
                 break;
             }
+            fit.gains.extend(vec![Gains::default(); more.len()]);
+            fit.atoms.extend(more);
             fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
             if self.is_explained(&fit) {
                 break;
             }
             if fit.cost() > WORTH_ANOTHER * cost {
                 // Much the same is left, and much the same would be heard in it: what is not in `fit` yet.
-                pairs.points.retain(|point| !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
+                pairs.points.retain(|point| !point.is_sure() && !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
                 break;
             }
             pairs = self.pairs(&fit);

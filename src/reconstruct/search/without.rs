@@ -8,8 +8,12 @@ pub enum Part {
     Between,
     /// Source: lines over two neighbouring points.
     Strides,
+    /// Source: lines from one point.
+    Edges,
     /// Rule: lines are followed to their ends again once all are known.
     SettledEnds,
+    /// Rule: points beside lines are joined before the next look for lines.
+    PointsWithLines,
     /// Rule: pairs on whose strength the ends disagree are dropped.
     PairsAgree,
     /// Rule: new points on whose strength the ends disagree are dropped.
@@ -39,7 +43,9 @@ pub enum Part {
 const PARTS: &[(&str, Part)] = &[
     ("between", Part::Between),
     ("strides", Part::Strides),
+    ("edges", Part::Edges),
     ("settled-ends", Part::SettledEnds),
+    ("points-with-lines", Part::PointsWithLines),
     ("pairs-agree", Part::PairsAgree),
     ("points-agree", Part::PointsAgree),
     ("nearly-there", Part::NearlyThere),

@@ -1,9 +1,10 @@
 //! Rows of reflectors between their first and their last: of a wall whose reflectors stand too close to be told apart, those at its ends
 //! are heard all the same, and only how many stand between them is unknown.
 
+use super::edges::LEAST_STEP_METRES;
 use super::phased::{Heard, PhasedBeams, Row, Strongest};
 use super::source::{Propose, Unexplained};
-use super::strides::{LEAST_STEP_METRES, MOST_REFLECTORS, Stride, climbed};
+use super::strides::{MOST_REFLECTORS, Stride, climbed};
 use crate::reconstruct::fit::Atom;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;

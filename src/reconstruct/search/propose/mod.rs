@@ -11,6 +11,7 @@
 //! | `pairs` | points that both ends' tones agree on |
 //! | `phased` | each end's beams with their phases, and lines looked up in them |
 //! | `strides` | lines from their first two reflectors |
+//! | `edges` | lines from their first reflector alone |
 //! | `between` | lines between their first and their last reflector |
 //! | `runs` | range bins that hold an echo |
 //! | `blocks` | a few neighbouring reflectors of a line along y at a time |
@@ -18,6 +19,7 @@
 
 pub mod between;
 mod blocks;
+pub mod edges;
 pub mod end_beams;
 pub mod lines;
 pub mod pairs;

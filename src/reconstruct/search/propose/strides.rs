@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Longest step from one reflector of a row to the next, metres.
-const MOST_STEP_METRES: f64 = 0.4;
+pub const MOST_STEP_METRES: f64 = 0.4;
 
 /// Shortest step, metres: nearer points are one that was found twice.
 pub const LEAST_STEP_METRES: f64 = 0.02;
@@ -24,7 +24,7 @@ pub const LEAST_STEP_METRES: f64 = 0.02;
 const NEIGHBOURS: usize = 8;
 
 /// Reflectors of the first glance.
-const FIRST: usize = 8;
+pub const FIRST: usize = 8;
 
 /// Steps of the grid around a pair to each side, along the line of sight and across.
 const REACH: [i32; 2] = [7, 9];
@@ -86,14 +86,24 @@ fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec
     });
     grids.sort_by(|a, b| b.best().total_cmp(&a.best()));
     grids.truncate(MOST_GRIDS);
-    let rows = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Followed::new(grid.first, *row)));
-    best_of_each(beams, rows.collect(), task)
+    let starts = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Start { first: grid.first, row: *row }));
+    best_of_each(beams, starts.collect(), task)
+}
+
+/// A row of a few reflectors, to be followed.
+#[derive(Debug, Clone, Copy)]
+pub struct Start {
+    /// Number of the point that it begins at.
+    pub first: usize,
+    /// The row.
+    pub row: Row,
 }
 
 /// The rows as far as their echoes add up, best first; one for each first point at most.
 ///
 /// All are followed over more and more reflectors, those ever fewer that add up best: every length takes about as long as the last.
-fn best_of_each(beams: &PhasedBeams, mut rows: Vec<Followed>, task: &Task) -> Vec<Stride> {
+pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec<Stride> {
+    let mut rows: Vec<Followed> = starts.into_iter().map(Followed::new).collect();
     let mut count = FIRST;
     while count <= MOST_REFLECTORS && !task.is_cancelled() {
         let most = MOST_FOLLOWED / count;
@@ -102,7 +112,7 @@ fn best_of_each(beams: &PhasedBeams, mut rows: Vec<Followed>, task: &Task) -> Ve
         rows.iter_mut().skip(most).for_each(|row| row.part = 0.0);
         count = (count as f64 * GROWTH) as usize + 1;
     }
-    let mut found: Vec<(usize, Stride)> = rows.iter().filter_map(|row| Some((row.first, row.best?))).collect();
+    let mut found: Vec<(usize, Stride)> = rows.iter().filter_map(|row| Some((row.start.first, row.best?))).collect();
     found.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
     let mut taken = BTreeSet::new();
     found.retain(|(first, _)| taken.insert(*first));
@@ -137,7 +147,7 @@ impl Grid {
         let step = [over[0] - from[0], over[1] - from[1]];
         let range = from[0].hypot(from[1]).max(0.1);
         let sight = [from[0] / range, from[1] / range];
-        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]));
+        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]), PITCH_WAVELENGTHS);
         Grid {
             first,
             middle: Row { first_metres: from, step_metres: step },
@@ -158,15 +168,16 @@ impl Grid {
     }
 }
 
-/// How finely steps of about this length are tried over the first few reflectors: along the line of sight, and across.
-fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64) -> [f64; 2] {
+/// How finely steps of about this length are tried over the first few reflectors, so many wavelengths apart over all of them: along the
+/// line of sight, and across.
+pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wavelengths: f64) -> [f64; 2] {
     let range = from[0].hypot(from[1]).max(0.1);
     let between = (beams.views[1].centre_metres - beams.views[0].centre_metres).abs().max(1e-3);
     let wavelength = beams.turns_per_metre.abs().recip();
     let last = (FIRST - 1) as f64;
     // By the range itself, by its difference between the ends, by the row's curvature.
-    let along = PITCH_WAVELENGTHS * wavelength / last;
-    let curved = PITCH_WAVELENGTHS * wavelength * range / (step_metres * last * last);
+    let along = wavelengths * wavelength / last;
+    let curved = wavelengths * wavelength * range / (step_metres * last * last);
     [along, (along * range / between).min(curved)]
 }
 
@@ -194,7 +205,7 @@ impl Kernel for Glance<'_> {
 }
 
 /// The `most` highest of those places of a grid of so many `rows` that no neighbour exceeds, best first.
-fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
+pub fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
     let columns = parts.len() / rows.max(1);
     let is_summit = |at: usize| {
         let (i, j) = (at / columns, at % columns);
@@ -210,9 +221,7 @@ fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
 
 /// A row on its way over more and more reflectors.
 struct Followed {
-    /// Number of the point that it begins at.
-    first: usize,
-    row: Row,
+    start: Start,
     /// Part of the power at its places that adds up; 0 where it has passed its end.
     part: f64,
     most: f64,
@@ -220,8 +229,8 @@ struct Followed {
 }
 
 impl Followed {
-    fn new(first: usize, row: Row) -> Self {
-        Followed { first, row, part: 1.0, most: 0.0, best: None }
+    fn new(start: Start) -> Self {
+        Followed { start, part: 1.0, most: 0.0, best: None }
     }
 
     /// Over its first `count` reflectors, where their echoes add up.
@@ -230,8 +239,8 @@ impl Followed {
             return;
         }
         self.part = 0.0;
-        let Some(moved) = climbed(beams, self.row, count) else { return };
-        self.row = moved.row;
+        let Some(moved) = climbed(beams, self.start.row, count) else { return };
+        self.start.row = moved.row;
         if moved.added < PASSED * self.most {
             return;
         }

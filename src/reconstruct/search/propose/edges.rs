@@ -1,0 +1,249 @@
+//! Rows of reflectors from their first alone: at the edge of a wall one reflector is heard by itself, however close the next.
+//!
+//! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
+//! over the first few reflectors, and the best are followed as rows over two points are.
+
+use super::phased::{Heard, PhasedBeams, Presence, Row};
+use super::source::{Propose, Unexplained};
+use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
+use crate::reconstruct::fit::{Atom, Fit};
+use crate::signal::simd::{Kernel, Simd};
+use crate::task::Task;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Range bins over which echoes must go on, and beyond which it no longer matters.
+const BINS: [u32; 2] = [20, 100];
+
+/// Part of the strongest beam that echoes in the right direction have in the mean, in power and at both ends.
+const LEAST_ALONG: f64 = 0.3;
+
+/// Power of echoes that go on, evened out over range, as a part of the point's own.
+const LEAST_EVEN: f64 = 0.02;
+
+/// Most directions of all points that are looked into.
+const MOST_LOOKS: usize = 4;
+
+/// Looks whose directions differ by less than this, radians, and that pass each other within this distance, metres, go into one wall.
+const ONE_LINE_RADIANS: f64 = 0.045;
+const ONE_LINE_METRES: f64 = 1.0;
+
+/// How much echoes behind a point speak against its being an edge, as a part of those ahead of it.
+const BEHIND: f64 = 0.5;
+
+/// Radians by which a wall may deviate from its direction.
+const WITHIN_RADIANS: f64 = 0.01;
+
+/// Shortest step, metres: rows of closer reflectors are all alike.
+pub const LEAST_STEP_METRES: f64 = 0.03;
+
+/// From one row of a look to the next, wavelengths over the first few reflectors: one direction is looked into, so that steps may be finer
+/// than over pairs.
+const PITCH_WAVELENGTHS: f64 = 0.5;
+
+/// Rows of one look that are tried over twice as many reflectors, and those that are followed.
+const KEPT: [usize; 2] = [40, 4];
+
+/// Points, those first on which the ends agree best, that a wall may begin at alone.
+const MOST_EDGES: usize = 24;
+
+/// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
+const LEAST_FROM_EDGE: usize = 24;
+
+/// Directions this near to each other, radians, are one.
+const ONE_DIRECTION: f64 = 0.005;
+
+/// Lines from one point alone.
+pub struct Edges;
+
+impl Propose for Edges {
+    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
+        let points = left.points_within_range(MOST_EDGES);
+        let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
+        rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
+    }
+}
+
+/// Rows that begin at one of `points` (x, y; metres) and lead in about one of the directions (radians from the array's axis), best
+/// first; one for each point at most.
+fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians: &[f64], task: &Task) -> Vec<Stride> {
+    let strongest = beams.strongest();
+    let along = |first: usize, radians: f64| {
+        going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
+    };
+    let look = |first: usize, &radians: &f64| {
+        let ahead = along(first, radians)?;
+        let score = ahead - BEHIND * along(first, radians + PI).unwrap_or(0.0);
+        Some(Look { first, radians, score })
+    };
+    let mut looks: Vec<Look> = (0..points.len())
+        .into_par_iter()
+        .flat_map_iter(|first| directions_radians.iter().filter_map(move |radians| look(first, radians)))
+        .collect();
+    looks.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let mut kept: Vec<Look> = Vec::with_capacity(MOST_LOOKS);
+    for look in looks {
+        if kept.len() < MOST_LOOKS && !kept.iter().any(|other| are_along_one_line(points, &look, other)) {
+            kept.push(look);
+        }
+    }
+    let rows_of = |look: &Look| {
+        let fan = Fan::new(beams, points[look.first], look.radians);
+        Simd::chosen().run(Scan { beams, fan: &fan })
+    };
+    let starts: Vec<Start> = kept
+        .par_iter()
+        .filter(|_| !task.is_cancelled())
+        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
+        .collect();
+    tracing::debug!(looks = kept.len(), starts = starts.len(), "edges");
+    best_of_each(beams, starts, task)
+}
+
+/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
+fn directions(fit: &Fit) -> Vec<f64> {
+    let of_atom = |atom: &Atom| match atom {
+        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
+        Atom::Point { .. } => None,
+    };
+    let mut directions: Vec<f64> = Vec::new();
+    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
+        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
+            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
+            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
+                directions.push(radians);
+            }
+        }
+    }
+    directions
+}
+
+/// How clearly and how far echoes go on from `from` in a direction; `None` where they soon end.
+fn going_on(presence: impl Fn([f64; 2]) -> Presence, bin_metres: f64, from: [f64; 2], radians: f64) -> Option<f64> {
+    let (sin, cos) = radians.sin_cos();
+    let least_power = LEAST_EVEN * presence(from).even_power;
+    let (mut bins, mut sum) = (0, 0.0);
+    while bins < BINS[1] {
+        let distance = f64::from(bins + 1) * bin_metres;
+        let place = [from[0] + distance * cos, from[1] + distance * sin];
+        let there = presence(place);
+        if place[1] <= 0.0 || there.even_power < least_power {
+            break;
+        }
+        (bins, sum) = (bins + 1, sum + there.part);
+    }
+    let part = sum / f64::from(bins.max(1));
+    (bins >= BINS[0] && part > LEAST_ALONG).then(|| part * f64::from(bins).sqrt())
+}
+
+/// A direction in which echoes go on from a point.
+struct Look {
+    /// Number of the point.
+    first: usize,
+    radians: f64,
+    score: f64,
+}
+
+/// Whether two looks go along about one line in one direction: into one wall, from different reflectors of it.
+fn are_along_one_line(points: &[[f64; 2]], a: &Look, b: &Look) -> bool {
+    let (sin, cos) = a.radians.sin_cos();
+    let apart = [0, 1].map(|axis| points[a.first][axis] - points[b.first][axis]);
+    (a.radians - b.radians).cos() > ONE_LINE_RADIANS.cos() && (apart[0] * sin - apart[1] * cos).abs() < ONE_LINE_METRES
+}
+
+/// Rows from one point in about one direction: step by step longer, and turned to both sides.
+struct Fan {
+    from_metres: [f64; 2],
+    length_pitch_metres: f64,
+    lengths: usize,
+    /// Directions turned from one side to the other (x, y).
+    directions: Vec<[f64; 2]>,
+}
+
+impl Fan {
+    fn new(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> Self {
+        let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
+        let range = from_metres[0].hypot(from_metres[1]).max(0.1);
+        let (sin, cos) = radians.sin_cos();
+        let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
+        let by_side = (1.0 - by_sight * by_sight).max(0.0).sqrt();
+        let length_pitch_metres = (by_sight / along + by_side / across).recip();
+        // A turn moves the ends of middling steps by the pitch across them.
+        let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
+        let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
+        let direction = |turn: i32| {
+            let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
+            [cos, sin]
+        };
+        Fan {
+            from_metres,
+            length_pitch_metres,
+            lengths: ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1,
+            directions: (-turns..=turns).map(direction).collect(),
+        }
+    }
+
+    /// Row number `at`, turn after turn of one length after the other.
+    fn row(&self, at: usize) -> Row {
+        let metres = LEAST_STEP_METRES + (at / self.directions.len()) as f64 * self.length_pitch_metres;
+        let step_metres = self.directions[at % self.directions.len()].map(|v| metres * v);
+        Row { first_metres: self.from_metres, step_metres }
+    }
+}
+
+/// All rows of a fan tried over their first few reflectors, and the best over some more.
+struct Scan<'a> {
+    beams: &'a PhasedBeams,
+    fan: &'a Fan,
+}
+
+impl Kernel for Scan<'_> {
+    type Output = Vec<Row>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let Scan { beams, fan } = self;
+        let mut heard = [Heard::default(); 2 * FIRST];
+        let mut parts = vec![0.0; fan.lengths * fan.directions.len()];
+        for (at, part) in parts.iter_mut().enumerate() {
+            *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..FIRST]);
+        }
+        let mut longer: Vec<(f64, Row)> = Vec::with_capacity(KEPT[0]);
+        for at in summits(&parts, fan.lengths, KEPT[0]) {
+            let row = fan.row(at);
+            longer.push((beams.part_adding_up::<FMA>(&row, &mut heard), row));
+        }
+        longer.sort_by(|a, b| b.0.total_cmp(&a.0));
+        longer.truncate(KEPT[1]);
+        longer.into_iter().map(|(_, row)| row).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Radar;
+    use crate::scene::{Line, Object, Point, Scene};
+    use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn a_wall_is_found_from_its_last_reflector_where_another_hides_the_first() {
+        let radar = Radar::default();
+        let wall = Line::vertical(-7.3, 8.8, 0.1397, 90);
+        let point = Point::new(4.0, 8.0);
+        let objects = vec![Object::Line(wall.clone()), Object::Point(point.clone())];
+        let scene = Scene { objects, ..Scene::default() };
+        let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
+        let last = [wall.x_metres, wall.y_start_metres + 89.0 * wall.spacing_metres];
+        let points = [[point.x_metres, point.y_metres], last];
+        let directions = [0.0, 1.0, 2.0, 3.0].map(|k| k * FRAC_PI_2);
+        let beams = PhasedBeams::new(&radar, &flat);
+        let rows = rows_from_edges(&beams, &points, &directions, &Task::default());
+        let best = rows.first().expect("a row").atom;
+        let [first, second] = [0.0, 1.0].map(|i| best.position_metres(i));
+        assert!((first[0] - last[0]).hypot(first[1] - last[1]) < 0.1, "{best:?}");
+        assert!((second[1] - first[1] + wall.spacing_metres).abs() < 1e-3 && best.reflector_count() > 40, "{best:?}");
+        // Nothing goes on from a point that stands alone.
+        assert!(rows_from_edges(&beams, &points[..1], &directions, &Task::default()).is_empty());
+    }
+}
