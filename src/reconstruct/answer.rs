@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn detections_are_sorted_by_what_is_heard_and_measured_from_the_centre() {
+    fn detections_are_measured_from_the_centre() {
         let radar = Radar::default();
         let reflector = |x_metres, y_metres, reflectivity| Reflector { x_metres, y_metres, reflectivity };
         let reflectors = vec![reflector(0.0, 20.0, -2.0), reflector(6.0, 8.0, 1.0), reflector(1.0, 1.0, 0.0)];

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn an_echo_that_is_there_is_needed_and_one_that_is_not_is_not() {
+    fn only_an_echo_that_is_there_is_needed() {
         let truth = [(3.0, 11.0), (-6.0, 17.0)];
         let c = of(&truth, &[truth[0], truth[1], (8.0, 20.0), (3.0, 11.3)], 20.0);
         assert!(c[0] > 0.99 && c[1] > 0.99, "{c:?}");

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_floor_tells_its_kind_and_not_its_level() {
+    fn a_floor_tells_no_more_than_its_kind() {
         assert_eq!(NoisePrior::from(Floor::Thesis), NoisePrior::Rounding);
         assert_eq!(NoisePrior::from(Floor::Exact), NoisePrior::Nothing);
         assert_eq!(NoisePrior::from(Floor::Snr(Decibels(20.0))), NoisePrior::UNKNOWN);

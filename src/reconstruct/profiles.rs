@@ -134,7 +134,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn a_profile_has_no_phase_at_its_reflector_and_the_windows_shape_around_it() {
+    fn a_profile_has_the_windows_shape_around_its_reflector() {
         let radar = Radar::default();
         let scene = Scene::of_points([(3.0, 12.0)]);
         let signal = simulate(&radar, &scene, Floor::Exact, 0).unwrap();

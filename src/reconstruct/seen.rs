@@ -129,16 +129,20 @@ mod tests {
     use crate::radar::Carrier;
 
     #[test]
-    fn the_centre_sees_itself_and_the_ends_see_what_geometry_says() {
+    fn the_centre_sees_itself() {
         let s = seen_from(0.0, 20.0, 0.3);
         assert!((s.range_metres - 20.0).abs() < 1e-12 && (s.cos_theta - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_end_sees_a_place_from_where_it_is() {
         // From 3 m to the left, a reflector 4 m ahead of the centre is 5 m away.
         let s = seen_from(-3.0, 4.0, 0.0);
         assert!((s.range_metres - 5.0).abs() < 1e-12 && (s.cos_theta - 0.6).abs() < 1e-12);
     }
 
     #[test]
-    fn directions_span_what_the_radar_sees_and_belong_to_their_columns() {
+    fn directions_span_what_the_radar_sees_in_columns() {
         let half = Radar::default();
         let with = |wavelengths: f64, carrier| {
             let element_spacing_metres = wavelengths * half.wavelength_metres();

@@ -190,7 +190,7 @@ mod tests {
     use crate::task::Task;
 
     #[test]
-    fn one_reflector_is_looked_for_near_its_range_alone_and_no_side_lobe_is_a_place() {
+    fn one_reflector_is_looked_for_near_its_range_alone() {
         let radar = Radar { elements: 128, ..Radar::default() };
         let scene = Scene::of_points([(2.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);

@@ -47,6 +47,12 @@ const LEFT_OF_EXPLAINED: f64 = 0.05;
 /// Another look needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.9;
 
+/// Most times that all reflectors are moved after a round.
+const MOST_SWEEPS: usize = 5;
+
+/// Another time needs that this part of the energy at most is left by the last.
+const WORTH_ANOTHER_SWEEP: f64 = 0.3;
+
 /// Part of the energy that may be left unexplained: 130 dB down, above what rounding leaves, which is no white noise.
 const AS_GOOD_AS_NOTHING: f64 = 1e-13;
 
@@ -155,7 +161,8 @@ impl<'a> Settled<'a> {
                 break;
             }
             let grower = self.grower();
-            self.fit = grower.settled(grower.with_points(self.fit.clone(), &taken)?)?;
+            self.fit = grower.with_points(self.fit.clone(), &taken)?;
+            self.settle()?;
             self.split()?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
@@ -167,6 +174,18 @@ impl<'a> Settled<'a> {
             self.fit = before;
         }
         Ok(is_better && !self.is_done())
+    }
+
+    /// All reflectors moved with their neighbours, as long as the energy falls fast: what one group leaves blinds the others.
+    fn settle(&mut self) -> Result<(), ReconstructError> {
+        for _ in 0..MOST_SWEEPS {
+            let before = self.fit.cost();
+            self.fit = self.grower().swept(self.fit.clone())?;
+            if self.fit.cost() > WORTH_ANOTHER_SWEEP * before {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Whether nothing is left to be explained, or no work granted.

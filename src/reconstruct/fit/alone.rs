@@ -118,7 +118,7 @@ mod tests {
     use crate::task::Task;
 
     #[test]
-    fn an_atom_by_itself_has_the_gains_and_leaves_what_the_normal_equations_say() {
+    fn an_atom_by_itself_is_solved_as_by_the_normal_equations() {
         let radar = Radar { end_elements: 11, ..Radar::default() };
         let task = Task::default();
         let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);

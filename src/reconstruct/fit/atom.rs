@@ -107,9 +107,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_steps_in_the_square_of_its_y_and_stays_ahead_of_the_array() {
+    fn a_point_steps_in_the_square_of_its_y() {
         let at = |x_metres, y_metres| Atom::Point { x_metres, y_metres };
         assert_eq!(at(3.0, 4.0).moved(&[1.0, 9.0]), at(4.0, 5.0));
+    }
+
+    #[test]
+    fn no_step_leads_a_point_behind_the_array() {
+        let at = |x_metres, y_metres| Atom::Point { x_metres, y_metres };
         assert_eq!(at(3.0, 4.0).moved(&[0.0, -20.0]), at(3.0, 0.0));
     }
 

@@ -343,7 +343,7 @@ mod tests {
     use crate::signal::floor::unit_noise;
 
     #[test]
-    fn many_reflectors_are_shared_out_and_leave_what_they_leave_a_few_at_a_time() {
+    fn many_reflectors_together_leave_what_they_leave_a_few_at_a_time() {
         let radar = Radar::default();
         let sensor = Sensor::new(&radar);
         let squared: Vec<f64> = hann(radar.samples).iter().map(|w| w * w).collect();

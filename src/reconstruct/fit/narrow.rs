@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_explains_as_much_of_a_few_range_bins_as_of_all_and_comes_to_the_same_place() {
+    fn a_fit_of_a_few_range_bins_is_that_of_all() {
         for carrier in [Carrier::OneWay, Carrier::TwoWay] {
             let radar = Radar { carrier, ..Radar::default() };
             let beside = |x, y| Object::Point(Point::new(x, y));

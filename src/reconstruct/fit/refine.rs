@@ -127,11 +127,6 @@ impl<'a> Workbench<'a> {
         Workbench { hearing, ..self }
     }
 
-    /// The same with work of its own, as much as it takes.
-    pub fn with_own_work(self) -> Self {
-        Workbench { work: Arc::new(Work::granted(usize::MAX)), ..self }
-    }
-
     /// For chirps of fewer samples, as `radar` takes them, under a window whose weights have these squares. Its work counts as this one's.
     pub fn sampled_as(&self, radar: &Radar, squared: Vec<f64>) -> Self {
         let sensor = self.sensor.sampled_as(radar);

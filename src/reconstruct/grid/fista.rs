@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn the_objective_only_falls_and_the_answer_is_sparse() {
+    fn the_objective_falls_to_a_sparse_answer() {
         let radar = Radar::default();
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);

@@ -88,13 +88,21 @@ mod tests {
         }
     }
 
-    #[test]
-    fn silence_and_samples_of_another_shape() {
+    /// What three elements make of the silence of `elements`.
+    fn map_of_silence(elements: usize) -> Result<RangeAngleMap, ReconstructError> {
         let radar = Radar::default();
         let layout = Layout::random(&radar, 3, 0).unwrap();
-        let map =
-            |samples: Array2<Complex64>| layout_matched_filter(&radar, &layout, samples.view(), &Request::default());
-        assert!(map(Array2::zeros((3, 512))).unwrap().lambda.iter().all(|v| *v == 0.0));
-        assert!(map(Array2::zeros((2, 512))).unwrap_err().to_string().contains("[3, 512]"));
+        let samples: Array2<Complex64> = Array2::zeros((elements, 512));
+        layout_matched_filter(&radar, &layout, samples.view(), &Request::default())
+    }
+
+    #[test]
+    fn silence_is_a_dark_map() {
+        assert!(map_of_silence(3).unwrap().lambda.iter().all(|v| *v == 0.0));
+    }
+
+    #[test]
+    fn samples_of_another_shape_are_refused() {
+        assert!(map_of_silence(2).unwrap_err().to_string().contains("[3, 512]"));
     }
 }

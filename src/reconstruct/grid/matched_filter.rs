@@ -76,7 +76,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn a_reflector_on_a_cell_is_in_phase_at_both_ends_and_nowhere_stronger() {
+    fn a_reflector_on_a_cell_is_strongest_there() {
         let radar = Radar::default();
         let (bin, column) = (211usize, 640usize);
         let (range, cos) = (radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64));

@@ -10,9 +10,8 @@ use super::trace::decades;
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Spectra, Tie, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Profile, Spectra, rows_of};
 use rayon::prelude::*;
-use std::collections::BTreeSet;
 
 /// Rows that are held against the samples themselves, at each look.
 const MOST_TRIED: usize = 24;
@@ -35,18 +34,8 @@ const LEAST_OF_LINE: f64 = 0.45;
 /// Fewest reflectors of such a line.
 const LEAST_OF_LINE_REFLECTORS: usize = 50;
 
-/// Rows between two points that are held against the samples.
-const MOST_BETWEEN: usize = 32;
-
-/// A count that explains this part of what the best does, where it is, may be the right one.
-const ABOUT_AS_WELL: f64 = 0.9;
-
 /// A row between two points that explains this part of the energy in its range bins is the one; else others are looked for beside it.
 const CONVINCING: f64 = 0.85;
-
-/// Most such counts, and how far their rows are moved.
-const MOST_MOVED: usize = 8;
-const BETWEEN: Limits = Limits { iterations: 4, least_gain: 1e-2, ridge: 0.0 };
 
 /// Echoes that the look for rows over one point takes as long as.
 const LOOK_A_POINT: usize = 20;
@@ -89,9 +78,7 @@ struct Left<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Begun {
     atom: Atom,
-    /// Energy that they explain.
-    energy: f64,
-    /// Part of the energy in their range bins that this is.
+    /// Part of the energy in their range bins that they explain.
     part: f64,
 }
 
@@ -123,7 +110,8 @@ impl Grower<'_> {
     fn next_from_points(&self, left: &Left, all: &Unexplained, seeds: &Seeds) -> Option<Fit> {
         self.bench.work.spend(LOOK_A_POINT * all.points_metres.len());
         let are_long = all.echoes().are_long();
-        let between = if are_long { self.between_ends(left, all) } else { None };
+        let between = if are_long { self.proposed(Part::Between, &Between, all) } else { Vec::new() };
+        let between = self.best_begun(left, &between);
         if let Some(row) = between.filter(|row| row.part > CONVINCING)
             && let Some(wall) = self.borne_out(left, seeds, &[row.atom])
         {
@@ -137,64 +125,33 @@ impl Grower<'_> {
         })
     }
 
-    /// The row between two points that explains the greatest part of what there is in its range bins. Those of the counts that do
-    /// about as well are moved to their best places first: the beams hardly tell a count from one whose steps differ by whole waves.
-    fn between_ends(&self, left: &Left, all: &Unexplained) -> Option<Begun> {
-        let rows = self.proposed(Part::Between, &Between, all);
-        let mut begun: Vec<Begun> = rows.par_iter().take(MOST_BETWEEN).map(|row| self.begun(left, *row)).collect();
-        begun.sort_by(|a, b| b.part.total_cmp(&a.part));
-        let least = ABOUT_AS_WELL * begun.first()?.part;
-        let mut counts = BTreeSet::new();
-        begun.retain(|row| row.part >= least && counts.insert(row.atom.reflector_count()));
-        begun.truncate(MOST_MOVED);
-        if begun.len() == 1 || self.settings.lacks(Part::MovedCounts) {
-            return Some(begun[0]);
-        }
-        let moved = |row: &Begun| {
-            let near = left.spectra.around(&rows_of(self.radar, &row.atom), 0.0);
-            // Whether all work is done must not depend on which of them is the first.
-            let bench = near.bench.with_own_work();
-            let moved = bench.refine(&near.samples, vec![row.atom], vec![Gains::default()], Tie::PerEnd, BETWEEN);
-            (self.explaining(left, near.energy - moved.cost(), moved.atoms[0]), bench.work.done())
-        };
-        let moved: Vec<(Begun, usize)> = begun.par_iter().map(moved).collect();
-        self.bench.work.spend(moved.iter().map(|(_, done)| done).sum());
-        moved.into_iter().map(|(row, _)| row).max_by(|a, b| a.part.total_cmp(&b.part))
-    }
-
-    /// What a row explains where it is.
+    /// The row with the part that it explains, where it is, of the energy in its range bins.
     fn begun(&self, left: &Left, atom: Atom) -> Begun {
-        let near = left.spectra.around(&rows_of(self.radar, &atom), 0.0);
-        self.explaining(left, near.energy - near.bench.solve_alone(&near.samples, atom).cost(), atom)
+        let rows = rows_of(self.radar, &atom);
+        let near = left.spectra.around(&rows, 0.0);
+        let energy = near.energy - near.bench.solve_alone(&near.samples, atom).cost();
+        Begun { atom, part: energy / left.profile.at(&rows).max(f64::MIN_POSITIVE) }
     }
 
-    /// A row that explains this much energy.
-    fn explaining(&self, left: &Left, energy: f64, atom: Atom) -> Begun {
-        let all = left.profile.at(&rows_of(self.radar, &atom)).max(f64::MIN_POSITIVE);
-        Begun { atom, energy, part: energy / all }
-    }
-
-    /// That of `rows` which explains the greatest part of what there is in its range bins, or else the one that explains most, if it is
-    /// borne out when it is followed to its ends.
-    fn borne_out(&self, left: &Left, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
-        let fit = left.fit;
+    /// That of `rows` which explains the greatest part of what there is in its range bins.
+    fn best_begun(&self, left: &Left, rows: &[Atom]) -> Option<Begun> {
         let begun: Vec<Begun> = rows.par_iter().take(MOST_TRIED).map(|&atom| self.begun(left, atom)).collect();
         tracing::debug!(rows = rows.len(), "rows");
-        let by_part = begun.iter().max_by(|a, b| a.part.total_cmp(&b.part))?;
-        let by_energy = begun
-            .iter()
-            .max_by(|a, b| a.energy.total_cmp(&b.energy))
-            .filter(|row| row.atom != by_part.atom && !self.settings.lacks(Part::ByEnergy));
-        [Some(by_part), by_energy].into_iter().flatten().filter(|row| row.part > LEAST_BEGUN).find_map(|begun| {
-            let wall = self.followed_to_its_ends(&fit.residual, begun.atom);
-            let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
-            tracing::debug!(?begun, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
-            let part = begun.part.max(explained);
-            if seeds.are_borne_out(self.radar, &wall.atoms[0], part) {
-                return Some(wall);
-            }
-            self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::ExplainsTooLittle(part));
-            None
-        })
+        begun.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
+    }
+
+    /// The best of `rows`, if it is borne out when it is followed to its ends.
+    fn borne_out(&self, left: &Left, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
+        let fit = left.fit;
+        let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;
+        let wall = self.followed_to_its_ends(&fit.residual, best.atom);
+        let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
+        tracing::debug!(?best, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
+        let part = best.part.max(explained);
+        if seeds.are_borne_out(self.radar, &wall.atoms[0], part) {
+            return Some(wall);
+        }
+        self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::ExplainsTooLittle(part));
+        None
     }
 }

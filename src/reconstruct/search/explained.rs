@@ -110,7 +110,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn what_was_found_is_explained_and_what_was_not_is_not() {
+    fn only_what_was_found_is_explained() {
         let radar = Radar::default();
         let scene = Scene::of_points([(3.0, 11.0), (-9.0, 20.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);

@@ -29,7 +29,7 @@ const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 /// Atoms this many bins apart at either end are refined together.
 const LINK_BINS: f64 = 6.0;
 
-/// Most rounds of cyclic refinement between one look at the residual and the next.
+/// Most rounds of refinement where more is left than noise.
 const MOST_SWEEPS: usize = 5;
 
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
@@ -146,9 +146,6 @@ impl Grower<'_> {
                 break;
             }
             fit = self.with_points(fit, &points)?;
-            if !self.settings.lacks(Part::Settling) {
-                fit = self.settled(fit)?;
-            }
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
@@ -162,17 +159,13 @@ impl Grower<'_> {
         Ok(if best.cost() < fit.cost() { best } else { fit })
     }
 
-    /// Cyclic refinement: all atoms with their neighbours, as long as the energy falls fast. What one group leaves blinds the others.
-    pub fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_SWEEPS {
-            let before = fit.cost();
-            let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, LINK_BINS, GROWING)?;
-            if fit.cost() > 0.3 * before {
-                break;
-            }
-        }
-        Ok(fit)
+    /// All atoms refined once, each with its neighbours.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn swept(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        let all = vec![true; fit.atoms.len()];
+        self.refined(fit, &all, LINK_BINS, GROWING)
     }
 
     /// `fit` with one more atom for every one of `points` (x and y, metres; the strongest first), each refined alone, then with its

@@ -83,7 +83,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Points that both ends' tones lead to beside the lines, and lines through those points.
+    /// Points that both ends' tones lead to beside the lines.
     pub fn climb_pairs(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.take().unwrap_or_default();
         let answer = self.paired_again(state.fit.clone(), pairs, state.is_long)?;
@@ -164,8 +164,7 @@ impl Search<'_> {
             }
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
-            fit = self.grower().with_walls(self.samples, self.paired(fit, &pairs, is_polished)?)?;
-            fit = self.nearly_there(fit)?;
+            fit = self.nearly_there(self.paired(fit, &pairs, is_polished)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
                 break;

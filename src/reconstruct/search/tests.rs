@@ -32,7 +32,7 @@ pub(super) fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f
 }
 
 #[test]
-fn scenes_of_all_sets_are_found_to_rounding_and_drawn_to_the_floor() {
+fn scenes_of_all_sets_are_reconstructed_to_the_floor() {
     let radar = Radar::default();
     let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 7);
     for kind in Kind::TEST_SETS {
@@ -114,7 +114,7 @@ fn a_cancelled_request_ends_with_an_error() {
 }
 
 #[test]
-fn under_thermal_noise_it_finds_what_is_there_and_little_else() {
+fn under_thermal_noise_it_finds_little_but_what_is_there() {
     let radar = Radar::default();
     let scene = Scene::of_points([(4.0, 9.0), (-6.0, 13.0), (1.0, 16.0)]);
     for snr in [0.0, 20.0, 40.0, 60.0] {

@@ -1,20 +1,10 @@
-//! Walls: rows of points that were found one by one, followed to where they end.
+//! Walls, one after another: each is looked for in what the others leave, and all are followed to their ends again.
 
 use super::begin::Seeds;
-use super::grow::{Grower, tried};
-use super::on_wall::stands_on;
-use super::propose::chains::Chains;
-use super::trace::decades;
+use super::grow::{Grower, ROUGHLY};
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie};
-
-/// A wall must leave less than this part of what was left without it.
-const LEAST_GAINED: f64 = 0.98;
-
-/// Of all walls together.
-const TOGETHER: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 };
+use crate::reconstruct::fit::{Atom, Fit, Samples, Tie};
 
 /// Most walls of one scene.
 const MOST_WALLS: usize = 8;
@@ -53,7 +43,7 @@ impl Grower<'_> {
         for _ in 0..if self.settings.lacks(Part::SettledEnds) { 0 } else { MOST_TURNS } {
             self.task.check()?;
             let before = fit.cost();
-            fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, TOGETHER);
+            fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
             let joined = fit.cost();
             for i in 0..fit.atoms.len() {
                 if self.bench.work.is_spent() || !matches!(fit.atoms[i], Atom::Segment { .. }) {
@@ -70,34 +60,6 @@ impl Grower<'_> {
             tracing::debug!(before, joined, cost = fit.cost(), "settled ends");
             if fit.cost() > WORTH_ANOTHER_TURN * before {
                 break;
-            }
-        }
-        Ok(fit)
-    }
-
-    /// `fit` with walls in place of the points that stand in rows, each as long as the samples say.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
-    pub fn with_walls(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let seeds = self.proposed(Part::Chains, &Chains, &self.unexplained(&[], &fit));
-        for seed in seeds {
-            self.task.check()?;
-            if self.bench.work.is_spent() {
-                break;
-            }
-            let others: Vec<usize> = (0..fit.atoms.len()).filter(|&i| !stands_on(&seed, &fit.atoms[i])).collect();
-            let mut atoms: Vec<Atom> = others.iter().map(|&i| fit.atoms[i]).collect();
-            let mut gains: Vec<Gains> = others.iter().map(|&i| fit.gains[i]).collect();
-            let base = self.bench.without(samples, &atoms, &gains).residual;
-            let wall = self.followed_to_its_ends(&base, seed);
-            tracing::debug!(?seed, wall = ?wall.atoms[0], before = fit.cost(), after = wall.cost(), "wall");
-            if wall.cost() < LEAST_GAINED * fit.cost() {
-                atoms.push(wall.atoms[0]);
-                gains.push(wall.gains[0]);
-                fit = Fit { atoms, gains, residual: wall.residual, energy: wall.energy };
-            } else {
-                self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::GainsTooLittle);
             }
         }
         Ok(fit)

@@ -10,12 +10,6 @@ pub enum Part {
     Strides,
     /// Source: lines from one point.
     Edges,
-    /// Source: lines through points at equal steps.
-    Chains,
-    /// Rule: counts of a line between two points that do about as well are moved before one is chosen.
-    MovedCounts,
-    /// Rule: beside the line that explains the greatest part, the one that explains most is followed.
-    ByEnergy,
     /// Rule: lines are followed to their ends again once all are known.
     SettledEnds,
     /// Rule: points beside lines are joined before the next look for lines.
@@ -36,8 +30,6 @@ pub enum Part {
     LookBack,
     /// Rule: gains have a price where much is unexplained.
     Price,
-    /// Rule: all points are settled after each round.
-    Settling,
     /// Rule: tied gains.
     Tied,
     /// Rule: neighbouring teeth are tried.
@@ -52,9 +44,6 @@ const PARTS: &[(&str, Part)] = &[
     ("between", Part::Between),
     ("strides", Part::Strides),
     ("edges", Part::Edges),
-    ("chains", Part::Chains),
-    ("moved-counts", Part::MovedCounts),
-    ("by-energy", Part::ByEnergy),
     ("settled-ends", Part::SettledEnds),
     ("points-with-lines", Part::PointsWithLines),
     ("pairs-agree", Part::PairsAgree),
@@ -65,7 +54,6 @@ const PARTS: &[(&str, Part)] = &[
     ("wraps", Part::Wraps),
     ("look-back", Part::LookBack),
     ("price", Part::Price),
-    ("settling", Part::Settling),
     ("tied", Part::Tied),
     ("teeth", Part::Teeth),
     ("unwindowed", Part::Unwindowed),

@@ -10,7 +10,6 @@
 //! | `tones` | ranges from one element's chirp |
 //! | `pairs` | points that both ends' tones agree on |
 //! | `phased` | each end's beams with their phases, and lines looked up in them |
-//! | `chains` | lines through points at equal steps |
 //! | `strides` | lines from their first two reflectors |
 //! | `edges` | lines from their first reflector alone |
 //! | `between` | lines between their first and their last reflector |
@@ -20,7 +19,6 @@
 
 pub mod between;
 mod blocks;
-pub mod chains;
 pub mod edges;
 pub mod end_beams;
 pub mod lines;

@@ -174,15 +174,24 @@ mod tests {
         }
     }
 
-    #[test]
-    fn more_tones_widen_the_projection_and_too_many_are_refused() {
-        // Of unlike sizes: a comb of equal tones is a few pulses, which have no tone at all.
+    /// So many tones of unlike sizes: a comb of equal tones is a few pulses, which have no tone at all.
+    fn comb(count: usize) -> Vec<[f64; 2]> {
         let size = |i: usize| 1.0 + 0.5 * (1.7 * (i * i) as f64).sin();
-        let comb = |count: usize| -> Vec<[f64; 2]> {
-            (0..count).map(|i| [i as f64 * 512.0 / count as f64, size(i)]).collect()
-        };
+        (0..count).map(|i| [i as f64 * 512.0 / count as f64, size(i)]).collect()
+    }
+
+    #[test]
+    fn more_tones_widen_the_projection() {
         assert_eq!(tones(&chirp(&comb(100), 1e-12), 1e-24).unwrap().len(), 100);
+    }
+
+    #[test]
+    fn too_many_tones_are_refused() {
         assert_eq!(tones(&chirp(&comb(300), 1e-12), 1e-24), None);
+    }
+
+    #[test]
+    fn noise_has_no_tone() {
         assert_eq!(tones(&chirp(&[], 1e-3), 1e-6), Some(Vec::new()));
     }
 }
