@@ -35,7 +35,6 @@ fn every_failure_that_ships_is_explained() {
 }
 
 #[test]
-#[ignore = "ten reconstructions: cargo test --release --test library failures -- --ignored"]
 fn methods_fail_on_shipped_scenes_as_their_notes_say() {
     for (id, name, expected) in EXPLAINED {
         let scene = Preset::by_id(id).unwrap().load().unwrap().scene;
