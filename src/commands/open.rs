@@ -7,10 +7,12 @@ use crate::files::write_bytes;
 use crate::methods;
 use crate::picture::{Format, Style, compose, compose_recording, is_our_png};
 use crate::platform::console;
+use crate::reconstruct::Reconstructor;
 use crate::scene::file::SceneFile;
 use crate::scene::presets;
 use crate::signal;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What to open.
@@ -19,7 +21,7 @@ pub struct Args {
     /// Scene (.toml or .npz), recording (.toml with [recording]) or text that was copied in the app (apertura:...) to open
     pub scene: Option<PathBuf>,
 
-    /// Reconstruction to begin with in the app
+    /// Reconstruction to begin with in the app, or to draw where there is no display
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
 
@@ -44,7 +46,7 @@ impl Args {
             Some(path) => Input::load(path)?,
             None => Input::Scene(Box::new(presets::default_scene())),
         };
-        self.method.as_deref().map(methods::by_name).transpose().map_err(CommandError::failed)?;
+        let method = self.method.as_deref().map(methods::by_name).transpose().map_err(CommandError::failed)?;
         let reason = match self.open_window(started) {
             Ok(()) => return Ok(()),
             Err(WindowError::NoWindow(reason)) => reason,
@@ -53,7 +55,7 @@ impl Args {
         };
         let reason = shortened(&reason);
         console::say(&format!("apertura: {reason}; drawing its panels to a picture instead"));
-        draw_instead(&input)
+        draw_instead(&input, method)
     }
 
     /// Opens the app and returns when it is closed.
@@ -105,16 +107,17 @@ enum WindowError {
     Failed(crate::app::AppError),
 }
 
-fn draw_instead(input: &Input) -> Result<(), CommandError> {
+fn draw_instead(input: &Input, method: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
     let style = Style::default();
     let bytes = match input {
         Input::Scene(file) => {
             let SceneFile { scene, radar } = &**file;
             let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
-            compose(radar, scene, &signal, methods::preferred().as_ref(), &style, Format::Png)
+            let method = method.unwrap_or_else(methods::preferred);
+            compose(radar, scene, &signal, method.as_ref(), &style, Format::Png)
         }
         Input::Recording(recording) => {
-            let method = methods::preferred_for(&recording.radar);
+            let method = method.unwrap_or_else(|| methods::preferred_for(&recording.radar));
             compose_recording(recording, method.as_ref(), &style, Format::Png)
         }
     }

@@ -139,6 +139,17 @@ fn a_start_without_display_draws_the_default_scene() {
 }
 
 #[test]
+fn a_start_without_display_draws_the_output_of_the_asked_method() {
+    let folder = folder();
+    std::fs::write(folder.path().join("s.toml"), TWO_POINTS).unwrap();
+    let drawn = |method: &[&str]| {
+        apertura(&folder).arg("s.toml").args(method).assert().success();
+        std::fs::read(folder.path().join("apertura.png")).unwrap()
+    };
+    assert_ne!(drawn(&["--method", "mf"]), drawn(&[]));
+}
+
+#[test]
 fn a_start_without_display_draws_the_scene_that_was_asked_for() {
     let folder = folder();
     apertura(&folder).arg("missing.toml").assert().failure().stderr(contains("error: missing.toml"));
