@@ -59,7 +59,7 @@ def echoes(x, y):
 def add_floor(signal, x, y, random):
     """Noise as strong as the rounding of the formula in f64 would have been."""
     _, waves, amplitude = echoes(x, y)
-    variance = 1.5 / 12 * np.sum((amplitude * np.spacing(2 * np.pi * waves)) ** 2, axis=0)
+    variance = 1 / 12 * np.sum((amplitude * np.spacing(2 * np.pi * waves)) ** 2, axis=0)
     noise = random.standard_normal((2, SAMPLES, ELEMENTS))
     signal += (noise[0] + 1j * noise[1]) * np.sqrt(variance / 2)
 
