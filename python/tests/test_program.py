@@ -43,6 +43,16 @@ def test_rows_have_the_figures_of_the_program(tmp_path):
         assert a == b
 
 
+@pytest.mark.skipif(PROGRAM is None, reason="needs the program: set APERTURA_PROGRAM to its path")
+def test_the_search_answers_as_that_of_the_program(tmp_path):
+    """On clusters the search amplifies a difference in the last bit of its least squares to another answer."""
+    arguments = ["evaluate", "--method", "nomp", "--set", "clusters", "--count", "20", "--rows", "rows.csv"]
+    subprocess.run([PROGRAM, *arguments], cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+    theirs = {row["index"]: row["squared_error"] for row in ap.read_rows(tmp_path / "rows.csv")}
+    own = {row["index"]: row["squared_error"] for row in ap.evaluate(["nomp"], ["clusters"], count=20)}
+    assert len(own) == 20 and theirs == own
+
+
 def test_the_window_opens_on_a_scene(tmp_path, monkeypatch):
     script = tmp_path / "apertura"
     script.write_text(f'#!/bin/sh\ncp "$1" {tmp_path}/seen.toml\n')

@@ -58,7 +58,8 @@ struct Cli {
 
 /// Environment variables, told below the help.
 const ENVIRONMENT: &str = "Environment:
-  APERTURA_SIMD  portable, avx2 or avx512: instructions to compute with (default: the best that the processor has)
+  APERTURA_SIMD  portable, avx2 or avx512: instructions of simulation, maps and live network (default: the best that the processor has);
+                 least squares and burn choose for themselves
   APERTURA_LOG   messages on standard error, such as debug (default: warnings)";
 
 /// What the program can do beside opening its window.

@@ -64,13 +64,15 @@ impl Radar {
 }
 
 impl BuiltArray {
-    /// [`Radar::pair`], where the element really stands: both antennas are off by as much.
+    /// [`Radar::pair`], where the element really stands, along the line and off it: both antennas are off by as much.
     pub fn pair(&self, radar: &Radar, n: usize) -> Pair {
-        if radar.is_monostatic() {
-            return Pair::at(self.element_x_metres(radar, n));
+        let (pair, along, forward) =
+            (radar.pair(n), self.element(n).position_millimetres * 1e-3, self.forward_metres(n));
+        Pair {
+            transmitter_x_metres: pair.transmitter_x_metres + along,
+            receiver_x_metres: pair.receiver_x_metres + along,
+            transmitter_y_metres: pair.transmitter_y_metres + forward,
+            receiver_y_metres: pair.receiver_y_metres + forward,
         }
-        let (pair, off) = (radar.pair(n), self.element(n).position_millimetres * 1e-3);
-        let [transmitter_x_metres, receiver_x_metres] = [pair.transmitter_x_metres + off, pair.receiver_x_metres + off];
-        Pair { transmitter_x_metres, receiver_x_metres, ..pair }
     }
 }

@@ -64,12 +64,6 @@ impl From<Pair> for Antennas {
 }
 
 impl Antennas {
-    /// The antennas of a pair that stands that much nearer to the scene than it should.
-    pub fn forward_of(pair: Pair, forward_metres: f64) -> Self {
-        let [transmitter_metres, receiver_metres] = pair.places_metres().map(|[x, y]| [x, y + forward_metres]);
-        Antennas { transmitter_metres, receiver_metres }
-    }
-
     /// Both antennas at one place.
     pub fn at(place_metres: [f64; 2]) -> Self {
         Antennas { transmitter_metres: place_metres, receiver_metres: place_metres }

@@ -46,10 +46,7 @@ impl Array {
         let [left, right] = radar.antenna_span_metres();
         let [hind, fore] = radar.antenna_depth_metres();
         let displaced = (0..elements.elements.len().min(radar.elements)).filter(|n| elements.is_displaced(*n));
-        let places = displaced.flat_map(|n| {
-            let forward = elements.forward_metres(n);
-            elements.pair(radar, n).places_metres().map(|[x, y]| [x, y + forward])
-        });
+        let places = displaced.flat_map(|n| elements.pair(radar, n).places_metres());
         let [left, hind, right, fore] = places.fold([left, hind, right, fore], |[left, hind, right, fore], [x, y]| {
             [left.min(x), hind.min(y), right.max(x), fore.max(y)]
         });

@@ -20,8 +20,8 @@ use super::run::samples_of;
 use super::samples::BeatSignal;
 use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Antennas, Echoing, PathEcho, Seen, Sources};
-use crate::scene::{Object, Reflector, Scene, SceneError};
+use crate::scattering::{Echoing, PathEcho, Seen, Sources};
+use crate::scene::{Object, Scene, SceneError};
 use crate::task::Task;
 use ndarray::{Array2, Array3, Axis, concatenate, s};
 use num_complex::Complex64;
@@ -170,12 +170,13 @@ fn at_rest(
     ranges: &[Range<usize>; 2],
 ) -> Array2<Complex64> {
     let plan = Plan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
-    let of = |range: Range<usize>| samples_of(radar, rest.into(), &plan, range, task);
+    let array = &*scene.disturbances.elements_of(radar);
+    let of = |range: Range<usize>| samples_of(radar, array, rest.into(), &plan, range, task);
     let [first, last] = if scene.disturbances.is_none_to(radar) {
         ranges.clone().map(of)
     } else {
         let mut signal = BeatSignal { samples: of(0..radar.elements) };
-        hear(task, radar, scene, &scene.disturbances.elements_of(radar), rest, &mut signal);
+        hear(radar, scene, array, &mut signal);
         ranges.clone().map(|range| signal.samples.slice(s![range, ..]).to_owned())
     };
     let empty = || Array2::zeros((first.nrows() + last.nrows(), radar.samples));
@@ -226,12 +227,10 @@ impl Motion<'_> {
 
     /// Replaces `out` by what element `n` hears, in the same order everywhere; of amplitude 0 what it doesn't hear.
     fn echoes(&self, n: usize, echoing: &Echoing, out: &mut Vec<Echo>, scattered: &mut Vec<PathEcho>) {
-        let (pair, forward) = (self.array.pair(self.radar, n), self.array.forward_metres(n));
+        let pair = self.array.pair(self.radar, n);
         out.clear();
-        out.extend(
-            echoing.points.iter().map(|r| self.model.echo(pair, &Reflector { y_metres: r.y_metres - forward, ..*r })),
-        );
-        Sources::from(echoing).scattered(Antennas::forward_of(pair, forward), scattered);
+        out.extend(echoing.points.iter().map(|r| self.model.echo(pair, r)));
+        Sources::from(echoing).scattered(pair, scattered);
         let path = |e: &PathEcho| Path::new([e.range_metres], [e.amplitude]);
         out.extend(scattered.iter().map(|e| self.model.heard::<1, false>(path(e)).first()));
     }

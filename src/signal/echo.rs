@@ -1,10 +1,8 @@
 //! The exact near-field echo of a single reflector, as any line of elements samples it.
 
 use crate::radar::{End, Pair, Radar};
-use crate::scattering::PathEcho;
 use crate::scene::Reflector;
-use crate::signal::path::Path;
-use crate::signal::phase::{Echo, EchoModel};
+use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -14,16 +12,7 @@ const RESTART: usize = 32;
 
 /// Adds `gain` times the echo of a unit reflector to `samples` of `pair`.
 pub fn add_echo(model: &EchoModel, pair: Pair, reflector: &Reflector, gain: Complex64, samples: &mut [Complex64]) {
-    add(&model.echo(pair, reflector), gain, samples);
-}
-
-/// Adds an echo of any kind to `samples` of the pair that hears it.
-pub fn add_path_echo(model: &EchoModel, heard: &PathEcho, samples: &mut [Complex64]) {
-    let path = Path::new([heard.range_metres], [heard.amplitude]);
-    add(&model.heard::<1, false>(path).first(), Complex64::from(1.0), samples);
-}
-
-fn add(echo: &Echo, gain: Complex64, samples: &mut [Complex64]) {
+    let echo = model.echo(pair, reflector);
     let step = Complex64::cis(TAU * echo.turns_at(1) - TAU * echo.turns_at(0));
     for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
         let mut phasor = gain * echo.sample(block * RESTART);

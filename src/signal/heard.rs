@@ -2,7 +2,7 @@
 
 use super::path::{Pairs, Path};
 use super::phase::{EchoLanes, EchoModel};
-use crate::radar::Radar;
+use crate::radar::Pair;
 use crate::scattering::{PathEcho, Sources};
 use crate::scene::Reflector;
 
@@ -35,15 +35,15 @@ impl<'a, const W: usize> Heard<'a, W> {
     }
 }
 
-/// The paths of all scatterers among `sources` to channels `first` and following of `radar`, one a lane; those that none of them hears are
-/// left out.
-pub(super) fn paths<const W: usize>(radar: &Radar, sources: Sources<'_>, first: usize) -> Vec<Path<W>> {
+/// The paths of all scatterers among `sources` to the pairs that `pair` tells for lanes 0, 1 and so on; those that none of them hears are left
+/// out.
+pub(super) fn paths<const W: usize>(sources: Sources<'_>, pair: impl Fn(usize) -> Pair) -> Vec<Path<W>> {
     if sources.scatterers.is_empty() {
         return Vec::new();
     }
     let lanes: [Vec<PathEcho>; W] = std::array::from_fn(|lane| {
         let mut echoes = Vec::new();
-        sources.scattered(radar.pair(first + lane), &mut echoes);
+        sources.scattered(pair(lane), &mut echoes);
         echoes
     });
     let path = |index: usize| {

@@ -29,7 +29,7 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
     signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut heard)| {
         let [_, [receiver_x, receiver_y]] = array.pair(radar, n).places_metres();
         let across = interferer.x_metres - receiver_x;
-        let ahead = interferer.y_metres - array.forward_metres(n) - receiver_y;
+        let ahead = interferer.y_metres - receiver_y;
         let distance = across.hypot(ahead);
         let left = radar.pattern().map_or(1.0, |pattern| pattern.amplitude(ahead / distance));
         let amplitude = left * radar.transmit_power_watts * interferer.strength / distance;

@@ -17,7 +17,7 @@
 //! A [`Plan`] says which of them, in which precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! [`simulate`] goes from a scene to samples over a floor.
 //!
-//! [`built`] is the signal of disturbed scenes, whose elements are not as they should be or hear somebody else, and calibration.
+//! [`built`] is the signal of disturbed scenes, whose elements are off or hear another radar; [`calibration`] estimates gains and phases.
 //!
 //! [`chirps`] is the signal of several chirps while objects move.
 //!
@@ -27,6 +27,7 @@
 
 mod algorithm;
 pub mod built;
+pub mod calibration;
 pub mod chirps;
 pub mod closed_form;
 pub mod direct;
@@ -53,7 +54,8 @@ pub mod synthesis;
 mod unfinished;
 
 pub use algorithm::{Algorithm, Precision, UnknownAlgorithm};
-pub use built::{Calibration, apply_responses, calibrate, simulate_built};
+pub use built::{apply_responses, simulate_built};
+pub use calibration::{Calibration, calibrate};
 pub use chirps::{ChirpSamples, simulate_chirps, simulate_chirps_for};
 pub use echo::ArrayEcho;
 pub use floor::Floor;

@@ -4,14 +4,15 @@ use super::floor::{self, Floor};
 use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
 use super::run::samples_of;
 use super::samples::BeatSignal;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Echoing;
 use crate::task::Task;
 
-/// The echoes of what the radar can see, over a floor; `heard` does to the echoes what the array does before its receivers add
-/// their noise. Of no meaning once `task` is cancelled.
+/// The echoes of what the radar can see, at elements that stand where `array` says, over a floor; `heard` does to the samples what the array
+/// does before its receivers add their noise. Of no meaning once `task` is cancelled.
 pub(super) fn simulate_echoes(
     radar: &Radar,
+    array: &BuiltArray,
     echoing: &Echoing,
     floor: Floor,
     seed: u64,
@@ -19,7 +20,7 @@ pub(super) fn simulate_echoes(
     task: &Task,
 ) -> BeatSignal {
     let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, echoing), tolerance(floor));
-    let mut signal = BeatSignal { samples: samples_of(radar, echoing.into(), &plan, 0..radar.elements, task) };
+    let mut signal = BeatSignal { samples: samples_of(radar, array, echoing.into(), &plan, 0..radar.elements, task) };
     heard(&mut signal);
     if task.is_cancelled() {
         return signal;

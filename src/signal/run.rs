@@ -6,7 +6,7 @@ use super::samples::BeatSignal;
 use super::simd::{LANES_F32, LANES_F64};
 use super::synthesis::Synthesis;
 use super::{direct, exact};
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Sources;
 use crate::task::Task;
 use ndarray::{Array2, s};
@@ -21,14 +21,17 @@ pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: &Pl
     match plan.algorithm {
         Algorithm::Direct => direct::beat_signal(radar, sources),
         Algorithm::Exact => exact::beat_signal(radar, sources),
-        _ => BeatSignal { samples: samples_of(radar, sources, plan, 0..radar.elements, &Task::default()) },
+        _ => BeatSignal {
+            samples: samples_of(radar, &BuiltArray::default(), sources, plan, 0..radar.elements, &Task::default()),
+        },
     }
 }
 
-/// Noiseless samples of neighbouring elements by a block algorithm ([`Algorithm::is_fast`]), `[elements, samples]`, bit for bit those of
-/// the whole array. Of no meaning once `task` is cancelled.
+/// Noiseless samples of neighbouring elements, which stand where `array` says, by a block algorithm ([`Algorithm::is_fast`]),
+/// `[elements, samples]`, bit for bit those of the whole array. Of no meaning once `task` is cancelled.
 pub(super) fn samples_of(
     radar: &Radar,
+    array: &BuiltArray,
     sources: Sources<'_>,
     plan: &Plan,
     elements: Range<usize>,
@@ -39,8 +42,8 @@ pub(super) fn samples_of(
     let begin = elements.start / lanes * lanes;
     let blocks = begin..elements.end.next_multiple_of(lanes).min(radar.elements);
     let mut samples = match plan.precision {
-        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).samples(sources, blocks, task),
-        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).samples(sources, blocks, task),
+        Precision::F32 => Synthesis::<f32, LANES_F32>::new(radar, *plan).at(array).samples(sources, blocks, task),
+        Precision::F64 => Synthesis::<f64, LANES_F64>::new(radar, *plan).at(array).samples(sources, blocks, task),
     };
     samples.slice_collapse(s![elements.start - begin..elements.end - begin, ..]);
     samples

@@ -7,7 +7,7 @@ use super::plan::{Plan, amplitude_bound};
 use super::run::samples_of;
 use super::samples::{BeatSignal, TwoEnds};
 use super::unfinished::Unfinished;
-use crate::radar::{End, Radar};
+use crate::radar::{BuiltArray, End, Radar};
 use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
@@ -40,7 +40,7 @@ pub fn simulate_for(
         return simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed);
     }
     scene.validate(radar)?;
-    let signal = simulate_echoes(radar, &Echoing::of(radar, scene), floor, seed, |_| {}, task);
+    let signal = simulate_echoes(radar, &BuiltArray::default(), &Echoing::of(radar, scene), floor, seed, |_| {}, task);
     task.check()?;
     Ok(signal)
 }
@@ -73,7 +73,7 @@ pub fn simulate_ends_for(
     let variance = floor::noise_variance(radar, &echoing, floor);
     let [first, last] = End::BOTH.map(|end| {
         let elements = radar.end_range(end);
-        let mut samples = samples_of(radar, (&echoing).into(), &plan, elements.clone(), task);
+        let mut samples = samples_of(radar, &BuiltArray::default(), (&echoing).into(), &plan, elements.clone(), task);
         if let Some(variance) = &variance {
             floor::add_noise_from(&mut samples, elements.start, &variance[elements], seed);
         }

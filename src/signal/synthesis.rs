@@ -14,7 +14,7 @@ use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Pair, Radar};
 use crate::scattering::Sources;
 use crate::scene::Reflector;
 use crate::task::Task;
@@ -83,6 +83,7 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
 pub struct Synthesis<T: Real, const W: usize> {
     model: EchoModel,
     radar: Radar,
+    array: BuiltArray,
     plan: Plan,
     method: Method<T>,
     window: Vec<T>,
@@ -114,7 +115,7 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
         let s = self.synthesis;
-        let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
+        let pairs = Pairs::new(s.pair_of(self.first_element));
         let samples = s.radar.samples;
         let heard = Heard::new(self.points, self.paths);
         match (self.scratch, &s.method) {
@@ -184,7 +185,7 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let s = self.synthesis;
-        let pairs = Pairs::new(|i| s.radar.pair(self.first_element + i));
+        let pairs = Pairs::new(s.pair_of(self.first_element));
         let heard = Heard::new(self.points, self.paths);
         self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.quiet, self.cells);
     }
@@ -198,6 +199,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         Synthesis {
             model: EchoModel::new(radar),
             radar: radar.clone(),
+            array: BuiltArray::default(),
             plan,
             method: match plan.algorithm {
                 Algorithm::Gridded => Method::Gridded(Gridding::new(radar, plan.tolerance)),
@@ -209,6 +211,16 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             window: radar.window.weights(radar.samples).into_iter().map(|w| T::of(w * scale)).collect(),
             fft: LaneFft::new(radar.samples),
         }
+    }
+
+    /// The same for elements that stand where `array` says.
+    pub fn at(self, array: &BuiltArray) -> Self {
+        Synthesis { array: array.clone(), ..self }
+    }
+
+    /// The antennas of lanes 0, 1 and so on of the block that begins with `first_element`.
+    fn pair_of(&self, first_element: usize) -> impl Fn(usize) -> Pair {
+        move |lane| self.array.pair(&self.radar, first_element + lane)
     }
 
     /// What was prepared.
@@ -243,7 +255,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             |scratch, (block, mut rows)| {
                 let first_element = elements.start + block * W;
                 if let (Some(rows), false) = (rows.as_slice_mut(), task.is_cancelled()) {
-                    let paths = heard::paths(&self.radar, sources, first_element);
+                    let paths = heard::paths(sources, self.pair_of(first_element));
                     let (points, paths) = (sources.points, paths.as_slice());
                     self.simd().run(ToRows(Block { synthesis: self, first_element, points, paths, scratch }, rows));
                 }
@@ -281,7 +293,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                     return rows;
                 }
                 let first_element = block * W;
-                let paths = &heard::paths(&self.radar, sources, first_element);
+                let paths = &heard::paths(sources, self.pair_of(first_element));
                 plan.touch_paths(&self.radar, paths, quiet, &mut rows);
                 let points = sources.points;
                 self.simd().run(AddProfiles { synthesis: self, plan, first_element, points, paths, quiet, cells });
@@ -304,7 +316,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                     return;
                 }
                 let first_element = block * W;
-                let paths = heard::paths(&self.radar, sources, first_element);
+                let paths = heard::paths(sources, self.pair_of(first_element));
                 let (points, paths) = (sources.points, paths.as_slice());
                 let block = Block { synthesis: self, first_element, points, paths, scratch };
                 self.simd().run(ToProfiles(self, Some(block), cells, spare));

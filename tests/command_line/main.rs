@@ -5,6 +5,7 @@ mod cli;
 mod kept_rows;
 mod merge;
 mod messages;
+mod numerics_features;
 #[cfg(unix)]
 mod own_method;
 #[cfg(feature = "network")]

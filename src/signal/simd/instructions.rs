@@ -5,8 +5,11 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
 
-/// The environment variable that picks an instruction set: `portable`, `avx2` or `avx512`. Whatever is measured or tested can be so
-/// as on a processor that has no more.
+/// The environment variable that picks an instruction set: `portable`, `avx2` or `avx512`.
+///
+/// It governs the kernels of this crate: simulation, transforms of maps, the live network. It does not govern foreign kernels, which choose by
+/// the processor themselves: the matrix products and decompositions of `faer`, the short transforms that the fit takes from `rustfft`, and
+/// `burn`.
 pub const SIMD_VARIABLE: &str = "APERTURA_SIMD";
 
 /// An instruction set that kernels are compiled for.

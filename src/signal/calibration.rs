@@ -1,0 +1,148 @@
+//! Calibrating a built array on a reflector of known place.
+
+use super::echo::ArrayEcho;
+use super::samples::BeatSignal;
+use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
+use crate::scene::Reflector;
+use num_complex::Complex64;
+
+/// What was learned of an array from one reflector.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// Gain and phase of each element, relative to the mean of those that hear; elements that hear nothing are dead.
+    pub array: BuiltArray,
+    /// Part of the samples' energy that the reflector's echo, heard so, leaves unexplained: other reflectors, noise, and errors that
+    /// are no gain and no phase.
+    pub unexplained: f64,
+}
+
+/// Estimates gain and phase of every element from the echo of `reflector` in `signal`: what each element's samples hold of the echo
+/// that an ideal element would hear, by least squares under a Hann window. Other reflectors disturb little where they are two range bins
+/// away or more.
+///
+/// `None` where no element hears the reflector.
+pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> Option<Calibration> {
+    let polar = radar.polar_of(reflector.x_metres, reflector.y_metres);
+    let (mut energy, mut left) = (0.0, 0.0);
+    let window = chirp_window(radar.samples);
+    let mean_weight = window.iter().sum::<f64>() / radar.samples as f64;
+    let responses: Vec<Complex64> = signal
+        .samples
+        .outer_iter()
+        .enumerate()
+        .map(|(n, samples)| {
+            let echo = ArrayEcho::heard_by(radar, &[radar.pair(n)], polar.range_metres, polar.cos_theta);
+            let samples: Vec<Complex64> = samples.iter().copied().collect();
+            let weighted: Vec<Complex64> = samples.iter().zip(&window).map(|(v, w)| v * w).collect();
+            let share = echo.correlate(&weighted) / mean_weight;
+            let all: f64 = samples.iter().map(Complex64::norm_sqr).sum();
+            energy += all;
+            let explained = 2.0 * (share.conj() * echo.correlate(&samples)).re - share.norm_sqr();
+            left += (all - explained).max(0.0);
+            share / echo.norm()
+        })
+        .collect();
+    let heard: Vec<&Complex64> = responses.iter().filter(|r| r.norm_sqr() > 0.0 && r.is_finite()).collect();
+    // Gains are compared as decibels; phases with that of the sum, which no single element can turn far.
+    let mean_decades = heard.iter().map(|r| r.norm().log10()).sum::<f64>() / heard.len() as f64;
+    let mean_phase = heard.iter().map(|r| *r / r.norm()).sum::<Complex64>().arg();
+    let element = |r: &Complex64| {
+        if !(r.norm_sqr() > 0.0 && r.is_finite()) {
+            return ElementError { dead: true, ..ElementError::default() };
+        }
+        ElementError {
+            gain: Decibels(20.0 * (r.norm().log10() - mean_decades)),
+            phase_degrees: (r * Complex64::cis(-mean_phase)).arg().to_degrees(),
+            ..ElementError::default()
+        }
+    };
+    (!heard.is_empty()).then(|| Calibration {
+        array: BuiltArray { elements: responses.iter().map(element).collect() },
+        unexplained: left / energy,
+    })
+}
+
+impl Calibration {
+    /// Takes the gains and phases off `signal`; dead elements stay silent.
+    pub fn take_off(&self, signal: &mut BeatSignal) {
+        for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
+            let response = self.array.element(n).response();
+            if response.norm_sqr() > 0.0 {
+                samples.iter_mut().for_each(|v| *v /= response);
+            }
+        }
+    }
+
+    /// Root mean squares of what the living elements are off by: decibels of gain, degrees of phase.
+    pub fn spread(&self) -> (Decibels, f64) {
+        let living = || self.array.elements.iter().filter(|e| !e.dead);
+        let count = living().count().max(1) as f64;
+        let rms = |of: fn(&ElementError) -> f64| (living().map(|e| of(e).powi(2)).sum::<f64>() / count).sqrt();
+        (Decibels(rms(|e| e.gain.0)), rms(|e| e.phase_degrees))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Tolerances;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate, simulate_built};
+
+    fn small() -> Radar {
+        Radar { elements: 64, ..Radar::default() }
+    }
+
+    fn two_points() -> Scene {
+        Scene::of_points([(2.0, 11.0), (-6.0, 19.0)])
+    }
+
+    #[test]
+    fn calibration_takes_off_what_it_finds() {
+        let (radar, scene) = (small(), two_points());
+        let tolerances = Tolerances { gain: Decibels(1.5), phase_degrees: 20.0, position_millimetres: 0.0 };
+        let array = tolerances.build(&radar, 2);
+        let floor = Floor::Snr(Decibels(30.0));
+        let mut signal = simulate_built(&radar, &scene, &array, floor, 1).unwrap();
+        let reflector = scene.reflectors()[0];
+        let found = calibrate(&radar, &signal, &reflector).unwrap();
+        // The other reflector is a hundred bins away: its side lobes are all that disturbs.
+        let (first_gain, first_phase) = (array.elements[0].gain.0, array.elements[0].phase_degrees);
+        for (f, e) in found.array.elements.iter().zip(&array.elements) {
+            let gain = f.gain.0 - found.array.elements[0].gain.0 - (e.gain.0 - first_gain);
+            let phase = f.phase_degrees - found.array.elements[0].phase_degrees - (e.phase_degrees - first_phase);
+            assert!(gain.abs() < 0.3 && phase.abs() < 2.0, "{f:?} {e:?}");
+        }
+        let (gain, phase) = found.spread();
+        assert!(gain.0 > 1.0 && phase > 14.0);
+        assert!(found.unexplained > 0.01 && found.unexplained < 0.5, "the other reflector: {}", found.unexplained);
+        found.take_off(&mut signal);
+        let (gain, phase) = calibrate(&radar, &signal, &reflector).unwrap().spread();
+        assert!(gain.0 < 1e-6 && phase < 1e-6, "{gain} {phase}");
+    }
+
+    #[test]
+    fn reflectors_a_few_bins_away_hardly_disturb_a_calibration() {
+        let radar = small();
+        let tolerances = Tolerances { gain: Decibels(1.5), phase_degrees: 20.0, position_millimetres: 0.0 };
+        let array = tolerances.build(&radar, 2);
+        // Eight bins further out, a little stronger.
+        let scene = Scene::of_points([(0.0, 11.0), (1.0, 11.6)]);
+        let signal = simulate_built(&radar, &scene, &array, Floor::Exact, 1).unwrap();
+        let mut left = signal.clone();
+        calibrate(&radar, &signal, &scene.reflectors()[0]).unwrap().take_off(&mut left);
+        let ideal = simulate(&radar, &scene, Floor::Exact, 1).unwrap();
+        let ratio = |n: usize| left.samples[[n, 9]] / ideal.samples[[n, 9]];
+        for n in 0..radar.elements {
+            let off = ratio(n) / ratio(0);
+            assert!((off - 1.0).norm() < 0.02, "element {n}: {off}");
+        }
+    }
+
+    #[test]
+    fn silence_calibrates_nothing() {
+        let radar = small();
+        let reflector = two_points().reflectors()[0];
+        assert_eq!(calibrate(&radar, &BeatSignal::silence(&radar), &reflector), None);
+    }
+}
