@@ -24,7 +24,7 @@ const OTHER_PROGRAMS: [&str; 6] =
 const PLACEHOLDERS: [&str; 3] = ["M", "NAME", "METHOD"];
 
 /// Subcommands that take seconds: those of every page are run, not only README's.
-const QUICK: [&str; 8] = ["maps", "methods", "reconstruct", "budget", "scenes", "lesson", "range-doppler", "layouts"];
+const QUICK: [&str; 7] = ["maps", "methods", "reconstruct", "budget", "scenes", "lesson", "range-doppler"];
 
 /// What is wrong with these arguments, if anything is.
 fn fault(arguments: &[String]) -> Option<String> {
