@@ -112,7 +112,7 @@ def test_the_documented_loop_learns(folder, tmp_path, monkeypatch, capsys):
     [loop] = re.findall(r"```python\n(import torch\n.*?)```", (ROOT / "docs" / "data.md").read_text(), re.DOTALL)
     assert len(loop.strip().splitlines()) <= 21
     monkeypatch.chdir(tmp_path)
-    exec(loop.replace('"DIR"', repr(str(folder))), {})
+    exec(loop.replace('"target/data"', repr(str(folder))), {})
     losses = [float(loss) for loss in re.findall(r"loss ([\d.]+)", capsys.readouterr().out)]
     assert len(losses) == 2 and losses[1] < losses[0]
     assert (tmp_path / "network.pt").exists()

@@ -27,14 +27,14 @@ mod widgets;
 
 use crate::platform;
 
-pub use page::open_page;
+pub use page::{open_page, options_of};
 
 pub use application::{APP_ID, App, Options};
 pub use state::{
     Arrangement, BoundsSettings, Brightness, ChirpSettings, Command, Compare, Cursor, DifferenceView, DocumentCommand,
-    EditCommand, Elements, EvaluationChoice, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind, NewObject,
-    Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings, ThresholdChoice, Units, ViewCommand,
-    WindowCommand, WorkCommand,
+    EditCommand, Elements, Entry, EvaluationChoice, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind,
+    NewObject, Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings, ThresholdChoice, Units,
+    ViewCommand, WindowCommand, WorkCommand, listed, listed_on_a_page,
 };
 
 /// Why the app did not open.

@@ -40,11 +40,12 @@ fn measured() -> String {
 /// Key of an address that names the cell of a notebook, to which the page tells its scene (`page.js`).
 const CELL: &str = "cell";
 
-/// What an address asks for: `?scene=street`, `?lesson=two-ends`, `?recording=chip-8`, or what was copied as text behind `#`.
+/// What the address of a page asks for: `?scene=street`, `?lesson=two-ends` (the beginning of a lesson's name), `?recording=chip-8`, or what was
+/// copied as text behind `#`.
 ///
 /// # Errors
 /// A sentence for the person who opened the address.
-fn options_of(address: &str) -> Result<Options, String> {
+pub fn options_of(address: &str) -> Result<Options, String> {
     let (query, fragment) = address.split_once('#').unwrap_or((address, ""));
     let mut options = Options::default();
     if !fragment.is_empty() {
@@ -79,11 +80,9 @@ fn command_of(key: &str, name: &str) -> Result<Command, String> {
                 .ok_or_else(|| unknown("recording", all.iter().map(|p| p.id).collect()))
         }
         "lesson" => {
-            let all = lesson::shipped::ALL;
-            let index = all.iter().position(|l| l.id == name);
-            index
-                .map(|i| Command::Lesson(LessonCommand::Begin(i)))
-                .ok_or_else(|| unknown("lesson", all.iter().map(|l| l.id).collect()))
+            let index =
+                lesson::shipped::by_name(name).map_err(|error| format!("The address asks for a lesson: {error}."))?;
+            Ok(Command::Lesson(LessonCommand::Begin(index)))
         }
         _ => Err(format!("The address asks for \"{key}\". It may ask for scene, lesson or recording.")),
     }

@@ -11,8 +11,9 @@ use std::str::FromStr;
 #[derive(Debug, Clone, clap::Args)]
 pub struct FloorArgs {
     /// Noise: thesis (its f64 rounding noise), exact (none), thermal (that of the receivers by the link budget), snr=DB (thermal noise at a
-    /// signal-to-noise ratio, -100 to 300) or dbm=LEVEL
-    /// (thermal noise of LEVEL dBm a sample in every scene, -300 to 200; a reflector of sigma 1 at 20 m has +18 dBm)
+    /// signal-to-noise ratio, -100 to 300) or dbm=LEVEL (thermal noise of LEVEL dBm a sample in every scene, -300 to 200). LEVEL counts the squared
+    /// magnitude of a sample as watts: a reflector of sigma 1 at 20 m has +18 dBm. Where the radar has a link budget, LEVEL is the power in
+    /// the receiver, as `apertura budget` prints it
     #[arg(long, value_name = "thesis|exact|thermal|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
     pub floor: Floor,
 }

@@ -37,7 +37,8 @@ pub struct Args {
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
-    /// Noise beneath all scenes: thesis, exact, snr=DB or dbm=LEVEL
+    /// Noise beneath all scenes: thesis, exact, snr=DB or dbm=LEVEL (LEVEL counts the squared magnitude of a sample as watts; it is no power in
+    /// a receiver)
     #[arg(long, value_name = "FLOOR", default_value_t = Floor::Thesis)]
     floor: Floor,
 

@@ -2,20 +2,22 @@
 
 use super::{CommandError, print};
 use crate::app::{self, AppError};
-use crate::lesson::Lesson;
+use crate::lesson::{Lesson, shipped};
 use crate::radar::counted;
 use std::path::PathBuf;
 
-/// Begin a lesson from a file
+/// Begin a lesson: one that comes with the program, or a file
 ///
 /// Reads and checks the lesson, then opens it in the window. Without a display it prints what the lesson contains. docs/lessons.md describes
 /// the format.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The lesson (.toml)
-    file: PathBuf,
+    /// The lesson: a file (.toml), or the name of a lesson that comes with the program. The beginning of the name is enough where only one lesson
+    /// has it
+    #[arg(value_name = "FILE|NAME")]
+    lesson: PathBuf,
 
-    /// Only check the file
+    /// Only check the lesson
     #[arg(long)]
     check: bool,
 }
@@ -23,14 +25,33 @@ pub struct Args {
 impl Args {
     /// Opens the lesson.
     pub fn run(self) -> Result<(), CommandError> {
-        let lesson = Lesson::load(&self.file).map_err(CommandError::failed)?;
+        let (lesson, options) = self.load()?;
         let about = format!("{}: {}. {}", lesson.title, counted(lesson.steps.len(), "step", "steps"), lesson.about);
         if self.check {
             return print(&about);
         }
-        match app::run(app::Options { lesson: Some(self.file), ..app::Options::default() }) {
+        match app::run(options) {
             Err(AppError::Window(_)) => print(&about),
             other => other.map_err(CommandError::failed),
+        }
+    }
+
+    /// The lesson, and what opens it.
+    fn load(&self) -> Result<(Lesson, app::Options), CommandError> {
+        let usual = app::Options::default();
+        match self.lesson.to_str().filter(|name| !name.contains(['.', '/', '\\']) && !self.lesson.exists()) {
+            Some(name) => {
+                let index = shipped::by_name(name).map_err(CommandError::failed)?;
+                let lesson = shipped::ALL[index].load().map_err(CommandError::failed)?;
+                Ok((
+                    lesson,
+                    app::Options { commands: vec![app::Command::Lesson(app::LessonCommand::Begin(index))], ..usual },
+                ))
+            }
+            None => {
+                let lesson = Lesson::load(&self.lesson).map_err(CommandError::failed)?;
+                Ok((lesson, app::Options { lesson: Some(self.lesson.clone()), ..usual }))
+            }
         }
     }
 }

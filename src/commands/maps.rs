@@ -6,7 +6,7 @@ use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::maps::archive::{write_maps, write_recorded_maps};
-use crate::maps::{Normalisation, RangeAngleMap};
+use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::methods;
 use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
 use crate::radar::{Carrier, Radar};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
 /// (f64 [4, 512, 1024], the network's input). These are the keys of the thesis author's program. The archive of a recording has no
 /// positions, and no polar_full where only the two ends were recorded. With --method it also has output (f32 [1, 512, 1024]), the method's
-/// estimate of Lambda. The window's "Export maps" writes the same.
+/// estimate of Lambda. The window's "Export maps" writes the same. Over a map of the whole array, a line says how many decibels Lambda spans.
 ///
 /// Further keys are the axes: range_metres (f64 [512]), cos_theta (f64 [1024], 0 straight ahead, 1 along the array to the right),
 /// element_x_metres (f64 [1024]; sub0 has the first of them, sub1 the last); the weights of the two transforms: sample_window
@@ -103,8 +103,9 @@ impl Args {
                 let request =
                     Request { noise: self.floor.floor.into(), normalisation: self.normalisation, ..Request::default() };
                 let output = self.estimate(&radar, &signal.two_ends(&radar), &request)?;
-                write_maps(&self.output, &radar, &scene, &signal, output.as_ref())
-                    .map_err(CommandError::on(&self.output))
+                let full = write_maps(&self.output, &radar, &scene, &signal, output.as_ref())
+                    .map_err(CommandError::on(&self.output))?;
+                print(&span(&full))
             }
             Output::Picture(format) => {
                 let method = self.method(methods::preferred)?;
@@ -134,7 +135,8 @@ impl Args {
                 let request = Request { noise, normalisation, snapshot_range_metres, ..Request::default() };
                 let output = self.estimate(radar, &ends, &request)?;
                 write_recorded_maps(&self.output, radar, &ends, full.as_ref(), output.as_ref())
-                    .map_err(CommandError::on(&self.output))
+                    .map_err(CommandError::on(&self.output))?;
+                full.as_ref().map_or(Ok(()), |full| print(&span(full)))
             }
             Output::Picture(format) => {
                 let method = self.method(|| methods::preferred_for(&recording.radar))?;
@@ -170,6 +172,15 @@ impl Args {
     fn write(&self, bytes: &[u8]) -> Result<(), CommandError> {
         write_bytes(&self.output, bytes).map_err(|source| CommandError::File { path: self.output.clone(), source })
     }
+}
+
+/// How many decibels Lambda stands for under min-max normalisation.
+fn span(full: &LogMap) -> String {
+    let decibels = 20.0 * (full.max() - full.min());
+    format!(
+        "min-max Lambda of polar_full: 0 to 1 spans {decibels:.1} dB, 0.9 is {:.1} dB below the peak",
+        0.1 * decibels
+    )
 }
 
 enum Output {

@@ -19,6 +19,7 @@ mod layouts;
 #[cfg(feature = "app")]
 mod lesson;
 mod maps;
+mod methods;
 mod network_args;
 mod open;
 mod output;
@@ -77,6 +78,7 @@ enum Command {
     #[cfg(feature = "app")]
     Lesson(lesson::Args),
     Maps(maps::Args),
+    Methods(methods::Args),
     RangeDoppler(range_doppler::Args),
     Reconstruct(reconstruct::Args),
     Robustness(robustness::Args),
@@ -103,6 +105,7 @@ impl Command {
             #[cfg(feature = "app")]
             Command::Lesson(args) => args.run(),
             Command::Maps(args) => args.run(),
+            Command::Methods(args) => args.run(),
             Command::RangeDoppler(args) => args.run(),
             Command::Reconstruct(args) => args.run(),
             Command::Robustness(args) => args.run(),

@@ -28,7 +28,8 @@ use std::time::Instant;
 /// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and
 /// milliseconds. It also gets the echoes found, the strongest first: the method's reflectors, or the peaks of its map within 20 dB. These are found_cos_theta,
 /// found_range_metres (NaN for a snapshot of unknown range), found_db (relative to the strongest) and found_confidence (0 to 1: the
-/// fraction that this echo explains of the energy around its range that the other echoes leave; NaN where the method has none).
+/// fraction that this echo explains of the energy around its range that the other echoes leave; NaN where the method has none). The ten
+/// strongest are printed.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Archive with the samples (.npz), or a recording (.toml)
@@ -79,6 +80,7 @@ impl Args {
             Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
         };
         self.write(&answer).map_err(CommandError::on(&self.output))?;
+        print_echoes(&answer.found)?;
         let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
         if doubtful > 0 {
             let of = answer.found.len();
@@ -187,6 +189,34 @@ impl Args {
             out.add("found_db", &list(|f| f.relative_power.0))?;
             out.add("found_confidence", &list(|f| f.confidence.unwrap_or(f64::NAN)))
         })
+    }
+}
+
+/// `number` to so many decimals, never -0.
+fn rounded(number: f64, decimals: i32) -> f64 {
+    let scale = 10f64.powi(decimals);
+    (number * scale).round() / scale + 0.0
+}
+
+/// Most echoes that are printed; OUT has all.
+const MOST_PRINTED: usize = 10;
+
+/// Prints the strongest echoes, a line each.
+fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
+    for echo in found.iter().take(MOST_PRINTED) {
+        let Detection { cos_theta, range_metres, .. } = echo;
+        let range = if range_metres.is_finite() { format!("{range_metres:8.2} m") } else { "unknown range".to_owned() };
+        let angle = rounded(cos_theta.clamp(-1.0, 1.0).asin().to_degrees(), 2);
+        let cos_theta = rounded(*cos_theta, 3);
+        let confidence = echo.confidence.map_or(String::new(), |c| format!(", confidence {c:.2}"));
+        print(&format!(
+            "{range}, cos θ {cos_theta:6.3} ({angle:6.2}° off broadside), {:5.1} dB{confidence}",
+            rounded(echo.relative_power.0, 1)
+        ))?;
+    }
+    match found.len().saturating_sub(MOST_PRINTED) {
+        0 => Ok(()),
+        more => print(&format!("and {more} weaker")),
     }
 }
 

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic,
-    /// near; or noise (empty scenes: give --floor dbm=LEVEL to the command that reads them)
+    /// near, fences, rain; or of bodies: bodies, street, rails, occlusion, rough; or noise (empty scenes: give --floor dbm=LEVEL to the command that
+    /// reads them). The sets are those of the thesis author's program; its text draws other ones (--thesis-text)
     #[arg(long, value_name = "1|2|3|KIND")]
     set: Kind,
 

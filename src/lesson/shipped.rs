@@ -43,6 +43,33 @@ pub const ALL: &[Shipped] = lessons![
     "what-a-network-can-know",
 ];
 
+/// The place in [`ALL`] of the lesson of this name, or of the one lesson whose name begins so.
+///
+/// # Errors
+/// [`UnknownLesson`] lists the lessons that may be meant.
+pub fn by_name(name: &str) -> Result<usize, UnknownLesson> {
+    if let Some(index) = ALL.iter().position(|lesson| lesson.id == name) {
+        return Ok(index);
+    }
+    let begun: Vec<usize> = (0..ALL.len()).filter(|&i| !name.is_empty() && ALL[i].id.starts_with(name)).collect();
+    if let [index] = begun[..] {
+        return Ok(index);
+    }
+    let may_be_meant: Vec<&str> = match begun.is_empty() {
+        true => ALL.iter().map(|lesson| lesson.id).collect(),
+        false => begun.into_iter().map(|index| ALL[index].id).collect(),
+    };
+    Err(UnknownLesson { name: name.to_owned(), known: may_be_meant.join(", ") })
+}
+
+/// A name that is that of no lesson, or the beginning of several.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("\"{name}\" names no lesson, or several; expected one of {known}")]
+pub struct UnknownLesson {
+    name: String,
+    known: String,
+}
+
 impl Shipped {
     /// The lesson.
     ///
@@ -50,5 +77,22 @@ impl Shipped {
     /// None for the lessons of [`ALL`]: a test reads each of them.
     pub fn load(&self) -> Result<Lesson, LessonTextError> {
         Lesson::from_toml(self.toml)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_beginning_of_a_name_is_enough_where_one_lesson_has_it() {
+        let name = |name| by_name(name).map(|index| ALL[index].id);
+        assert_eq!(name("two-ends"), Ok("two-ends-and-the-comb"));
+        assert_eq!(name("a-line"), Ok("a-line"), "the whole name");
+        let several = name("range-and").unwrap_err().to_string();
+        assert!(several.contains("range-and-bandwidth, range-and-velocity") && !several.contains("comb"), "{several}");
+        for none in ["", "three-ends"] {
+            assert!(name(none).unwrap_err().to_string().contains("two-ends-and-the-comb"));
+        }
     }
 }

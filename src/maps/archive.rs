@@ -44,6 +44,8 @@ const VERSION_KEY: &str = "format_version";
 /// far; `focus_off_line` (i64) is 1 where `polar_full` is focused ([`super::focus`]). A link budget is `transmit_power_dbm`, `antenna_gain_dbi`, `noise_figure_db` and, where
 /// elements have a pattern, `half_power_width_degrees` (f64). `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
 ///
+/// Returns `polar_full`.
+///
 /// # Errors
 /// [`NpzError`] where the file can't be written; nothing is left half-written.
 pub fn write_maps(
@@ -52,14 +54,15 @@ pub fn write_maps(
     scene: &Scene,
     signal: &BeatSignal,
     output: Option<&RangeAngleMap>,
-) -> Result<(), NpzError> {
+) -> Result<LogMap, NpzError> {
     let full = map_of(radar, &scene.disturbances.elements, signal, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
         add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
         add_output(out, output)?;
         add_axes(out, radar)
-    })
+    })?;
+    Ok(full)
 }
 
 /// The same of a recording: nothing is known of its reflectors, and `polar_full` is there where all its elements were recorded.

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod cli;
+mod documents;
 mod kept_rows;
 mod merge;
 mod messages;

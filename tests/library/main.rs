@@ -21,6 +21,7 @@ mod pairs;
 mod physical_captures;
 mod physical_convention;
 mod radars;
+mod readme;
 mod snapshot;
 mod stress;
 mod whole_files;

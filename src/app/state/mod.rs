@@ -35,7 +35,7 @@ pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
     RowsCommand, ThresholdChoice, ViewCommand, WindowCommand, WorkCommand,
 };
-pub use command_table::{Entry, listed, shortcuts};
+pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, Pins};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};

@@ -68,7 +68,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     method: Vec<String>,
 
-    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near; of bodies: bodies, street, rails, occlusion, rough; noise), separated by commas
+    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, fences, rain; of bodies: bodies, street, rails, occlusion, rough; noise), separated by commas
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
 

@@ -101,6 +101,11 @@ pub fn listed() -> &'static [Entry] {
     LISTED.get_or_init(|| listed_where(if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop }))
 }
 
+/// The same of a page in a browser, wherever this program runs.
+pub fn listed_on_a_page() -> Vec<Entry> {
+    listed_where(on_a_page)
+}
+
 /// The commands of [`everything`] that `keys` offers here, each with the key that it gives them.
 fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>>) -> Vec<Entry> {
     everything()
@@ -177,7 +182,7 @@ mod tests {
     #[test]
     fn no_command_of_a_page_has_a_key_of_the_browser() {
         let mut keys = BTreeMap::new();
-        for entry in listed_where(on_a_page) {
+        for entry in listed_on_a_page() {
             let Some(KeyboardShortcut { modifiers, logical_key: key }) = entry.key else { continue };
             let of_the_browser = matches!(key, Key::F5 | Key::F11 | Key::F12)
                 || modifiers.command && !modifiers.shift && matches!(key, Key::T | Key::W | Key::N);
@@ -191,7 +196,7 @@ mod tests {
     fn a_page_offers_a_link_in_place_of_closing_the_window() {
         let [link, quit] = [Command::Export(ExportCommand::CopyLink), Command::Window(WindowCommand::Quit)];
         let offers = |list: &[Entry], command: &Command| list.iter().any(|entry| entry.command == *command);
-        let (page, desktop) = (listed_where(on_a_page), listed_where(on_a_desktop));
+        let (page, desktop) = (listed_on_a_page(), listed_where(on_a_desktop));
         assert!(offers(&page, &link) && !offers(&page, &quit));
         assert!(!offers(&desktop, &link) && offers(&desktop, &quit));
     }
