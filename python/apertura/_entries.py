@@ -18,6 +18,9 @@ FIGURES = ("squared_error", "detection", "false_alarm", "detection_at_rate")
 #: Relative differences of figures below this one are the last bits of another machine.
 LAST_BITS = 1e-3
 
+#: Standard errors within which the mean of few numbers lies as often as that of many within two: Student's t for 95.45 %.
+_ERRORS_OF_FEW = {2: 13.97, 3: 4.53, 4: 3.31, 5: 2.87}
+
 #: Scores of one suite: its name, its number of scenes, and a list of numbers for each figure, or why the method refuses.
 Row = dict[str, Any]
 
@@ -95,7 +98,7 @@ def _wrong_with(found: dict[str, Any]) -> str | None:
 
 
 def differences(told: Sequence[Row], found: Sequence[Row]) -> list[str]:
-    """Where the mean figures of a draw differ by more than two standard errors of their scenes' differences.
+    """Where the mean figures of a draw differ by more than two standard errors of their scenes' differences (of few scenes, Student's t).
 
     Args:
         told: Rows of an entry.
@@ -114,10 +117,32 @@ def differences(told: Sequence[Row], found: Sequence[Row]) -> list[str]:
                 x, y = a[name][: b["scenes"]], b[name]
                 apart, error = mean_and_error([there - here for there, here in zip(x, y, strict=True)])
                 mean = statistics.fmean(x)
-                tolerance = max(2 * error, LAST_BITS * abs(mean))
+                tolerance = max(_ERRORS_OF_FEW.get(len(y), 2.0) * error, LAST_BITS * abs(mean))
                 if abs(apart) > tolerance:
                     wrong.append(f"{a['suite']}: {name} is {mean:.6g} in the entry and {mean - apart:.6g} here; expected within {tolerance:.2g}")
     return wrong
+
+
+def _pooled(scores: Sequence[float]) -> float:
+    """One z of the z of each suite."""
+    return sum(scores) / math.sqrt(len(scores)) if scores else 0.0
+
+
+def _apart(told: Sequence[Row], found: Sequence[Row]) -> list[list[float]]:
+    """Squared errors here minus those of the entry for each scene of each suite; differences of last bits are 0."""
+    both = [(a["squared_error"], b["squared_error"]) for a, b in zip(told, found, strict=True) if "refused" not in a and "refused" not in b]
+    return [[0.0 if math.isclose(x, y, rel_tol=LAST_BITS) else y - x for x, y in zip(there, here)] for there, here in both]
+
+
+def changed_scenes(told: Sequence[Row], found: Sequence[Row]) -> int:
+    """Scenes whose squared error differs by more than last bits."""
+    return sum(part != 0 for parts in _apart(told, found) for part in parts)
+
+
+def paired_z(told: Sequence[Row], found: Sequence[Row]) -> float:
+    """How much worse the squared errors are here than in an entry, pooled over the suites that differ by more than last bits."""
+    means = [mean_and_error(parts) for parts in _apart(told, found) if any(parts)]
+    return _pooled([mean / (error or abs(mean)) for mean, error in means])
 
 
 def pooled_z(later: Sequence[Row], *earlier: Sequence[Row]) -> float:
@@ -129,7 +154,7 @@ def pooled_z(later: Sequence[Row], *earlier: Sequence[Row]) -> float:
             here, error = mean_and_error(row["squared_error"])
             there, other_error = mean_and_error([value for other in others for value in other["squared_error"]])
             scores.append((here - there) / (math.hypot(error, other_error) or 1.0))
-    return sum(scores) / math.sqrt(len(scores)) if scores else 0.0
+    return _pooled(scores)
 
 
 def _percent(values: Sequence[float] | None) -> str:

@@ -14,14 +14,14 @@ import secrets
 import statistics
 import sys
 import time
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Sequence
 
 import numpy as np
 
 from . import _apertura
-from ._entries import FIGURES, Row, differences, digest_of, markdown, mean_and_error, pooled_z, read_entry, second_seed, table, text_of
+from ._entries import FIGURES, Row, changed_scenes, differences, digest_of, markdown, mean_and_error, paired_z, pooled_z
+from ._entries import read_entry, second_seed, table, text_of
 from ._suites import SCENES, SEED, SUITES, VERSION, Suite, check_scenes, samples_hash, scenes_hash, target_ideal
 
 #: Methods of this package that docs/benchmark has entries of.
@@ -131,26 +131,31 @@ def check(path: Path, method: _apertura.Method, weights: str, scenes: int = SCEN
     for name, value in here.items():
         if told["method"][name] != value:
             raise ValueError(f"{path} is of a method whose {name} is {told['method'][name]}; here it is {value}")
-    wrong = []
-    for half in ("first", "second"):
-        rows = told[half]["suites"]
-        found = draw(method, told[half]["seed"], scenes, SUITES)["suites"]
-        wrong += [f"{half} draw, {difference}" for difference in differences(rows, found)]
+    halves = ("first", "second")
+    rows = {half: told[half]["suites"] for half in halves}
+    found = {half: draw(method, told[half]["seed"], scenes, SUITES)["suites"] for half in halves}
+    wrong = [f"{half} draw, {difference}" for half in halves for difference in differences(rows[half], found[half])]
+    entered, here_again = rows["first"] + rows["second"], found["first"] + found["second"]
+    better = paired_z(entered, here_again)
+    if scenes == SCENES and better > LIMIT:
+        wrong.append(f"squared errors are worse here on most suites: z = {better:.2f}, expected at most {LIMIT}")
     if wrong:
         raise ValueError(f"{path}: the figures are not those of the entry:\n  " + "\n  ".join(wrong))
     third = draw(method, secrets.randbits(48) if seed is None else seed, scenes, SUITES)
-    z = pooled_z(third["suites"], told["first"]["suites"], told["second"]["suites"])
-    drawn = f"a third draw, of seed {third['seed']}, is worse than both by z = {z:+.2f}; an honest entry is below {LIMIT} in 99 of 100 checks"
+    z = pooled_z(third["suites"], *rows.values())
+    drawn = f"The third draw, of seed {third['seed']}, is worse than both draws of the entry by z = {z:+.2f}; 99 of 100 honest entries are below {LIMIT}."
     if scenes == SCENES and z > LIMIT:
-        raise ValueError(f"{path} was tuned on the scenes of its draws: {drawn}")
-    return f"{path}: the figures are those of the entry; {drawn}{'' if scenes == SCENES else f' of {SCENES} scenes a suite: no verdict by {scenes}'}"
+        raise ValueError(f"{path} was tuned on the scenes of its draws. {drawn}")
+    changed = f"{changed_scenes(entered, here_again)} scenes differ by more than last bits."
+    verdict = "" if scenes == SCENES else f" That is no verdict: it needs {SCENES} scenes of each suite."
+    return f"{path}: the figures are those of the entry. {changed} {drawn}{verdict}"
 
 
 def _freeze() -> str:
     if os.environ.get("APERTURA_SIMD") != "portable":
         raise ValueError("samples are the same on every machine with APERTURA_SIMD=portable alone: set it")
     hashes = lambda suite: {"scenes_sha256": scenes_hash(suite, SEED, SCENES), "samples_sha256": samples_hash(suite, SEED, SCENES)}
-    suites = {suite.name: asdict(suite) | hashes(suite) for suite in SUITES}
+    suites = {suite.name: suite.conditions | hashes(suite) for suite in SUITES}
     return json.dumps({"apertura_benchmark": VERSION, "seed": SEED, "scenes": SCENES, "suites": suites}, indent=1)
 
 

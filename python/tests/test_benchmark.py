@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import apertura as ap
-from apertura import _entries, benchmark
+from apertura import _entries, _suites, benchmark
 
 #: Entries of the package's own methods.
 ENTRIES = sorted((Path(__file__).parents[2] / "docs" / "benchmark").glob("*.json"))
@@ -51,7 +51,7 @@ def row(suite="set 1", **figures):
 
 def test_the_scenes_are_the_frozen_ones():
     assert benchmark.check_scenes() == []
-    kept = benchmark.frozen()
+    kept = _suites.frozen()
     assert [*kept["suites"]] == [*NAMED]
     assert (kept["apertura_benchmark"], kept["seed"], kept["scenes"]) == (benchmark.VERSION, benchmark.SEED, benchmark.SCENES)
 
@@ -60,7 +60,7 @@ def test_other_scenes_and_conditions_are_noticed(monkeypatch):
     suite = NAMED["set 2 at 20 dB"]
     other = benchmark.Suite(suite.name, suite.set, "snr=21")
     assert benchmark.check_scenes([suite, other]) == [suite.name]
-    monkeypatch.setattr("apertura._suites.SEED", 7)
+    monkeypatch.setattr(_suites, "SEED", 7)
     assert benchmark.check_scenes(SUITES) == [suite.name for suite in SUITES]
 
 
@@ -72,7 +72,7 @@ for suite in benchmark.SUITES:
         print(suite.name, benchmark.samples_hash(suite, benchmark.SEED, benchmark.SCENES), sep=": ")
 """
     found = subprocess.run([sys.executable, "-c", code], env={**os.environ, "APERTURA_SIMD": "portable"}, capture_output=True, text=True, check=True)
-    kept = benchmark.frozen()["suites"]
+    kept = _suites.frozen()["suites"]
     assert dict(line.split(": ") for line in found.stdout.splitlines()) == {suite.name: kept[suite.name]["samples_sha256"] for suite in SUITES}
 
 
@@ -158,16 +158,25 @@ def test_only_another_score_has_another_second_draw(entry):
 
 
 def test_figures_may_differ_by_two_paired_errors():
-    told = row(squared_error=[100.0, 300.0, 1000.0, 50.0], false_alarm=[1e-5, 2e-5, 1e-5, 3e-5], detection=[1.0, 0.5, 0.5, 1.0])
-    assert benchmark.differences([told], [told]) == []
-    last_bits = row(**{name: [v * 1.0001 for v in told[name]] for name in ("squared_error", "false_alarm", "detection")})
-    assert benchmark.differences([told], [last_bits]) == []
-    one = row(**{**told, "squared_error": [100.0, 300.0, 400.0, 50.0]})
+    told = row(squared_error=[100.0, 120.0, 90.0, 130.0], false_alarm=[1e-5, 2e-5, 1e-5, 2e-5], detection=[1.0, 0.6, 0.6, 1.0])
+    times = lambda factor: row(**{name: [value * factor for value in told[name]] for name in ("squared_error", "false_alarm", "detection")})
+    assert benchmark.differences([told], [told]) == benchmark.differences([told], [times(1.0001)]) == []
+    one = row(**{**told, "squared_error": [100.0, 900.0, 90.0, 130.0]})
     assert benchmark.differences([told], [one]) == [], "one scene that goes another way is no other method"
-    worse = row(**{name: [v * 1.2 for v in told[name]] for name in ("squared_error", "false_alarm", "detection")})
-    names = [difference.split(": ")[1].split(" is ")[0] for difference in benchmark.differences([told], [worse])]
+    names = [difference.split(": ")[1].split(" is ")[0] for difference in benchmark.differences([told], [times(1.2)])]
     assert names == ["squared_error", "detection", "false_alarm"], "false alarms are few: the tolerance is relative"
-    assert benchmark.differences([told], [row(**{name: told[name][:2] for name in ("squared_error", "false_alarm", "detection")})]) == []
+    first = row(**{name: told[name][:2] for name in ("squared_error", "false_alarm", "detection")})
+    assert benchmark.differences([told], [first]) == []
+
+
+def test_figures_that_are_better_everywhere_are_noticed():
+    found = [row(name, squared_error=[100.0 + index for index in range(20)], false_alarm=[0.0] * 20) for name in NAMED]
+    told = json.loads(json.dumps(found))
+    for each in told:
+        each["squared_error"][3] /= 2
+    assert benchmark.differences(told, found) == [], "one scene of a suite is within its tolerance"
+    assert benchmark.changed_scenes(told, found) == len(NAMED)
+    assert benchmark.paired_z(told, found) > benchmark.LIMIT > abs(benchmark.paired_z(found, found))
 
 
 def test_one_z_pools_the_suites():
@@ -206,8 +215,10 @@ def test_the_entries_are_those_of_this_package(path):
     method = ap.method(path.stem)
     assert found["method"]["name"] == method.name and found["method"]["eta"] == pytest.approx(method.eta, abs=1e-6)
     assert found["method"]["weights"] == benchmark.weights_of(method.name)
-    again = benchmark.draw(method, benchmark.SEED, 2)["suites"]
-    assert benchmark.differences(found["first"]["suites"], again) == []
+    entered, again = found["first"]["suites"], benchmark.draw(method, benchmark.SEED, 2)["suites"]
+    assert benchmark.differences(entered, again) == []
+    if found["machine"]["processor"] == benchmark.machine()["processor"]:
+        assert benchmark.changed_scenes(entered, again) == 0, "the same processor computes the same bits: make the entries again"
 
 
 @needs_entries
