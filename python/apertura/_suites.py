@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass
 from importlib import resources
-from typing import Any, Iterator, Sequence
+from typing import Any, Iterator, Literal, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +35,7 @@ class Suite:
     set: str
     floor: str = "thesis"
     normalisation: str = "min-max"
-    convention: str = "thesis"
+    convention: Literal["thesis", "physical"] = "thesis"
     imperfect: bool = False
 
     @property
@@ -102,5 +102,5 @@ def frozen() -> dict[str, Any]:
 def check_scenes(suites: Sequence[Suite] = SUITES) -> list[str]:
     """Names of the suites whose scenes or conditions are not the frozen ones."""
     kept = frozen()["suites"]
-    now = lambda suite: suite.conditions | {"scenes_sha256": scenes_hash(suite, SEED, SCENES)}
-    return [suite.name for suite in suites if not now(suite).items() <= kept.get(suite.name, {}).items()]
+    now = {suite.name: suite.conditions | {"scenes_sha256": scenes_hash(suite, SEED, SCENES)} for suite in suites}
+    return [name for name, conditions in now.items() if not conditions.items() <= kept.get(name, {}).items()]

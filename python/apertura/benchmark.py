@@ -154,8 +154,9 @@ def check(path: Path, method: _apertura.Method, weights: str, scenes: int = SCEN
 def _freeze() -> str:
     if os.environ.get("APERTURA_SIMD") != "portable":
         raise ValueError("samples are the same on every machine with APERTURA_SIMD=portable alone: set it")
-    hashes = lambda suite: {"scenes_sha256": scenes_hash(suite, SEED, SCENES), "samples_sha256": samples_hash(suite, SEED, SCENES)}
-    suites = {suite.name: suite.conditions | hashes(suite) for suite in SUITES}
+    suites = {suite.name: suite.conditions | {"scenes_sha256": scenes_hash(suite, SEED, SCENES)} for suite in SUITES}
+    for suite in SUITES:
+        suites[suite.name]["samples_sha256"] = samples_hash(suite, SEED, SCENES)
     return json.dumps({"apertura_benchmark": VERSION, "seed": SEED, "scenes": SCENES, "suites": suites}, indent=1)
 
 
