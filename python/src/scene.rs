@@ -245,6 +245,7 @@ impl Scene {
         all.set_item("elements", self.elements(py)?)?;
         all.set_item("interferer", self.interferer(py)?)?;
         all.set_item("mirror", self.mirror(py)?)?;
+        all.set_item("shadows", self.shadows())?;
         if let Some(fields) = fields {
             all.update(fields.as_mapping())?;
         }

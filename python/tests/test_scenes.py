@@ -50,6 +50,7 @@ def test_an_npz_keeps_positions(tmp_path):
 def test_replace_changes_what_it_is_told():
     scene = disturbed().replace(name="Other", mirror=None)
     assert scene.name == "Other" and scene.mirror is None and scene.objects == ALL_KINDS
+    assert not ap.Scene(ALL_KINDS, shadows=False).replace(name="Other").shadows
     assert ap.Radar().replace(samples=256) == ap.Radar(samples=256) != ap.Radar()
 
 
