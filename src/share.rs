@@ -51,7 +51,7 @@ pub struct View {
     pub colours: ColourMap,
     /// Whether maps are drawn over x and y, not over cos(theta) and range.
     pub cartesian: bool,
-    /// The visible part of range-angle maps.
+    /// The visible part of range-angle maps; left is the first column.
     pub range_angle_part: Part,
     /// The visible part of Cartesian maps.
     pub cartesian_part: Part,

@@ -6,8 +6,9 @@
     found = ap.method("hybrid").reconstruct(maps.ends)
     print(ap.metrics(maps.target, found.map, found.eta))
 
-Maps are `[range bins, columns]`: row k is range `radar.range_metres[k]`, column k the direction `radar.cos_theta[k]`. An error of the library
-becomes ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
+Maps are `[range bins, columns]`: row k is range `radar.range_metres[k]`, column k the direction `radar.cos_theta[k]`, which falls from column
+to column under the two-way carrier: `map[:, numpy.argsort(radar.cos_theta)]` has left on the left. An error of the library becomes
+ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
 """
 
 from . import data, torch

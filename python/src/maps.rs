@@ -18,7 +18,7 @@ use std::sync::OnceLock;
 /// The samples of a radar's elements, and the range-angle maps made of them. A map is computed when it is first asked for.
 ///
 /// Arrays are read-only views of what this object holds, which they keep alive. Row k of a map is range `radar.range_metres[k]`, column k is
-/// the direction `radar.cos_theta[k]`.
+/// the direction `radar.cos_theta[k]`; `target[:, numpy.argsort(radar.cos_theta)]` has left on the left in any convention.
 #[pyclass(module = "apertura", frozen)]
 pub struct Maps {
     radar: radar::Radar,

@@ -355,7 +355,8 @@ impl Radar {
         owned(py, (0..self.0.samples).map(|bin| self.0.range_of_bin_metres(bin as f64)).collect::<Array1<f64>>())
     }
 
-    /// Cosines, from the array's axis, of the columns of a map, float64 `[elements]`.
+    /// Cosines, from the array's axis, of the columns of a map, float64 `[elements]`. They rise from column to column under the one-way carrier
+    /// and fall under the two-way carrier; `map[:, numpy.argsort(radar.cos_theta)]` has left on the left with either.
     #[getter]
     fn cos_theta<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         owned(py, (0..self.0.elements).map(|column| self.0.cos_of_column(column as f64)).collect::<Array1<f64>>())

@@ -37,6 +37,15 @@ def test_maps_of_samples_are_those_of_the_scene():
     assert np.array_equal(again.target, maps.target) and np.array_equal(again.decades, maps.decades)
 
 
+@pytest.mark.parametrize("convention", ["thesis", "physical"])
+def test_columns_sorted_by_their_cosine_have_left_on_the_left(convention):
+    radar = SMALL.replace(convention=convention)
+    maps = ap.Scene.of_points([[-0.6, 1.2]], radar).simulate(floor="exact")
+    drawn = maps.target[:, np.argsort(radar.cos_theta)]
+    column = np.unravel_index(drawn.argmax(), drawn.shape)[1]
+    assert np.sort(radar.cos_theta)[column] == pytest.approx(-0.45, abs=0.1) and 0 < column < 32
+
+
 def test_views_outlive_their_maps():
     target = simulated().target
     expected = simulated().target.copy()

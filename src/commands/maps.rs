@@ -27,11 +27,12 @@ use std::sync::Arc;
 /// estimate of Lambda. The window's "Export maps" writes the same. Over a map of the whole array, a line says how many decibels Lambda spans.
 ///
 /// Further keys are the axes: range_metres (f64 [512]), cos_theta (f64 [1024], 0 straight ahead, 1 along the array to the right),
-/// element_x_metres (f64 [1024]; sub0 has the first of them, sub1 the last); the weights of the two transforms: sample_window
-/// (f64 [512]), element_window (f64 [1024]); and each of the radar's constants as a number: carrier_hz, bandwidth_hz,
-/// element_spacing_metres, transmit_power_watts, carrier_turns_per_wavelength (-1 one-way, +2 two-way), elements, end_elements,
-/// samples; chirp_seconds where it is another than 25.6e-6; transmit_power_dbm, antenna_gain_dbi, noise_figure_db and
-/// half_power_width_degrees of a link budget. format_version is 2; archives of version 1 have neither axes nor constants and are still read.
+/// columns_left_to_right (1 where cos_theta rises from column to column; 0 where it falls, as with the two-way carrier: in NumPy
+/// polar_full[..., ::-1] then has left on the left), element_x_metres (f64 [1024]; sub0 has the first of them, sub1 the last); the weights of
+/// the two transforms: sample_window (f64 [512]), element_window (f64 [1024]); and each of the radar's constants as a number: carrier_hz, bandwidth_hz,
+/// element_spacing_metres, transmit_power_watts, carrier_turns_per_wavelength (-1 one-way, +2 two-way), elements, end_elements, samples;
+/// chirp_seconds where it is another than 25.6e-6; transmit_power_dbm, antenna_gain_dbi, noise_figure_db and half_power_width_degrees of a link
+/// budget. format_version is 2; archives of version 1 have neither axes nor constants and are still read.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene (.toml or .npz) or recording (.toml with [recording]) to look at

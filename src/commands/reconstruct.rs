@@ -7,7 +7,7 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, write_npz};
-use crate::maps::archive::read_radar;
+use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
@@ -26,10 +26,11 @@ use std::time::Instant;
 /// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` and a recording's .toml name their own radar.
 ///
 /// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and
-/// milliseconds. It also gets the echoes found, the strongest first: the method's reflectors, or the peaks of its map within 20 dB. These are found_cos_theta,
-/// found_range_metres (NaN for a snapshot of unknown range), found_db (relative to the strongest) and found_confidence (0 to 1: the
-/// fraction that this echo explains of the energy around its range that the other echoes leave; NaN where the method has none). The ten
-/// strongest are printed.
+/// milliseconds; cos_theta (f64 [1024]) and columns_left_to_right (0 where cos_theta falls from column to column) say which way the columns run.
+/// It also gets the echoes found, the strongest first: the method's reflectors, or the peaks of its map within 20 dB. These are found_cos_theta,
+/// found_range_metres (NaN for a snapshot of unknown range), found_db (relative to the strongest) and found_confidence (0 to 1: the fraction that
+/// this echo explains of the energy around its range that the other echoes leave; NaN where the method has none). The ten strongest are
+/// printed.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Archive with the samples (.npz), or a recording (.toml)
@@ -79,7 +80,7 @@ impl Args {
             }
             Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
         };
-        self.write(&answer).map_err(CommandError::on(&self.output))?;
+        self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
         print_echoes(&answer.found)?;
         let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
         if doubtful > 0 {
@@ -178,10 +179,11 @@ impl Args {
         Ok(Answer { eta: method.eta_of(&answer), map: answer.lambda.lambda, milliseconds, found })
     }
 
-    fn write(&self, answer: &Answer) -> Result<(), NpzError> {
+    fn write(&self, radar: &Radar, answer: &Answer) -> Result<(), NpzError> {
         let list = |of: fn(&Detection) -> f64| answer.found.iter().map(of).collect::<Array1<f64>>();
         write_npz(&self.output, |out| {
             out.add("net_output", &answer.map)?;
+            add_columns(out, radar)?;
             out.add("eta", &arr0(f64::from(answer.eta)))?;
             out.add("milliseconds", &arr0(answer.milliseconds))?;
             out.add("found_cos_theta", &list(|f| f.cos_theta))?;

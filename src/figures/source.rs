@@ -121,6 +121,7 @@ impl Source {
         ends_of_bar: Option<(&'static str, &'static str)>,
     ) -> Panel {
         let x = Axis::new("cos θ", -1.0, 1.0);
+        let values = self.radar.left_to_right(&values).to_owned();
         Panel::cells(title, Cells { x, y: self.range_axis(), values, colours, ends_of_bar, rings: Vec::new() })
     }
 
@@ -155,4 +156,24 @@ pub fn preset(id: &str) -> Result<Scene, FigureError> {
     let missing = || FigureError::Missing(format!("there is no preset \"{id}\""));
     let preset = Preset::by_id(id).ok_or_else(missing)?;
     preset.load().map(|file| file.scene).map_err(|e| FigureError::Missing(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sheet::Content;
+    use super::*;
+    use crate::radar::Convention;
+
+    #[test]
+    fn left_is_left_in_a_figure_of_either_convention() {
+        for convention in Convention::ALL {
+            let source = Source { radar: Radar::default().in_convention(convention) };
+            let mut lambda = Array2::zeros((512, 1024));
+            lambda[[200, source.radar.column_of_cos(-0.5) as usize]] = 1.0;
+            let panel = source.lambda_panel("", &RangeAngleMap { lambda });
+            let Content::Cells(cells) = panel.content else { panic!("cells") };
+            let ((_, column), _) = cells.values.indexed_iter().find(|(_, v)| **v == 1.0).unwrap();
+            assert!(column.abs_diff(256) <= 1, "{convention:?}: column {column}");
+        }
+    }
 }

@@ -26,6 +26,9 @@ const FOCUS_KEY: &str = "focus_off_line";
 const BUDGET_KEYS: [&str; 3] = ["transmit_power_dbm", "antenna_gain_dbi", "noise_figure_db"];
 const WIDTH_KEY: &str = "half_power_width_degrees";
 
+/// Key of whether columns run from left to right; older archives lack it.
+const COLUMNS_KEY: &str = "columns_left_to_right";
+
 /// Key of [`FORMAT_VERSION`].
 const VERSION_KEY: &str = "format_version";
 
@@ -34,15 +37,17 @@ const VERSION_KEY: &str = "format_version";
 /// `polar_partial_mag_phase` (f64 `[4, range bins, columns]`, the network's input). Where there is one, `output` (f32 `[1, range bins,
 /// columns]`) is Lambda as a method estimates it. Arrays are in NumPy's usual (C) order.
 ///
-/// Beside them stand the axes: `range_metres` (f64 `[range bins]`), `cos_theta` (f64 `[columns]`; the map shows a blob there that
-/// squint may have moved from its true direction), `element_x_metres` (f64 `[elements]`; `sub0` has the first of them, `sub1` the
-/// last). Each constant of the radar is a number of its own: `carrier_hz`, `bandwidth_hz`, `element_spacing_metres`,
-/// `transmit_power_watts` (f64), `chirp_seconds` (f64, where it is another than [`CHIRP_SECONDS`]), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength` (f64, -1 for the one-way
-/// and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the weights of the
-/// two transforms. Where transmitters stand apart from receivers, `transmitter_x_metres` and `receiver_x_metres` (f64) are their places;
-/// an element stands halfway between its two antennas. Where some stand off the line, `transmitter_y_metres` and `receiver_y_metres` say how
-/// far; `focus_off_line` (i64) is 1 where `polar_full` is focused ([`super::focus`]). A link budget is `transmit_power_dbm`, `antenna_gain_dbi`, `noise_figure_db` and, where
-/// elements have a pattern, `half_power_width_degrees` (f64). `format_version` is [`FORMAT_VERSION`], or 2 without such antennas.
+/// Beside them stand the axes: `range_metres` (f64 `[range bins]`), `cos_theta` (f64 `[columns]`; the map shows a blob there that squint may have
+/// moved from its true direction), `columns_left_to_right` (i64: 1 where `cos_theta` rises from column to column, 0 where it falls and
+/// `polar_full[..., ::-1]` is the map as it is drawn), `element_x_metres` (f64 `[elements]`; `sub0` has the first of them, `sub1` the last). Each
+/// constant of the radar is a number of its own: `carrier_hz`, `bandwidth_hz`, `element_spacing_metres`, `transmit_power_watts` (f64),
+/// `chirp_seconds` (f64, where it is another than [`CHIRP_SECONDS`]), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength`
+/// (f64, -1 for the one-way and +2 for the two-way reading). `sample_window` (f64 `[samples]`) and `element_window` (f64 `[elements]`) are the
+/// weights of the two transforms. Where transmitters stand apart from receivers, `transmitter_x_metres` and `receiver_x_metres` (f64) are their
+/// places; an element stands halfway between its two antennas. Where some stand off the line, `transmitter_y_metres` and `receiver_y_metres` say
+/// how far; `focus_off_line` (i64) is 1 where `polar_full` is focused ([`super::focus`]). A link budget is `transmit_power_dbm`,
+/// `antenna_gain_dbi`, `noise_figure_db` and, where elements have a pattern, `half_power_width_degrees` (f64). `format_version` is
+/// [`FORMAT_VERSION`], or 2 without such antennas.
 ///
 /// Returns `polar_full`.
 ///
@@ -116,6 +121,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         budget: read_budget(archive)?,
         ..Radar::default()
     };
+    check_columns(archive, &radar)?;
     radar.validate().map_err(|e| NpzError::Damaged { key: e.field().to_owned(), reason: e.to_string() })?;
     let weights = archive.reals::<ndarray::Ix1>("element_window")?;
     let like = |window: &WindowFunction| window.weights(elements) == weights.to_vec();
@@ -124,6 +130,18 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         reason: "its weights are those of no window that this program knows".to_owned(),
     })?;
     Ok(Some(Radar { window, ..radar }))
+}
+
+/// Refuses maps whose columns were turned: their samples and `polar_partial_mag_phase` would be of another order than the radar's.
+fn check_columns(archive: &mut Npz, radar: &Radar) -> Result<(), NpzError> {
+    let own = f64::from(u8::from(!radar.columns_fall()));
+    match archive.has(COLUMNS_KEY).then(|| number(archive, COLUMNS_KEY)).transpose()? {
+        Some(found) if found != own => {
+            let turns = radar.carrier.turns_per_wavelength();
+            Err(expected(COLUMNS_KEY, found, format!("{own}, as carrier_turns_per_wavelength is {turns}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The link budget, where the radar has one.
@@ -167,6 +185,16 @@ fn expected(key: &str, found: f64, expected: String) -> NpzError {
     NpzError::Damaged { key: key.to_owned(), reason: format!("it is {found}; expected {expected}") }
 }
 
+/// Which directions the columns of a map stand for (`cos_theta`), and how they run (`columns_left_to_right`).
+///
+/// # Errors
+/// As [`NpzOutput::add`].
+pub fn add_columns(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
+    let cosines: Array1<f64> = (0..radar.elements).map(|column| radar.cos_of_column(column as f64)).collect();
+    out.add("cos_theta", &cosines)?;
+    out.add(COLUMNS_KEY, &arr0(i64::from(!radar.columns_fall())))
+}
+
 /// Axes and constants, one array each.
 fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     let axis = |count: usize, at: &dyn Fn(usize) -> f64| (0..count).map(at).collect::<Array1<f64>>();
@@ -187,7 +215,7 @@ fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
         out.add(FOCUS_KEY, &arr0(1i64))?;
     }
     out.add("range_metres", &axis(radar.samples, &|bin| radar.range_of_bin_metres(bin as f64)))?;
-    out.add("cos_theta", &axis(radar.elements, &|column| radar.cos_of_column(column as f64)))?;
+    add_columns(out, radar)?;
     out.add("element_x_metres", &axis(radar.elements, &|n| radar.element_x_metres(n)))?;
     out.add("sample_window", &Array1::from(radar.window.weights(radar.samples)))?;
     out.add("element_window", &Array1::from(radar.window.weights(radar.elements)))?;
@@ -286,6 +314,25 @@ mod tests {
             let (_folder, mut archive) = archive(&radar);
             assert_eq!(read_radar(&mut archive).unwrap(), Some(radar));
         }
+    }
+
+    #[test]
+    fn archives_say_how_their_columns_run() {
+        for (radar, left_to_right) in [(Radar { carrier: Carrier::OneWay, ..small() }, 1.0), (small(), 0.0)] {
+            let (_folder, mut archive) = archive(&radar);
+            assert_eq!(number(&mut archive, COLUMNS_KEY).unwrap(), left_to_right);
+            let cos = archive.reals::<Ix1>("cos_theta").unwrap();
+            assert_eq!(cos[0] < cos[31], left_to_right == 1.0, "{cos}");
+        }
+    }
+
+    #[test]
+    fn columns_that_run_against_the_carrier_are_refused() {
+        let (folder, _) = archive(&small());
+        let path = folder.path().join("turned.npz");
+        write_npz(&path, |out| out.add(COLUMNS_KEY, &arr0(1i64))).unwrap();
+        let error = check_columns(&mut Npz::open(&path).unwrap(), &small()).unwrap_err().to_string();
+        assert!(error.contains("columns_left_to_right") && error.contains("it is 1; expected 0"), "{error}");
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! From the beat signal to pictures: range profiles, complex range-angle map, log-magnitude, Lambda, threshold, Cartesian view.
 //!
-//! Every map is `[range bin, column]`, row `k1` at `k1 * c / 2B`, column `k2` at cos(theta) = `(k2 - N_a/2) / (N_a/2)`
-//! (half-wavelength spacing). Transforms are orthonormal: `1/sqrt(N_r)` over range, `1/sqrt(N_a)` over the elements.
+//! Every map is `[range bin, column]`, row `k1` at `k1 * c / 2B`, column `k2` at cos(theta) = `(k2 - N_a/2) / (N_a/2)` (half-wavelength spacing,
+//! one-way carrier; under the two-way carrier cos(theta) falls from column to column). Transforms are orthonormal: `1/sqrt(N_r)` over range,
+//! `1/sqrt(N_a)` over the elements.
 
 pub mod archive;
 pub mod cartesian;

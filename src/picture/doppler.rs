@@ -54,6 +54,6 @@ impl Drawing for Picture<'_> {
             radar.chirps,
             radar.unambiguous_velocity_metres_per_second()
         );
-        MapPanel { title, cells: Cells::Lambda(self.lambda, self.colours) }.draw_over(root, &axes)
+        MapPanel { title, cells: Cells::Lambda(self.lambda.lambda.view(), self.colours) }.draw_over(root, &axes)
     }
 }

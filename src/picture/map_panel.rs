@@ -5,19 +5,19 @@ use super::colour::{ColourMap, Rgb};
 use super::detections::Detection;
 use super::text::{self, Weight};
 use crate::evaluate::TARGET_ETA;
-use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
+use ndarray::ArrayView2;
 use plotters::prelude::*;
 
-/// What a panel paints.
+/// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Cells<'a> {
     /// Lambda in colours, with a colour bar.
-    Lambda(&'a RangeAngleMap, ColourMap),
+    Lambda(ArrayView2<'a, f32>, ColourMap),
     /// The cells above a threshold.
-    Above(&'a RangeAngleMap, f32),
+    Above(ArrayView2<'a, f32>, f32),
     /// The output above its threshold: hits, misses and false alarms.
-    Detections { target: &'a RangeAngleMap, output: &'a RangeAngleMap, eta: f32 },
+    Detections { target: ArrayView2<'a, f32>, output: ArrayView2<'a, f32>, eta: f32 },
 }
 
 /// A map and its title.
@@ -35,7 +35,7 @@ const BAR_SPACE: i32 = 62;
 
 /// What the two axes of a map count, from end to end.
 pub(super) struct MapAxes {
-    /// To the right; where the first is above the second, the map is mirrored.
+    /// To the right, rising.
     pub x: [f64; 2],
     /// Upwards.
     pub y: [f64; 2],
@@ -48,7 +48,7 @@ pub(super) struct MapAxes {
 impl MapPanel<'_> {
     pub(super) fn draw<B: DrawingBackend>(&self, area: &Area<B>, radar: &Radar) -> Result<(), PictureError> {
         let axes = MapAxes {
-            x: [radar.cos_of_column(0.0), radar.cos_of_column(radar.elements as f64)],
+            x: [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + 0.5)),
             y: [0.0, radar.max_range_metres()],
             x_title: "cos \u{3b8}",
             x_digits: 1,
@@ -67,13 +67,12 @@ impl MapPanel<'_> {
             .x_label_area_size(52)
             .y_label_area_size(62)
             .margin_right(2)
-            .build_cartesian_2d(left.min(right)..left.max(right), bottom..top)
+            .build_cartesian_2d(left..right, bottom..top)
             .map_err(PictureError::new)?;
         let (x, y) = chart.plotting_area().get_pixel_range();
         let size = ((x.end - x.start) as u32, (y.end - y.start) as u32);
-        let pixels = self.cells.paint(size.0 as usize, size.1 as usize, right < left);
-        let top_left = (left.min(right), top);
-        let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer(top_left, size, pixels)
+        let pixels = self.cells.paint(size.0 as usize, size.1 as usize);
+        let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer((left, top), size, pixels)
             .ok_or_else(|| PictureError::new("a map has no room"))?;
         chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
         chart
@@ -104,12 +103,12 @@ impl MapPanel<'_> {
 impl Cells<'_> {
     fn dim(&self) -> (usize, usize) {
         match self {
-            Cells::Lambda(map, _) | Cells::Above(map, _) | Cells::Detections { output: map, .. } => map.lambda.dim(),
+            Cells::Lambda(map, _) | Cells::Above(map, _) | Cells::Detections { output: map, .. } => map.dim(),
         }
     }
 
     /// RGB pixels, top row first. Where several cells fall on a pixel the most telling one wins: the brightest, a hit, a false alarm.
-    fn paint(&self, width: usize, height: usize, mirrored: bool) -> Vec<u8> {
+    fn paint(&self, width: usize, height: usize) -> Vec<u8> {
         let (bins, columns) = self.dim();
         // The cells under pixel i of n, at least one.
         let under = |i: usize, n: usize, cells: usize| {
@@ -119,7 +118,6 @@ impl Cells<'_> {
         let mut pixels = Vec::with_capacity(width * height * 3);
         for row in (0..height).rev() {
             for column in 0..width {
-                let column = if mirrored { width - 1 - column } else { column };
                 let cells = under(row, height, bins)
                     .flat_map(|bin| under(column, width, columns).map(move |column| [bin, column]));
                 pixels.extend(self.colour(cells));
@@ -130,13 +128,13 @@ impl Cells<'_> {
 
     fn colour(&self, cells: impl Iterator<Item = [usize; 2]>) -> Rgb {
         match self {
-            Cells::Lambda(map, colours) => colours.colour(cells.map(|c| map.lambda[c]).fold(0.0, f32::max)),
+            Cells::Lambda(map, colours) => colours.colour(cells.map(|c| map[c]).fold(0.0, f32::max)),
             Cells::Above(map, eta) => {
                 let mut cells = cells;
-                if cells.any(|c| map.lambda[c] > *eta) { HIT } else { NOTHING }
+                if cells.any(|c| map[c] > *eta) { HIT } else { NOTHING }
             }
             Cells::Detections { target, output, eta } => {
-                let of = |c: [usize; 2]| Detection::of(target.lambda[c] > TARGET_ETA, output.lambda[c] > *eta);
+                let of = |c: [usize; 2]| Detection::of(target[c] > TARGET_ETA, output[c] > *eta);
                 cells.map(of).max().unwrap_or(Detection::Nothing).fill(true)
             }
         }

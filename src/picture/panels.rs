@@ -99,7 +99,7 @@ impl Drawing for Panels<'_> {
     }
 }
 
-impl Panels<'_> {
+impl<'a> Panels<'a> {
     fn header<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
         let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
         let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
@@ -109,12 +109,13 @@ impl Panels<'_> {
     }
 
     /// Three maps above; below them the output and both thresholds, or the output and its threshold where there is no target.
-    fn map_panels(&self) -> Vec<MapPanel<'_>> {
+    fn map_panels(&self) -> Vec<MapPanel<'a>> {
         let elements = |end| {
             let range = self.radar.end_range(end);
             format!("elements {} to {}", range.start, range.end - 1)
         };
-        let lambda = |title: String, map| MapPanel { title, cells: Cells::Lambda(map, self.colours) };
+        let drawn = |map: &'a RangeAngleMap| self.radar.left_to_right(&map.lambda);
+        let lambda = |title: String, map| MapPanel { title, cells: Cells::Lambda(drawn(map), self.colours) };
         let mut panels = vec![
             lambda(format!("Input 0: {}", elements(End::First)), self.first),
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),
@@ -122,14 +123,17 @@ impl Panels<'_> {
         let output = lambda(format!("Output: {}", self.method), self.output);
         let title = format!("Output > {}", eta_text(self.eta));
         let Some(target) = self.target else {
-            panels.extend([output, MapPanel { title, cells: Cells::Above(self.output, self.eta) }]);
+            panels.extend([output, MapPanel { title, cells: Cells::Above(drawn(self.output), self.eta) }]);
             return panels;
         };
         panels.extend([
             lambda(format!("Target: all {} elements", self.radar.elements), target),
             output,
-            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(target, TARGET_ETA) },
-            MapPanel { title, cells: Cells::Detections { target, output: self.output, eta: self.eta } },
+            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(drawn(target), TARGET_ETA) },
+            MapPanel {
+                title,
+                cells: Cells::Detections { target: drawn(target), output: drawn(self.output), eta: self.eta },
+            },
         ]);
         panels
     }

@@ -2,6 +2,7 @@
 //!
 //! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
+mod across;
 mod antennas;
 pub mod budget;
 mod chirps;
@@ -369,7 +370,8 @@ impl Radar {
 
     /// cos(theta) at column `k2` of a map: `(k2 - N_a/2) / (N_a/2)` for half-wavelength spacing and the one-way carrier.
     ///
-    /// For the two-way carrier this is one of the directions the column stands for.
+    /// For the two-way carrier this is one of the directions the column stands for, and it falls from column to column
+    /// ([`Radar::columns_fall`]).
     pub fn cos_of_column(&self, k2: f64) -> f64 {
         (k2 - (self.elements / 2) as f64) * self.cos_per_column()
     }

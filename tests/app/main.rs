@@ -7,6 +7,7 @@ mod documents;
 mod failures;
 mod figures;
 mod keyboard;
+mod left;
 mod lessons;
 mod monkey;
 mod motion;

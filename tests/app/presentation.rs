@@ -170,7 +170,7 @@ fn a_blob_in_a_map_stands_for_its_reflector() {
     let radar = s.state().radar().clone();
     let at = |place: [f64; 2]| {
         let blob = radar.blob_of(0.0, place[0], place[1]);
-        let across = (radar.column_of_cos(blob.cos_theta) + 0.5) / radar.elements as f64;
+        let across = radar.across_of_column(radar.column_of_cos(blob.cos_theta));
         let up = (radar.bin_of_range(blob.range_metres) + 0.5) / radar.samples as f64;
         rect.left_bottom() + vec2(rect.width() * across as f32, -rect.height() * up as f32)
     };

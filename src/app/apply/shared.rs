@@ -5,6 +5,7 @@ use crate::app::state::{MapView, Projection, State};
 use crate::interact::Document;
 use crate::lesson::shipped;
 use crate::platform;
+use crate::radar::Radar;
 use crate::share::{LessonPlace, Part, ShareError, Shared, View};
 use eframe::egui::pos2;
 
@@ -66,7 +67,7 @@ fn share(state: &State) -> Shared {
         normalisation: settings.normalisation,
         colours: settings.colours,
         cartesian: settings.projection == Projection::Cartesian,
-        range_angle_part: part(state.map_views.range_angle),
+        range_angle_part: by_column(state.radar(), part(state.map_views.range_angle)),
         cartesian_part: part(state.map_views.cartesian),
         target_eta: settings.target_eta,
         cfar: settings.cfar,
@@ -83,6 +84,11 @@ fn part(view: MapView) -> Part {
     let [left, bottom, right, top] =
         [view.low.x, view.low.y, view.high.x, view.high.y].map(|edge| edge.clamp(0.0, 1.0));
     Part { left, bottom, right, top }
+}
+
+/// A part of the columns as a part of what is drawn, and back: texts count from the first column.
+fn by_column(radar: &Radar, part: Part) -> Part {
+    if radar.columns_fall() { Part { left: 1.0 - part.right, right: 1.0 - part.left, ..part } } else { part }
 }
 
 /// Opens a text that was shared; on any error the scene on screen stays.
@@ -119,7 +125,7 @@ fn look(state: &mut State, view: View) {
         state.notices.info(format!("There is no method \"{}\" here; another one is shown.", view.method));
     }
     let seen = |part: Part| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };
-    state.map_views.range_angle = seen(view.range_angle_part);
+    state.map_views.range_angle = seen(by_column(state.radar(), view.range_angle_part));
     state.map_views.cartesian = seen(view.cartesian_part);
     let settings = &mut state.settings;
     settings.floor = view.floor;
@@ -135,4 +141,19 @@ fn look(state: &mut State, view: View) {
     settings.method = view.method;
     settings.show_reflectors = view.marks;
     settings.show_theory = view.theory;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Convention;
+
+    #[test]
+    fn the_part_of_a_map_in_a_text_counts_from_the_first_column() {
+        let (thesis, physical) = (Radar::default(), Radar::default().in_convention(Convention::Physical));
+        let drawn = Part { left: 0.0, right: 0.25, ..Part::default() };
+        assert_eq!(by_column(&thesis, drawn), drawn);
+        assert_eq!(by_column(&physical, drawn), Part { left: 0.75, right: 1.0, ..drawn });
+        assert_eq!(by_column(&physical, by_column(&physical, drawn)), drawn);
+    }
 }

@@ -57,16 +57,17 @@ fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
     let hidden = challenge
         .hidden_scene()
         .and_then(|scene| Stage::new(&step.radar, &scene, &step.view, challenge.needs_hidden_output()).ok());
-    let picture = hidden.as_ref().and_then(|stage| stage.map(MapName::Target).ok()).map(picture);
+    let picture = hidden.as_ref().and_then(|stage| Some(picture(&stage.radar, stage.map(MapName::Target).ok()?)));
     let stage = Stage::new(&request.radar, &request.scene, &step.view, challenge.needs_output());
     let measured = stage.map_err(|e| e.to_string()).and_then(|stage| challenge.measure(&stage, hidden.as_ref()));
     Some((measured, picture))
 }
 
 /// Every second cell, the farthest row on top.
-fn picture(map: &RangeAngleMap) -> Arc<ColorImage> {
+fn picture(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
     let table = colour_table(ColourMap::default());
-    let cells = map.lambda.slice(ndarray::s![..;-2, ..;2]);
+    let drawn = radar.left_to_right(&map.lambda);
+    let cells = drawn.slice(ndarray::s![..;-2, ..;2]);
     let pixels = cells.iter().map(|v| table[(v.clamp(0.0, 1.0) * 255.0) as usize]).collect();
     Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
 }
@@ -189,4 +190,24 @@ impl Lessons {
 
 fn is_of(run: &LessonRun, request: &Request) -> bool {
     Arc::ptr_eq(&run.lesson, &request.lesson) && run.step == request.step && run.guess == request.guess
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Convention;
+
+    #[test]
+    fn left_is_left_in_the_map_that_a_challenge_shows() {
+        for convention in Convention::ALL {
+            let radar = Radar { elements: 128, ..Radar::default() }.in_convention(convention);
+            let mut lambda = ndarray::Array2::zeros((63, 128));
+            // Every second column is painted.
+            let column = radar.column_of_cos(-0.5) as usize;
+            lambda.slice_mut(ndarray::s![.., column..column + 2]).fill(1.0);
+            let image = picture(&radar, &RangeAngleMap { lambda });
+            let bright = (0..64).max_by_key(|x| image.pixels[*x].g()).unwrap();
+            assert!((14..19).contains(&bright), "{convention:?}: column {bright} of 64");
+        }
+    }
 }

@@ -6,16 +6,15 @@ use crate::app::state::{MapKind, Projection};
 use crate::app::widgets::textures::colour_table;
 use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
-use crate::maps::RangeAngleMap;
-use crate::maps::cartesian;
+use crate::maps::{RangeAngleMap, cartesian};
 use crate::picture::{ColourMap, Detection};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
-use ndarray::Array2;
+use ndarray::ArrayView2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A painted map; row 0 is range (or y) 0.
+/// A painted map; row 0 is range (or y) 0, and the first pixel of a row its leftmost direction.
 #[derive(Debug, Clone)]
 pub struct Picture {
     /// Its cells.
@@ -54,15 +53,18 @@ impl Painter {
         let (rows, columns) = subject.map.lambda.dim();
         let end = end_of(subject);
         let pixels = match subject.projection {
-            Projection::RangeAngle => colour(subject, &subject.map, subject.minus.as_deref(), end),
+            Projection::RangeAngle => {
+                let minus = subject.minus.as_deref().map(|minus| radar.left_to_right(&minus.lambda));
+                colour(subject, radar.left_to_right(&subject.map.lambda), minus, end)
+            }
             Projection::Cartesian => {
                 let projector = match &mut self.projector {
                     Some(projector) if projector.fits(radar, rows) => projector,
                     slot => slot.insert(cartesian::Projector::new(radar, rows)),
                 };
-                let flat = |map: &RangeAngleMap| RangeAngleMap { lambda: projector.project(map).lambda };
+                let flat = |map: &RangeAngleMap| projector.project(map).lambda;
                 let (map, minus) = (flat(&subject.map), subject.minus.as_deref().map(flat));
-                colour(subject, &map, minus.as_ref(), end)
+                colour(subject, map.view(), minus.as_ref().map(|minus| minus.view()), end)
             }
         };
         let size = match subject.projection {
@@ -102,8 +104,8 @@ fn end_of(subject: &Subject) -> f32 {
 const ENDS: [f32; 9] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
 /// The colour of every cell.
-fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>, end: f32) -> Vec<Color32> {
-    let cells = map.lambda.iter();
+fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<'_, f32>>, end: f32) -> Vec<Color32> {
+    let cells = map.iter();
     // NaN marks cells beyond the maximum range of a Cartesian map.
     let shown = |v: f32, colour: Color32| if v.is_nan() { OUTSIDE } else { colour };
     match (subject.paint, minus) {
@@ -120,30 +122,30 @@ fn colour(subject: &Subject, map: &RangeAngleMap, minus: Option<&RangeAngleMap>,
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
         (Paint::Detections { eta, dark }, Some(target)) => {
-            let colours = detections(&map.lambda, &target.lambda, eta, dark);
+            let colours = detections(map, target, eta, dark);
             cells.zip(colours).map(|(&v, colour)| shown(v, colour)).collect()
         }
         (Paint::Difference { view, colours }, Some(minus)) if view.absolute => {
             let table = colour_table(colours);
             let part = |v: f32, m: f32| 255.0 * (v - m).abs() / end + 0.5;
-            cells.zip(&minus.lambda).map(|(&v, &m)| shown(v, table[part(v, m) as u8 as usize])).collect()
+            cells.zip(&minus).map(|(&v, &m)| shown(v, table[part(v, m) as u8 as usize])).collect()
         }
         (Paint::Difference { .. }, Some(minus)) => {
             let table = colour_table(ColourMap::Diverging);
             cells
-                .zip(&minus.lambda)
+                .zip(&minus)
                 .map(|(&v, &m)| shown(v, table[(127.5 * (1.0 + (v - m) / end) + 0.5) as u8 as usize]))
                 .collect()
         }
-        (Paint::Difference { .. } | Paint::Detections { .. }, None) => vec![OUTSIDE; map.lambda.len()],
+        (Paint::Difference { .. } | Paint::Detections { .. }, None) => vec![OUTSIDE; map.len()],
     }
 }
 
 /// Fills of hits, misses and false alarms, and an outline around each patch of them.
-fn detections(output: &Array2<f32>, target: &Array2<f32>, eta: f32, dark: bool) -> Vec<Color32> {
+fn detections(output: ArrayView2<'_, f32>, target: ArrayView2<'_, f32>, eta: f32, dark: bool) -> Vec<Color32> {
     let (rows, columns) = output.dim();
     let kinds: Vec<Detection> =
-        output.iter().zip(target).map(|(&v, &t)| Detection::of(t > TARGET_ETA, v > eta)).collect();
+        output.iter().zip(&target).map(|(&v, &t)| Detection::of(t > TARGET_ETA, v > eta)).collect();
     // A map of many cells is shrunk on screen: a thinner outline would be lost there.
     let [wide, high] = [(columns / ON_SCREEN[0]).max(1), (rows / ON_SCREEN[1]).max(1)];
     let mut around = vec![Detection::Nothing; kinds.len()];
@@ -171,7 +173,7 @@ fn detections(output: &Array2<f32>, target: &Array2<f32>, eta: f32, dark: bool) 
 mod tests {
     use super::*;
     use crate::app::state::DifferenceView;
-    use ndarray::array;
+    use ndarray::{Array2, array};
 
     fn subject(paint: Paint) -> Subject {
         let map = lambda(array![[0.0, 1.0], [0.5, 0.95]]);
@@ -229,7 +231,7 @@ mod tests {
     fn a_patch_of_hits_is_flat_with_an_outline_around_it() {
         let mut target = Array2::from_elem((9, 9), 0.0f32);
         target.slice_mut(ndarray::s![3..6, 2..7]).fill(0.95);
-        let colours = detections(&target, &target, 0.5, true);
+        let colours = detections(target.view(), target.view(), 0.5, true);
         let of = |[r, g, b]: [u8; 3]| colours.iter().filter(|c| **c == Color32::from_rgb(r, g, b)).count();
         let [inside, around, beside] =
             [Detection::Hit.fill(true), Detection::Hit.outline(true), Detection::Nothing.fill(true)].map(of);

@@ -7,6 +7,7 @@ use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{Answer, Trial};
 use crate::maps::RangeAngleMap;
 use crate::platform;
+use crate::radar::Radar;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::task::panic_message;
 use std::collections::HashMap;
@@ -20,7 +21,7 @@ pub const HEIGHT: usize = 48;
 /// Most thumbnails that are kept: some 5 MB.
 const MOST: usize = 512;
 
-/// Lambda of a map, 0 to 255, row by row from the smallest range; each cell the largest of those that it stands for.
+/// Lambda of a map, 0 to 255, row by row from the smallest range and left to right; each cell the largest of those that it stands for.
 pub type Bytes = Box<[u8]>;
 
 /// Both maps of a row.
@@ -35,15 +36,16 @@ pub struct Thumbnail {
 impl Thumbnail {
     /// Of what a row was made of.
     pub fn of(trial: &Trial, answer: &Answer) -> Thumbnail {
-        Thumbnail { target: shrunk(&trial.target), output: shrunk(&answer.found.lambda) }
+        Thumbnail { target: shrunk(&trial.radar, &trial.target), output: shrunk(&trial.radar, &answer.found.lambda) }
     }
 }
 
-fn shrunk(map: &RangeAngleMap) -> Bytes {
-    let (rows, columns) = map.lambda.dim();
+fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Bytes {
+    let cells = radar.left_to_right(&map.lambda);
+    let (rows, columns) = cells.dim();
     // The largest, so that no point is lost.
     let mut small = vec![0.0f32; WIDTH * HEIGHT];
-    for ((row, column), lambda) in map.lambda.indexed_iter() {
+    for ((row, column), lambda) in cells.indexed_iter() {
         let cell = &mut small[row * HEIGHT / rows * WIDTH + column * WIDTH / columns];
         *cell = cell.max(*lambda);
     }
@@ -52,7 +54,7 @@ fn shrunk(map: &RangeAngleMap) -> Bytes {
     let few = |i: usize| {
         let (y, x) = (i / WIDTH, i % WIDTH);
         let large = small[i];
-        if rows < HEIGHT || columns < WIDTH { large.max(map.lambda[at(y, x)]) } else { large }
+        if rows < HEIGHT || columns < WIDTH { large.max(cells[at(y, x)]) } else { large }
     };
     (0..small.len()).map(|i| (few(i) * 255.0 + 0.5) as u8).collect()
 }
@@ -213,6 +215,7 @@ fn one<'a>(
 mod tests {
     use super::super::table::some_row;
     use super::*;
+    use crate::radar::Convention;
     use ndarray::Array2;
 
     #[test]
@@ -220,12 +223,24 @@ mod tests {
         for (rows, columns) in [(512, 1024), (256, 1024), (48, 96), (32, 64), (1, 128), (50, 100)] {
             let mut lambda = Array2::zeros((rows, columns));
             lambda[[rows - 1, columns / 3]] = 1.0;
-            let small = shrunk(&RangeAngleMap { lambda });
+            let small = shrunk(&Radar::default(), &RangeAngleMap { lambda });
             assert_eq!(small.len(), WIDTH * HEIGHT);
             let bright: Vec<usize> = (0..small.len()).filter(|i| small[*i] == 255).collect();
             let far = |i: &usize| i / WIDTH + HEIGHT / rows.min(HEIGHT) + 1 >= HEIGHT;
             assert!(!bright.is_empty() && bright.iter().all(far), "{rows}, {columns}: {bright:?}");
             assert!(bright.iter().any(|i| (i % WIDTH).abs_diff(WIDTH / 3) <= 1), "{rows}, {columns}: {bright:?}");
+        }
+    }
+
+    #[test]
+    fn left_is_left_in_a_small_map_of_either_convention() {
+        for convention in Convention::ALL {
+            let radar = Radar { elements: 128, ..Radar::default() }.in_convention(convention);
+            let mut lambda = Array2::zeros((64, 128));
+            lambda[[20, radar.column_of_cos(-0.5) as usize]] = 1.0;
+            let small = shrunk(&radar, &RangeAngleMap { lambda });
+            let bright = small.iter().position(|v| *v == 255).unwrap() % WIDTH;
+            assert!(bright.abs_diff(WIDTH / 4) <= 1, "{convention:?}: column {bright}");
         }
     }
 

@@ -39,9 +39,8 @@ impl Cut {
     pub fn whole(self, radar: &Radar) -> Span {
         match self {
             Cut::Angle => {
-                let edges = [-0.5, radar.elements as f64 - 0.5].map(|column| radar.cos_of_column(column));
-                // In the physical convention cos θ falls from column to column.
-                Span { low: edges[0].min(edges[1]), high: edges[0].max(edges[1]) }
+                let [low, high] = [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across)));
+                Span { low, high }
             }
             Cut::Range => Span { low: 0.0, high: radar.max_range_metres() },
         }

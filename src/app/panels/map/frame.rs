@@ -84,7 +84,7 @@ impl<'a> Frame<'a> {
         match self.projection {
             Projection::RangeAngle => Polar {
                 range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5),
-                cos_theta: radar.cos_of_column(fx * radar.elements as f64 - 0.5),
+                cos_theta: radar.cos_of_column(radar.column_across(fx)),
             },
             Projection::Cartesian => {
                 let extent = radar.max_range_metres();
@@ -112,7 +112,7 @@ impl<'a> Frame<'a> {
         let (radar, fx, fy) = (self.radar, f64::from(fraction.x), f64::from(fraction.y));
         Polar {
             range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5).max(0.0),
-            cos_theta: radar.cos_of_column(fx * radar.elements as f64 - 0.5),
+            cos_theta: radar.cos_of_column(radar.column_across(fx)),
         }
     }
 
@@ -144,8 +144,8 @@ fn fraction(radar: &Radar, projection: Projection, polar: Polar) -> Pos2 {
     match projection {
         Projection::RangeAngle => {
             let bin = radar.bin_of_range(range_metres).rem_euclid(radar.samples as f64);
-            let column = radar.column_of_cos(cos_theta);
-            pos2(((column + 0.5) / radar.elements as f64) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
+            let across = radar.across_of_column(radar.column_of_cos(cos_theta));
+            pos2(across as f32, ((bin + 0.5) / radar.samples as f64) as f32)
         }
         Projection::Cartesian => {
             let extent = radar.max_range_metres();
@@ -230,7 +230,7 @@ pub fn cursor_at(radar: &Radar, projection: Projection, fraction: Pos2) -> Optio
     let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
     match projection {
         Projection::RangeAngle => {
-            Some(Cursor::at_cell(radar, fy * radar.samples as f64 - 0.5, fx * radar.elements as f64 - 0.5))
+            Some(Cursor::at_cell(radar, fy * radar.samples as f64 - 0.5, radar.column_across(fx)))
         }
         Projection::Cartesian => {
             let extent = radar.max_range_metres();

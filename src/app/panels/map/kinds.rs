@@ -7,7 +7,7 @@ use crate::app::widgets::theme::MARK_EDGE;
 use crate::evaluate::eta_text;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
-use crate::radar::counted;
+use crate::radar::{Radar, counted};
 use crate::scene::Reflector;
 use crate::theory::{Cell, blob_cell};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
@@ -143,7 +143,7 @@ impl Kinds<'_> {
         }
         if let Some((verdict, _)) = nearest {
             let corner = frame.rect.left_bottom() + vec2(8.0, -8.0 - above);
-            axes::text_on_patch(painter, corner, Align2::LEFT_BOTTOM, &self.why(verdict));
+            axes::text_on_patch(painter, corner, Align2::LEFT_BOTTOM, &self.why(frame.radar, verdict));
         }
     }
 
@@ -186,7 +186,7 @@ impl Kinds<'_> {
     }
 
     /// Which object it is, what became of it, and why that is said.
-    fn why(&self, verdict: &Verdict) -> String {
+    fn why(&self, radar: &Radar, verdict: &Verdict) -> String {
         let Fates { scene, failures, eta, .. } = self.fates;
         let eta = eta_text(*eta);
         let cells = verdict.cells;
@@ -204,7 +204,7 @@ impl Kinds<'_> {
             Fate::Missed => format!("{detected}: less than half"),
             Fate::Merged { with } => format!("one blob covers it and {};\nthe target shows two", named(with)),
             Fate::WrongTooth { columns } => {
-                let (by, way) = (columns.abs(), if columns < 0 { "left" } else { "right" });
+                let (by, way) = (columns.abs(), if (columns < 0) != radar.columns_fall() { "left" } else { "right" });
                 let plural = if by == 1 { "" } else { "s" };
                 format!("the output has it {by} column{plural} to the {way};\n{detected}")
             }
@@ -219,7 +219,7 @@ impl Kinds<'_> {
 pub mod tests {
     use super::*;
     use crate::app::state::{MapView, Projection};
-    use crate::radar::Radar;
+    use crate::radar::Convention;
     use crate::scene::Scene;
     use eframe::egui::{Rect, pos2};
 
@@ -246,11 +246,14 @@ pub mod tests {
     fn a_mark_says_why_an_object_has_its_fate() {
         let fates = fates();
         let kinds = Kinds { fates: &fates, current: true };
-        let said: Vec<String> = fates.verdicts.iter().map(|v| kinds.why(v)).collect();
+        let radar = Radar::default();
+        let said: Vec<String> = fates.verdicts.iter().map(|v| kinds.why(&radar, v)).collect();
         assert_eq!(said[0], "point 1: found\n100 % of its 40 cells exceed η = 0.80");
         assert_eq!(said[1], "point 2: missed\n0 % of its 40 cells exceed η = 0.80: less than half");
         assert_eq!(said[2], "point 3: merged\none blob covers it and point 4;\nthe target shows two");
         assert!(said[3].starts_with("point 4: wrong tooth\nthe output has it 3 columns to the left;\n"), "{}", said[3]);
+        let told = kinds.why(&radar.in_convention(Convention::Physical), &fates.verdicts[3]);
+        assert!(told.contains("3 columns to the right"), "lower columns are drawn farther right: {told}");
         assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
         assert_eq!(said[5], "ghost: 12 cells above η = 0.80\nwhere the scene has nothing");
     }

@@ -66,14 +66,6 @@ fn direction_titles(radar: &Radar) -> &'static [&'static str] {
     if radar.fold_period_cos() < LEAST_PERIOD_COS {
         return &["cos θ, folded: each column stands for two directions", "cos θ, folded"];
     }
-    if radar.cos_of_column(0.0) > 0.0 {
-        // The two-way carrier turns the other way: what stands on the right comes first.
-        return &[
-            "cos θ, mirrored: 1 is +90° (right in the scene), −1 is −90°",
-            "cos θ, mirrored (1 at 90° right)",
-            "cos θ, mirrored",
-        ];
-    }
     &[
         "cos θ: −1 is −90° (left), 0 straight ahead, 1 is +90° (right)",
         "cos θ (0 straight ahead, 1 at 90° right)",
@@ -86,7 +78,7 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
     let Frame { rect, view, radar, projection, .. } = frame;
     let (x, y) = match projection {
         Projection::RangeAngle => {
-            let cos = |fraction: f32| radar.cos_of_column(f64::from(fraction) * radar.elements as f64 - 0.5);
+            let cos = |fraction: f32| radar.cos_of_column(radar.column_across(f64::from(fraction)));
             let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
             let title = axes::fitting(painter, rect.width() - 2.0 * free, direction_titles(radar));
             // A column stands for the direction in its middle: the ends of a whole map are half a column away from a round number.

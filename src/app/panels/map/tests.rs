@@ -120,16 +120,15 @@ fn every_map_has_the_same_margins_whatever_stands_beside_it() {
     }
 }
 
-/// With the two-way carrier directions fall from left to right.
 #[test]
-fn an_axis_that_falls_has_its_labels_too() {
+fn directions_rise_from_left_to_right_with_either_carrier() {
     let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
     let map = Harness::builder().with_size([450.0, 270.0]).build_ui(move |ui| {
         _ = show(ui, input(&radar, None), &mut MapView::default(), &mut Memory::default());
     });
     let texts = seen::texts(map.output());
     let left = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.left());
-    let places = ["0.4", "0.2", "0.0", "−0.2", "−0.4"].map(left);
+    let places = ["−0.4", "−0.2", "0.0", "0.2", "0.4"].map(left);
     assert!(places[0].is_some() && places.is_sorted(), "{texts:?}");
     seen::assert_readable(map.output());
 }

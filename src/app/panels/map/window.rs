@@ -76,7 +76,7 @@ fn outlines(frame: Frame<'_>, [bin, column]: [usize; 2], sides: [usize; 2]) -> V
     let at = |fraction: Pos2| frame.at_fraction(frame.polar_of_cell(fraction), fraction);
     let outline = |[left, right]: [f32; 2]| {
         let corners = [pos2(left, bottom), pos2(right, bottom), pos2(right, top), pos2(left, top)]
-            .map(|corner| pos2(corner.x / columns, corner.y));
+            .map(|corner| pos2(frame.radar.across_of_column(f64::from(corner.x) - 0.5) as f32, corner.y));
         let sides = (0..4).flat_map(move |i| (0..ALONG).map(move |k| (corners[i], corners[(i + 1) % 4], k)));
         sides.map(|(from, to, k)| at(from + (k as f32 / ALONG as f32) * (to - from))).collect()
     };
@@ -89,9 +89,23 @@ mod tests {
     use crate::app::state::{MapView, Projection};
     use crate::app::widgets::seen;
     use crate::maps::{LambdaScale, RangeAngleMap};
-    use crate::radar::Radar;
+    use crate::radar::{Convention, Radar};
+    use crate::theory::Cell;
     use eframe::egui::Rect;
     use egui_kittest::Harness;
+
+    #[test]
+    fn the_window_is_around_its_cell_in_either_convention() {
+        for convention in Convention::ALL {
+            let radar = Radar { elements: 64, samples: 64, ..Radar::default() }.in_convention(convention);
+            let rect = Rect::from_min_size(Pos2::ZERO, vec2(640.0, 640.0));
+            let frame = Frame::of(rect, MapView::default(), &radar, Projection::RangeAngle, 0.0);
+            let outline = Rect::from_points(&outlines(frame, [20, 10], [2, 3])[0]);
+            let cell = frame.cell(Cell { bin: 20.0, column: 10.0 });
+            let off = outline.center().distance(cell);
+            assert!(off < 0.1 && (outline.width() - 70.0).abs() < 0.1, "{convention:?}: {off} points beside {cell}");
+        }
+    }
 
     #[test]
     fn the_window_under_the_pointer_is_drawn_with_what_it_finds() {

@@ -1,0 +1,192 @@
+//! Left in the scene is left in every map: in the thesis' convention, in the physical one, and of a recording whose file lists the elements
+//! from the right.
+
+use crate::session::{Session, harness};
+use apertura::app::{DocumentCommand, ExportCommand, MapKind, Panel, ViewCommand, WindowCommand};
+use apertura::files::npz::write_npz;
+use apertura::picture::{Format, Style, compose, compose_recording};
+use apertura::radar::{Convention, Radar};
+use apertura::reconstruct::{Baseline, Reconstructor};
+use apertura::recording;
+use apertura::scene::{Reflector, Scene};
+use apertura::signal::{Floor, exact, simulate};
+use eframe::egui::{ColorImage, Modifiers, OutputCommand, PointerButton, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The point that is to be seen on the left.
+const POINT: [f64; 2] = [-8.0, 12.0];
+
+const KINDS: [MapKind; 6] =
+    [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output, MapKind::TargetAbove, MapKind::OutputAbove];
+
+fn radar(convention: Convention) -> Radar {
+    let table = Radar { elements: 128, samples: 64, bandwidth_hz: 2.5e8, ..Radar::default() };
+    table.in_convention(convention)
+}
+
+/// A scene of the point alone.
+fn scene(folder: &Path, convention: Convention) {
+    let [x, y] = POINT;
+    let text = format!(
+        "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\nconvention = \"{}\"\n\n\
+         [[object]]\nkind = \"point\"\nx_metres = {x:?}\ny_metres = {y:?}\n",
+        convention.name()
+    );
+    std::fs::write(folder.join("scene.toml"), text).unwrap();
+}
+
+/// A physical radar's recording of the point, its last element first.
+fn recording(folder: &Path) {
+    let radar = radar(Convention::Physical);
+    let [x_metres, y_metres] = POINT;
+    let mut samples = exact::beat_signal(&radar, &[Reflector { x_metres, y_metres, reflectivity: 1.0 }]).samples;
+    samples.invert_axis(ndarray::Axis(0));
+    write_npz(&folder.join("r.npz"), |out| out.add("a", &samples)).unwrap();
+    let text = format!(
+        "format = 2\n[radar]\ncarrier = \"two-way\"\ncarrier_hz = 77e9\nbandwidth_hz = 2.5e8\n\
+         element_spacing_metres = {:?}\nelements = 128\nend_elements = 12\nsamples = 64\n\
+         [recording]\nfile = \"r.npz\"\narray = \"a\"\naxes = [\"element\", \"sample\"]\n\
+         carrier_at = \"first-sample\"\nbeat_sign = \"+\"\nreverse_elements = true\n",
+        radar.element_spacing_metres
+    );
+    std::fs::write(folder.join("r.toml"), text).unwrap();
+}
+
+/// A session with the point before a radar of `convention`.
+fn session(convention: Convention) -> Session {
+    let folder = tempfile::tempdir().unwrap();
+    scene(folder.path(), convention);
+    let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
+    let app = harness(folder.path(), Some("scene.toml"), methods);
+    let mut session = Session { app, folder };
+    session.settle();
+    session
+}
+
+/// A session with the point as each of the three shows it.
+fn sessions() -> [(&'static str, Session); 3] {
+    let mut recorded = session(Convention::Thesis);
+    recording(recorded.folder.path());
+    let path = recorded.folder.path().join("r.toml");
+    recorded.ask(DocumentCommand::OpenPath(path));
+    assert!(recorded.state().editor().document().recording().is_some());
+    [("thesis", session(Convention::Thesis)), ("physical", session(Convention::Physical)), ("recording", recorded)]
+}
+
+/// The picture of a map, the farthest range on top.
+fn picture(s: &mut Session, kind: MapKind) -> Arc<ColorImage> {
+    s.ask(WindowCommand::OpenPanel(Panel::Map(kind)));
+    s.app.state_mut().ask(ExportCommand::CopyMap(kind));
+    s.app.step();
+    let commands = &s.app.output().platform_output.commands;
+    let copied = commands.iter().find_map(|c| if let OutputCommand::CopyImage(image) = c { Some(image) } else { None });
+    Arc::new(copied.expect("a picture on the clipboard").clone())
+}
+
+/// Where a picture is brightest, as parts of its width from the left and of its height from the top: the mean of equally bright pixels.
+fn brightest(image: &ColorImage) -> [f64; 2] {
+    let [width, height] = image.size;
+    let level = |i: usize| image.pixels[i].g();
+    let top = (0..image.pixels.len()).map(level).max().unwrap();
+    let at: Vec<usize> = (0..image.pixels.len()).filter(|i| level(*i) == top).collect();
+    let mean = |of: &dyn Fn(usize) -> usize, side: usize| {
+        at.iter().map(|i| of(*i) as f64 + 0.5).sum::<f64>() / (at.len() * side) as f64
+    };
+    [mean(&|i| i % width, width), mean(&|i| i / width, height)]
+}
+
+/// Where on screen the target is brightest.
+fn blob(s: &mut Session) -> Pos2 {
+    let [across, down] = brightest(&picture(s, MapKind::Target));
+    let rect = s.app.get_by_label("Target map").rect();
+    rect.left_top() + vec2(rect.width() * across as f32, rect.height() * down as f32)
+}
+
+#[test]
+fn a_point_on_the_left_is_left_in_every_map() {
+    for (name, mut s) in sessions() {
+        for projection in ["range-angle", "Cartesian"] {
+            for kind in KINDS {
+                let [across, _] = brightest(&picture(&mut s, kind));
+                // Both ends and the whole array see it at cos θ between -0.6 and -0.5.
+                assert!((0.05..0.45).contains(&across), "{name}, {kind:?}, {projection}: at {across} of the width");
+            }
+            s.ask(ViewCommand::ToggleProjection);
+        }
+    }
+}
+
+#[test]
+fn pointing_at_a_blob_reads_the_direction_of_its_object() {
+    for (name, mut s) in sessions() {
+        let at = blob(&mut s);
+        s.app.hover_at(at);
+        s.settle();
+        assert!(
+            s.app.query_all_by_label_contains("cos θ −0.5").next().is_some(),
+            "{name}: the pointer reads another direction"
+        );
+    }
+}
+
+#[test]
+fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
+    for convention in Convention::ALL {
+        let mut s = session(convention);
+        let at = blob(&mut s);
+        for pressed in [true, false] {
+            s.app.hover_at(at);
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            s.app.event(eframe::egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+            s.app.step();
+        }
+        s.settle();
+        assert_eq!(s.state().editor().selection().single(), Some(0), "{convention:?}");
+        crate::session::step_until(&mut s, "no longer a double click", |s| {
+            s.app.ctx.input(|i| i.pointer.time_since_last_click() > 1.0)
+        });
+        let by = vec2(-30.0, 0.0);
+        s.drag(at, by, 5);
+        assert!(s.place(0)[0] < POINT[0] - 0.5, "{convention:?}: dragged to {:?}", s.place(0));
+        let off = blob(&mut s).distance(at + by);
+        assert!(off < 6.0, "{convention:?}: its blob is {off} points beside the pointer");
+    }
+}
+
+/// Pictures of the point as files have them.
+fn files() -> [(&'static str, Vec<u8>); 3] {
+    let folder = tempfile::tempdir().unwrap();
+    recording(folder.path());
+    let recording = recording::file::load(&folder.path().join("r.toml")).unwrap();
+    let style = Style { floor: Floor::Exact, ..Style::default() };
+    let of_scene = |convention| {
+        let (radar, scene) = (radar(convention), Scene::of_points([POINT.into()]));
+        let signal = simulate(&radar, &scene, style.floor, 0).unwrap();
+        compose(&radar, &scene, &signal, &Baseline, &style, Format::Png).unwrap()
+    };
+    [
+        ("thesis", of_scene(Convention::Thesis)),
+        ("physical", of_scene(Convention::Physical)),
+        ("recording", compose_recording(&recording, &Baseline, &style, Format::Png).unwrap()),
+    ]
+}
+
+#[test]
+fn a_point_on_the_left_is_left_in_every_map_of_a_file() {
+    for (name, bytes) in files() {
+        let picture = image::load_from_memory(&bytes).unwrap().to_rgb8();
+        // The six maps, without titles, axes and bars.
+        for (row, column) in [0, 1].into_iter().flat_map(|row| (0..3).map(move |column| (row, column))) {
+            let (x, y) = (700 + 485 * column + 68, 84 + 510 * row + 46);
+            let (width, height) = (485 - 62 - 74, 510 - 52 - 52);
+            let level = |x: u32, y: u32| picture.get_pixel(x, y).0.iter().map(|c| u32::from(*c)).sum::<u32>();
+            let pixels = || (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
+            let top = pixels().map(|(x, y)| level(x, y)).max().unwrap();
+            let bright: Vec<u32> = pixels().filter(|at| level(at.0, at.1) == top).map(|at| at.0 - x).collect();
+            let across = f64::from(bright.iter().sum::<u32>()) / (bright.len() as f64 * f64::from(width));
+            assert!((0.05..0.45).contains(&across), "{name}, map {row}, {column}: at {across} of the width");
+        }
+    }
+}
