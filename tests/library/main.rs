@@ -23,6 +23,8 @@ mod physical_convention;
 mod radars;
 mod snapshot;
 mod stress;
+#[cfg(all(unix, feature = "live"))]
+mod tables;
 mod whole_files;
 
 /// Damaged files are read in bounded memory: somebody has to count.
