@@ -6,6 +6,7 @@ use crate::figures::{ALL, Figure, Source, by_number, draw, pages};
 use crate::files::write_bytes;
 use crate::methods;
 use crate::reconstruct::Reconstructor;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -64,11 +65,14 @@ impl Args {
         let methods: Vec<Arc<dyn Reconstructor>> = named.collect::<Result<_, _>>().map_err(CommandError::failed)?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let mut page = String::from(
-            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG.\n\n",
+            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG.\n",
         );
+        let _ = writeln!(page, "\n<!-- table figures: apertura figures --scenes {} -->", self.scenes);
         page.push_str(&pages::tables(&methods, self.scenes).map_err(CommandError::failed)?);
         page.push_str("## Figures\n\n");
         page.extend(ALL.iter().map(|figure| pages::entry(figure, "figures")));
+        // `scripts/tables` names the weights and the floor's edition here.
+        page.push_str("<!-- /table -->\n");
         Ok(page)
     }
 }

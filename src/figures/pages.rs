@@ -33,7 +33,8 @@ pub fn entry(figure: &Figure, folder: &str) -> String {
 pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, CampaignError> {
     let campaign = Campaign { count: scenes, ..Campaign::default() };
     let mut text = String::from("## Tables 4.1 to 4.3\n\n");
-    let _ = writeln!(text, "{scenes} test scenes a set, seed 0; P_D and P_FA at each method's own threshold.\n");
+    let _ = writeln!(text, "{scenes} test scenes a set, seed 0; P_D and P_FA at each method's own threshold.");
+    let _ = writeln!(text, "Tables and figures are made with {}.\n", weights(methods));
     let sets = Kind::TEST_SETS.map(SceneSet::Generated);
     let rows = campaign.run(&sets, methods, &Task::default(), |_| ())?;
     for (set, scenes) in sets.iter().enumerate() {
@@ -51,6 +52,13 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
         text.push('\n');
     }
     Ok(text)
+}
+
+/// The weights of the methods that have learned any, as rows name them.
+fn weights(methods: &[&dyn Reconstructor]) -> String {
+    let named = methods.iter().filter_map(|m| Some(format!("`{}` {}", m.name(), m.weights()?.sha256)));
+    let named: Vec<String> = named.collect();
+    if named.is_empty() { "no weights".to_owned() } else { format!("the weights {}", named.join(", ")) }
 }
 
 fn cells(tally: &Tally) -> String {

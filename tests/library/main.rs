@@ -24,6 +24,8 @@ mod radars;
 mod readme;
 mod snapshot;
 mod stress;
+#[cfg(all(unix, feature = "live"))]
+mod tables;
 mod whole_files;
 
 /// Damaged files are read in bounded memory: somebody has to count.

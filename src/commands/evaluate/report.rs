@@ -35,6 +35,8 @@ pub struct Report {
 struct SetReport {
     #[serde(serialize_with = "number_or_name")]
     set: String,
+    /// What its scenes hold.
+    description: &'static str,
     printed: Option<PrintedColumns>,
     /// At which methods are held against each other.
     false_alarm: f64,
@@ -107,6 +109,9 @@ struct AtPrinted {
     standard_error: f64,
     median: f64,
 }
+
+/// What stands for the description of scenes that are files.
+const OF_A_FOLDER: &str = "scenes of a folder";
 
 /// Width of a method's name and what stands behind it, characters; more where one needs more.
 const LABEL: usize = 26;
@@ -207,7 +212,8 @@ impl Report {
 
 impl SetReport {
     fn of(set: &str, rows: &[&Row], limit: Option<f64>) -> SetReport {
-        let test_set = set.parse::<Kind>().ok().and_then(Kind::test_set);
+        let kind = set.parse::<Kind>().ok();
+        let (test_set, description) = (kind.and_then(Kind::test_set), kind.map_or(OF_A_FOLDER, Kind::description));
         let printed = test_set.map(|number| PrintedColumns {
             baseline: PRINTED_BASELINE[number - 1],
             experiment_1: PRINTED_EXPERIMENT_1[number - 1],
@@ -217,12 +223,12 @@ impl SetReport {
         let method = |name: &&str| MethodReport::of(name, rows, false_alarm, limit);
         let names = names(rows, |row| &row.method);
         let (methods, against) = (names.iter().map(method).collect(), Against::of(&names, rows));
-        SetReport { set: set.to_owned(), printed, false_alarm, methods, against }
+        SetReport { set: set.to_owned(), description, printed, false_alarm, methods, against }
     }
 
     fn write(&self, count: usize, text: &mut String) {
         let kind = self.set.parse::<Kind>().ok();
-        let what = kind.map_or("scenes of a folder", Kind::description);
+        let what = self.description;
         let _ = match kind.and_then(Kind::test_set) {
             Some(set) => writeln!(text, "\nTable 4.{set}: test set {set}, {what}"),
             None if kind == Some(Kind::Noise) => {
