@@ -68,7 +68,7 @@ fn the_floor_teaches_the_right_processing_gain() {
     assert!((whole - 45.5).abs() < 0.1, "{whole}");
     taught("the-floor", "45.5 dB");
     let end = gain(&shown.first, &hiss.first);
-    assert!((end - 33.8).abs() < 0.2, "{end}");
+    assert!((end - 33.95).abs() < 0.2, "{end}");
     taught("the-floor", "34 dB");
     // A plane wave without windows, and what the windows cost in noise bandwidth.
     let samples = (radar.elements * radar.samples) as f64;
@@ -364,7 +364,7 @@ fn the_link_budget_is_as_its_lesson_says() {
     for (number, decibels) in [
         ("41.4 dB", snr(0.0, 20.0).array.0),
         ("-12.2 dB", snr(0.0, 20.0).sample.0),
-        ("45.0 dB", snr(0.0, 20.0).sample.0 + db((512 * 1024) as f64)),
+        ("44.9 dB", snr(0.0, 20.0).sample.0 + db((512 * 1024) as f64)),
         ("51.4 dB", snr(10.0, 20.0).array.0),
     ] {
         assert_eq!(format!("{decibels:.1} dB"), number);
