@@ -13,7 +13,7 @@ pub struct Ambiguity {
     pub range_metres: Vec<f64>,
     /// cos(theta) of the columns.
     pub cos_theta: Vec<f64>,
-    /// `|<echo there, echo of the reflector>|` of echoes scaled to norm 1, `[ranges, cosines]`: 1 where no array could tell the two
+    /// `|<echo there, echo of the reflector>|` of echoes scaled to norm 1, `[ranges, cosines]`: 1 where the layout can't tell the two
     /// apart, whatever their gains.
     pub likeness: Array2<f64>,
 }

@@ -183,8 +183,8 @@ impl PlacedEcho {
 /// Echoes of all reflectors at all elements, and which gain each element has.
 ///
 /// Each reflector's derivatives by range and cos(theta) are taken orthogonal to its own signal. That only says the gains by
-/// other numbers, so the bound on the position stays as it is, and keeps the matrix well conditioned: the carrier turns 250
-/// times for each metre, and all of that belongs to the unknown gain.
+/// other numbers, so the bound on the position stays as it is, and keeps the matrix well conditioned: the carrier turns hundreds
+/// of times for each metre, and all of that belongs to the unknown gain.
 struct Model {
     /// `[reflectors][elements]`.
     echoes: Vec<Vec<PlacedEcho>>,

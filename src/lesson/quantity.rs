@@ -16,7 +16,7 @@ pub enum Quantity {
     MaximumRangeMetres,
     /// Length of the whole array, metres.
     ApertureMetres,
-    /// 2 D^2 / lambda, metres.
+    /// Where the whole array's far field begins ([`Radar::far_field_metres`]), metres.
     FarFieldMetres,
     /// Columns of one beam of an end: the map's columns over the end's elements.
     EndBeamColumns,

@@ -40,6 +40,7 @@ pub const ALL: &[Shipped] = lessons![
     "the-floor",
     "the-link-budget",
     "a-threshold-that-follows-the-noise",
+    "which-radar-is-the-thesis-radar",
     "what-a-network-can-know",
 ];
 

@@ -6,8 +6,12 @@
 //! | [`Convention::Physical`] | `+2 pi (f + n B / N) (2 R / c)` | a quarter of a wavelength in the middle of the chirp |
 //!
 //! `R` is half the path from the transmitter over the reflector to the receiver. A physical radar measures the second one up to one sign
-//! for all samples. Both follow from [`Carrier`]: the signed turns of the carrier for each wavelength of range, which is all that the
-//! samples know of a convention.
+//! for all samples. The first one is `-2 pi (f/2 - n B / N) (2 R / c)`: up to that sign, the second one for a carrier `f/2` and a chirp
+//! that falls by `B`. So the thesis' radar is a physical one that sends and hears at 38.5 GHz, falls to 36.5 GHz, and has its elements a
+//! quarter of a wavelength (1.947 mm) apart; `tests/library/which_radar.rs` holds the two to each other, sample by sample.
+//!
+//! Both follow from [`Carrier`]: the signed turns of the carrier for each wavelength of range, which is all that the samples know of a
+//! convention.
 
 use super::{Carrier, Radar, SPEED_OF_LIGHT};
 use serde::{Deserialize, Serialize};
@@ -16,9 +20,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
-    /// The thesis': carrier one way with minus, beat both ways with plus. It reproduces the thesis' tables; no physical radar has it.
+    /// The thesis': carrier one way with minus, beat both ways with plus. It reproduces the thesis' tables. But for the mixer's sign it is
+    /// the physical one at half the carrier, 38.5 GHz for table 3.1, with a chirp that falls.
     Thesis,
-    /// The physical one: carrier and beat both ways with one sign.
+    /// The physical one, for a chirp that rises from the carrier: carrier and beat both ways with one sign.
     Physical,
 }
 

@@ -33,7 +33,6 @@ pub use units::{Bytes, DecibelMilliwatts, Decibels, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Speed of light in vacuum, metres per second.
@@ -50,7 +49,7 @@ pub const MAX_CHIRPS: usize = 4096;
 #[serde(rename_all = "kebab-case")]
 pub enum Carrier {
     /// `exp(-j 2 pi R / lambda)`: the thesis' convention, unambiguous over all of cos(theta) with half-wavelength spacing. It reproduces
-    /// the thesis' tables. No physical array has it, since the beat's phase counts the distance there and back with the other sign.
+    /// the thesis' tables. The samples are those of a physical radar of half the carrier and a falling chirp ([`Convention::Thesis`]).
     #[default]
     OneWay,
     /// `exp(+j 4 pi R / lambda)`, as equation 3.1 is printed: carrier and beat count the same path with the same sign. With
@@ -388,14 +387,21 @@ impl Radar {
         Polar { range_metres, cos_theta }
     }
 
-    /// Distance 2 D^2 / lambda beyond which the aperture's far field begins, in metres (2 km for table 3.1).
+    /// Distance beyond which the whole array's far field begins, in metres: no element's phase is farther than 22.5 degrees from a plane
+    /// wave's. That is [`Radar::plane_beyond_metres`] of the aperture where elements send and hear by themselves (2 km for table 3.1), and
+    /// more for pairs of antennas, which reach beyond their midpoints.
     pub fn far_field_metres(&self) -> f64 {
-        2.0 * self.aperture_metres().powi(2) / self.wavelength_metres()
+        let squares = |n: usize| {
+            let pair = self.pair(n);
+            pair.transmitter_x_metres.powi(2) + pair.receiver_x_metres.powi(2)
+        };
+        let largest = (0..self.elements).filter(|n| !self.is_gap(*n)).map(squares).fold(0.0, f64::max);
+        4.0 * self.carrier_turns_per_metre().abs() * largest
     }
 
     /// Half the angle, in radians from broadside, that one end sees without ambiguity.
     pub fn end_field_of_view_radians(&self) -> f64 {
-        (self.wavelength_metres() / (2.0 * self.element_spacing_metres)).min(1.0).asin().min(PI / 2.0)
+        (0.5 / (self.carrier_turns_per_metre().abs() * self.element_spacing_metres)).min(1.0).asin()
     }
 }
 
@@ -420,6 +426,7 @@ mod tests {
         assert!((r.max_range_metres() - 38.37).abs() < 0.01);
         assert!((r.aperture_metres() - 1.99).abs() < 0.01);
         assert!((r.far_field_metres() - 2037.0).abs() < 5.0);
+        assert!((r.far_field_metres() / r.plane_beyond_metres(r.aperture_metres()) - 1.0).abs() < 1e-9);
         assert_eq!(r.end_range(End::Last), 1012..1024);
         assert_eq!(r.element_x_metres(0), -r.element_x_metres(1023));
         r.validate().unwrap();
@@ -435,6 +442,31 @@ mod tests {
         let two_way = Radar { carrier: Carrier::TwoWay, ..r };
         let gap = two_way.column_of_cos(0.25) - two_way.column_of_cos(-0.75);
         assert!(gap.abs() < 1e-9, "two directions share a column");
+    }
+
+    #[test]
+    fn the_far_field_begins_where_the_phase_is_22_degrees_off() {
+        let physical = Radar::default().in_convention(Convention::Physical);
+        let (length, wavelength) = (physical.aperture_metres(), physical.wavelength_metres());
+        assert!((physical.far_field_metres() * wavelength / length.powi(2) - 4.0).abs() < 1e-9, "4 D^2 / lambda");
+        assert!((physical.far_field_metres() - 993.0).abs() < 1.0);
+        let pairs = Radar { bandwidth_hz: 1e9, ..Radar::default() }.of_pairs(12, 16).unwrap();
+        for radar in [Radar::default(), physical, pairs] {
+            let far = radar.far_field_metres();
+            // Of a point straight ahead, against one element in the middle of the line.
+            let degrees = |n| 360.0 * radar.carrier_turns_per_metre() * (radar.pair(n).range_metres(0.0, far) - far);
+            let most = (0..radar.elements).map(|n| degrees(n).abs()).fold(0.0, f64::max);
+            assert!((most - 22.5).abs() < 0.01, "{most} degrees");
+        }
+    }
+
+    #[test]
+    fn an_end_sees_half_of_what_folds_to_either_side() {
+        let sine = |radar: Radar| radar.end_field_of_view_radians().sin();
+        let filled = Radar::default().in_convention(Convention::Physical);
+        assert!((sine(Radar::default()) - 1.0).abs() < 1e-12 && (sine(filled) - 1.0).abs() < 1e-3);
+        let sparse = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
+        assert!((sine(sparse) - 0.5).abs() < 1e-12);
     }
 
     #[test]

@@ -4,9 +4,10 @@
 //! 3.1), the beat's at sample `n` of `N` another `2 n B / (N c)`. In the middle of the chirp, where windows weigh most, the array is
 //! therefore at `f + B / (s q)` in place of the carrier `f`.
 //!
-//! Under the thesis' convention (one-way carrier with minus, two-way beat with plus, `s q = -1`) that is `f - B`, and blobs of table 3.1
-//! stand 2.6 % nearer to broadside than their reflectors. No physical array has this convention. With consistent signs (`s q = 2`, the
-//! two-way carrier) it is `f + B / 2`, and blobs stand 1.3 % farther from broadside.
+//! The axis is drawn for the frequency at which the chirp begins, and blobs follow that in its middle. The physical convention (`s q = 2`)
+//! rises from 77 to 79 GHz: its middle is `f + B / 2`, and blobs stand 1.3 % farther from broadside than their reflectors. The thesis'
+//! radar (`s q = -1`) falls from `f/2 = 38.5` to 36.5 GHz ([`super::Convention`]): its middle is half of `f - B`, and blobs stand 2.6 % nearer
+//! to broadside.
 
 use super::{Polar, Radar};
 

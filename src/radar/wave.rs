@@ -43,6 +43,12 @@ impl Radar {
         1.0 / (self.middle_turns_per_metre().abs() * self.element_spacing_metres)
     }
 
+    /// Distance beyond which waves are plane over elements on `span_metres` that send and hear by themselves: `2 |s q| D^2 / lambda`, metres.
+    /// `|s q|` is 2 where a radar counts the way there and back, so that its far field begins at `4 D^2 / lambda`.
+    pub fn plane_beyond_metres(&self, span_metres: f64) -> f64 {
+        2.0 * self.carrier_turns_per_metre().abs() * span_metres.powi(2)
+    }
+
     /// Width in cos(theta) of the beam of elements over `span_metres`: one turn of the carrier from one side to the other.
     pub fn beam_cos(&self, span_metres: f64) -> f64 {
         self.wavelength_metres() / (span_metres * self.carrier.turns_per_wavelength().abs())

@@ -100,7 +100,7 @@ pub(super) fn cos_period(radar: &Radar) -> f64 {
 /// Why what one end hears can't be taken for plane waves, where nothing the radar sees is far enough away.
 pub(super) fn no_plane_waves(radar: &Radar) -> Option<String> {
     let end_metres = (radar.end_elements - 1) as f64 * radar.element_spacing_metres;
-    let far_metres = 2.0 * end_metres.powi(2) / radar.wavelength_metres();
+    let far_metres = radar.plane_beyond_metres(end_metres);
     let seen_metres = radar.max_range_metres();
     // A single sample has no ranges, and counts as far away.
     (radar.samples > 1 && far_metres > seen_metres).then(|| {

@@ -1,4 +1,5 @@
-//! A straight face by physical optics: the glint where the angles in and out agree, and the diffraction of both ends.
+//! A straight face, a strip lower than the Fresnel zone, by physical optics: the glint where the angles in and out agree, and the diffraction of
+//! both ends.
 //!
 //! The glint stands while the foot of the perpendicular lies on the face; [`transition`] takes it over into the end's echo,
 //! so that their sum never jumps.

@@ -27,12 +27,12 @@ pub struct Consequences {
     pub grating_cos: f64,
     /// Columns between cos(theta) = -1 and 1: fewer than the map has where elements stand close together.
     pub visible_columns: f64,
-    /// Distance beyond which waves are plane over the whole array, `2 D^2 / lambda`, in metres.
+    /// Distance beyond which waves are plane over the whole array, in metres ([`Radar::far_field_metres`]).
     pub full_far_field_metres: f64,
-    /// The same for one end.
+    /// The same for one end, its elements taken for antennas that send and hear ([`Radar::plane_beyond_metres`]).
     pub end_far_field_metres: f64,
     /// By how much a range changes from one side of the whole array to the other, at most, in bins: beyond one, a blob off broadside
-    /// migrates through range bins. Each element transmits for itself (the thesis' convention); with a common transmitter it is half.
+    /// migrates through range bins. This is so where each element transmits for itself; with a common transmitter it is half.
     pub migration_bins: f64,
     /// Cosine at which a blob stands over the true one ([`squint_factor`]).
     pub squint_factor: f64,
@@ -74,7 +74,7 @@ impl Consequences {
             grating_cos: fold_period_cos(radar),
             visible_columns: (2.0 / fold_period_cos(radar) * radar.elements as f64).min(radar.elements as f64),
             full_far_field_metres: radar.far_field_metres(),
-            end_far_field_metres: 2.0 * end_aperture.powi(2) / radar.wavelength_metres(),
+            end_far_field_metres: radar.plane_beyond_metres(end_aperture),
             migration_bins: radar.aperture_metres() / bin,
             squint_factor: squint_factor(radar),
         }

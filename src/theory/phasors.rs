@@ -84,7 +84,7 @@ fn turn(k: usize, n: usize) -> Complex64 {
 mod tests {
     use super::*;
     use crate::maps::{angle_transform, range_transform};
-    use crate::radar::End;
+    use crate::radar::{Convention, End};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
 
@@ -120,12 +120,13 @@ mod tests {
 
     #[test]
     fn chains_look_as_the_lesson_phasors_says() {
-        let short = Radar { elements: 96, ..Radar::default() };
+        let physical = Radar::default().in_convention(Convention::Physical);
+        let short = Radar { elements: 96, ..physical.clone() };
         let bin = short.bin_of_range(20.0).round() as usize;
         let [blob, _] = straightness(&short, (0.0, 20.0), [bin, 48]);
         let [null, _] = straightness(&short, (0.0, 20.0), [bin, 50]);
         assert!(blob > 0.98 && null < 0.03, "{blob} {null}");
-        let whole = Radar::default();
+        let whole = physical;
         let bin = whole.bin_of_range(5.0).round() as usize;
         let [spiral, focused] = straightness(&whole, (0.0, 5.0), [bin, 512]);
         assert!(spiral < 0.3 && focused > 0.999, "{spiral} {focused}");

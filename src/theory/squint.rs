@@ -3,8 +3,8 @@
 //! Equation 3.3 turns the carrier's phase `s q` times a wavelength, and the beat's phase `2 B n1 / N c` times a metre. Both change
 //! from element to element, and the angle transform can't separate them: sample `n1` hears the wave number
 //! `s q / lambda + 2 B n1 / (N c)` turns a metre. A symmetric window weighs the middle of the chirp most, and exactly that wave number
-//! decides the column. Under the thesis' convention (one-way carrier with minus, two-way beat with plus) it is `f - B` in place of `f`:
-//! 2.6 % lower. With consistent signs, as under the two-way carrier, it is `f + B / 2`.
+//! decides the column. In the thesis' convention (one-way carrier with minus, two-way beat with plus), a chirp that falls, it is that of
+//! `f - B` in place of `f`: 2.6 % lower. In the physical one, a chirp that rises, it is that of `f + B / 2`.
 
 use super::{Cell, centre_metres};
 use crate::maps::Aperture;

@@ -1,8 +1,8 @@
 //! The streak of a near reflector: each element sees it in its own direction and at its own range.
 //!
-//! Nearer than `2 D^2 / lambda` the waves are curved over the array. The part of the map that an element at `x` is answerable for is the cell
-//! of the direction and range seen from there (stationary phase; J. W. Goodman, "Introduction to Fourier Optics", on chirps), so the blob
-//! is drawn out along a path of such cells.
+//! Nearer than [`crate::radar::Radar::far_field_metres`] the waves are curved over the array. The part of the map that an element at `x` is
+//! answerable for is the cell of the direction and range seen from there (stationary phase; J. W. Goodman, "Introduction to Fourier Optics",
+//! on chirps), so the blob is drawn out along a path of such cells.
 
 use super::blob::path;
 use super::response::Response;

@@ -3,7 +3,7 @@
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Lesson, Step, shipped};
 use apertura::maps::{LogMap, LogMaps};
-use apertura::radar::{Convention, Radar};
+use apertura::radar::Radar;
 use apertura::signal::{Floor, simulate};
 use ndarray::Array1;
 
@@ -71,18 +71,10 @@ fn the_blob_of_a_near_point_is_as_wide_as_the_lesson_says() {
 }
 
 #[test]
-fn each_convention_shows_a_point_where_the_lesson_says() {
+fn the_far_field_of_the_pairs_begins_where_the_lesson_says() {
     let (_, lesson) = lesson();
-    let shown = |step: &Step| {
-        let row = brightest_row(&target(&step.radar, step));
-        let weight = |v: &f64| 10f64.powf(v / 10.0);
-        let sum: f64 = row.iter().enumerate().map(|(k, v)| weight(v) * step.radar.cos_of_column(k as f64)).sum();
-        sum / row.iter().map(weight).sum::<f64>()
-    };
-    let [thesis, physical] = [&lesson.steps[2], &lesson.steps[3]];
-    assert_eq!((&thesis.radar, physical.radar.convention()), (&Radar::default(), Convention::Physical));
-    assert!((shown(thesis) - 0.81).abs() < 0.005, "{}", shown(thesis));
-    assert!((shown(physical) - 0.843).abs() < 0.002, "{}", shown(physical));
-    assert_eq!([thesis, physical].map(right_option), ["At 0.81", "At 0.843"]);
-    taught(&format!("nearer to broadside, by {:.1} %", 100.0 * (1.0 - thesis.radar.squint())));
+    let step = &lesson.steps[2];
+    let alone = Radar { antennas: None, ..step.radar.clone() };
+    taught(&format!("4 D² / λ = {:.0} m", alone.far_field_metres()));
+    assert_eq!(right_option(step), format!("{:.0} m", step.radar.far_field_metres()));
 }

@@ -9,6 +9,7 @@ mod failures;
 mod house;
 mod lessons;
 mod lessons_of_bodies;
+mod lessons_of_detectors;
 mod lessons_of_pairs;
 #[cfg(feature = "network")]
 mod live_network;
@@ -26,6 +27,8 @@ mod snapshot;
 mod stress;
 #[cfg(all(unix, feature = "live"))]
 mod tables;
+mod taught;
+mod which_radar;
 mod whole_files;
 
 /// Damaged files are read in bounded memory: somebody has to count.

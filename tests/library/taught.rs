@@ -1,0 +1,24 @@
+//! Lessons, and what their texts must say.
+
+use apertura::lesson::{Lesson, shipped};
+use apertura::radar::{Convention, Radar};
+
+/// A lesson's file.
+pub fn text(id: &str) -> &'static str {
+    shipped::ALL.iter().find(|s| s.id == id).unwrap_or_else(|| panic!("no lesson {id}")).toml
+}
+
+/// A lesson.
+pub fn lesson(id: &str) -> Lesson {
+    Lesson::from_toml(text(id)).unwrap()
+}
+
+/// Holds a lesson to a number as its text has it.
+pub fn taught(id: &str, number: &str) {
+    assert!(text(id).contains(number), "{id} does not say \"{number}\"");
+}
+
+/// The radar of most lessons: what table 3.1 says, in the physical convention.
+pub fn physical() -> Radar {
+    Radar::default().in_convention(Convention::Physical)
+}
