@@ -13,17 +13,27 @@ from live import COARSE_CHANNELS, FINE, GRID, ROWS, Live, parted, widened
 SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.safetensors"
 
 
-def main(path, weights=SHIPPED):
+def live(weights=SHIPPED):
+    """The live network with the weights of a file, without its doubt."""
     model = Live()
     model.load_state_dict(widened(parted(load_file(weights))[0]))
-    inputs = {
+    return model.eval()
+
+
+def inputs():
+    """Zeros in the shape of each input, in the order in which the network takes them."""
+    return {
         "fine": torch.zeros(1, 4, ROWS, FINE),
         "coarse": torch.zeros(1, COARSE_CHANNELS, ROWS, GRID),
         "rows": torch.zeros(1, 6, ROWS),
         "scalars": torch.zeros(1, 2),
     }
+
+
+def main(path, weights=SHIPPED):
+    names = list(inputs())
     torch.onnx.export(
-        model.eval(), tuple(inputs.values()), path, input_names=list(inputs), output_names=["decades", "minimum"], opset_version=17, dynamo=False
+        live(weights), tuple(inputs().values()), path, input_names=names, output_names=["decades", "minimum"], opset_version=17, dynamo=False
     )
 
 

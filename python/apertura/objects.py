@@ -202,12 +202,18 @@ class Rule(NamedTuple):
 
 
 class Threshold(NamedTuple):
-    """A threshold that keeps a rate of false alarms, and means over the scenes that chose it; rates are fractions."""
+    """A threshold that keeps a rate of false alarms, and means over the scenes that chose it; rates are fractions.
+
+    `left_to_scenes` is the most that `false_alarm` may be with so many scenes: the rest of the rate is the price of few scenes. It is a tenth or
+    less from `scenes_within_a_tenth` scenes on.
+    """
 
     eta: float
     scenes: int
     false_alarm: float
     detection: float
+    left_to_scenes: float
+    scenes_within_a_tenth: int
 
 
 class PositionBound(NamedTuple):

@@ -157,7 +157,7 @@ impl Reconstruction {
     }
 
     /// How far off the method expects its map to be, float32 `[samples, elements]`: nine of ten cells are no farther than this from the true
-    /// Lambda, on scenes like those it was made for. `None` where the method does not say; a copy.
+    /// Lambda, on scenes and over noise like those it was trained on. `None` where the method does not say; a copy.
     #[getter]
     fn doubt<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f32>>> {
         self.answer.doubt.as_ref().map(|map| owned(py, map.lambda.clone()))

@@ -28,7 +28,8 @@ use pyo3::prelude::*;
 ///
 /// Returns:
 ///     `eta`, the threshold of Lambda, and what it does on the scenes that chose it: `scenes`, and the means `false_alarm` and `detection`,
-///     fractions.
+///     fractions. `left_to_scenes` is the most that `false_alarm` may be with so many scenes, `((n + 1) rate - 1) / n`: the rest of the rate is
+///     the price of few scenes. It is a tenth or less from `scenes_within_a_tenth` scenes on.
 ///
 /// Raises:
 ///     ValueError: A name is unknown or given twice, the scenes are too few for the rate, or the method can't work on a scene.
@@ -65,6 +66,7 @@ pub fn threshold<'py>(
     let method = methods::method(method)?.0;
     let found = work::run(py, progress, |task| search.run(&*method, task, |part| task.set_progress(part)))?;
     let KeptThreshold { eta, tried } = found.map_err(value)?;
-    let figures = (eta, tried.scenes, tried.false_alarm, tried.detection);
+    let price = (search.left_to_scenes(tried.scenes), search.scenes_within_a_tenth());
+    let figures = (eta, tried.scenes, tried.false_alarm, tried.detection, price.0, price.1);
     py.import("apertura.objects")?.getattr("Threshold")?.call1(figures)
 }

@@ -13,6 +13,7 @@ def test_the_threshold_keeps_the_rate_on_the_scenes_that_chose_it():
     found = ap.threshold("baseline", false_alarm_percent=40, sets=[1, "2"], count=2, progress=parts.append)
     assert found.scenes == 4 and 0 <= found.eta < 1 and 0 <= found.detection <= 1
     assert (4 * found.false_alarm + 1) / 5 <= 0.4
+    assert found.left_to_scenes == pytest.approx((5 * 0.4 - 1) / 4) and found.scenes_within_a_tenth == 15
     assert parts == sorted(parts) and parts[-1] == 1.0
     assert found == ap.threshold("baseline", false_alarm_percent=40, sets=["1", 2], count=2)
 

@@ -153,3 +153,13 @@ def test_weights_are_exported(tmp_path):
 def test_untrained_weights_are_not_exported(tmp_path):
     found = alone(tmp_path, "train_live.py", "--export", str(tmp_path / "live.safetensors"))
     assert found.returncode != 0 and "saw no map" in found.stderr
+
+
+def test_the_comparison_takes_the_shipped_weights(monkeypatch):
+    monkeypatch.syspath_prepend(TRAINING.parent / "comparisons")
+    import network
+
+    shipped = network.shipped()
+    with torch.no_grad():
+        decades, minimum = shipped.live()(**shipped.inputs())
+    assert decades.shape == (1, 512, 1024) and minimum.shape == (1,) and bool(torch.isfinite(decades).all())

@@ -202,7 +202,7 @@ impl Campaign {
         for set in sets {
             let floor = set.floor(self.floor);
             let trained: Vec<_> =
-                methods.iter().filter(|m| floor.is_thermal() && m.trained_noise().is_some()).collect();
+                methods.iter().filter(|m| floor != Floor::Thesis && m.trained_noise().is_some()).collect();
             if trained.is_empty() {
                 continue;
             }
@@ -220,7 +220,7 @@ impl Campaign {
             let (name, all) = (set_name(set), self.shard.size(count));
             told.extend(said.into_iter().filter_map(|(scenes, why)| {
                 Some(format!(
-                    "{scenes} of {all} scenes of {name} have noise that was not trained on, the first: {}",
+                    "{scenes} of {all} scenes of {name} lie over noise that was not trained on, the first: {}",
                     why?
                 ))
             }));

@@ -43,7 +43,8 @@ pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
 }
 
 /// SE if every cell were off by its doubt ([`Reconstruction::doubt`](crate::reconstruct::Reconstruction::doubt), `[range bins, columns]`): the
-/// sum of its squares over every cell. Nine of ten cells are nearer, so that it is mostly larger than SE.
+/// sum of its squares over every cell. On scenes and over noise like those of the training nine of ten cells are nearer, so that it is mostly
+/// larger than SE.
 ///
 /// It ranks scenes by their SE as well as the mean of doubt does, and has the unit of SE.
 pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
@@ -51,7 +52,7 @@ pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
 }
 
 /// Part of the cells whose error is at most their doubt ([`Reconstruction::doubt`](crate::reconstruct::Reconstruction::doubt)). The error is the
-/// distance of `output` from `target`; all three are `[range bins, columns]`. The aim is 0.9.
+/// distance of `output` from `target`; all three are `[range bins, columns]`. The aim is 0.9, on scenes and over noise like those of the training.
 pub fn part_within(doubt: &RangeAngleMap, target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
     let cells = doubt.lambda.iter().zip(target.lambda.iter().zip(&output.lambda));
     let within = cells.filter(|(doubt, (target, output))| (*target - *output).abs() <= **doubt).count();

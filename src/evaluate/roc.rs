@@ -103,6 +103,19 @@ impl Roc {
         (1.0 / false_alarm - 1.0).ceil()
     }
 
+    /// The mean P_FA that keeping the rate leaves to `scenes` scenes: `((n + 1) false_alarm - 1) / n`. A further scene may have P_FA 1, and the
+    /// fewer the scenes are, the more of the rate is kept back for it. Below 0 where the scenes are too few.
+    pub fn left_to_scenes(scenes: usize, false_alarm: f64) -> f64 {
+        let scenes = scenes as f64;
+        ((scenes + 1.0) * false_alarm - 1.0) / scenes
+    }
+
+    /// The fewest scenes to which [`Roc::left_to_scenes`] leaves nine tenths of the rate.
+    pub fn scenes_within_a_tenth(false_alarm: f64) -> u64 {
+        // (n + 1) r - 1 >= 0.9 n r; the small part is rounding's.
+        (10.0 * (1.0 - false_alarm) / false_alarm - 1e-6).ceil() as u64
+    }
+
     /// The highest threshold with P_D at least `detection`, or `None` where no threshold reaches it and without scenes.
     pub fn at_detection(&self, detection: f64) -> Option<RocPoint> {
         self.points().filter(|p| p.detection >= detection).last()
@@ -174,6 +187,20 @@ mod tests {
         assert_eq!((roc.keeping_false_alarm(0.01), Roc::fewest_scenes(0.01)), (None, 99.0));
         roc.add(&target, &target);
         assert_eq!(roc.keeping_false_alarm(0.01).unwrap().false_alarm, 0.0);
+    }
+
+    #[test]
+    fn many_scenes_are_left_nearly_all_of_the_rate() {
+        for rate in [0.001, 0.005, 0.01, 0.4] {
+            let fewest = Roc::scenes_within_a_tenth(rate) as usize;
+            let left = |scenes| Roc::left_to_scenes(scenes, rate) / rate;
+            assert!(left(fewest) > 0.9 - 1e-9 && left(fewest - 1) < 0.9, "{rate}: {fewest}");
+            // The mean over the scenes tried and one more with P_FA 1 is the rate.
+            let scenes = Roc::fewest_scenes(rate) + 7.0;
+            let mean = (scenes * Roc::left_to_scenes(scenes as usize, rate) + 1.0) / (scenes + 1.0);
+            assert!((mean - rate).abs() < 1e-12, "{rate}: {mean}");
+        }
+        assert_eq!(Roc::scenes_within_a_tenth(0.01), 990);
     }
 
     #[test]

@@ -166,6 +166,27 @@ impl ThresholdSearch {
         Ok(Tried { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
     }
 
+    /// How much of the rate is left to P_FA on `scenes` scenes, and to how many nine tenths of it would be, in words.
+    pub fn told_left(&self, scenes: usize) -> String {
+        format!(
+            "for {} % on further scenes, P_FA on {} may be {:.3} %: the rest is the price of few scenes, a tenth or less from {} scenes on",
+            self.false_alarm_percent,
+            counted(scenes, "scene", "scenes"),
+            100.0 * self.left_to_scenes(scenes),
+            self.scenes_within_a_tenth()
+        )
+    }
+
+    /// [`Roc::left_to_scenes`] of the rate, a fraction.
+    pub fn left_to_scenes(&self, scenes: usize) -> f64 {
+        Roc::left_to_scenes(scenes, self.rate())
+    }
+
+    /// [`Roc::scenes_within_a_tenth`] of the rate.
+    pub fn scenes_within_a_tenth(&self) -> u64 {
+        Roc::scenes_within_a_tenth(self.rate())
+    }
+
     /// The rate as a fraction.
     fn rate(&self) -> f64 {
         self.false_alarm_percent / 100.0
@@ -245,6 +266,10 @@ mod tests {
         let found = search.run(&Baseline, &task, |part| parts.push(part)).unwrap();
         assert_eq!((found.tried.scenes, parts.len(), parts.last()), (6, 6, Some(&1.0)));
         assert!((6.0 * found.tried.false_alarm + 1.0) / 7.0 <= 0.4, "{found:?}");
+        assert!(found.tried.false_alarm <= search.left_to_scenes(6), "{found:?}");
+        let told = search.told_left(6);
+        assert!(told.starts_with("for 40 % on further scenes, P_FA on 6 scenes may be 30.000 %"), "{told}");
+        assert!(told.ends_with("from 15 scenes on"), "{told}");
         let again = search.run(&Baseline, &task, |_| ()).unwrap();
         assert_eq!(found, again);
         let further = search.try_further(&Baseline, found.eta, 2, &task, |_| ()).unwrap();

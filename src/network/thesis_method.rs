@@ -147,7 +147,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
-        Some(TrainedNoise::None)
+        Some(TrainedNoise::Rounding)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -224,7 +224,7 @@ impl Reconstructor for UnetMethod {
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
-        Some(TrainedNoise::None)
+        Some(TrainedNoise::Rounding)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {

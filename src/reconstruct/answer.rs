@@ -55,7 +55,7 @@ pub struct Reconstruction {
     /// [`reconstruct`]: super::Reconstructor::reconstruct
     pub least_eta: Option<f32>,
     /// How far off the method expects its map to be, `[range bins, columns]`: nine of ten cells are no farther than this from the true Lambda, on
-    /// scenes like those it was made for. `None` where the method does not say.
+    /// scenes and over noise like those it was trained on. `None` where the method does not say.
     pub doubt: Option<RangeAngleMap>,
     /// What the method tried, the first first; empty where it does not say.
     pub trace: Vec<Attempt>,

@@ -46,9 +46,9 @@ pub use hybrid::{Hybrid, Unexplained};
 #[cfg(feature = "live")]
 pub(crate) use noise_test::level_above_mean_decades;
 pub use prior::{NoisePrior, NoisePriorError};
-pub use reconstructor::{About, Reconstructor, Weights, check_ends, untrained_noise};
+pub use reconstructor::{About, Reconstructor, Weights, check_ends};
 pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
     ROOT_MUSIC_PEAKS, RowMethod,
 };
-pub use trained::TrainedNoise;
+pub use trained::{TrainedNoise, untrained_noise};

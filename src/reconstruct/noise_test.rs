@@ -85,8 +85,8 @@ fn holds_echo(radar: &Radar, ends: &TwoEnds, noise_variance: f64) -> bool {
     false
 }
 
-/// `found` in `ends` with a threshold that knows the noise; `own_eta` is the method's own. An answer that is flat where the samples hold more
-/// than noise found nothing of it, and is drawn as silence: what lies at one level everywhere would be drawn at any level.
+/// `found` in `ends` with a threshold that knows the noise; `own_eta` is the method's own. A flat answer without reflectors found nothing, also
+/// where the samples hold more than noise: no threshold tells its cells apart.
 pub(super) fn tested(
     radar: &Radar,
     ends: &TwoEnds,
@@ -94,12 +94,8 @@ pub(super) fn tested(
     own_eta: f32,
     mut found: Reconstruction,
 ) -> Reconstruction {
-    if !holds_echo(radar, ends, noise_variance) {
-        found.eta = Some(NOTHING);
-        return found;
-    }
-    if found.reflectors.is_empty() && is_flat(&found) {
-        found.lambda.lambda.fill(0.0);
+    let found_nothing = found.reflectors.is_empty() && is_flat(&found);
+    if found_nothing || !holds_echo(radar, ends, noise_variance) {
         found.eta = Some(NOTHING);
         return found;
     }

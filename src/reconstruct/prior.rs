@@ -111,6 +111,7 @@ mod tests {
     use crate::radar::Radar;
     use crate::reconstruct::hearing::ends_noise_variance;
     use crate::scene::Scene;
+    use crate::signal::floor::snr_noise_variance;
     use crate::signal::simulate;
 
     #[test]
@@ -122,7 +123,8 @@ mod tests {
         assert_eq!(ends_noise_variance(&radar, &ends, known), 9.0);
         assert_eq!(known.scaled(2.0).variance(), Some(36.0));
         let measured = ends_noise_variance(&radar, &ends, NoisePrior::UNKNOWN);
-        assert!(measured > 0.0 && measured < 1.0, "{measured}");
+        let added = snr_noise_variance(&radar, &scene.reflectors(), Decibels(20.0))[0];
+        assert!((measured / added - 1.0).abs() < 0.2, "{measured} where {added} was added");
     }
 
     #[test]

@@ -7,8 +7,7 @@ use super::hearing::ends_noise_variance;
 use super::noise_test::tested;
 use super::trained::TrainedNoise;
 use crate::radar::{End, Radar};
-use crate::scattering::Sources;
-use crate::signal::{Floor, TwoEnds};
+use crate::signal::TwoEnds;
 use ndarray::Array3;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -154,7 +153,7 @@ pub trait Reconstructor: Send + Sync {
         Err(self.unusable(reason))
     }
 
-    /// The thermal noise beneath the scenes that it was trained on, where it was trained.
+    /// The noise beneath the scenes that it was trained on, where it was trained.
     fn trained_noise(&self) -> Option<TrainedNoise> {
         None
     }
@@ -193,31 +192,6 @@ pub trait Reconstructor: Send + Sync {
     fn unusable(&self, reason: String) -> ReconstructError {
         ReconstructError::Unusable { method: self.name(), reason }
     }
-}
-
-/// What is wrong with asking `method` of these sources over `floor`, if it was trained on other noise.
-pub fn untrained_noise<'a>(
-    method: &dyn Reconstructor,
-    radar: &Radar,
-    sources: impl Into<Sources<'a>>,
-    floor: Floor,
-) -> Option<String> {
-    let trained = method.trained_noise()?;
-    if !floor.is_thermal() {
-        return None;
-    }
-    let snr = floor.snr(radar, sources);
-    let was = match trained {
-        TrainedNoise::None => "without thermal noise".to_owned(),
-        TrainedNoise::Snr(from, to) => {
-            if snr.is_some_and(|snr| (from..=to).contains(&snr)) {
-                return None;
-            }
-            format!("at SNRs of {:.0} to {:.0} dB", from.0, to.0)
-        }
-    };
-    let is = snr.map_or("this scene is noise alone".to_owned(), |snr| format!("this scene has {:.0} dB", snr.0));
-    Some(format!("{} was trained {was}; {is}", method.name()))
 }
 
 /// Checks that both ends have the radar's shape and hold finite samples only.

@@ -11,18 +11,28 @@ use apertura::scene::presets::{self, Preset};
 use apertura::signal::Floor;
 use std::collections::BTreeSet;
 
-/// Scene, method, and how many objects are missed, merged and on a wrong tooth, and how many ghosts there are.
-const EXPLAINED: [(&str, &str, [usize; 4]); 10] = [
-    ("failure-live-missed", "live", [1, 0, 0, 0]),
-    ("failure-live-merged", "live", [0, 2, 0, 0]),
-    ("failure-live-ghost", "live", [0, 0, 0, 1]),
-    ("failure-wrong-tooth", "live", [0, 0, 1, 0]),
-    ("failure-hybrid-merged", "hybrid", [0, 2, 0, 0]),
-    ("failure-hybrid-missed", "hybrid", [1, 0, 0, 0]),
-    ("failure-thesis-missed", "thesis", [1, 0, 0, 0]),
-    ("failure-thesis-merged", "thesis", [3, 2, 0, 1]),
-    ("failure-thesis-ghost", "thesis", [0, 0, 0, 1]),
-    ("failure-thesis-wrong-tooth", "thesis", [0, 0, 1, 0]),
+/// What a method does wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Missed,
+    Merged,
+    WrongTooth,
+    Ghost,
+}
+use Kind::{Ghost, Merged, Missed, WrongTooth};
+
+/// Scene, method, and the kinds of failure that the notes explain. None is more frequent than the first.
+const EXPLAINED: [(&str, &str, &[Kind]); 10] = [
+    ("failure-live-missed", "live", &[Missed]),
+    ("failure-live-merged", "live", &[Merged]),
+    ("failure-live-ghost", "live", &[Ghost]),
+    ("failure-wrong-tooth", "live", &[WrongTooth]),
+    ("failure-hybrid-merged", "hybrid", &[Merged]),
+    ("failure-hybrid-missed", "hybrid", &[Missed]),
+    ("failure-thesis-missed", "thesis", &[Missed]),
+    ("failure-thesis-merged", "thesis", &[Missed, Merged, Ghost]),
+    ("failure-thesis-ghost", "thesis", &[Ghost]),
+    ("failure-thesis-wrong-tooth", "thesis", &[WrongTooth]),
 ];
 
 #[test]
@@ -44,6 +54,15 @@ fn methods_fail_on_shipped_scenes_as_their_notes_say() {
         let failures = trial.failures(&answer);
         let merged = failures.count(|fate| matches!(fate, Fate::Merged { .. }));
         let wrong_tooth = failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }));
-        assert_eq!([failures.missed(), merged, wrong_tooth, failures.ghosts.len()], expected, "{id}, {name}");
+        let counts =
+            [(Missed, failures.missed()), (Merged, merged), (WrongTooth, wrong_tooth), (Ghost, failures.ghosts.len())];
+        let shown: BTreeSet<Kind> = counts.into_iter().filter(|(_, count)| *count > 0).map(|(kind, _)| kind).collect();
+        assert_eq!(shown, expected.iter().copied().collect(), "{id}, {name}: {counts:?}");
+        let most = counts.iter().map(|(_, count)| *count).max();
+        assert_eq!(
+            counts.iter().find(|(kind, _)| *kind == expected[0]).map(|(_, count)| *count),
+            most,
+            "{id}: {counts:?}"
+        );
     }
 }

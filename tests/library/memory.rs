@@ -52,7 +52,9 @@ fn child() {
             let _maybe_refused = method.reconstruct(&radar, &signal.two_ends(&radar), &Request::default());
         }
     }
-    println!("\nheld {}", peak_resident_bytes().unwrap_or(0).saturating_sub(before));
+    if let Some(peak) = peak_resident_bytes() {
+        println!("\nheld {}", peak.saturating_sub(before));
+    }
 }
 
 /// Bytes that `work` for `radar` held at most; `None` where the system tells no peaks.
@@ -63,12 +65,15 @@ fn held(work: &str, radar: &Radar) -> Option<u64> {
     let output = child.output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{work}: {said} {}", String::from_utf8_lossy(&output.stderr));
-    let bytes = said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok());
-    bytes.filter(|b| *b > 0)
+    said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok())
 }
 
-fn check(work: &str, radar: &Radar) {
-    let Some(held) = held(work, radar) else { return println!("skipped: the system tells no peaks") };
+/// Holds `work` to what is counted, and to `least` bytes: a measurement that sees no memory proves nothing.
+fn check(work: &str, radar: &Radar, least: u64) {
+    let Some(held) = held(work, radar) else {
+        assert!(!cfg!(target_os = "linux"), "{work}: the peak was not told");
+        return println!("skipped: the system tells no peaks");
+    };
     let (cells, counted) = (radar.elements * radar.samples, radar.memory_bytes());
     println!(
         "{work}: {} elements, {} samples, ends of {}: {held} bytes held, {:.0} a cell, {counted} counted",
@@ -77,14 +82,15 @@ fn check(work: &str, radar: &Radar) {
         radar.end_elements,
         held as f64 / cells as f64
     );
-    assert!(held <= counted + OVERHEAD, "{work} held {held} bytes where {counted} are counted");
+    assert!((least..=counted + OVERHEAD).contains(&held), "{work} held {held} bytes where {counted} are counted");
 }
 
 #[test]
 fn memory_stays_below_what_is_counted() {
     let radar = Radar { elements: 1024, samples: 1024, ..Radar::default() };
     for work in ["export", "engine"] {
-        check(work, &radar);
+        // The samples of the whole array, or one map and its decades.
+        check(work, &radar, 8 << 20);
     }
 }
 
@@ -95,7 +101,8 @@ fn every_method_stays_below_what_is_counted() {
     let wide_ends = Radar { elements: 1024, samples: 64, end_elements: 512, ..Radar::default() };
     for radar in [large, wide_ends] {
         for work in ["export", "engine"].into_iter().chain(methods::all().iter().map(|m| m.name())) {
-            check(work, &radar);
+            // A method may refuse the radar, and hold nothing.
+            check(work, &radar, 0);
         }
     }
 }

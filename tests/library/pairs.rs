@@ -70,6 +70,7 @@ fn the_search_finds_points_beside_gaps() {
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
     let method = methods::by_name("nomp").unwrap();
     let found = reconstruct_and_find(method.as_ref(), &radar, &signal.two_ends(&radar), &request).unwrap().1;
+    assert!(found.len() >= 2, "{found:?}");
     // The two strongest are the points.
     for (point, found) in scene.reflectors().iter().zip(&found) {
         let polar = radar.polar_of(point.x_metres, point.y_metres);

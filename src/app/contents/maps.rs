@@ -125,8 +125,7 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map
     Some(map::ToldApart { output, target: pair.target.as_deref()?, etas: [eta, TARGET_ETA] })
 }
 
-/// What is to be known of the method whose map it is: over how much noise it was trained, where the scene has another amount. Nobody knows
-/// that of a recording.
+/// Over which noise the method whose map it is was trained, where the scene has other noise. A recording's noise is not known.
 fn note(state: &State, kind: MapKind) -> Option<String> {
     let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
     method.trained_noise()?;

@@ -100,11 +100,12 @@ fn told(search: &ThresholdSearch, method: &str, found: &KeptThreshold) -> String
     let kinds: Vec<String> = search.kinds.iter().map(Kind::to_string).collect();
     format!(
         "η of {method} is {eta:.3}: at most {} % false alarms on average over further scenes like the {} it was tried on (kinds {}; P_FA \
-         {:.2} %, P_D {:.1} % there)",
+         {:.2} %, P_D {:.1} % there); {}",
         search.false_alarm_percent,
         counted(tried.scenes, "validation scene", "validation scenes"),
         kinds.join(", "),
         100.0 * tried.false_alarm,
-        100.0 * tried.detection
+        100.0 * tried.detection,
+        search.told_left(tried.scenes)
     )
 }

@@ -252,7 +252,8 @@ impl MapKind {
                 "What reflectors laid over a recording leave of it: their echoes are fitted and taken off"
             }
             MapKind::Doubt => {
-                "How far off the method expects its output to be: nine of ten cells are nearer to the target than this"
+                "How far off the method expects its output to be: nine of ten cells are nearer to the target than this, on scenes and over \
+                 noise like those it was trained on"
             }
             MapKind::Second => "What the second method makes of the two ends",
             MapKind::SecondAbove => "Cells where the second output exceeds its η",

@@ -39,7 +39,7 @@ pub fn write_within<'a>(methods: impl IntoIterator<Item = (&'a String, &'a Estim
         // Writing to a string can't fail.
         let _ = writeln!(
             text,
-            "doubt of {method}: the error of {} % of the cells is at most their doubt; 90 % is the aim",
+            "doubt of {method}: the error of {} % of the cells is at most their doubt; 90 % is the aim over noise that it was trained on",
             percent_of(part)
         );
     }

@@ -43,7 +43,8 @@ use std::time::Duration;
 /// For a method that says its doubt a line tells whether doubt finds its failures: the rows of the worst tenth by squared error, or those from
 /// --failures-from on. The area under the ROC curve is the probability that a failure has more doubt than another row; 0.5 tells nothing. It is
 /// given for each set of ten rows or more and for all sets together, whose worst tenth may be of few sets. Doubt (column doubt of --rows) is the
-/// squared error if every cell were off by as much as the method says that nine of ten cells stay below.
+/// squared error if every cell were off by as much as the method says that nine of ten cells stay below, on scenes and over noise like those it
+/// was trained on.
 ///
 /// With --rows each row is appended as soon as it is found. The same command resumes a stopped run. Rows of another run are
 /// refused. --merge joins the rows of the parts of one run, and fails where scenes are missing.

@@ -52,7 +52,8 @@ impl DoubtHead {
         }))
     }
 
-    /// The error of Lambda, `[512, 1024]`, that nine of ten cells stay below, from the picture that the network's heads read.
+    /// The error of Lambda, `[512, 1024]`, that nine of ten cells of scenes like the training scenes stay below, from the picture that the
+    /// network's heads read.
     pub(super) fn read(&self, picture: &Plane) -> RangeAngleMap {
         let lanes = self.conv2.output();
         let mut said = vec![0.0; ROWS * COARSE * lanes];

@@ -147,7 +147,7 @@ impl Reconstructor for LiveMethod {
             name: NAME,
             description: "a small network that draws the whole array's map from matched filters of both ends",
             told: "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
-                at signal-to-noise ratios of 10 to 60 dB",
+                at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program",
             eta: self.eta,
         }
     }
@@ -165,7 +165,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
-        Some(TrainedNoise::Snr(TRAINED_DECIBELS[0], TRAINED_DECIBELS[1]))
+        Some(TrainedNoise::RoundingAndSnr(TRAINED_DECIBELS[0], TRAINED_DECIBELS[1]))
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

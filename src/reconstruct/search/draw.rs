@@ -79,6 +79,11 @@ pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, reques
     over_noise(map, cell_noise(radar, &variance).max(f64::MIN_POSITIVE), request.normalisation)
 }
 
+/// Expected Lambda of white noise alone. It is the same for noise of every level: both normalisations count from the map's own peak.
+pub fn expected_noise(radar: &Radar, normalisation: Normalisation) -> Expected {
+    over_noise(FastLogMap::silence(radar), 1.0, normalisation)
+}
+
 /// Decades of the whole array's map without noise.
 fn log_map<T: Real, const W: usize>(radar: &Radar, reflectors: &[Reflector], plan: Plan, task: &Task) -> FastLogMap {
     let mut profiles = BlockProfiles::silence(radar);

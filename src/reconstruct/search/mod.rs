@@ -75,7 +75,7 @@ use super::reconstructor::{About, Reconstructor};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
-use draw::{Noise, Weighted, expected_lambda};
+use draw::{Noise, Weighted, expected_lambda, expected_noise};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.896;
@@ -153,10 +153,10 @@ impl Found {
         }
     }
 
-    /// The expected map of what was found, and its scale.
+    /// The expected map of what was found, and its scale; that of white noise where nothing was.
     pub fn expected(&self, radar: &Radar, request: &Request) -> Expected {
         if self.atoms.is_empty() {
-            return Expected { map: Reconstruction::silence(radar).lambda, decades: 1.0, least_eta: 0.0 };
+            return expected_noise(radar, request.normalisation);
         }
         let noise = match request.noise {
             NoisePrior::Rounding if self.complete => Noise::Rounding,

@@ -40,14 +40,33 @@ const KEEP: &str = "Part of the target's dark cells that may exceed η, on avera
     single scene P_FA may be higher.";
 
 impl Memory {
+    fn choice(&self) -> ThresholdChoice {
+        ThresholdChoice {
+            false_alarm_percent: self.percent,
+            kinds: self.kinds.iter().copied().collect(),
+            count: self.count,
+        }
+    }
+
+    fn search(&self) -> ThresholdSearch {
+        let ThresholdChoice { false_alarm_percent, kinds, count } = self.choice();
+        ThresholdSearch { false_alarm_percent, kinds, count, ..ThresholdSearch::default() }
+    }
+
     /// Why no search can begin, if none can.
     fn problem(&self) -> Option<String> {
         if self.kinds.is_empty() {
             return Some("Choose scenes first.".to_owned());
         }
-        let (false_alarm_percent, kinds) = (self.percent, self.kinds.iter().copied().collect());
-        let search = ThresholdSearch { false_alarm_percent, kinds, count: self.count, ..ThresholdSearch::default() };
-        search.check().err().map(|error| error.to_string())
+        self.search().check().err().map(|error| error.to_string())
+    }
+
+    /// What the number of scenes costs, where it is enough.
+    fn price(&self) -> String {
+        let search = self.search();
+        let scenes = self.count as usize * self.kinds.len();
+        let price = search.check().is_ok().then(|| format!(": {}", search.told_left(scenes)));
+        format!("Scenes of each kind. More scenes give a lower η{}", price.unwrap_or_default())
     }
 }
 
@@ -78,8 +97,8 @@ fn choose(ui: &mut Ui, memory: &mut Memory) {
         menu.response
             .on_hover_text("Kinds of scenes that the method is tried on: choose those that it is to be used on");
         let label = ui.label("of each");
+        let tip = memory.price();
         let field = NumberField::new(&mut memory.count).range(1..=100_000);
-        let tip = "Scenes of each kind. 1 % takes 99 scenes in all or more; more scenes give a lower η";
         ui.add(field).labelled_by(label.id).on_hover_text(tip);
     });
 }
@@ -95,9 +114,7 @@ fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &Memory, asked:
     let tips = [problem.as_deref().unwrap_or(&tip), "Stop the search; η stays as it is"];
     match start_or_cancel(ui, "Find η", search.progress.is_some(), problem.is_none(), tips) {
         Some(Pressed::Start) => {
-            let (false_alarm_percent, kinds) = (memory.percent, memory.kinds.iter().copied().collect());
-            let choice = ThresholdChoice { false_alarm_percent, kinds, count: memory.count };
-            asked.push(WorkCommand::FindThreshold(choice).into());
+            asked.push(WorkCommand::FindThreshold(memory.choice()).into());
         }
         Some(Pressed::Cancel) => asked.push(WorkCommand::CancelThreshold.into()),
         None => {}
@@ -161,6 +178,14 @@ mod tests {
         fields.run_steps(40);
         let told = fields.query_by_label_contains("exchangeable with the validation scenes");
         assert!(told.is_some());
+    }
+
+    #[test]
+    fn the_price_of_few_scenes_stands_beside_their_number() {
+        let price = Memory::default().price();
+        assert!(price.contains("P_FA on 300 scenes may be 0.670 %") && price.contains("from 990 scenes on"), "{price}");
+        let too_few = Memory { count: 20, ..Memory::default() }.price();
+        assert!(too_few.ends_with("give a lower η"), "{too_few}");
     }
 
     #[test]

@@ -169,7 +169,9 @@ mod tests {
         }
         let exact: Vec<Tone> = sizes.iter().map(|t| Tone { bins: t[0], growth: 0.0 }).collect();
         let middle = 511.0 / 2.0 / 512.0;
-        for ([bins, size], gain) in sizes.iter().zip(gains_of_tones(&chirp(&sizes, 0.0), &exact)) {
+        let gains = gains_of_tones(&chirp(&sizes, 0.0), &exact);
+        assert_eq!(gains.len(), sizes.len());
+        for ([bins, size], gain) in sizes.iter().zip(gains) {
             assert!((gain - Complex64::cis(TAU * bins * middle) * size).norm() < 1e-9, "{bins}: {gain}");
         }
     }
