@@ -52,8 +52,8 @@ use std::time::Duration;
 /// With --json one object is printed: count, seed, floor, normalisation, carrier, reading and radar (what made the rows; null where older rows
 /// don't say, the last three also for the scenes of a folder; radar is empty for table 3.1's), missing (what lacks of the whole run: set,
 /// method, missing, of, first numbers, shard) and sets,
-/// each with its name (set: a number for the thesis' sets), its description, what the thesis prints there (printed: baseline, experiment_1, experiment_2; null
-/// for other scenes), false_alarm (the printed rate, experiment 2's; 1 % for other scenes) and methods, each with name, weights (the first 12
+/// each with its name (set: a number for the thesis' sets), its description, what the thesis prints there (printed: baseline, experiment_1,
+/// experiment_2; null for other scenes), false_alarm (the printed rate, experiment 2's; 1 % for other scenes) and methods, each with name, weights (the first 12
 /// digits of their SHA-256; null without weights), optimiser, eta (the mean where one_eta is false: then each answer has its own), one_eta,
 /// scenes, squared_error, detection, false_alarm, missed and ghosts (mean, standard_error and median; rates at the method's threshold),
 /// detection_at_printed_false_alarm (false_alarm, detection, standard_error, median; threshold says that each scene has its own), echoes
